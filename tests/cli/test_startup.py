@@ -26,7 +26,9 @@ def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> Non
     assert set(done.stdout.split()) == {
         "trunnion.cli",
         "trunnion.cli.arguments",
+        "trunnion.cli.process",
         "trunnion.errors",
+        "trunnion.wording",
     }
 
 
