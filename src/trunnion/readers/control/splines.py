@@ -20,6 +20,9 @@ _FIRST_CHORDS: Final = 2
 #: More points than this are a mistake of the program.
 MOST_POINTS: Final = 10_000
 
+#: The same of all spans of a NURBS together.
+_MOST_IN_ALL: Final = 1_000_000
+
 
 class SplineError(Exception):
     """The reason why blocks program no spline."""
@@ -57,7 +60,8 @@ def points_of_polynomial(coefficients: Floats, interval: float, length_unit: flo
 
 def nurbs_points(spline: Spline) -> Floats:
     """(k, 3): points of a spline behind its start, in its coordinates, mm; chords are halved until they are near."""
-    found = []
+    found: list[Floats] = []
+    total = 0
     for span in spline.spans.tolist():
         chords = _FIRST_CHORDS
         while True:
@@ -69,6 +73,9 @@ def nurbs_points(spline: Spline) -> Floats:
             if not chords <= MOST_POINTS:
                 raise SplineError(f"a spline that takes more than {MOST_POINTS} points within {CHORD:g} mm")
         found.append(points[4::4])
+        total += chords
+        if total > _MOST_IN_ALL:
+            raise SplineError(f"a spline that takes more than {_MOST_IN_ALL} points within {CHORD:g} mm")
     return np.concatenate(found)
 
 

@@ -14,6 +14,7 @@ from trunnion.model.splines import Spline
 from trunnion.model.toolpath import Kind
 from trunnion.output.families.fanuc.splines import spline_lines, takes_spline
 from trunnion.readers import run_program
+from trunnion.readers.control.splines import SplineError, nurbs_points
 
 HEAD = "%\nO1\nG21 G90 G94 G17\nG54\nG1 X10. Y0. Z0. F500.\n"
 #: A quarter of a circle, exactly.
@@ -107,6 +108,18 @@ def test_what_is_written_is_read(tmp_path_factory: pytest.TempPathFactory, fanuc
     share = np.clip(np.einsum("cki,ki->ck", dense[:, None] - begin[None], step) / length, 0.0, 1.0)
     off = np.linalg.norm(dense[:, None] - begin - share[..., None] * step, axis=2).min(axis=1)
     assert off.max() <= 0.0011
+
+
+def test_a_curve_of_too_many_points_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    corners = np.array([[0, 0, 0], [0, 40, 0], [40, 40, 0], [40, 0, 0.0]])
+    bezier = Spline(3, np.repeat([0.0, 1.0], 4), corners, np.ones(4))
+    assert len(nurbs_points(bezier)) < 500
+    with pytest.raises(SplineError, match="more than 10000 points"):
+        nurbs_points(bezier._replace(poles=1e6 * corners))
+    monkeypatch.setattr("trunnion.readers.control.splines._MOST_IN_ALL", 100)
+    two = Spline(3, np.repeat([0.0, 0.5, 1.0], [4, 3, 4]), np.concatenate((corners, corners[1:])), np.ones(7))
+    with pytest.raises(SplineError, match="more than 100 points"):
+        nurbs_points(two)
 
 
 def test_which_splines_the_control_takes() -> None:

@@ -24,7 +24,7 @@ _CUBIC: Final = 4
 
 #: How far the first control point may be from where the tool stands, mm; and the most control points.
 _SAME_POINT: Final = 1e-6
-_MOST_POLES: Final = 100_000
+_MOST_POLES: Final = 20_000
 
 
 class NurbsBlocks:
