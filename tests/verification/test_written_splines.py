@@ -135,6 +135,17 @@ def test_a_straight_way_along_the_control_points_is_caught(folder: Path, machine
     assert not verify(text.replace(WRITTEN[machine][1], "G1", 1)).passed
 
 
+def test_the_same_splines_as_lines_come_first(folder: Path, machine: str, tmp_path: Path) -> None:
+    first = PART.replace("OP1", "OP0").replace("GOTO/0,0,5\n", "CUTCOM/LEFT\nGOTO/0,0,5\n")
+    first = first.replace("RAPID\nGOTO/30,-10,50", "CUTCOM/OFF\nRAPID\nGOTO/30,-10,50")
+    cl, output = tmp_path / "both.cls", tmp_path / "both.nc"
+    cl.write_text(first + PART)
+    found = trunnion.post(cl, machine=machine, settings=WRITTEN[machine][0], output=output).verification
+    assert found is not None
+    assert found.passed
+    assert output.read_text().count(WRITTEN[machine][1]) == 2
+
+
 def test_a_conversion_carries_over_their_points(folder: Path, machine: str, tmp_path: Path) -> None:
     path = tmp_path / "back.cls"
     converted = trunnion.convert(folder / f"{machine}.nc", machine=machine, to_cl=True, output=path)

@@ -28,8 +28,9 @@ def with_splines_kept(operation: Operation, mode: MachiningMode, capabilities: C
     if not len(splines):
         return operation
     keep = np.zeros(len(splines), np.bool_)
-    others = any(isinstance(event, CutterComp | CycleOn) for event in operation.events)
-    if mode is MachiningMode.THREE_AXIS and not others:
+    compensated = any(isinstance(event, CutterComp) and event.side != "OFF" for event in operation.events)
+    drilled = any(isinstance(event, CycleOn) for event in operation.events)
+    if mode is MachiningMode.THREE_AXIS and not compensated and not drilled:
         keep = _unbroken(operation)
         for k in np.flatnonzero(keep).tolist():
             keep[k] = capabilities.takes_spline(splines[k].spline)

@@ -5,14 +5,20 @@ the CL file. Splines that are found here are compared as curves; all others are 
 """
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
 from trunnion.model.splines import Spline
+from trunnion.model.toolpath import CutterComp, CycleOn
 from trunnion.verification.expected.path import ExpectedPath, WrittenSpline
 from trunnion.verification.expected.splines import span_counts
+
+#: The tool axis along Z, and how far it may be off: less than any rotary word shows.
+_UP: Final = np.array([0.0, 0.0, 1.0])
+_UPRIGHT: Final = 1e-3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,10 +69,16 @@ def _count(spans: Ints, follows: Flags, wanted: int) -> int:
 
 
 def _wanted(expected: ExpectedPath) -> list[_Wanted]:
+    """The splines that a program may have: no radius compensation, no holes beside them, and the tool along Z."""
     found = []
     for index, section in enumerate(expected.sections):
+        moves, events = section.operation.moves, section.operation.events
+        compensated = any(isinstance(event, CutterComp) and event.side != "OFF" for event in events)
+        if compensated or any(isinstance(event, CycleOn) for event in events):
+            continue
         splines, tip = section.operation.splines, section.tolerances.tip * 1.001 + 1e-9
         for k in range(len(splines)):
             _, last, spline = splines[k]
-            found.append(_Wanted(index, k, spline, spline.poles[0], section.operation.moves.tip[last], tip))
+            if not moves.per_rev[last] and float(np.abs(moves.axis[last] - _UP).max()) < _UPRIGHT:
+                found.append(_Wanted(index, k, spline, spline.poles[0], moves.tip[last], tip))
     return found
