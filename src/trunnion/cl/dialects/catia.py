@@ -9,10 +9,12 @@ from trunnion.cl.dialect import CycleWords, Dialect, marks
 from trunnion.cl.dialects.apt import APT_HANDLERS, CYCLES
 from trunnion.cl.state import TOOL_NUMBER, ReaderState
 from trunnion.cl.statement import Statement, whole_number
-from trunnion.cl.statements import motion
+from trunnion.cl.statements import apt_refused, motion
 
 _NAME: Final = re.compile(r"\s*OPERATION NAME\s*:\s*(.*)", re.IGNORECASE)
 _MATRIX: Final = re.compile(r"\*CATIA0\s*", re.IGNORECASE)
+#: The statement ends where ``$$`` begins a comment.
+_AXIS_AS_COMMENT: Final = "SYN/'TLAXIS','"
 _TIP: Final = "output tips and tool axes, with the compensation of the radius off or in the plane"
 _MILLING: Final = "output the milling operations alone"
 
@@ -56,6 +58,22 @@ def _toolno(state: ReaderState, statement: Statement) -> None:
     state.state_once(TOOL_NUMBER, number)
 
 
+def _syn(state: ReaderState, statement: Statement) -> None:
+    """Read SYN/'TLAXIS','$$…' of ICAM's table, where TLAXIS is a comment since each point has its axis as well."""
+    if statement.source.replace(" ", "").upper() != _AXIS_AS_COMMENT:
+        apt_refused.refuse(state, statement)
+        return
+    what = "SYN makes TLAXIS a comment for the post-processor of ICAM; here it is the tool axis of the points behind it"
+    state.diagnostics.remark(state.line, what)
+
+
+def _ppfun(state: ReaderState, statement: Statement) -> None:
+    """Read PPFUN/15,number,OFF, which switches a message of ICAM's post-processor off; others may be anything."""
+    if len(statement.values) == 3 and statement.values[0] == 15 and statement.values[2] in ("ON", "OFF"):
+        return
+    state.note_unknown(statement, "PPFUN is not known")
+
+
 CATIA: Final = Dialect(
     name="catia",
     title="CATIA APTSOURCE",
@@ -63,7 +81,7 @@ CATIA: Final = Dialect(
         rb"\$\$[ \t]*CATIA APT VERSION\b", rb"\$\$\*CATIA\d", rb"\$\$[ \t]*OPERATION NAME[ \t]*:",
         rb"\$\$[ \t]*TOOLCHANGE(?:BEGINNING|END)\b",
     ),
-    handlers={**APT_HANDLERS, "GOTO": _goto, "TOOLNO": _toolno},
+    handlers={**APT_HANDLERS, "GOTO": _goto, "PPFUN": _ppfun, "SYN": _syn, "TOOLNO": _toolno},
     cycles=CycleWords(
         modes=CYCLES.modes,
         words=CYCLES.words,
