@@ -222,7 +222,8 @@ class ReaderState:
     def set_system(self, numbers: tuple[float, ...]) -> None:
         """Note the coordinate system of the points in that of the model, which must stay the same in a file.
 
-        Whether rows or columns of such a matrix are its axes is not settled, so points of two cannot be put together.
+        Whether rows or columns of such a matrix are its axes is settled for CATIA alone, whose dialect calls this once;
+        points of two others cannot be put together.
         """
         if self.system and any(abs(a - b) > _SAME_SYSTEM for a, b in zip(self.system, numbers, strict=True)):
             raise StatementError(

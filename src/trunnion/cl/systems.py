@@ -15,7 +15,8 @@ _IDENTITY: Final = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 def other_system(toolpaths: Sequence[Toolpath]) -> Problem | None:
     """The first toolpath whose coordinate system differs from that of the first one, as a problem.
 
-    Whether rows or columns of such a system are its axes is not settled, so its points cannot be turned into another.
+    Files of different systems may be different setups, and of most dialects it is not settled whether rows or columns
+    are the axes: points are not turned into the system of another file.
     """
     for toolpath in toolpaths[1:]:
         pair = zip(toolpath.system or _IDENTITY, toolpaths[0].system or _IDENTITY, strict=True)

@@ -3,6 +3,8 @@
 import re
 from typing import Final
 
+import numpy as np
+
 from trunnion.cl.builder import NoAxis
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.dialect import CycleWords, Dialect, marks
@@ -10,9 +12,13 @@ from trunnion.cl.dialects.apt import APT_HANDLERS, CYCLES
 from trunnion.cl.state import TOOL_NUMBER, ReaderState
 from trunnion.cl.statement import Statement, whole_number
 from trunnion.cl.statements import apt_refused, motion
+from trunnion.model.frames import frame_from_vectors, relative_frame
+from trunnion.model.toolpath import Frame
 
 _NAME: Final = re.compile(r"\s*OPERATION NAME\s*:\s*(.*)", re.IGNORECASE)
 _MATRIX: Final = re.compile(r"\*CATIA0\s*", re.IGNORECASE)
+#: Greatest error of a product of two axes, which are printed with five decimals.
+_SQUARE: Final = 1e-4
 #: The statement ends where ``$$`` begins a comment.
 _AXIS_AS_COMMENT: Final = "SYN/'TLAXIS','"
 _TIP: Final = "output tips and tool axes, with the compensation of the radius off or in the plane"
@@ -37,7 +43,44 @@ def _comment(state: ReaderState, text: str) -> None:
             if len(numbers) != 12:
                 what = "$$*CATIA0 is not followed by an identifier and three lines of four numbers"
                 raise StatementError(what, "output the file again")
-            state.set_system(numbers)
+            _set_system(state, numbers)
+
+
+def _set_system(state: ReaderState, numbers: tuple[float, ...]) -> None:
+    """Set the machining axis system of the points that follow; that of the file is the first one.
+
+    Columns are axes and origin in the model. Operations of a later system have their frame in the first one, and
+    nothing that was said in the coordinates before holds on: last point, tool axis, clearance plane.
+    """
+    if not state.system or numbers == state.system:
+        own = Frame()
+    else:
+        own = relative_frame(_frame(numbers), _frame(state.system))
+    if not state.system:
+        state.set_system(numbers)
+    if own == state.builder.frame:
+        return
+    if state.cycle_line or state.direction is not None:
+        raise StatementError("$$*CATIA0 within a cycle or an arc", "change the machining axis between operations")
+    state.split_operation()
+    state.builder.frame, state.builder.continues = own, False
+    state.clearance = None
+    state.set_axis(None, NoAxis.NEVER)
+    what = "the machining axis system changes: these points are put where they are in the first one of the file"
+    state.diagnostics.remark(state.line, what, "post the operations alone if the part is clamped anew for them")
+
+
+def _frame(numbers: tuple[float, ...]) -> Frame:
+    """A machining axis system in the model, made exactly unit and square."""
+    matrix = np.array(numbers).reshape(3, 4)
+    x, y, z = matrix[:, :3].T
+    is_square = np.isfinite(matrix).all() and np.abs(matrix[:, :3].T @ matrix[:, :3] - np.eye(3)).max() <= _SQUARE
+    if not is_square or np.cross(x, y) @ z < 0:
+        what = "the machining axis system of $$*CATIA0 is not square, or is left-handed"
+        raise StatementError(what, "output the file again")
+    x = x / np.linalg.norm(x)
+    y = y - (x @ y) * x
+    return frame_from_vectors(matrix[:, 3], x, y / np.linalg.norm(y))
 
 
 def _goto(state: ReaderState, statement: Statement) -> None:
