@@ -95,10 +95,12 @@ def test_nothing_said_in_the_coordinates_before_holds_on(read: Read, lines: list
         ["1 0.1 0 0", "0 1 0 0", "0 0 1 0"],
         ["1 0 0 nan", "0 1 0 0", "0 0 1 0"],
         ["1 0 0 inf", "0 1 0 0", "0 0 1 0"],
+        ["1 0 0 1e200", "0 1 0 0", "0 0 1 0"],
+        ["1e200 0 0 0", "0 1 0 0", "0 0 1 0"],
     ],
 )
 def test_what_is_no_system_is_refused(read: Read, rows: list[str]) -> None:
-    with pytest.raises(TrunnionError, match="not square, or is left-handed"):
+    with pytest.raises(TrunnionError, match="not square, is left-handed or nowhere near"):
         read(written(*system(FIRST), *PATH, *system(rows), *PATH))
 
 
@@ -107,3 +109,18 @@ def test_a_system_within_a_cycle_is_refused(read: Read) -> None:
     hole = ["CYCLE/DRILL,DEPTH,5,MMPM,100,CLEAR,2", "GOTO/1,2,3"]
     with pytest.raises(TrunnionError, match="within a cycle or an arc"):
         read(written(*system(FIRST), *PATH, *hole, *system(raised), "GOTO/4,5,6", "CYCLE/OFF"))
+
+
+TABLE = ["$$*CATIA0", "$$ PPTABLE / STD-MM.pptable", "$$ Company Name"]
+
+
+def test_a_table_of_words_may_leave_the_matrix_out(read: Read) -> None:
+    toolpath = read(written(*TABLE, "$$ 1 0 0", *PATH))
+    assert toolpath.system == ()
+    assert toolpath.operations[0].moves.tip.tolist() == [[-40, -30, 20], [-40, 30, 20]]
+
+
+@pytest.mark.parametrize("before", [system(FIRST), PATH])
+def test_a_system_behind_points_needs_its_matrix(read: Read, before: list[str]) -> None:
+    with pytest.raises(TrunnionError, match="without its matrix"):
+        read(written(*before, *TABLE, *PATH))

@@ -55,3 +55,15 @@ def test_a_tool_axis_that_the_points_contradict_is_refused(read: Read) -> None:
     lines = [*HEAD, SYNONYM, *PART[:-1], "GOTO/1,2,3,1,0,0", "FINI"]
     with pytest.raises(TrunnionError, match="three more numbers behind a point without MULTAX"):
         read(written(*lines))
+
+
+def test_points_to_which_arcs_could_be_fitted_stay_as_they_are(read: Read) -> None:
+    toolpath = read(written(*HEAD, "MODE/CIRCUL,5,2", *PART[:-1], "MODE/LINEAR", "FINI"))
+    (operation,) = toolpath.operations
+    assert operation.moves.tip.tolist() == [[0, 0, 50], [10, 0, 0]]
+    assert [remark.what.split()[0] for remark in toolpath.remarks] == ["MODE/CIRCUL", "MODE/LINEAR"]
+
+
+def test_other_modes_are_read_as_everywhere(read: Read) -> None:
+    with pytest.raises(TrunnionError, match="count from each other"):
+        read(written(*HEAD, "MODE/INCR,ON", *PART))

@@ -28,6 +28,36 @@ SEEDS = {
     name: writer(False).write([step for step in PATH if says(name, step)]).encode() for name, writer in EVERY.items()
 }
 
+#: No writer in the tests writes a second machining axis system, or the words of ICAM's table.
+SEEDS["catia axes"] = b"""$$ CATIA APT VERSION 1.0
+$$*CATIA0
+$$ P
+$$ 1 0 0 0
+$$ 0 1 0 0
+$$ 0 0 1 0
+LOADTL/1
+SPINDL/1000,RPM,CLW
+FEDRAT/100,MMPM
+TLAXIS/0,0,1
+GOTO/-40,-30,20
+GOTO/-40,30,20
+$$*CATIA0
+$$ A
+$$ 0 0 1 100
+$$ 1 0 0 5
+$$ 0 1 0 0
+SYN/'TLAXIS','$$*TLAXIS'
+MODE/CIRCUL,5,2
+PPFUN/15,12,OFF
+TLAXIS/0,0,1
+RAPID
+GOTO/1,2,30
+CYCLE/DRILL,DEPTH,5,MMPM,100,CLEAR,2
+GOTO/1,2,3
+CYCLE/OFF
+FINI
+"""
+
 #: It has no tool numbers, and no writer in the tests.
 SEEDS["clt"] = b"""UNITS/ MM
 CUTTER/ 10.0,0.0,5.0,3.004303,31.0,0.0,130.0,

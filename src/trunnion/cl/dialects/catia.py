@@ -11,7 +11,7 @@ from trunnion.cl.dialect import CycleWords, Dialect, marks
 from trunnion.cl.dialects.apt import APT_HANDLERS, CYCLES
 from trunnion.cl.state import TOOL_NUMBER, ReaderState
 from trunnion.cl.statement import Statement, whole_number
-from trunnion.cl.statements import apt_refused, motion
+from trunnion.cl.statements import apt_refused, events, motion
 from trunnion.model.frames import frame_from_vectors, relative_frame
 from trunnion.model.toolpath import Frame
 
@@ -19,8 +19,11 @@ _NAME: Final = re.compile(r"\s*OPERATION NAME\s*:\s*(.*)", re.IGNORECASE)
 _MATRIX: Final = re.compile(r"\*CATIA0\s*", re.IGNORECASE)
 #: Greatest error of a product of two axes, which are printed with five decimals.
 _SQUARE: Final = 1e-4
+#: Greatest number of a matrix, in units of the file: no part is as large.
+_FARTHEST: Final = 1e7
 #: The statement ends where ``$$`` begins a comment.
 _AXIS_AS_COMMENT: Final = "SYN/'TLAXIS','"
+_NUMBER: Final = re.compile(r"[-+.]?\d")
 _TIP: Final = "output tips and tool axes, with the compensation of the radius off or in the plane"
 _MILLING: Final = "output the milling operations alone"
 
@@ -33,7 +36,9 @@ def _comment(state: ReaderState, text: str) -> None:
         state.matrix = []
     elif state.matrix is not None:
         state.matrix.append(text)
-        if len(state.matrix) == 4:  # an identifier, and three lines of four numbers
+        if len(state.matrix) == 2 and not _NUMBER.search(text):
+            _miss_system(state)
+        elif len(state.matrix) == 4:  # an identifier, and three lines of four numbers
             rows = [row.split() for row in state.matrix[1:]]
             state.matrix = None
             try:
@@ -44,6 +49,14 @@ def _comment(state: ReaderState, text: str) -> None:
                 what = "$$*CATIA0 is not followed by an identifier and three lines of four numbers"
                 raise StatementError(what, "output the file again")
             _set_system(state, numbers)
+
+
+def _miss_system(state: ReaderState) -> None:
+    """Go on without the matrix that a table of words leaves out; where it may be another one, it is needed."""
+    state.matrix = None
+    if state.system or state.row:
+        what = "$$*CATIA0 without its matrix: the machining axis system may be another one than before"
+        raise StatementError(what, "let the table of words (PPTable) write NC_MACHINING_AXIS with its twelve numbers")
 
 
 def _set_system(state: ReaderState, numbers: tuple[float, ...]) -> None:
@@ -74,9 +87,9 @@ def _frame(numbers: tuple[float, ...]) -> Frame:
     """A machining axis system in the model, made exactly unit and square."""
     matrix = np.array(numbers).reshape(3, 4)
     x, y, z = matrix[:, :3].T
-    is_square = np.isfinite(matrix).all() and np.abs(matrix[:, :3].T @ matrix[:, :3] - np.eye(3)).max() <= _SQUARE
-    if not is_square or np.cross(x, y) @ z < 0:
-        what = "the machining axis system of $$*CATIA0 is not square, or is left-handed"
+    is_near = np.abs(matrix).max() <= _FARTHEST
+    if not is_near or np.abs(matrix[:, :3].T @ matrix[:, :3] - np.eye(3)).max() > _SQUARE or np.cross(x, y) @ z < 0:
+        what = "the machining axis system of $$*CATIA0 is not square, is left-handed or nowhere near the part"
         raise StatementError(what, "output the file again")
     x = x / np.linalg.norm(x)
     y = y - (x @ y) * x
@@ -117,6 +130,15 @@ def _ppfun(state: ReaderState, statement: Statement) -> None:
     state.note_unknown(statement, "PPFUN is not known")
 
 
+def _mode(state: ReaderState, statement: Statement) -> None:
+    """Read MODE/CIRCUL of ICAM, which fits arcs to points, and MODE/LINEAR, which ends that: points stay points."""
+    if statement.values[:1] not in (("CIRCUL",), ("LINEAR",)):
+        events.set_mode(state, statement)
+        return
+    what = f"MODE/{statement.values[0]} tells ICAM's post-processor whether to fit arcs; the points stay as they are"
+    state.diagnostics.remark(state.line, what)
+
+
 CATIA: Final = Dialect(
     name="catia",
     title="CATIA APTSOURCE",
@@ -124,7 +146,7 @@ CATIA: Final = Dialect(
         rb"\$\$[ \t]*CATIA APT VERSION\b", rb"\$\$\*CATIA\d", rb"\$\$[ \t]*OPERATION NAME[ \t]*:",
         rb"\$\$[ \t]*TOOLCHANGE(?:BEGINNING|END)\b",
     ),
-    handlers={**APT_HANDLERS, "GOTO": _goto, "PPFUN": _ppfun, "SYN": _syn, "TOOLNO": _toolno},
+    handlers={**APT_HANDLERS, "GOTO": _goto, "MODE": _mode, "PPFUN": _ppfun, "SYN": _syn, "TOOLNO": _toolno},
     cycles=CycleWords(
         modes=CYCLES.modes,
         words=CYCLES.words,
