@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from trunnion import verify
 from trunnion.cli import main
 
 #: Two tapped holes on a slope, and a ball mill that swings; the second for a control that taps along Z only.
@@ -179,3 +180,24 @@ def test_a_fault_made_by_hand_is_caught(
     places = [int(match[1]) for line in lines if (match := re.match(rf"[^:]*:(\d+)\b.*\[{check}\]$", line))]
     line = text[: text.index(written)].count("\n") + 1
     assert any(line - 1 <= place <= line + 40 for place in places), (line, places)
+
+
+def test_a_tool_change_that_lost_the_retract_of_the_others_is_found(posted: Posted, tmp_path: Path) -> None:
+    """Also where the program retracts to another machine position than the home of the definition."""
+    cl, program = posted("dmu65")
+    text = program.read_text(encoding="utf-8").replace("L X+0 Y+0 R0 FMAX M91", "L X+1 Y+1 R0 FMAX M91")
+    lines = text.replace("L Z+560 R0 FMAX M91", "L Z+555 R0 FMAX M91").splitlines()
+
+    def home(blocks: list[str]) -> tuple[bool, str]:
+        changed = tmp_path / "changed.h"
+        changed.write_text("\n".join(re.sub(r"^\d+ ", f"{k} ", block) for k, block in enumerate(blocks)) + "\n")
+        found = verify(changed, machine="dmu65", cl=cl, tolerance=0.005)
+        return next((each.passed, each.summary) for each in found.checks if each.key == "home")
+
+    assert home(lines)[0]
+    change = next(k for k, line in enumerate(lines) if "TOOL CALL 2" in line)
+    cut = max(k for k, line in enumerate(lines[:change]) if "M99" in line)
+    lost = [line for line in lines[cut:change] if "L Z+555" not in line]
+    passed, text = home([*lines[:cut], *lost, *lines[change:]])
+    assert not passed
+    assert "changes the tool without the retract" in text

@@ -10,16 +10,13 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Machine
 from trunnion.model.run import ProgrammedWord, Run, RunEvent
 from trunnion.model.toolpath import Kind
+from trunnion.verification.checks.turns_at_the_part import stands_away
 from trunnion.verification.context import Context, check_from_places
+from trunnion.verification.kinematics.home_tolerance import HOME_TOLERANCE, home_tolerance
 from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.results import Check, Place
 
 _TITLE: Final = "retracts to the machine's home"
-
-#: An axis is at home within this, mm or degrees; a slide whose position is programmed in inches within the second, a
-#: ten-thousandth of an inch: few homes are whole numbers of the last digit of inches.
-HOME_TOLERANCE: Final = 1e-6
-INCH_HOME_TOLERANCE: Final = 2.6e-3
 
 _SLIDE_WORDS: Final = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z
 
@@ -56,14 +53,6 @@ class _HomeMotions:
         return _HomeMotions(rows, joints, before, named, at_home)
 
 
-def home_tolerance(run: Run, rows: Ints) -> Floats:
-    """Within what axes are at home at rows, (k, 5) mm or degrees."""
-    tolerance = np.full((len(rows), len(run.machine.axes)), HOME_TOLERANCE)
-    for slide in run.machine.linear:
-        tolerance[run.state.inches.at(rows), slide] = INCH_HOME_TOLERANCE
-    return tolerance
-
-
 def _axis_words(machine: Machine) -> list[int]:
     """The bit of ``Run.programmed`` of each axis."""
     slides = {"X": ProgrammedWord.X, "Y": ProgrammedWord.Y, "Z": ProgrammedWord.Z}
@@ -81,8 +70,8 @@ def check_home(context: Context) -> Check:
     motions = _HomeMotions.of(context.run)
     if not len(motions.rows):
         return _check_retracts_by_word(context)
-    if not motions.at_home.any():
-        return Check("home", _TITLE, True, "not checked: machine positions other than the home of the definition")
+    if not (motions.at_home & motions.named).any():
+        return _check_other_positions(context)
     places = [*_wrong_motions(context, motions), *_changes_away_from_home(context, motions)]
     good = "slides and rotary axes at home before, after and at every tool change"
     return check_from_places("home", _TITLE, places, good)
@@ -129,6 +118,20 @@ def _slides_stay_home(run: Run, first: int, end: int) -> bool:
     rows = np.arange(first, end)
     off = run.positions(rows).joints[:, slides] - run.machine.home[slides]
     return bool((np.abs(off) <= home_tolerance(run, rows)[:, slides]).all())
+
+
+def _check_other_positions(context: Context) -> Check:
+    """A program that retracts to machine positions other than home before a tool change does so before all."""
+    run, away = context.run, stands_away(context)
+    changes = [(place, event) for place, event in enumerate(run.events) if event.kind == "tool_change"]
+    changes = [(place, event) for place, event in changes if event.before_row > 0]
+    lost = [event for place, event in changes if not away(place)]
+    if len(lost) == len(changes):
+        return Check("home", _TITLE, True, "not checked: machine positions other than the home of the definition")
+    text = "changes the tool without the retract that stands before other tool changes"
+    places = [context.place_of_event(event, 0.0, text) for event in lost]
+    good = "a retract before every tool change, to machine positions other than the home of the definition"
+    return check_from_places("home", _TITLE, places, good)
 
 
 def _check_retracts_by_word(context: Context) -> Check:

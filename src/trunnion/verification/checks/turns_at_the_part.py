@@ -15,8 +15,8 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import SAFE_DISTANCE, Machine, Mount, SweptPart, turn_clearance, turns_part_alone
 from trunnion.model.run import Run
-from trunnion.verification.checks.home_checks import home_tolerance
 from trunnion.verification.context import MAX_PLACES, Context
+from trunnion.verification.kinematics.home_tolerance import home_tolerance
 from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.kinematics.positioning_moves import (
     ROTARY_WORDS,

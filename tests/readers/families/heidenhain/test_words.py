@@ -80,6 +80,12 @@ def test_a_speed_with_tcp_on_is_an_error(run: Runner) -> None:
     assert [error.line for error in found.errors] == [3]
 
 
+def test_a_feed_at_the_tip_with_tcp_is_an_error(run: Runner) -> None:
+    assert [error.line for error in run("TOOL CALL 3 Z S900\nM116\nM128\nL X+1 F100").errors] == [3]
+    assert [error.line for error in run("TOOL CALL 3 Z S900\nM128\nM116\nL X+1 F100").errors] == [3]
+    assert run("TOOL CALL 3 Z S900\nM116\nM117\nM128\nL X+1 F100").errors == ()
+
+
 # Motion
 
 

@@ -54,6 +54,12 @@ class HeidenhainControl(PlaneControl):
         """M128, M129 and the like."""
         super().set_tcp(on)
         self.judge_compensation()
+        self._judge_feed_path()
+
+    def _judge_feed_path(self) -> None:
+        """Note M116 with TCP: the manuals say that they exclude each other."""
+        if self.tcp and self.modal.feed_path.current == int(FeedPath.TIP):
+            self.note("M116 and M128 exclude each other: write M117 before M128", Severity.ERROR)
 
     def judge_compensation(self) -> None:
         """Note radius compensation with M128, which takes the delta values (DR) and not the radius (TNC 640 manual)."""
@@ -99,6 +105,7 @@ class HeidenhainControl(PlaneControl):
             text = f"M116 leaves out the axes of a head: the feed where {' and '.join(heads)} turns is unknown"
             self.note(text, Severity.WARNING)
         self.modal.feed_path.set(self.row, int(FeedPath.TIP if on else FeedPath.AXES))
+        self._judge_feed_path()
 
     # Tools
 
