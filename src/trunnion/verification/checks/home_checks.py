@@ -135,7 +135,10 @@ def _check_other_positions(context: Context) -> Check:
 
 
 def _check_retracts_by_word(context: Context) -> Check:
-    """A program without machine positions that retracts by a word (M242) before a tool change does so before all."""
+    """A program without machine positions that retracts by a word (M242) before a tool change does so before all.
+
+    And at its end.
+    """
     run = context.run
     retracted_at: int | None = None
     changes = 0
@@ -145,13 +148,14 @@ def _check_retracts_by_word(context: Context) -> Check:
             # The motion that the word makes, if the travel is known, is none of the program.
             makes_motion = event.before_row < len(run) and bool(run.state.machine_frame[event.before_row])
             retracted_at = event.before_row + makes_motion
-        elif event.kind == "tool_change":
-            changes += 1
+        elif event.kind in ("tool_change", "end"):
+            changes += event.kind == "tool_change"
             since = run.programmed[retracted_at : event.before_row] if retracted_at is not None else None
             if since is None or (since & int(_SLIDE_WORDS)).any():
                 lost.append(event)
-    if len(lost) == changes:
+    if sum(event.kind == "tool_change" for event in lost) == changes:
         return Check("home", _TITLE, True, "not checked: no home moves")
-    text = "changes the tool without the retract that stands before other tool changes"
-    places = [context.place_of_event(event, 0.0, text) for event in lost]
-    return check_from_places("home", _TITLE, places, "a retract by its word before every tool change")
+    what = {"tool_change": "changes the tool", "end": "ends"}
+    text = "without the retract that stands before other tool changes"
+    places = [context.place_of_event(event, 0.0, f"{what[event.kind]} {text}") for event in lost]
+    return check_from_places("home", _TITLE, places, "a retract by its word before every tool change, and at the end")

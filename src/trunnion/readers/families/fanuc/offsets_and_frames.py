@@ -53,7 +53,7 @@ class OffsetInterpreter(CallInterpreter):
             case words.HOME | words.OTHER_HOME:
                 self._go_home(code, block)
             case words.LOCAL:
-                control.local = _changed(control.local, self._point(block))
+                control.local = _changed(control.local, self._shifted(block))
                 control.update_frame()
             case words.PRESET:
                 self._preset(block)
@@ -93,10 +93,18 @@ class OffsetInterpreter(CallInterpreter):
             raise BlockError("a shift is larger than any machine")
         return scaled
 
+    def _shifted(self, block: Block) -> list[float | None]:
+        """Return X, Y and Z of a shift in mm; one of the axes must be there."""
+        rotary = any(name in block.words for name in self.control.rotary_names)
+        values = self._point(block)
+        if not rotary and all(value is None for value in values):
+            raise BlockError("G52 and G92 need the axes that they shift")
+        return values
+
     def _preset(self, block: Block) -> None:
         """G92: give the present position new coordinates."""
         control = self.control
-        for axis, value in enumerate(self._point(block)):
+        for axis, value in enumerate(self._shifted(block)):
             if value is not None:
                 control.preset[axis] += float(control.programmed_position[axis]) - value
         rotation = control.rotation

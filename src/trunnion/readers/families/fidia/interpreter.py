@@ -85,6 +85,8 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
                 self._g_code(code, block)
         if words.DWELL in block.g:
             self._dwell(block)
+            if self._axis_words(block):
+                raise BlockError("axis words beside G4")
         self._feed_and_speed(block)
         if tool is not None:
             control.select_tool(tool)
@@ -139,7 +141,7 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
     def _dwell(self, block: Block) -> None:
         seconds = block.take("H")
         if seconds is None:
-            self._note("G4 without a time HD", Severity.WARNING)
+            self._note("G4 without a time HD", Severity.ERROR)
         elif seconds < 0.0:
             raise BlockError("a dwell below zero")
         else:

@@ -38,6 +38,8 @@ class OffsetInterpreter(OWordInterpreter):
             seconds = block.take("P")
             if seconds is None:
                 self._note("G4 without a time P", Severity.ERROR)
+            elif seconds < 0.0:
+                raise BlockError("a dwell below zero")
             else:
                 control.add_event("dwell", seconds)
         elif code == SET_DATA:
@@ -64,7 +66,10 @@ class OffsetInterpreter(OWordInterpreter):
         position = control.position()
         active = control.axis_offset_active
         offset = control.axis_offset.copy()
-        for axis, value in enumerate(self._axis_values(block)):
+        values = self._axis_values(block)
+        if all(value is None for value in values):
+            raise BlockError("G52 and G92 need the axes that they shift")
+        for axis, value in enumerate(values):
             if value is not None:
                 offset[axis] = value if code == 520 else offset[axis] * active + position[axis] - value
             elif not active:

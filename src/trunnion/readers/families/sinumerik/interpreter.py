@@ -294,7 +294,7 @@ class SinumerikInterpreter(CallInterpreter):
         elif block.speed is not None:
             self.control.add_event("dwell", -block.speed)
         else:
-            self._note("G4 without a time", Severity.WARNING)
+            self._note("G4 without a time", Severity.ERROR)
         if block.axes:
             self._note("axis words beside G4 are not executed", Severity.ERROR)
 
