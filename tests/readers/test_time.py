@@ -79,6 +79,13 @@ def test_a_loop_that_goes_on_is_not_in_circles(tmp_path: Path, monkeypatch: pyte
     assert len(run_program(path, load_machine("yl569"))) == 1501
 
 
+def test_long_lines_without_motion_are_not_in_circles(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(limits, "MOST_BLOCKS_IN_CIRCLES", 1_000)
+    path = tmp_path / "A.NC"
+    path.write_text("G21 F100\n" + 500 * f"; {1000 * 'A'}\n" + "G1 X1\nM2\n", encoding="utf-8")
+    assert len(run_program(path, load_machine("xyzac_trt"))) == 1
+
+
 def test_the_limit_is_a_few_seconds_of_blocks() -> None:
     # An interpreter executes 20,000 to 50,000 blocks a second.
     assert DEFAULT_STEP_LIMIT <= 50_000

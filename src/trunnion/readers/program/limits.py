@@ -75,18 +75,21 @@ class StepCounter:
             self._check_circles()
         if self._blocks <= self._limit:
             return
-        sources = self._sources()
-        allowed = self._limit + sum(source.known_lines for source in sources)
-        allowed += sum(source.size // CHARACTERS_PER_STEP for source in sources)
-        if self._blocks > allowed:
+        if self._blocks > self._limit + self._blocks_of_files():
             raise self._fail(f"executes more than {self._limit} blocks")
+
+    def _blocks_of_files(self) -> int:
+        """The blocks of going once through each file."""
+        sources = self._sources()
+        lines = sum(source.known_lines for source in sources)
+        return lines + sum(source.size // CHARACTERS_PER_STEP for source in sources)
 
     def _check_circles(self) -> None:
         """Check whether the program has been anywhere new lately, once it repeats blocks of its files."""
         passed, self._look_at = self._blocks - self._look_at + _LOOKED_AT_AFTER, self._blocks + _LOOKED_AT_AFTER
         new = self._positions(self._row)
         self._row += len(new)
-        if self._blocks <= sum(source.known_lines for source in self._sources()):
+        if self._blocks <= self._blocks_of_files():
             return
         counts = np.rint(new / _SAME_POSITION)
         before = len(self._visited)
