@@ -223,9 +223,11 @@ class Interpreter(ABC, Generic[A]):
     # Limits
 
     def _positions_from(self, row: int) -> Floats:
-        """X, Y, Z and the rotary words of the rows from one on, (n, 5)."""
-        columns = self.control.columns
-        return np.hstack([columns.xyz[row : columns.n], columns.rotary[row : columns.n]])
+        """X, Y, Z and the rotary words of the rows from one on, with the present work offset and tool, (n, 7)."""
+        columns, modal = self.control.columns, self.control.modal
+        rows = slice(row, columns.n)
+        present = np.broadcast_to([modal.work_offset.current, modal.tool.current], (columns.n - row, 2))
+        return np.hstack([columns.xyz[rows], columns.rotary[rows], present])
 
     def _open_sources(self) -> list[SourceText]:
         return [self._stack[0].source, *(source for source, _ in self._sources.values())]

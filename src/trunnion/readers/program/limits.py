@@ -25,7 +25,7 @@ BLOCKS_PER_RESOLUTION: Final = 16
 RESOLUTIONS_PER_LINE: Final = 4
 
 #: A program that goes in circles: so many blocks, after its files have been gone through once, without a position at
-#: which it has not been before. It is looked at after so many blocks each time.
+#: which it has not been before with this tool and work offset. It is looked at after so many blocks each time.
 MOST_BLOCKS_IN_CIRCLES: Final = 15_000
 _LOOKED_AT_AFTER: Final = 1_000
 
@@ -46,7 +46,7 @@ class StepCounter:
 
     sources    returns the files that are in use, the program first
     fail       returns the error of a program that does too much
-    positions  returns the positions of the rows so far, (n, k) mm and degrees
+    positions  returns where the tool goes in the rows from one on, (n, k) mm, degrees and whole numbers
     """
 
     def __init__(
