@@ -32,6 +32,13 @@ def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> Non
     }
 
 
+def test_numba_is_imported_before_what_would_import_it_many_calls_deeper() -> None:
+    script = "import sys\nimport trunnion.cli.startup\nprint(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    imported = done.stdout.split()
+    assert imported.index("numba") < imported.index("trunnion.cl")
+
+
 def test_toolpaths_come_in_order_and_are_not_kept() -> None:
     with ThreadPoolExecutor(1) as executor:
         coming = read_toolpaths(FILES, None, False, executor)
