@@ -49,8 +49,8 @@ if TYPE_CHECKING:
     from trunnion.api.reading import read_cl as read_cl
     from trunnion.api.reading import read_program as read_program
     from trunnion.api.reports import write_report as write_report
-    from trunnion.api.simulating import SimulationResult as SimulationResult
     from trunnion.api.simulating import simulate as simulate
+    from trunnion.api.simulation_result import SimulationResult as SimulationResult
     from trunnion.api.verifying import verify as verify
     from trunnion.errors import InputError as InputError
     from trunnion.errors import Problem as Problem
@@ -95,7 +95,7 @@ _MODULES: Final = {
     "RefusedError": "errors",
     "Run": "model.run",
     "Severity": "errors",
-    "SimulationResult": "api.simulating",
+    "SimulationResult": "api.simulation_result",
     "Toolpath": "model.toolpath",
     "TrunnionError": "errors",
     "Verification": "verification.results",

@@ -101,6 +101,30 @@ def test_the_part_that_comes_out_is_compared_with_the_design(tmp_path: Path) -> 
     assert left.passed  # a roughing program leaves material
 
 
+def test_a_fixture_is_hit_and_come_near_to(tmp_path: Path) -> None:
+    clamp = cuboid((55, -5, -20), (65, 5, -6))
+    beside = simulate(tmp_path, SLOT, fixtures=[clamp], near=2.0)
+    assert beside.passed
+    assert [(one.block, round(one.distance, 3)) for one in beside.near] == [(60, 1.0)]
+    assert beside.near[0].between == ("fixture 1", "cutter of 1")
+    higher = cuboid((55, -5, -20), (65, 5, -3))
+    found = simulate(tmp_path, SLOT, fixtures=higher, stop_at="first")
+    (finding,) = found.findings
+    assert (finding.kind, finding.block, finding.between) == ("collision", 60, ("fixture 1", "cutter of 1"))
+    assert finding.depth == pytest.approx(2.0, abs=0.1)
+    assert found.remarks[-1].what.startswith("the bodies of the machine are not checked")
+
+
+def test_the_bodies_of_the_machine_are_checked_where_it_is_known_where_they_are(tmp_path: Path) -> None:
+    names = {body.name for body in trunnion.load_machine("xyzac_trt").bodies}
+    unknown = simulate(tmp_path, SLOT)
+    sunk = simulate(tmp_path, SLOT, zero="0,0,-60")
+    told = "the bodies of the machine are not checked"
+    assert [told in remark.what for remark in unknown.remarks] == [True]
+    assert not [remark for remark in sunk.remarks if told in remark.what]
+    assert {one.between[0] for one in sunk.findings if one.kind == "collision"} & names
+
+
 def test_it_ends_after_the_first_finding_or_before_a_block(tmp_path: Path) -> None:
     program = SLOT.replace("N70 G0 Z20", "N70 G0 Y15\nN80 G0 X-20\nN90 G0 Z20")
     whole = simulate(tmp_path, program)
@@ -129,7 +153,7 @@ def test_a_program_with_an_error_cuts_up_to_there(tmp_path: Path) -> None:
     found = simulate(tmp_path, SLOT.replace("N60", "N55 G4711\nN60"))
     assert not found.passed
     assert found.removed == 0.0
-    assert "it is cut up to there" in found.remarks[-1].what
+    assert [remark for remark in found.remarks if "it is cut up to there" in remark.what]
 
 
 def test_a_tool_is_never_guessed(tmp_path: Path) -> None:

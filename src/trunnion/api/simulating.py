@@ -1,7 +1,6 @@
 """Simulation of NC programs: what they leave of the stock, what they hit, and the part that comes out."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final, Literal
 
@@ -12,131 +11,23 @@ from trunnion.api.arguments import check_choice, check_observer, check_paths, ch
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.api.settings import check_tolerance, set_up_machine
+from trunnion.api.simulation_result import NO_CALL, SimulationResult, file_of_row, make_result
 from trunnion.api.verifying import rapid_feed_of
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.simulation.deviation import Excess
-from trunnion.simulation.findings import Finding
+from trunnion.simulation.collisions import Collision, check_collisions, fixture_body, machine_bodies, part_body
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
-from trunnion.simulation.simulator import Job, OperationCut, Setup, Simulation, row_runs, tip_lengths
+from trunnion.simulation.simulator import Job, Setup
 from trunnion.simulation.stock_shapes import StockShape, default_cell, stock_shape
 from trunnion.simulation.tool_choice import choose_tools, tools_of_toolpaths
 from trunnion.simulation.tool_library import read_tools
 from trunnion.simulation.tool_profile import ToolShape
 from trunnion.simulation.tool_text import parse_tool
 from trunnion.verification import restore_rapids
-from trunnion.verification import verify as verify_run
 
 #: Part of a cell within which motions are simulated by default.
 _TOLERANCE: Final = 0.1
-
-#: The number of the tool with which a program cuts that calls none.
-_NO_CALL: Final = "0"
-
-#: Air cuts that are told, the longest ones.
-_MOST_AIR: Final = 20
-
-
-@dataclass(frozen=True, slots=True)
-class SimulationFinding:
-    """One thing that is wrong.
-
-    kind      ``rapid through stock``, ``gouge``, ``cuts with the spindle off``, ``shank into stock``,
-              ``holder into stock`` or ``collision``
-    between   names of two bodies
-    file      program
-    line      of its worst block in it, from 1
-    block     N number of that block, -1 where it has none
-    last_line, last_block  of the last block of the run of blocks that do it
-    cl_line   line of the CL file that the block comes from; 0 where it is not known
-    seconds   when, from the beginning of the program
-    depth     how deep, mm
-    place     where, workpiece frame, mm
-    """
-
-    kind: str
-    between: tuple[str, str]
-    file: str
-    line: int
-    block: int
-    last_line: int
-    last_block: int
-    cl_line: int
-    seconds: float
-    depth: float
-    place: tuple[float, float, float]
-
-
-@dataclass(frozen=True, slots=True)
-class AirCut:
-    """Blocks at feed that take nothing away: file, first and last line and N number, and the way of the tip in mm."""
-
-    file: str
-    line: int
-    block: int
-    last_line: int
-    last_block: int
-    length: float
-
-
-@dataclass(frozen=True, slots=True)
-class SimulatedOperation:
-    """Consecutive blocks with one tool.
-
-    removed   mm³ of the stock
-    gouged    mm³ of the design
-    seconds   at the programmed feeds
-    air       mm at feed in which nothing was removed
-    findings  their number
-    """
-
-    file: str
-    tool: str
-    line: int
-    last_line: int
-    removed: float
-    gouged: float
-    seconds: float
-    air: float
-    findings: int
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class SimulationResult:
-    """What a simulation found.
-
-    cell       width of the cells along X, Y and Z, mm
-    accuracy   how far motions and tools are off at most, mm; across a ray another 0.41 cells
-    limit      what is no deeper than this is not told, mm
-    removed    mm³ of the stock
-    left       what the stock has beyond the part; None without a part
-    gouge      what of the part is missing; None without a part
-    remarks    what was not simulated, or was taken for granted
-    seconds    of computing
-    """
-
-    programs: tuple[str, ...]
-    machine: str
-    cell: tuple[float, float, float]
-    accuracy: float
-    limit: float
-    removed: float
-    operations: tuple[SimulatedOperation, ...]
-    findings: tuple[SimulationFinding, ...]
-    air: tuple[AirCut, ...]
-    left: Excess | None
-    gouge: Excess | None
-    remarks: tuple[Problem, ...]
-    seconds: float
-    simulation: Simulation
-
-    @property
-    def passed(self) -> bool:
-        """Whether nothing was found that must not be: no finding, no gouge, no program that breaks off."""
-        broken = any(remark.severity is Severity.ERROR for remark in self.remarks)
-        gouged = self.gouge is not None and self.gouge.largest > self.limit
-        return not self.findings and not gouged and not broken
 
 
 def simulate(
@@ -145,6 +36,8 @@ def simulate(
     machine: MachineLike,
     stock: str | Path | TriangleMesh,
     part: str | Path | TriangleMesh | None = None,
+    fixtures: Iterable[str | Path | TriangleMesh] = (),
+    near: float | None = None,
     tools: Iterable[str | ToolShape] = (),
     libraries: Sequence[FilePath] = (),
     cl: ToolpathLike | Iterable[ToolpathLike] = (),
@@ -171,6 +64,11 @@ def simulate(
         standing on Z = z0 (0 by default) about X0 Y0, mm in the workpiece frame, or a closed mesh.
     part
         The design, a closed mesh in the workpiece frame.
+    fixtures
+        Meshes in the workpiece frame, which nothing may touch. They, the part and the bodies of the machine are checked
+        against each other and against the tool; the machine's only where ``zero`` and the tools' lengths are known.
+    near
+        Distance in mm from which on bodies are told that do not touch; by default only those that do.
     tools
         Tools as text, such as ``"3=ball:10,length=60,flutes=20"``, or as bodies; they come first.
     libraries
@@ -223,7 +121,10 @@ def simulate(
     readers.reader_of(loaded)
     loaded = set_up_machine(loaded, zero, tool_length)
     shape = stock_shape(stock)
-    design = None if part is None else _design(part)
+    check_tolerance("near", near, optional=True)
+    mesh = None if part is None else _mesh(part, "part")
+    design = None if mesh is None else StockShape(mesh.bounds[0], mesh.bounds[1], mesh=mesh)
+    around = [_mesh(fixture, f"fixture {k}") for k, fixture in enumerate(_listed(fixtures), 1)]
     wide = cell or default_cell(shape)
     setup = Setup(shape, design, wide, accuracy or _TOLERANCE * wide)
     simulation.check_cell(shape, wide)
@@ -253,12 +154,56 @@ def simulate(
         what = f"{found.leaks} of {found.stock.lattice.ray_count} rays pass a hole in it, and were left empty"
         remarks.append(Problem("part", 0, what, "close the mesh", Severity.WARNING))
         observer.problems(remarks[-1:])
-    return _result(loaded.key, found, jobs, tuple(remarks), toolpaths)
+    told = len(remarks)
+    touched = [
+        _collisions(job, number, mesh, around, near or 0.0, found.stopped, remarks) for number, job in enumerate(jobs)
+    ]
+    observer.problems(remarks[told:])
+    return make_result(loaded.key, found, jobs, touched, tuple(remarks), toolpaths)
 
 
-def _design(part: str | Path | TriangleMesh) -> StockShape:
-    mesh = part if isinstance(part, TriangleMesh) else load_mesh(part, name="part", closed=True)
-    return StockShape(mesh.bounds[0], mesh.bounds[1], mesh=mesh)
+def _mesh(mesh: str | Path | TriangleMesh, name: str) -> TriangleMesh:
+    return mesh.named(name) if isinstance(mesh, TriangleMesh) else load_mesh(mesh, name=name, closed=True)
+
+
+def _listed(fixtures: Any) -> list[Any]:
+    """One fixture, or several."""
+    alone = isinstance(fixtures, str | Path | TriangleMesh)
+    return [fixtures] if alone else list(fixtures)
+
+
+def _collisions(
+    job: Job,
+    number: int,
+    part: TriangleMesh | None,
+    fixtures: Sequence[TriangleMesh],
+    near: float,
+    stopped: tuple[int, int] | None,
+    remarks: list[Problem],
+) -> list[Collision]:
+    """What touches, or comes near, while a program runs as far as it was simulated."""
+    machine = job.run.machine
+    bodies = [fixture_body(mesh, machine) for mesh in fixtures]
+    if fixtures and part is not None:
+        bodies.append(part_body(part, machine))
+    if machine.workpiece_zero is not None and _lengths_known(job):
+        bodies += machine_bodies(machine, remarks.append)
+    elif number == 0 and machine.bodies:
+        what = "the bodies of the machine are not checked: workpiece zero and tool lengths are not known"
+        cure = "give zero, and tool_length or a tool with its holder"
+        remarks.append(Problem(job.run.files[0], 0, what, cure, Severity.WARNING))
+    if not bodies:
+        return []
+    end = job.end if stopped is None or stopped[0] != number else stopped[1] + 1
+    found = check_collisions(job.run, bodies, job.tools, near=near)
+    return [each for each in found if each.row < end]
+
+
+def _lengths_known(job: Job) -> bool:
+    """Whether the length of every tool that the program calls is known, from its tip to the gauge point."""
+    used = [job.run.tools[int(index)] for index in job.run.state.tool.distinct()]
+    known = job.run.machine.tool_length is not None
+    return all(known or job.tools[name].length for name in used if name in job.tools)
 
 
 def _tools(
@@ -270,12 +215,12 @@ def _tools(
     stated = [tool if isinstance(tool, ToolShape) else parse_tool(tool, diameters) for tool in tools]
     called = [run.tools[int(index)] for run in runs for index in run.state.tool.distinct()]
     if any(_cuts_without_call(run) for run in runs):
-        called.append(_NO_CALL)
-        if not any(tool.number == int(_NO_CALL) for tool in stated):
+        called.append(NO_CALL)
+        if not any(tool.number == int(NO_CALL) for tool in stated):
             what, cure = "the program cuts before it calls a tool", "state the one that is in the spindle: 0=ball:10"
             raise InputError(argument_problem("tools", what, cure))
     found = choose_tools(called, stated, read, tools_of_toolpaths(toolpaths))
-    return found | ({"": found[_NO_CALL]} if _NO_CALL in found else {})
+    return found | ({"": found[NO_CALL]} if NO_CALL in found else {})
 
 
 def _cuts_without_call(run: Run) -> bool:
@@ -298,7 +243,7 @@ def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]
             row = int(rows.min())
             what = "radius compensation is on: the programmed path is taken for that of the tool's centre"
             cure = "compensation for wear is simulated as it should be; a programmed contour is not"
-            found.append(Problem(_file(run, row), int(run.line[row]), what, cure, Severity.WARNING))
+            found.append(Problem(file_of_row(run, row), int(run.line[row]), what, cure, Severity.WARNING))
         if run.machine.workpiece_zero is None and bool(run.state.machine_frame.values.any()):
             what = "machine positions are taken as retracts along the tool axis: the workpiece zero is not known"
             cure = "give zero and tool_length"
@@ -341,60 +286,3 @@ def _row_of_block(run: Run, until: str | int) -> int:
         cure = "give the N number of a block of the last program"
         raise InputError(argument_problem("until", f"{run.files[0]} has no block {until}", cure))
     return int(rows[0])
-
-
-def _file(run: Run, row: int) -> str:
-    return run.files[int(run.state.file[row])]
-
-
-def _result(
-    machine: str, found: Simulation, jobs: Sequence[Job], remarks: tuple[Problem, ...], toolpaths: Any
-) -> SimulationResult:
-    verified = [verify_run(job.run, toolpaths if len(jobs) == 1 else ()) for job in jobs]
-    seconds = [np.cumsum(each.seconds) for each in verified]
-    lengths = [tip_lengths(job.run) for job in jobs]
-    findings, operations, air = list[SimulationFinding](), list[SimulatedOperation](), list[AirCut]()
-    for one in found.operations:
-        run, at = jobs[one.job].run, seconds[one.job]
-        cl_line = verified[one.job].cl_line
-        findings += (_finding(run, finding, at, cl_line) for finding in one.findings)
-        idle = list(_air(run, one, lengths[one.job]))
-        air += idle
-        seconds_taken = float(at[one.end - 1]) - (float(at[one.first - 1]) if one.first else 0.0)
-        lines = int(run.line[one.first]), int(run.line[one.end - 1])
-        air_length = sum(each.length for each in idle)
-        operations.append(_operation(run, one, seconds_taken, lines, air_length))
-    x, y, z = found.stock.lattice.cell.tolist()
-    setup = found.setup
-    return SimulationResult(
-        tuple(job.run.files[0] for job in jobs), machine, (x, y, z), setup.tolerance + found.error, setup.limit,
-        found.start_volume - found.stock.volume, tuple(operations), tuple(findings),
-        tuple(sorted(air, key=lambda each: -each.length)[:_MOST_AIR]), found.left, found.gouge, remarks,
-        found.seconds, found,
-    )  # fmt: skip
-
-
-def _operation(run: Run, one: OperationCut, seconds: float, lines: tuple[int, int], air: float) -> SimulatedOperation:
-    tool = one.tool or _NO_CALL
-    count = len(one.findings)
-    return SimulatedOperation(run.files[0], tool, *lines, one.removed, one.gouged, seconds, air, count)
-
-
-def _finding(run: Run, finding: Finding, seconds: Any, cl_line: Any) -> SimulationFinding:
-    row, last = finding.worst, finding.rows[1]
-    x, y, z = finding.place
-    return SimulationFinding(
-        str(finding.what), finding.between, _file(run, row), int(run.line[row]), int(run.block_number[row]),
-        int(run.line[last]), int(run.block_number[last]), int(cl_line[row]) if len(cl_line) else 0,
-        float(seconds[row]), finding.depth, (x, y, z),
-    )  # fmt: skip
-
-
-def _air(run: Run, one: OperationCut, lengths: Any) -> Iterable[AirCut]:
-    rows = np.concatenate(one.air) if one.air else np.zeros(0, np.int64)
-    rows = rows[run.kind[rows] != Kind.RAPID]
-    for first, last in row_runs(rows):
-        length = float(lengths[first : last + 1].sum())
-        if length > 0.0:
-            numbers = int(run.block_number[first]), int(run.block_number[last])
-            yield AirCut(_file(run, first), int(run.line[first]), numbers[0], int(run.line[last]), numbers[1], length)

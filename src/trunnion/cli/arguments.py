@@ -264,6 +264,11 @@ def _add_simulate(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument("--cl", action="append", default=[], metavar="CL", help="CL file whose tools these are")
     _add_subprograms(parser, "they")
+    parser.add_argument(
+        "--fixture", action="append", default=[], metavar="MESH", dest="fixtures",
+        help="a fixture, as the program counts; may be repeated",
+    )  # fmt: skip
+    parser.add_argument("--near", type=_tolerance, metavar="MM", help="tell bodies that come as near as this, too")
     parser.add_argument("--cell", type=_tolerance, metavar="MM", help="width of the cells; a 200th of the stock's side")
     parser.add_argument("--accuracy", type=_tolerance, metavar="MM", help="of motions and tools; a tenth of a cell")
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")

@@ -5,7 +5,8 @@ from collections.abc import Iterator
 from dataclasses import asdict
 from typing import Final
 
-from trunnion.api.simulating import AirCut, SimulationFinding, SimulationResult, simulate
+from trunnion.api.simulating import simulate
+from trunnion.api.simulation_result import AirCut, NearMiss, SimulationFinding, SimulationResult
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result
 from trunnion.cli.terminal import Terminal
@@ -25,7 +26,7 @@ _DECIMALS: Final = 6
 def run(arguments: argparse.Namespace) -> int:
     """Simulate programs; 0 if nothing was found, else 1."""
     read = [*arguments.files, *named_files(arguments.cl), *arguments.libraries, *arguments.subprograms]
-    read += [mesh for mesh in (arguments.part, arguments.stock) if mesh is not None]
+    read += [mesh for mesh in (arguments.part, arguments.stock, *arguments.fixtures) if mesh is not None]
     if arguments.save_stock is not None:
         check_mesh_name(arguments.save_stock)
     found = simulate(
@@ -33,6 +34,8 @@ def run(arguments: argparse.Namespace) -> int:
         machine=arguments.machine,
         stock=arguments.stock,
         part=arguments.part,
+        fixtures=arguments.fixtures,
+        near=arguments.near,
         tools=arguments.tools,
         libraries=arguments.libraries,
         cl=cl_inputs(arguments.cl),
@@ -73,6 +76,8 @@ def simulation_lines(found: SimulationResult) -> Iterator[str]:
     for kind, count in shown.items():
         if count > _MOST:
             yield f"and {count - _MOST} more: {kind}"
+    for miss in found.near[:_MOST]:
+        yield _near_line(miss)
     if found.left is not None:
         yield _excess_line("left on the part", found.left)
     if found.gouge is not None:
@@ -89,6 +94,15 @@ def _finding_line(finding: SimulationFinding) -> str:
     return (
         f"{finding.file}:{finding.line}:{block} {finding.kind}: {finding.between[0]}, {finding.between[1]}:"
         f" {finding.depth:.3f} mm deep at X{x:.3f} Y{y:.3f} Z{z:.3f}{last}"
+    )
+
+
+def _near_line(miss: NearMiss) -> str:
+    x, y, z = miss.place
+    block = f" N{miss.block}" if miss.block >= 0 else ""
+    where = f"X{x:.3f} Y{y:.3f} Z{z:.3f}"
+    return (
+        f"{miss.file}:{miss.line}:{block} near: {' and '.join(miss.between)}: {miss.distance:.3f} mm apart at {where}"
     )
 
 
@@ -113,7 +127,7 @@ def simulation_data(found: SimulationResult) -> dict[str, object]:
         "left": _excess(found.left),
         "gouge": _excess(found.gouge),
         "collisions": [_finding(each) for each in found.findings],
-        "near": [],
+        "near": [_near(each) for each in found.near],
         "air": [_air(each) for each in found.air],
         "operations": [
             {
@@ -135,6 +149,14 @@ def _finding(finding: SimulationFinding) -> dict[str, object]:
         "block": _block(finding.block), "last_line": finding.last_line, "last_block": _block(finding.last_block),
         "cl_line": finding.cl_line or None, "seconds": _number(finding.seconds), "depth_mm": _number(finding.depth),
         "place": _numbers(finding.place),
+    }  # fmt: skip
+
+
+def _near(each: NearMiss) -> dict[str, object]:
+    return {
+        "between": list(each.between), "file": each.file, "line": each.line, "block": _block(each.block),
+        "last_line": each.last_line, "last_block": _block(each.last_block), "seconds": _number(each.seconds),
+        "distance_mm": _number(each.distance), "place": _numbers(each.place),
     }  # fmt: skip
 
 

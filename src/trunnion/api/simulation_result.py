@@ -1,0 +1,224 @@
+"""What a simulation found, as records for scripts and data."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from trunnion.errors import Problem, Severity
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
+from trunnion.simulation.collisions import Collision
+from trunnion.simulation.deviation import Excess
+from trunnion.simulation.findings import Finding, What
+from trunnion.simulation.simulator import Job, OperationCut, Simulation, row_runs, tip_lengths
+from trunnion.verification import verify as verify_run
+
+#: The number of the tool with which a program cuts that calls none.
+NO_CALL: Final = "0"
+
+#: Air cuts that are told, the longest ones.
+_MOST_AIR: Final = 20
+
+
+@dataclass(frozen=True, slots=True)
+class SimulationFinding:
+    """One thing that is wrong.
+
+    kind      ``rapid through stock``, ``gouge``, ``cuts with the spindle off``, ``shank into stock``,
+              ``holder into stock`` or ``collision``
+    between   names of two bodies
+    file      program
+    line      of its worst block in it, from 1
+    block     N number of that block, -1 where it has none
+    last_line, last_block  of the last block of the run of blocks that do it
+    cl_line   line of the CL file that the block comes from; 0 where it is not known
+    seconds   when, from the beginning of the program
+    depth     how deep, mm
+    place     where, workpiece frame, mm
+    """
+
+    kind: str
+    between: tuple[str, str]
+    file: str
+    line: int
+    block: int
+    last_line: int
+    last_block: int
+    cl_line: int
+    seconds: float
+    depth: float
+    place: tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class NearMiss:
+    """Two bodies that come near each other: where nearest, and how near, mm; the rest as in ``SimulationFinding``."""
+
+    between: tuple[str, str]
+    file: str
+    line: int
+    block: int
+    last_line: int
+    last_block: int
+    seconds: float
+    distance: float
+    place: tuple[float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class AirCut:
+    """Blocks at feed that take nothing away: file, first and last line and N number, and the way of the tip in mm."""
+
+    file: str
+    line: int
+    block: int
+    last_line: int
+    last_block: int
+    length: float
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatedOperation:
+    """Consecutive blocks with one tool.
+
+    removed   mm³ of the stock
+    gouged    mm³ of the design
+    seconds   at the programmed feeds
+    air       mm at feed in which nothing was removed
+    findings  their number
+    """
+
+    file: str
+    tool: str
+    line: int
+    last_line: int
+    removed: float
+    gouged: float
+    seconds: float
+    air: float
+    findings: int
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SimulationResult:
+    """What a simulation found.
+
+    cell       width of the cells along X, Y and Z, mm
+    accuracy   how far motions and tools are off at most, mm; across a ray another 0.41 cells
+    limit      what is no deeper than this is not told, mm
+    removed    mm³ of the stock
+    left       what the stock has beyond the part; None without a part
+    gouge      what of the part is missing; None without a part
+    remarks    what was not simulated, or was taken for granted
+    seconds    of computing
+    """
+
+    programs: tuple[str, ...]
+    machine: str
+    cell: tuple[float, float, float]
+    accuracy: float
+    limit: float
+    removed: float
+    operations: tuple[SimulatedOperation, ...]
+    findings: tuple[SimulationFinding, ...]
+    near: tuple[NearMiss, ...]
+    air: tuple[AirCut, ...]
+    left: Excess | None
+    gouge: Excess | None
+    remarks: tuple[Problem, ...]
+    seconds: float
+    simulation: Simulation
+
+    @property
+    def passed(self) -> bool:
+        """Whether nothing was found that must not be: no finding, no gouge, no program that breaks off."""
+        broken = any(remark.severity is Severity.ERROR for remark in self.remarks)
+        gouged = self.gouge is not None and self.gouge.largest > self.limit
+        return not self.findings and not gouged and not broken
+
+
+def make_result(
+    machine: str,
+    found: Simulation,
+    jobs: Sequence[Job],
+    touched: Sequence[Sequence[Collision]],
+    remarks: tuple[Problem, ...],
+    toolpaths: Any,
+) -> SimulationResult:
+    """Put together what programs have cut, hit and come near to."""
+    verified = [verify_run(job.run, toolpaths if len(jobs) == 1 else ()) for job in jobs]
+    seconds = [np.cumsum(each.seconds) for each in verified]
+    lengths = [tip_lengths(job.run) for job in jobs]
+    findings, operations, air = list[SimulationFinding](), list[SimulatedOperation](), list[AirCut]()
+    for one in found.operations:
+        run, at = jobs[one.job].run, seconds[one.job]
+        cl_line = verified[one.job].cl_line
+        findings += (_finding(run, finding, at, cl_line) for finding in one.findings)
+        idle = list(_air(run, one, lengths[one.job]))
+        air += idle
+        seconds_taken = float(at[one.end - 1]) - (float(at[one.first - 1]) if one.first else 0.0)
+        lines = int(run.line[one.first]), int(run.line[one.end - 1])
+        air_length = sum(each.length for each in idle)
+        operations.append(_operation(run, one, seconds_taken, lines, air_length))
+    misses = list[NearMiss]()
+    for number, collisions in enumerate(touched):
+        run, at, cl_line = jobs[number].run, seconds[number], verified[number].cl_line
+        hits = [each for each in collisions if not each.is_near]
+        findings += (_finding(run, _of_collision(each), at, cl_line) for each in hits)
+        misses += (_near_miss(run, each, at) for each in collisions if each.is_near)
+    x, y, z = found.stock.lattice.cell.tolist()
+    setup = found.setup
+    return SimulationResult(
+        tuple(job.run.files[0] for job in jobs), machine, (x, y, z), setup.tolerance + found.error, setup.limit,
+        found.start_volume - found.stock.volume, tuple(operations), tuple(findings), tuple(misses),
+        tuple(sorted(air, key=lambda each: -each.length)[:_MOST_AIR]), found.left, found.gouge, remarks,
+        found.seconds, found,
+    )  # fmt: skip
+
+
+def _operation(run: Run, one: OperationCut, seconds: float, lines: tuple[int, int], air: float) -> SimulatedOperation:
+    tool = one.tool or NO_CALL
+    count = len(one.findings)
+    return SimulatedOperation(run.files[0], tool, *lines, one.removed, one.gouged, seconds, air, count)
+
+
+def _finding(run: Run, finding: Finding, seconds: Any, cl_line: Any) -> SimulationFinding:
+    row, last = finding.worst, finding.rows[1]
+    x, y, z = finding.place
+    return SimulationFinding(
+        str(finding.what), finding.between, file_of_row(run, row), int(run.line[row]), int(run.block_number[row]),
+        int(run.line[last]), int(run.block_number[last]), int(cl_line[row]) if len(cl_line) else 0,
+        float(seconds[row]), finding.depth, (x, y, z),
+    )  # fmt: skip
+
+
+def _of_collision(each: Collision) -> Finding:
+    rows = each.row, each.last_row
+    return Finding(What.BODY, each.between, rows, each.worst_row, each.depth_mm, each.place)
+
+
+def _near_miss(run: Run, each: Collision, seconds: Any) -> NearMiss:
+    row, last = each.worst_row, each.last_row
+    return NearMiss(
+        each.between, file_of_row(run, row), int(run.line[row]), int(run.block_number[row]), int(run.line[last]),
+        int(run.block_number[last]), float(seconds[row]), each.distance_mm, each.place,
+    )  # fmt: skip
+
+
+def _air(run: Run, one: OperationCut, lengths: Any) -> Iterable[AirCut]:
+    rows = np.concatenate(one.air) if one.air else np.zeros(0, np.int64)
+    rows = rows[run.kind[rows] != Kind.RAPID]
+    for first, last in row_runs(rows):
+        length = float(lengths[first : last + 1].sum())
+        if length > 0.0:
+            numbers = int(run.block_number[first]), int(run.block_number[last])
+            yield AirCut(
+                file_of_row(run, first), int(run.line[first]), numbers[0], int(run.line[last]), numbers[1], length
+            )
+
+
+def file_of_row(run: Run, row: int) -> str:
+    """The file in which the block of a row stands."""
+    return run.files[int(run.state.file[row])]
