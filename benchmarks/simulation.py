@@ -85,8 +85,8 @@ def run(case: Case, blocks: int, threads: int) -> None:
     dexels = sum(tile.ends.nbytes + tile.rows.nbytes + tile.normals.nbytes + tile.count.nbytes for tile in stock.tiles)
     asked = f" (asked {case.asked:.0f})" if case.asked else ""
     print(
-        f"{case.name}: {blocks} blocks, {rays} rays of {case.cell} mm, {threads} threads: {seconds:.1f} s{asked}, {used:.1f} s of processor,"
-        f" {blocks / seconds:.0f} blocks/s, {before - stock.volume:.0f} mm³; rays {dexels / 2**20:.0f} MiB,"
+        f"{case.name}: {blocks} blocks, {rays} rays of {case.cell} mm, {threads} threads: {seconds:.1f} s{asked},"
+        f" {used:.1f} s of processor, {blocks / seconds:.0f} blocks/s, {before - stock.volume:.0f} mm³; rays {dexels / 2**20:.0f} MiB,"
         f" process {memory:.0f} MiB"
     )
 
