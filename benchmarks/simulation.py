@@ -86,7 +86,8 @@ def run(case: Case, blocks: int, threads: int) -> None:
     asked = f" (asked {case.asked:.0f})" if case.asked else ""
     print(
         f"{case.name}: {blocks} blocks, {rays} rays of {case.cell} mm, {threads} threads: {seconds:.1f} s{asked},"
-        f" {used:.1f} s of processor, {blocks / seconds:.0f} blocks/s, {before - stock.volume:.0f} mm³; rays {dexels / 2**20:.0f} MiB,"
+        f" {used:.1f} s of processor, {blocks / seconds:.0f} blocks/s, {before - stock.volume:.0f} mm³;"
+        f" rays {dexels / 2**20:.0f} MiB,"
         f" process {memory:.0f} MiB"
     )
 
