@@ -32,7 +32,7 @@ HIGH_DISC: Final = -2
 _SEAM: Final = 1e-9
 
 #: Columns of the table of elements.
-_LOW, _HIGH, _ROUND, _RADIUS, _SLOPE, _CENTRE = 0, 1, 2, 3, 4, 5
+_LOW, _HIGH, _ROUND, _RADIUS, _SLOPE, _CENTRE, _INVERSE = 0, 1, 2, 3, 4, 5, 6
 
 
 class Motion(NamedTuple):
@@ -89,18 +89,19 @@ class Ends(NamedTuple):
 
 
 def element_table(pieces: RevolvedPieces) -> Floats2:
-    """Return the elements as the kernels read them, (e, 6).
+    """Return the elements as the kernels read them, (e, 7).
 
     Lowest and highest z; 1 for a sphere; radius of a cone at z = 0, or of the sphere; slope of a cone; centre of a
-    sphere.
+    sphere; the inverse of the sphere's radius, or of the length of a cone's normal (1, slope).
     """
-    table = np.zeros((len(pieces.elements), 6))
+    table = np.zeros((len(pieces.elements), 7))
     low, high, third, fourth, is_sphere = pieces.elements.T
     sphere = is_sphere == 0.0
     slope = np.where(sphere, 0.0, (fourth - third) / (high - low))
     table[:, _LOW], table[:, _HIGH], table[:, _ROUND] = low - _SEAM, high + _SEAM, sphere
     table[:, _RADIUS] = np.where(sphere, fourth, third - slope * low)
     table[:, _SLOPE], table[:, _CENTRE] = slope, np.where(sphere, third, 0.0)
+    table[:, _INVERSE] = 1.0 / np.where(sphere, fourth, np.hypot(1.0, slope))
     return table
 
 
@@ -158,10 +159,8 @@ def hits(pu: float, pv: float, au: float, av: float, aw: float, piece: Piece, ta
             root = b * b - a * c
             if root < 0.0:
                 continue
-            root = math.sqrt(root)
-            # The root of larger size first: its terms do not cancel.
-            one = (-b - root) / a if b > 0.0 else (-b + root) / a
-            two = c / (a * one) if one != 0.0 else -one
+            root, inverse = math.sqrt(root), 1.0 / a
+            one, two = (-b - root) * inverse, (-b + root) * inverse
         z = z0 + one * aw
         if table[e, _LOW] <= z <= table[e, _HIGH]:
             if one < first:
@@ -229,15 +228,12 @@ def slope_at(
     elif on == HIGH_DISC:
         nu, nv, nw = au, av, aw
     elif table[on, _ROUND] == 0.0:
-        nu, nv, nw = pu - z * au, pv - z * av, pw - z * aw
-        slope = table[on, _SLOPE]
-        scale = 1.0 / max(math.sqrt(nu * nu + nv * nv + nw * nw), 1e-12)
-        nu, nv, nw = nu * scale, nv * scale, nw * scale
-        if slope != 0.0:
-            scale = 1.0 / math.sqrt(1.0 + slope * slope)
-            nu, nv, nw = (nu - slope * au) * scale, (nv - slope * av) * scale, (nw - slope * aw) * scale
+        slope, length = table[on, _SLOPE], table[on, _INVERSE]
+        scale = length / max(table[on, _RADIUS] + slope * z, 1e-12)
+        back = scale * z + slope * length
+        nu, nv, nw = pu * scale - back * au, pv * scale - back * av, pw * scale - back * aw
     else:
-        centre, scale = table[on, _CENTRE], 1.0 / table[on, _RADIUS]
+        centre, scale = table[on, _CENTRE], table[on, _INVERSE]
         nu, nv, nw = (pu - centre * au) * scale, (pv - centre * av) * scale, (pw - centre * aw) * scale
     # Velocity of the axis: the part of its chord across it. Of the point: that of the tip, plus rotation.
     cu, cv, cw = motion.bu - motion.au, motion.bv - motion.av, motion.bw - motion.aw
