@@ -109,6 +109,7 @@ class OperationDescription:
     moves_without_time  those at feed that have no feed, or a feed per revolution while the spindle stands
     feed, feed_per_rev, rpm  lowest and highest while cutting; None: there is none
     extents             lowest and highest coordinates of its points, in its own coordinate system
+    joined              names of the operations of the file that it goes on with
     """
 
     name: str
@@ -131,6 +132,7 @@ class OperationDescription:
     feed_per_rev: tuple[float, float] | None
     rpm: tuple[float, float] | None
     extents: tuple[Vector, Vector] | None
+    joined: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -321,6 +323,7 @@ class _Description:
                 feed_per_rev=measured.feed_per_rev.pair(),
                 rpm=measured.rpm.pair(),
                 extents=extents(operation.moves.tip),
+                joined=operation.joined,
             )
         )
         self._go_on(moved)

@@ -78,6 +78,7 @@ def assemble_operation(
         outtol=None if builder.outtol is None else builder.outtol * unit,
         file=diagnostics.file,
         splines=Splines.of(builder.curves),
+        joined=tuple(builder.joined),
     )
 
 

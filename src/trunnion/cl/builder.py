@@ -144,6 +144,8 @@ class OperationBuilder:
     axes       statements about the tool axis
     upright    (row, line, word) of statements that are understood for the tool axis (0, 0, 1) only
     tilted     why no row may have another one, empty if it may: what to do instead
+    named      the file gives it its name
+    joined     names of the operations that were joined to it
     stated     what is true of the whole operation: the line that states it, and its value
     curves     the splines in mm, once their points are known, with the rows of these
     """
@@ -167,5 +169,7 @@ class OperationBuilder:
     upright: list[tuple[int, int, str]] = field(default_factory=list)
     tilted: str = ""
     splines: list[SplineStatement] = field(default_factory=list)
+    named: bool = False
+    joined: list[str] = field(default_factory=list)
     stated: dict[str, tuple[int, object]] = field(default_factory=dict)
     curves: list[SplineRows] = field(default_factory=list)

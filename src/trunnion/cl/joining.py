@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from trunnion.cl.builder import FromStatement, OperationBuilder
 from trunnion.cl.diagnostics import Diagnostics
-from trunnion.model.toolpath import CycleOff, CycleOn, Event, GoHome, LoadTool
+from trunnion.model.toolpath import CycleOff, CycleOn, Event, GoHome, LoadTool, Message
 
 
 def join_cuts(builders: Iterable[OperationBuilder], diagnostics: Diagnostics) -> list[OperationBuilder]:
@@ -104,8 +104,11 @@ def _stated_starts(builder: OperationBuilder) -> list[FromStatement]:
 
 
 def _append(before: OperationBuilder, builder: OperationBuilder) -> None:
-    """Put an operation behind the one before; the smaller tolerances count."""
+    """Put an operation behind the one before; the smaller tolerances count, and its name becomes a message."""
     shift = builder.first - before.first
+    if builder.named:
+        before.joined.append(builder.name)
+        before.events.append(Message(shift, builder.line, builder.name))
     repeated = [e for e in builder.events if e.row == 0 and _is_repeated(e, builder.line)]
     before.events += [replace(e, row=e.row + shift) for e in builder.events if e not in repeated]
     before.feeds += [feed._replace(row=feed.row + shift) for feed in builder.feeds]

@@ -166,7 +166,7 @@ class ReaderState:
     def name_operation(self, name: str) -> None:
         """Begin an operation with a name; what was stated of one without motion counts no more."""
         self.split_operation()
-        self.builder.name, self.builder.line = name, self.line
+        self.builder.name, self.builder.line, self.builder.named = name, self.line, True
         self.builder.stated.clear()
 
     def state_once(self, what: str, value: object) -> None:

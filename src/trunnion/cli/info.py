@@ -102,7 +102,8 @@ def info_lines(found: ClDescription) -> Iterator[str]:
 def _operation_lines(number: int, operation: OperationDescription, found: ClDescription) -> Iterator[str]:
     tool = found.tools[operation.tool]
     motions = _motions([operation])
-    yield f"{_INDENT}{number}  {operation.name}  {operation.kind}  {_tool_name(tool)}  {motions}"
+    names = " + ".join((operation.name, *operation.joined))
+    yield f"{_INDENT}{number}  {names}  {operation.kind}  {_tool_name(tool)}  {motions}"
     details = [f"cutting {_lengths(operation)}", *operation.cycles, *_rates(operation)]
     if len(found.systems) > 1:
         details.append(f"coordinate system {operation.system + 1}")
