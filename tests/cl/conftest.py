@@ -1,9 +1,11 @@
 """Small CL files as texts."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+from tests.support.apt_heads import HEADS
 from tests.support.cl_reading import Body, Fail, Read
 from trunnion.cl import read_cl
 from trunnion.errors import InputError, Problem
@@ -53,5 +55,28 @@ def body_fails(fails: Fail) -> Fail:
 
     def reader(*lines: str, **options: object) -> tuple[Problem, ...]:
         return fails(HEAD + "\n".join(lines) + FOOT, **options)
+
+    return reader
+
+
+@pytest.fixture
+def apt(read: Read) -> Callable[..., Operation]:
+    """Return a function that reads statements of a dialect as one operation."""
+
+    def reader(dialect: str, *lines: str, **options: object) -> Operation:
+        toolpath = read("\n".join([*HEADS[dialect], *lines, "FINI"]) + "\n", **options)
+        assert toolpath.dialect == dialect
+        return toolpath.operations[-1]
+
+    return reader
+
+
+@pytest.fixture
+def refused(fails: Fail) -> Callable[..., str]:
+    """Return a function that reads bad statements of a dialect and gives back what is wrong."""
+
+    def reader(dialect: str, *lines: str) -> str:
+        problems = fails("\n".join([*HEADS[dialect], "GOTO/0,0,0", *lines, "FINI"]) + "\n")
+        return "\n".join(f"{problem.line}: {problem.what}; {problem.cure}" for problem in problems)
 
     return reader
