@@ -105,3 +105,13 @@ def test_a_frame_too_far_away_is_an_input_error(tmp_path: Path) -> None:
     (tmp_path / "part.cls").write_text(HEAD.replace("MSYS/0.0000", "MSYS/1e11") + FOOT)
     with pytest.raises(trunnion.InputError, match=r"origin 1e\+11 mm away"):
         trunnion.post(tmp_path / "part.cls", machine="yl569")
+
+
+def test_another_tool_with_the_speed_of_the_one_before_is_warned_of(tmp_path: Path) -> None:
+    cl = tmp_path / "part.cls"
+    second = SECOND.replace("LOAD/TOOL,1,ADJUST,1", "LOAD/TOOL,2,ADJUST,2").replace("T1", "T2")
+    speed = next(line for line in HEAD.splitlines(keepends=True) if line.startswith("SPINDL"))
+    for text, count in ((HEAD + FOOT + second.replace(speed, "") + FOOT, 1), (HEAD + FOOT + second + FOOT, 0)):
+        cl.write_text(text)
+        result = trunnion.post(cl, machine="yl569", columns=False)
+        assert sum("with the spindle speed of OP1" in problem.what for problem in result.problems) == count

@@ -44,7 +44,7 @@ def test_tool_path_names_operation_and_tool(read: Read, comma: str) -> None:
 def test_two_operations_keep_their_own_rows_tools_and_frames(read: Read) -> None:
     toolpath = read(
         "TOOL PATH/A,TOOL,T1\nMSYS/1,2,3,0,1,0,-1,0,0\nGOTO/1,1,1,1,0,0\nGOTO/2,2,2\nEND-OF-PATH\n"
-        "TOOL PATH/B,TOOL,T2\nGOTO/3,3,3\nEND-OF-PATH\n"
+        "TOOL PATH/B,TOOL,T2\nMSYS/0,0,0,1,0,0,0,1,0\nGOTO/3,3,3\nEND-OF-PATH\n"
     )
     a, b = toolpath.operations
     assert a.moves.tip.tolist() == [[1, 1, 1], [2, 2, 2]]
@@ -54,7 +54,7 @@ def test_two_operations_keep_their_own_rows_tools_and_frames(read: Read) -> None
     assert b.frame.origin == (0, 0, 0)
     assert a.moves.axis.tolist() == [[1, 0, 0], [1, 0, 0]]
     assert b.moves.axis.tolist() == [[0, 0, 1]]
-    assert b.moves.line.tolist() == [7]
+    assert b.moves.line.tolist() == [8]
 
 
 def test_columns_are_read_only(body: Body) -> None:
@@ -187,12 +187,12 @@ def test_rapid_makes_only_the_next_motion_rapid(body: Body) -> None:
 
 
 def test_the_axis_is_modal_and_from_sets_it(body: Body) -> None:
-    operation = body("FROM/1,2,3,0,1,0", GO, "GOTO/0,0,0,1,0,0", GO, "FROM/4,5,6", GO, "FROM/7,8,9,0,0,1", GO)
+    operation = body("FROM/1,2,3,0,1,0", GO, "GOTO/0,0,0,1,0,0", GO, "FROM/0,0,0", GO, "FROM/0,0,0,0,0,1", GO)
     assert operation.moves.axis.tolist() == [[0, 1, 0], [1, 0, 0], [1, 0, 0], [1, 0, 0], [0, 0, 1]]
     assert operation.events == (
         From(0, 3, (1, 2, 3), (0, 1, 0)),
-        From(3, 7, (4, 5, 6), (1, 0, 0)),
-        From(4, 9, (7, 8, 9), (0, 0, 1)),
+        From(3, 7, (0, 0, 0), (1, 0, 0)),
+        From(4, 9, (0, 0, 0), (0, 0, 1)),
     )
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from tests.support.cl_reading import Body, Read
@@ -17,12 +17,42 @@ from trunnion.cl.read_back import read_back_problems
 from trunnion.cl.write import write_cl
 from trunnion.cl.writers import WRITERS
 from trunnion.errors import InputError
-from trunnion.model.toolpath import CycleOff, CycleOn, Event, From, Operation, Phase, Toolpath
+from trunnion.model.toolpath import (
+    Arcs,
+    Coolant,
+    CycleOff,
+    CycleOn,
+    Event,
+    Frame,
+    From,
+    Kind,
+    Moves,
+    Operation,
+    Phase,
+    Tool,
+    Toolpath,
+)
 
 GOLDEN = sorted(path.stem for path in YL569.glob("*.cls"))
 
 #: An axis that is in force without being said.
 UPRIGHT = b",0.000000000000,0.000000000000,1.000000000000"
+
+
+def made(*events: tuple[Event, ...]) -> Toolpath:
+    """One cut for each tuple of events."""
+    columns = [np.full(1, value) for value in (np.uint8(Kind.LINEAR), np.uint8(Phase.CUT), 100.0, False, np.int32(1))]
+    moves = [Moves(np.full((1, 3), float(k)), np.array([[0.0, 0.0, 1.0]]), *columns) for k in range(len(events))]
+    tool = Tool("MILL", "T", 10.0, 0.5, 50.0)
+    found = (Operation(f"OP{k}", tool, Frame(), each, Arcs.empty(), events[k], 1) for k, each in enumerate(moves))
+    return Toolpath("made.cls", tuple(found))
+
+
+#: In inches a digit of it is lost at which rounding to fewer goes up or down.
+HALF_WAY = made((From(0, 1, (-0.779575, 0.000625, -0.002775), (0.0, 0.0, 1.0)),))
+
+#: The second operation begins with a cut, and one with coolant does not go on with it.
+GOES_ON = made((Coolant(0, 1, "FLOOD"),), ())
 
 
 def written(toolpath: Toolpath, *comments: str) -> bytes:
@@ -83,6 +113,10 @@ def test_a_toolpath_written_and_read_is_the_same(tmp_path_factory: pytest.TempPa
 
 @settings(deadline=None, max_examples=25)
 @given(toolpaths(SAYABLE | OTHERS), st.sampled_from(list(WRITERS)), st.booleans())
+@example(HALF_WAY, "clsf", True)
+@example(HALF_WAY, "catia", True)
+@example(GOES_ON, "ncl", False)
+@example(GOES_ON, "catia", False)
 def test_every_dialect_says_a_toolpath_whole_or_refuses_it(
     tmp_path_factory: pytest.TempPathFactory, toolpath: Toolpath, dialect: str, inch: bool
 ) -> None:

@@ -26,12 +26,14 @@ class CycleParts:
     words: list[tuple[str, str]] = field(default_factory=list)
 
     def take(self, word: str) -> tuple[float, ...] | None:
-        """Remove the couplets of a word; return the numbers of the last one, None if there is none."""
-        found = None
-        for couplet in [couplet for couplet in self.couplets if couplet[0] == word]:
-            self.couplets.remove(couplet)
-            found = couplet[1]
-        return found
+        """Remove the couplet of a word; return its numbers, None if there is none.
+
+        One that is given twice stays, and is refused as that.
+        """
+        found = [couplet for couplet in self.couplets if couplet[0] == word]
+        if len(found) == 1:
+            self.couplets.remove(found[0])
+        return found[0][1] if found else None
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,10 +10,11 @@ from trunnion.cl.builder import MoveColumns, OperationBuilder
 from trunnion.cl.diagnostics import Diagnostics, StatementError
 from trunnion.cl.dialect import Dialect, Handler
 from trunnion.cl.scan import COMMENT, MAKES_ROW
-from trunnion.cl.state import MM_PER_INCH, ReaderState
+from trunnion.cl.state import COORDINATE_SYSTEM, MM_PER_INCH, ReaderState
 from trunnion.cl.statement import Statement, parse
 from trunnion.cl.statements.operations import LENGTH_UNITS
 from trunnion.cl.word_classes import acts_on_machine, drives_tool, words_that_count
+from trunnion.model.toolpath import Frame
 
 #: Statements no longer than this are likely to come again, and their parsed form is kept; at most so many.
 _CACHED_STATEMENT_BYTES = 64
@@ -129,6 +130,8 @@ class ClInterpreter:
             state.close_operation()
         elif row > state.builder.first:
             state.report_motion_outside()
+        if self._dialect.in_sections:
+            self._report_lost_systems()
         if not self._known_statements and not row:
             raise self._diagnostics.nothing_known(_NOT_CL, _GIVE_CL)
         if not row and not self._diagnostics.has_errors:
@@ -137,6 +140,18 @@ class ClInterpreter:
             # What follows the last operation is done after its last row.
             last = state.builders[-1]
             last.events.extend(replace(event, row=last.stop - last.first) for event in state.builder.events)
+
+    def _report_lost_systems(self) -> None:
+        """Report operations without MSYS among others that have one: their points would move by as much as it says."""
+        builders = [builder for builder in self._state.builders if builder.stop > builder.first]
+        stating = [builder for builder in builders if COORDINATE_SYSTEM in builder.stated]
+        if all(builder.frame == Frame() for builder in stating):
+            return
+        for builder in builders:
+            if COORDINATE_SYSTEM not in builder.stated:
+                what = f"operation {builder.name} has no MSYS, and {stating[0].name} has one off the absolute system"
+                cure = "write its MSYS; that of the absolute system is MSYS/0,0,0,1,0,0,0,1,0"
+                self._diagnostics.error(builder.line, what, cure)
 
     def _report_cut_off(self, complete: bool, lines: int) -> None:
         where = "" if complete else f", and ends in the middle of line {lines}"

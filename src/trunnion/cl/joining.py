@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from trunnion.cl.builder import FromStatement, OperationBuilder
 from trunnion.cl.diagnostics import Diagnostics
-from trunnion.model.toolpath import CycleOff, CycleOn, Event, GoHome, LoadTool, Message
+from trunnion.model.toolpath import CutterComp, CycleOff, CycleOn, Event, GoHome, LoadTool, Message
 
 
 def join_cuts(builders: Iterable[OperationBuilder], diagnostics: Diagnostics) -> list[OperationBuilder]:
@@ -21,11 +21,13 @@ def join_cuts(builders: Iterable[OperationBuilder], diagnostics: Diagnostics) ->
     """
     joined: list[OperationBuilder] = []
     number: int | None = None
+    side: CutterComp | None = None
     for builder in builders:
         before = joined[-1] if joined and builder.continues else None
         loads = [event for event in builder.events if isinstance(event, LoadTool)]
         if before is None or not _begins_with_cut(before, builder) or _has_other_tool(before, builder, loads, number):
             joined.append(builder)
+            _report_lost_side(builder, side, diagnostics)
         else:
             register = _register(joined)
             if first := next((load for load in loads if load.row == 0 and load.adjust != register), None):
@@ -33,8 +35,13 @@ def join_cuts(builders: Iterable[OperationBuilder], diagnostics: Diagnostics) ->
                 diagnostics.error(first.line, what, "retract by RAPID and GOTO/ before it")
             what = f"operation {builder.name} begins with a cut from where {before.name} ends: they are one operation"
             diagnostics.remark(builder.line, what, "begin it with RAPID if the tool should go home between them")
+            if builder.named:
+                before.joined.append(builder.name)
+                before.events.append(Message(builder.first - before.first, builder.line, builder.name))
             _append(before, builder)
         number = loads[-1].number if loads else number
+        sides = [event for event in builder.events if isinstance(event, CutterComp)]
+        side = sides[-1] if sides else side if builder.continues else None
     return joined
 
 
@@ -71,6 +78,17 @@ def _is_way(builder: OperationBuilder) -> bool:
     return only_moves and no_tool and set(range(builder.stop - builder.first)) <= first | set(builder.rapids)
 
 
+def _report_lost_side(builder: OperationBuilder, side: CutterComp | None, diagnostics: Diagnostics) -> None:
+    """Report an operation that cuts with the radius compensation of the one before: the way home ends that."""
+    if not builder.continues or side is None or side.side == "OFF":
+        return
+    own = next((event.row for event in builder.events if isinstance(event, CutterComp)), builder.stop - builder.first)
+    if set(range(own)) - set(builder.rapids):
+        what = f"CUTCOM/{side.side} of line {side.line} is on where operation {builder.name} begins, after a way home"
+        cure = f"write CUTCOM/OFF at the end of the operation before, and CUTCOM/{side.side} before its first cut"
+        diagnostics.error(builder.line, what, cure)
+
+
 def _begins_with_cut(before: OperationBuilder, builder: OperationBuilder) -> bool:
     """Whether the first motion of an operation is a line or an arc at feed from the last point of the one before."""
     if any(circle.row == 0 for circle in builder.circles):
@@ -104,11 +122,8 @@ def _stated_starts(builder: OperationBuilder) -> list[FromStatement]:
 
 
 def _append(before: OperationBuilder, builder: OperationBuilder) -> None:
-    """Put an operation behind the one before; the smaller tolerances count, and its name becomes a message."""
+    """Put an operation behind the one before; the smaller tolerances count."""
     shift = builder.first - before.first
-    if builder.named:
-        before.joined.append(builder.name)
-        before.events.append(Message(shift, builder.line, builder.name))
     repeated = [e for e in builder.events if e.row == 0 and _is_repeated(e, builder.line)]
     before.events += [replace(e, row=e.row + shift) for e in builder.events if e not in repeated]
     before.feeds += [feed._replace(row=feed.row + shift) for feed in builder.feeds]

@@ -4,6 +4,7 @@ What dialects say in different words is the same here: a tool that is loaded aga
 operation, a depth with or without its sign, a retract that is that of the rapid height.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import fields
 from pathlib import Path
@@ -24,6 +25,7 @@ from trunnion.model.toolpath import (
     GoHome,
     Kind,
     LoadTool,
+    Message,
     Operation,
     SetMode,
     Toolpath,
@@ -34,7 +36,8 @@ from trunnion.model.toolpath import (
 _SAME_LENGTH: Final = 1e-6
 _SAME_DIRECTION: Final = 1e-9
 _SAME_FEED: Final = 1e-6
-_DECIMALS: Final = 5
+#: Numbers of events, which some dialects write with fewer decimals.
+_SAME_NUMBER: Final = 1e-5
 
 _CURE: Final = "write another dialect, and report this file: what was written would not be what was read"
 
@@ -118,7 +121,7 @@ def _differences(expected: _Rows, found: _Rows) -> Iterator[tuple[int, str]]:
             row = int(off[0]) if len(ours) == len(expected.line) and "arc" not in name else int(arc_rows[off[0]])
             yield int(expected.line[row]), name
     for ours, theirs in zip(expected.events, found.events, strict=False):
-        if ours[0] != theirs[0] or ours[2] != theirs[2]:
+        if ours[0] != theirs[0] or not _is_same(ours[2], theirs[2]):
             yield ours[1], f"statement: {_shown(theirs[2])} instead of {_shown(ours[2])}"
             return
     if len(expected.events) > len(found.events):
@@ -144,8 +147,12 @@ def _said(operations: list[Operation], begins: list[int]) -> Iterator[tuple[int,
     loaded: tuple[int, int] | None = None
     cycle: tuple[object, ...] | None = None
     for operation, begin in zip(operations, begins, strict=False):
+        names = list(operation.joined)
         for event in sorted(operation.events, key=lambda event: event.row):
             said = _content(event)
+            if isinstance(event, Message) and event.text in names:
+                names.remove(event.text)
+                continue
             if isinstance(event, LoadTool):
                 repeated = loaded is not None and loaded[0] == event.number and event.adjust in (0, loaded[1])
                 loaded = loaded if repeated else (event.number, event.adjust)
@@ -169,9 +176,18 @@ def _content(event: Event) -> tuple[object, ...]:
     if isinstance(event, UnknownStatement):
         return ("UnknownStatement", "".join(event.text.replace("$", "").split()))
     if isinstance(event, From | GoHome):
-        return (type(event).__name__, *(tuple(np.round(v, _DECIMALS).tolist()) for v in _vectors(event)))
+        return (type(event).__name__, *_vectors(event))
     values = (getattr(event, field.name) for field in fields(event) if field.name not in ("row", "line"))
-    return (type(event).__name__, *(round(value, _DECIMALS) if isinstance(value, float) else value for value in values))
+    return (type(event).__name__, *values)
+
+
+def _is_same(ours: object, theirs: object) -> bool:
+    """Whether two contents are the same: numbers within the last digit that is written, all else exactly."""
+    if isinstance(ours, tuple) and isinstance(theirs, tuple):
+        return len(ours) == len(theirs) and all(map(_is_same, ours, theirs))
+    if isinstance(ours, float) and isinstance(theirs, float):
+        return math.isclose(ours, theirs, rel_tol=_SAME_NUMBER, abs_tol=_SAME_NUMBER)
+    return ours == theirs
 
 
 def _vectors(event: From | GoHome) -> tuple[tuple[float, float, float], ...]:
@@ -185,7 +201,7 @@ def _cycle(event: CycleOn) -> tuple[object, ...]:
     if "RTRCTO" not in words and "RAPTO" in values:
         values.setdefault("RTRCTO", values["RAPTO"])
     mode = ("FACE",) if event.mode == ("DRILL", "FACE") else event.mode
-    numbers = tuple(sorted((word, tuple(round(n, _DECIMALS) + 0.0 for n in given)) for word, given in values.items()))
+    numbers = tuple(sorted((word, tuple(n + 0.0 for n in given)) for word, given in values.items()))
     return mode, numbers, tuple(sorted(words.items()))
 
 

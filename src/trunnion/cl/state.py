@@ -28,6 +28,7 @@ FILE_UNIT_FEEDS = {"PERMIN": False, "PERREV": True}
 #: What operations state once (``ReaderState.state_once``), and are compared by elsewhere.
 TOOL_NUMBER = "number of the tool"
 LENGTH_REGISTER = "length register"
+COORDINATE_SYSTEM = "coordinate system"
 
 #: Numbers of a coordinate system are printed with five decimals or more.
 _SAME_SYSTEM = 2e-5

@@ -316,8 +316,8 @@ class Frame:
 class Operation:
     """One tool path: its tool, coordinate system, moves and events; ``line`` is that of its TOOL PATH in ``file``.
 
-    ``splines`` are those for which rows of ``moves`` stand. ``joined`` are the names of the operations of the file that it
-    goes on with, without a way home between them.
+    ``splines`` are those for which rows of ``moves`` stand; ``joined`` has the names of the operations of the file that
+    it goes on with, without a way home between them.
     """
 
     name: str

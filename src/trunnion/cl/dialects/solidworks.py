@@ -3,14 +3,19 @@
 import re
 from typing import Final
 
+import numpy as np
+
 from trunnion.cl.builder import NoAxis
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.dialect import CycleParts, CycleWords, Dialect, marks
 from trunnion.cl.dialects.apt import APT_HANDLERS
-from trunnion.cl.state import ReaderState
+from trunnion.cl.state import COORDINATE_SYSTEM, ReaderState
 from trunnion.cl.statement import Statement
 from trunnion.cl.statements import apt_tools, events, motion, operations
 from trunnion.cl.statements.cycles import cycle
+
+#: How far columns of a CSYS may be off unit length and off square: they are printed with six decimals or more.
+_SQUARE: Final = 1e-3
 
 _Z: Final = (0.0, 0.0, 1.0)
 
@@ -44,8 +49,11 @@ def _trntyp(state: ReaderState, statement: Statement) -> None:
 def _csys(state: ReaderState, statement: Statement) -> None:
     """The coordinate system of the operation: Z, its third column, is the tool axis; the points stay in the world's."""
     numbers = statement.numbers(12)
+    columns = np.array(numbers).reshape(3, 4)[:, :3]
+    if np.abs(columns.T @ columns - np.eye(3)).max() > _SQUARE:
+        raise StatementError("the columns of CSYS are not X, Y and Z of a coordinate system", "output the file again")
     state.split_operation()
-    state.state_once("coordinate system", numbers)
+    state.state_once(COORDINATE_SYSTEM, numbers)
     z = (numbers[2], numbers[6], numbers[10])
     # A point without an axis is written only where Z is the world's.
     state.set_axis(None, NoAxis.Z if z == _Z else NoAxis.NEVER)

@@ -14,6 +14,8 @@ from trunnion.model.toolpath import CycleOff, CycleOn
 _NUMBER_WORDS = CYCLE_LENGTHS | {"DWELL", "TLANGL", "NODRAG"}
 #: Words that may stand without a number.
 _BARE_WORDS = frozenset({"AUTO", "MANUAL", "REV", "OPTION"})
+#: Modes of holes that are made in pecks.
+_PECKING = frozenset({"DEEP", "BRKCHP"})
 #: Controls and their cycles are for fewer pecks than this.
 _MOST_PECKS = 1000
 #: Stands for the unit of a feed until that follows.
@@ -24,6 +26,9 @@ def cycle(state: ReaderState, statement: Statement) -> None:
     """Switch a cycle off, repeat the last one, or begin another."""
     row, line = state.operation_row, state.line
     if statement.values == ("OFF",):
+        if not state.cycle_line and state.operation_row:
+            what = "CYCLE/OFF where no cycle is on: the points before it are no holes"
+            state.diagnostics.remark(line, what, "look for a CYCLE that is missing")
         state.add(CycleOff(row, line))
         state.cycle_line = 0
         return
@@ -86,6 +91,14 @@ def _refuse_repetitions(found: CycleParts) -> None:
     names = ["a feed" if word in ("MMPM", "MMPR") else word for word, _ in found.couplets]
     if twice := next((name for n, name in enumerate(names) if name in names[:n]), ""):
         raise StatementError(f"CYCLE has {twice} twice", "write the one that is meant")
+    couplets, words = dict(found.couplets), dict(found.words)
+    if "RTRCTO" in couplets and "RTRCTO" in words:
+        raise StatementError(f"CYCLE has RTRCTO with a height and {words['RTRCTO']}", "write the one that is meant")
+    if couplets.get("CLEAR", couplets.get("RAPTO")) != couplets.get("RAPTO", couplets.get("CLEAR")):
+        raise StatementError("CYCLE has RAPTO and CLEAR of different heights", "write the one that is meant")
+    if "STEP" in couplets and _PECKING.isdisjoint(found.mode):
+        what = f"CYCLE/{','.join(found.mode)} has STEP, and only DEEP and BRKCHP are made in pecks"
+        raise StatementError(what, "write DEEP or BRKCHP, or leave STEP out")
 
 
 def _refuse_impossible(found: CycleParts) -> None:

@@ -8,6 +8,9 @@ from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, is_whole, numbers
 from trunnion.model.toolpath import GoHome
 
+#: Points no farther from each other, in units of the file, are the same: they are printed with three decimals or more.
+_SAME_POINT = 2e-3
+
 #: No helix has more turns; a larger TIMES is a mistake in the file.
 MAX_TURNS = 10000
 
@@ -55,6 +58,12 @@ def from_(state: ReaderState, statement: Statement) -> None:
     for start in state.builder.starts:
         if start.row == state.operation_row and start.tip != (x, y, z):
             raise StatementError(f"FROM is another point than in line {start.line}", "write the one that is meant")
+    row = state.operation_row
+    if row and not any(isinstance(event, GoHome) and event.row == row for event in state.builder.events):
+        last = state.columns.tip[state.row - 1].tolist()
+        if max(abs(a - b) for a, b in zip(last, (x, y, z), strict=True)) > _SAME_POINT:
+            what = "FROM is another point than the one to which the tool has gone before it"
+            raise StatementError(what, "write GOTO/ for a motion, or begin another operation")
     state.builder.starts.append(FromStatement(state.operation_row, state.line, (x, y, z), vector))
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from trunnion.cl.diagnostics import StatementError
-from trunnion.cl.state import LENGTH_REGISTER, MM_PER_INCH, TOOL_NUMBER, ReaderState
+from trunnion.cl.state import COORDINATE_SYSTEM, LENGTH_REGISTER, MM_PER_INCH, TOOL_NUMBER, ReaderState
 from trunnion.cl.statement import Statement, numbers, whole_number
 from trunnion.model.apt_cutter import stated_centre
 from trunnion.model.toolpath import Frame, Tool
@@ -17,6 +17,9 @@ LENGTH_UNITS = {"MM": 1.0, "INCHES": MM_PER_INCH, "INCH": MM_PER_INCH, "IN": MM_
 
 #: How far the vectors of MSYS may be off unit length and off square: they are printed with seven decimals.
 _FRAME_TOLERANCE = 1e-3
+
+#: No operation is roughed within more than this, mm or inches.
+_WIDEST_TOLERANCE = 1.0
 
 #: Stands between the names of operation and tool.
 _TOOL_WORD = re.compile(r",\s*TOOL\s*,")
@@ -99,7 +102,7 @@ def msys(state: ReaderState, statement: Statement) -> None:
     """Set the coordinate system of the operation: origin, X and Y, made exactly unit and square."""
     if state.operation_row:
         raise StatementError("MSYS after motion", "one operation has one frame: write MSYS before its first GOTO")
-    state.state_once("coordinate system", statement.numbers(9))
+    state.state_once(COORDINATE_SYSTEM, statement.numbers(9))
     ox, oy, oz, *vectors = statement.numbers(9)
     x, y = vectors[:3], vectors[3:]
     for name, vector in (("X", x), ("Y", y)):
@@ -143,7 +146,7 @@ def units(state: ReaderState, statement: Statement) -> None:
 
 def intol(state: ReaderState, statement: Statement) -> None:
     """Set the inner tolerance; without sections, another one begins an operation."""
-    (tolerance,) = statement.numbers(1)
+    tolerance = _tolerance(state, statement)
     if state.builder.intol != tolerance:
         state.split_operation()
     state.state_once("inner tolerance", tolerance)
@@ -152,11 +155,22 @@ def intol(state: ReaderState, statement: Statement) -> None:
 
 def outtol(state: ReaderState, statement: Statement) -> None:
     """Set the outer tolerance; without sections, another one begins an operation."""
-    (tolerance,) = statement.numbers(1)
+    tolerance = _tolerance(state, statement)
     if state.builder.outtol != tolerance:
         state.split_operation()
     state.state_once("outer tolerance", tolerance)
     state.builder.outtol = tolerance
+
+
+def _tolerance(state: ReaderState, statement: Statement) -> float:
+    """A tolerance in units of the file, 0 or more."""
+    (tolerance,) = statement.numbers(1)
+    if tolerance < 0.0:
+        raise StatementError(f"{statement.major} is negative: {tolerance:g}", "write the tolerance of the operation")
+    if tolerance > _WIDEST_TOLERANCE:
+        what = f"{statement.major} is {tolerance:g}: the control may leave the path by that much"
+        state.diagnostics.remark(state.line, what, "check the tolerance, or the unit of the file")
+    return tolerance
 
 
 def paint(state: ReaderState, statement: Statement) -> None:
@@ -167,6 +181,9 @@ def paint(state: ReaderState, statement: Statement) -> None:
 
 def end_of_file(state: ReaderState, statement: Statement) -> None:
     """Note that no motion is missing: it is the last statement of a file whose operations have no end of their own."""
+    if 0 <= state.end_row < state.row:
+        what = "motion stands behind an end of the file, with an end of its own: two files, or a line too many"
+        state.diagnostics.remark(state.line, what, "make sure that the motion belongs to this job")
     state.end_row = state.row
 
 

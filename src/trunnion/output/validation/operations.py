@@ -38,6 +38,20 @@ def spindle_problems(program: Program, operation: Operation, turns: bool | None)
     return []
 
 
+def other_speed_problems(program: Program, operation: Operation, before: str, number: int) -> list[Problem]:
+    """Warn of an operation that changes the tool, and cuts with the spindle speed of the one before.
+
+    ``before`` is the name of that, empty if its spindle stands; ``number`` that of the tool, 0 if there was none.
+    """
+    loads = [event for event in operation.events if isinstance(event, LoadTool) and event.row == 0]
+    speeds = [event.row for event in operation.events if isinstance(event, SpindleOn)]
+    cuts = np.flatnonzero(operation.moves.kind != Kind.RAPID)
+    if not (before and loads and number not in (0, loads[0].number) and len(cuts)) or (speeds and speeds[0] <= cuts[0]):
+        return []
+    what = f"operation {operation.name} loads tool {loads[0].number}, and cuts with the spindle speed of {before}"
+    return [Problem(program.file_of(operation), loads[0].line, what, "put SPINDL behind the tool", Severity.WARNING)]
+
+
 def tool_problems(program: Program, operation: Operation, in_spindle: str) -> list[Problem]:
     """Warn of a tool without LOAD/TOOL, and refuse a name by which the control cannot call it.
 

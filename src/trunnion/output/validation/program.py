@@ -12,6 +12,7 @@ from trunnion.output.validation.machine import machine_problems
 from trunnion.output.validation.operations import (
     machining_mode_problems,
     next_axis_problems,
+    other_speed_problems,
     plane_entry_problems,
     spindle_problems,
     tolerance_problems,
@@ -28,6 +29,7 @@ def check_program(program: Program) -> list[Problem]:
     tool_in_spindle = ""
     turns: bool | None = None  # whether the spindle does; None until the first SPINDL
     rpm: float | None = None
+    before, number = "", 0  # the operation before, and its tool
     spindle = SpindleState(1.0, Sense.CLW)  # until the first SPINDL
     for motion in program.motions:
         operation = motion.operation
@@ -48,6 +50,8 @@ def check_program(program: Program) -> list[Problem]:
         rejected = program.control.family.validate_operation(operation, turns is not None)
         problems += [Problem(program.file_of(operation), line, why.what, why.cure) for line, why in rejected]
         problems += spindle_problems(program, operation, turns)
+        problems += other_speed_problems(program, operation, before if turns else "", number)
+        before, number = operation.name, loads[-1].number if loads else number
         for event in operation.events:
             if isinstance(event, SpindleOn):
                 turns = True

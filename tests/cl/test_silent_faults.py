@@ -1,0 +1,88 @@
+"""Faults of one line that once passed without a word: lost, doubled, contradicting and misplaced statements."""
+
+import pytest
+
+from tests.support.apt_heads import HEADS
+from tests.support.cl_reading import Body, Fail, Read
+from trunnion.model.toolpath import CutterComp
+
+CUT = ["RAPID", "GOTO/0,0,50", "FEDRAT/200,MMPM", "GOTO/0,0,-2"]
+
+
+def text(dialect: str, *lines: str) -> str:
+    return "\n".join([*HEADS[dialect], *lines, "FINI"]) + "\n"
+
+
+@pytest.mark.parametrize(
+    ("dialect", "cycle", "what"),
+    [
+        ("ncl", "CYCLE/DRILL,DEPTH,12,CLEAR,3,CLEAR,30", "CLEAR twice"),
+        ("ncl", "CYCLE/DRILL,DEPTH,12,CLEAR,3,RETURN,0,RETURN,20", "RETURN twice"),
+        ("solidworks", "CYCLE/DEEP,FEDTO,12,RAPTO,3,1STPECK,3,1STPECK,4,SUBPECK,3", "1STPECK twice"),
+        ("catia", "CYCLE/REAM,DEPTH,12,CLEAR,3,STEP,3", "CYCLE/REAM has STEP"),
+        ("apt", "CYCLE/DRILL,DEPTH,12,CLEAR,3,STEP,3", "CYCLE/DRILL has STEP"),
+    ],
+)
+def test_words_of_a_cycle_that_contradict_are_refused(fails: Fail, dialect: str, cycle: str, what: str) -> None:
+    (problem,) = fails(text(dialect, *CUT, cycle))
+    assert what in problem.what
+
+
+@pytest.mark.parametrize(
+    ("words", "what"),
+    [
+        ("RAPTO,3,CLEAR,30,FEDTO,-5", "RAPTO and CLEAR"),
+        ("RAPTO,3,FEDTO,-5,RTRCTO,AUTO,RTRCTO,20", "RTRCTO with a height and AUTO"),
+    ],
+)
+def test_heights_of_a_cycle_that_contradict_are_refused(body_fails: Fail, words: str, what: str) -> None:
+    (problem,) = body_fails("GOTO/0,0,50", f"CYCLE/DRILL,{words},MMPM,100", "GOTO/1,0,0")
+    assert (problem.line, what in problem.what) == (4, True)
+
+
+def test_the_end_of_a_cycle_that_never_began_is_told(read: Read) -> None:
+    toolpath = read(text("apt", *CUT, "GOTO/9,0,0", "CYCLE/OFF"))
+    assert any("CYCLE/OFF where no cycle is on" in problem.what for problem in toolpath.remarks)
+    assert read(text("apt", "CYCLE/OFF", *CUT)).remarks == ()
+
+
+def test_an_operation_without_msys_among_others_that_have_one_is_refused(read: Read, fails: Fail) -> None:
+    operation = "TOOL PATH/{},TOOL,T\n{}GOTO/0,0,9\nEND-OF-PATH\n"
+    msys = "MSYS/{},0,0,1,0,0,0,1,0\n"
+    assert len(read(operation.format("A", msys.format(0)) + operation.format("B", "")).operations) == 2
+    (problem,) = fails(operation.format("A", msys.format(100)) + operation.format("B", ""))
+    assert (problem.line, problem.what[:29]) == (5, "operation B has no MSYS, and ")
+
+
+def test_a_from_in_the_midst_is_where_the_tool_is(body: Body, body_fails: Fail, fails: Fail) -> None:
+    assert len(body("GOTO/0,0,9", "FROM/0,0,9.001", "GOTO/1,0,9").moves) == 2
+    (problem,) = body_fails("GOTO/0,0,9", "FROM/0,0,90", "GOTO/1,0,9")
+    assert (problem.line, "FROM is another point" in problem.what) == (4, True)
+    assert "FROM is another point" in fails(text("apt", *CUT, "FROM/0,0,90", "GOTO/1,0,-2"))[0].what
+
+
+def test_tolerances_that_no_operation_has_are_told(body_fails: Fail, read: Read) -> None:
+    (problem,) = body_fails("INTOL/-0.01", "GOTO/0,0,9")
+    assert (problem.line, problem.what) == (3, "INTOL is negative: -0.01")
+    assert "OUTTOL is 10" in read(text("ncl", "OUTTOL/10", *CUT)).remarks[0].what
+
+
+def test_motion_behind_an_end_with_an_end_of_its_own_is_told(read: Read) -> None:
+    toolpath = read(text("apt", *CUT, "FINI", "GOTO/9,0,-2"))
+    assert ["behind an end of the file" in problem.what for problem in toolpath.remarks] == [True]
+    assert read(text("apt", *CUT, "END", "FINI")).remarks == ()
+
+
+def test_a_system_that_is_none_is_refused(fails: Fail) -> None:
+    (problem,) = fails(text("solidworks", "CSYS/1,0,0,0,0,2,0,0,0,0,1,0", *CUT))
+    assert "columns of CSYS" in problem.what
+
+
+def test_compensation_that_goes_on_behind_a_way_home_is_refused(read: Read, fails: Fail) -> None:
+    on = ["CUTCOM/LEFT", "GOTO/40,0,-2"]
+    (problem,) = fails(text("catia", *CUT, *on, "$$ OPERATION NAME : B", *CUT, "CUTCOM/OFF"))
+    assert "CUTCOM/LEFT of line 10 is on where operation B begins" in problem.what
+    again = ["CUTCOM/OFF", "$$ OPERATION NAME : B", *CUT, *on, "CUTCOM/OFF"]
+    assert len(read(text("catia", *CUT, *on, *again)).operations) == 2
+    (joined,) = read(text("catia", *CUT, *on, "$$ OPERATION NAME : B", "GOTO/50,0,-2", "CUTCOM/OFF")).operations
+    assert [event.side for event in joined.events if isinstance(event, CutterComp)] == ["LEFT", "OFF"]
