@@ -210,7 +210,7 @@ def test_a_second_tool_of_an_operation_is_refused_where_it_would_begin_another(b
         (lambda text: text.replace("0.600000000000", "-0.600000000000"), "tool axis"),
         (lambda text: text.replace("RAPID\n", ""), "kind of motion"),
         (lambda text: text.replace("100.0000, MMPM", "101.0000, MMPM"), "feed"),
-        (lambda text: text.replace("COOLNT/ ON\n", ""), "Coolant ON is lost"),
+        (lambda text: text.replace("COOLNT/ ON\n", ""), "Coolant OFF instead of Coolant ON"),
         (lambda text: text.replace("FINI", "COOLNT/MIST\nFINI"), "Coolant MIST is added"),
         (lambda text: text.replace("CUTTER/ 10", "CUTTER/ 12"), "tool diameter"),
         (lambda text: text.replace("INDIRV/ 0.000000000000, -", "INDIRV/ 0.000000000000, "), "normal of an arc"),
