@@ -86,3 +86,11 @@ def test_compensation_that_goes_on_behind_a_way_home_is_refused(read: Read, fail
     assert len(read(text("catia", *CUT, *on, *again)).operations) == 2
     (joined,) = read(text("catia", *CUT, *on, "$$ OPERATION NAME : B", "GOTO/50,0,-2", "CUTCOM/OFF")).operations
     assert [event.side for event in joined.events if isinstance(event, CutterComp)] == ["LEFT", "OFF"]
+
+
+def test_an_operation_whose_coolant_ended_is_told(read: Read) -> None:
+    lines = ["COOLNT/FLOOD", *CUT, "$$ OPERATION NAME : B", *CUT]
+    (problem,) = read(text("catia", *lines)).remarks
+    assert (problem.line, "operation B has no COOLNT" in problem.what) == (11, True)
+    assert read(text("catia", *lines, "COOLNT/MIST")).remarks == ()
+    assert read(text("catia", *lines[:-5], "COOLNT/OFF", *lines[-5:])).remarks == ()

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from trunnion.cl.builder import FromStatement, OperationBuilder
 from trunnion.cl.diagnostics import Diagnostics
-from trunnion.model.toolpath import CutterComp, CycleOff, CycleOn, Event, GoHome, LoadTool, Message
+from trunnion.model.toolpath import Coolant, CutterComp, CycleOff, CycleOn, Event, GoHome, LoadTool, Message
 
 
 def join_cuts(builders: Iterable[OperationBuilder], diagnostics: Diagnostics) -> list[OperationBuilder]:
@@ -28,6 +28,7 @@ def join_cuts(builders: Iterable[OperationBuilder], diagnostics: Diagnostics) ->
         if before is None or not _begins_with_cut(before, builder) or _has_other_tool(before, builder, loads, number):
             joined.append(builder)
             _report_lost_side(builder, side, diagnostics)
+            _report_lost_coolant(builder, joined[-2:-1], diagnostics)
         else:
             register = _register(joined)
             if first := next((load for load in loads if load.row == 0 and load.adjust != register), None):
@@ -76,6 +77,15 @@ def _is_way(builder: OperationBuilder) -> bool:
     no_tool = not any(isinstance(event, LoadTool | CycleOn | GoHome) for event in builder.events)
     first = set() if builder.feeds else {0}
     return only_moves and no_tool and set(range(builder.stop - builder.first)) <= first | set(builder.rapids)
+
+
+def _report_lost_coolant(builder: OperationBuilder, before: list[OperationBuilder], diagnostics: Diagnostics) -> None:
+    """Warn of an operation that says nothing of coolant behind one that leaves it on: the way home switches it off."""
+    coolants = [event for each in before for event in each.events if isinstance(event, Coolant)]
+    own = any(isinstance(event, Coolant) and event.kind != "OFF" for event in builder.events)
+    if builder.continues and coolants and coolants[-1].kind != "OFF" and not own:
+        what = f"operation {builder.name} has no COOLNT: that of the one before ends with it, and its cuts are dry"
+        diagnostics.remark(builder.line, what, f"write COOLNT/{coolants[-1].kind} in each operation that needs it")
 
 
 def _report_lost_side(builder: OperationBuilder, side: CutterComp | None, diagnostics: Diagnostics) -> None:
