@@ -78,10 +78,10 @@ def test_a_system_that_is_none_is_refused(fails: Fail) -> None:
     assert "columns of CSYS" in problem.what
 
 
-def test_compensation_that_goes_on_behind_a_way_home_is_refused(read: Read, fails: Fail) -> None:
+def test_compensation_that_ends_with_its_operation_is_told(read: Read) -> None:
     on = ["CUTCOM/LEFT", "GOTO/40,0,-2"]
-    (problem,) = fails(text("catia", *CUT, *on, "$$ OPERATION NAME : B", *CUT, "CUTCOM/OFF"))
-    assert "CUTCOM/LEFT of line 10 is on where operation B begins" in problem.what
+    (problem,) = read(text("catia", *CUT, *on, "$$ OPERATION NAME : B", *CUT, "CUTCOM/OFF")).remarks
+    assert "CUTCOM/LEFT of line 10 ends with its operation: B" in problem.what
     again = ["CUTCOM/OFF", "$$ OPERATION NAME : B", *CUT, *on, "CUTCOM/OFF"]
     assert len(read(text("catia", *CUT, *on, *again)).operations) == 2
     (joined,) = read(text("catia", *CUT, *on, "$$ OPERATION NAME : B", "GOTO/50,0,-2", "CUTCOM/OFF")).operations

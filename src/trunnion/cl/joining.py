@@ -94,9 +94,9 @@ def _report_lost_side(builder: OperationBuilder, side: CutterComp | None, diagno
         return
     own = next((event.row for event in builder.events if isinstance(event, CutterComp)), builder.stop - builder.first)
     if set(range(own)) - set(builder.rapids):
-        what = f"CUTCOM/{side.side} of line {side.line} is on where operation {builder.name} begins, after a way home"
+        what = f"CUTCOM/{side.side} of line {side.line} ends with its operation: {builder.name} cuts without it"
         cure = f"write CUTCOM/OFF at the end of the operation before, and CUTCOM/{side.side} before its first cut"
-        diagnostics.error(builder.line, what, cure)
+        diagnostics.remark(builder.line, what, cure)
 
 
 def _begins_with_cut(before: OperationBuilder, builder: OperationBuilder) -> bool:
