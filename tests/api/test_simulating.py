@@ -10,7 +10,7 @@ import pytest
 import trunnion
 from tests.support.sweeps import CUBE, CUBE_FACES
 from trunnion.cli import main
-from trunnion.simulation.meshes import TriangleMesh, load_mesh
+from trunnion.simulation.meshes import TriangleMesh, load_mesh, save_mesh
 
 HEAD = "G21 G90 G17 G40 G49 G80\nT1 M6\nG43 H1\nS1000 M3\nG0 X-20 Y0 Z20\n"
 SLOT = HEAD + "N50 G0 Z-5\nN60 G1 X70 F500\nN70 G0 Z20\nM5\nM30\n"
@@ -136,6 +136,62 @@ def test_it_ends_after_the_first_finding_or_before_a_block(tmp_path: Path) -> No
     assert before.removed == 0.0
     with pytest.raises(trunnion.InputError, match="no block N7777"):
         simulate(tmp_path, program, until="N7777")
+
+
+def test_a_machine_position_across_the_tool_in_the_stock_is_an_error(tmp_path: Path) -> None:
+    program = SLOT.replace("N70 G0 Z20", "N65 G1 X20\nN70 G53 G0 X20 Y60\nN80 G53 G0 Z0")
+    found = simulate(tmp_path, program)
+    assert not found.passed
+    assert [one.line for one in found.remarks if "across the tool axis" in one.what] == [9]
+    assert simulate(tmp_path, SLOT.replace("N70 G0 Z20", "N70 G53 G0 Z0\nN80 G53 G0 X0 Y0")).passed
+    known = simulate(tmp_path, program, zero="0,0,-100", tool_length=60)
+    assert ("rapid through stock", 70) in {(one.kind, one.block) for one in known.findings}
+
+
+@pytest.mark.parametrize(
+    "program",
+    [SLOT.replace("N50", "T1 M6\nG43 H1\nN50"), SLOT.replace("S1000 M3", "S0 M3"), SLOT.replace("S1000 M3", "M3")],
+    ids=["change", "zero", "no speed"],
+)
+def test_a_spindle_that_stands_is_found(tmp_path: Path, program: str) -> None:
+    assert {(one.kind, one.block) for one in simulate(tmp_path, program).findings} == {
+        ("cuts with the spindle off", 60)
+    }
+
+
+def test_a_program_that_never_touches_the_stock_says_so(tmp_path: Path) -> None:
+    found = simulate(tmp_path, SLOT.replace("Y0", "Y100"))
+    assert [one for one in found.remarks if "takes nothing from the stock" in one.what]
+
+
+def test_a_tool_length_that_is_left_out_is_an_error(tmp_path: Path) -> None:
+    two = SLOT.replace("M5\nM30", "T2 M6\nS1000 M3\nG0 X-20 Y10 Z-3\nN95 G1 X70\nG0 Z20\nM5\nM30")
+    tools = [TOOL, TOOL.replace("1=", "2=", 1)]
+    forgotten = simulate(tmp_path, two, tools=tools)
+    assert not forgotten.passed
+    assert [one for one in forgotten.remarks if "with the length of tool 1" in one.what]
+    off = simulate(tmp_path, two.replace("T2 M6", "G49\nT2 M6"), tools=tools)
+    assert [one for one in off.remarks if "without a tool length" in one.what]
+    assert simulate(tmp_path, two.replace("T2 M6", "T2 M6\nG43 H2"), tools=tools).passed
+
+
+def test_meshes_that_are_odd_are_told(tmp_path: Path) -> None:
+    small = cuboid((0, 0, 0), (0.05, 0.04, 0.01))
+    save_mesh(small, tmp_path / "metres.stl")
+    found = simulate(tmp_path, SLOT, part=tmp_path / "metres.stl")
+    assert [one for one in found.remarks if "metres" in f"{one.what} {one.cure}"]
+
+
+def test_a_tool_that_could_pass_between_the_rays_is_refused(tmp_path: Path) -> None:
+    thin = "1=flat:0.6,length=60,flutes=20"
+    with pytest.raises(trunnion.InputError, match=r"pass between the rays unseen; take cells of 0\.3 mm"):
+        simulate(tmp_path, SLOT, tools=[thin])
+    assert max(simulate(tmp_path, SLOT, tools=[thin], cell=None, stock="box:10,4,10,0,-2,-10").cell) <= 0.3
+
+
+def test_what_the_reader_warns_of_is_told(tmp_path: Path) -> None:
+    found = simulate(tmp_path, SLOT.replace("N60", "G54\nN55 G55\nN60"))
+    assert [one for one in found.remarks if "work offset" in one.what]
 
 
 def test_several_programs_cut_the_same_stock(tmp_path: Path) -> None:

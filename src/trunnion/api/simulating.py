@@ -1,5 +1,6 @@
 """Simulation of NC programs: what they leave of the stock, what they hit, and the part that comes out."""
 
+import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Final, Literal
@@ -13,16 +14,17 @@ from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.api.settings import check_tolerance, set_up_machine
 from trunnion.api.simulation_result import NO_CALL, SimulationResult, file_of_row, make_result
 from trunnion.api.verifying import rapid_feed_of
-from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.errors import InputError, Problem, Severity, argument_problem, merge_repeated
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.simulation.collisions import Collision, check_collisions, fixture_body, machine_bodies, part_body
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
 from trunnion.simulation.simulator import Job, Setup
-from trunnion.simulation.stock_shapes import StockShape, default_cell, stock_shape
+from trunnion.simulation.stock_shapes import StockShape, check_narrow_tools, default_cell, stock_shape
+from trunnion.simulation.sweeps import sideways_exits
 from trunnion.simulation.tool_choice import choose_tools, tools_of_toolpaths
 from trunnion.simulation.tool_library import read_tools
-from trunnion.simulation.tool_profile import ToolShape
+from trunnion.simulation.tool_profile import Role, ToolShape
 from trunnion.simulation.tool_text import parse_tool
 from trunnion.verification import restore_rapids
 
@@ -78,7 +80,8 @@ def simulate(
     subprograms
         Files of the subprograms that the programs call. No others are opened.
     cell
-        Width of the cells, mm; by default the 200th part of the stock's longest side.
+        Width of the cells, mm; by default the 200th part of the stock's longest side, and at most half of the narrowest
+        tool.
     accuracy
         How far motions may be off, mm; by default a tenth of a cell.
     stop_at
@@ -120,14 +123,12 @@ def simulate(
     loaded = as_machine(machine)
     readers.reader_of(loaded)
     loaded = set_up_machine(loaded, zero, tool_length)
-    shape = stock_shape(stock)
+    remarks: list[Problem] = []
+    shape = stock_shape(stock, remarks.append)
     check_tolerance("near", near, optional=True)
-    mesh = None if part is None else _mesh(part, "part")
+    mesh = None if part is None else _mesh(part, "part", remarks)
     design = None if mesh is None else StockShape(mesh.bounds[0], mesh.bounds[1], mesh=mesh)
-    around = [_mesh(fixture, f"fixture {k}") for k, fixture in enumerate(_listed(fixtures), 1)]
-    wide = cell or default_cell(shape)
-    setup = Setup(shape, design, wide, accuracy or _TOLERANCE * wide)
-    simulation.check_cell(shape, wide)
+    around = [_mesh(fixture, f"fixture {k}", remarks) for k, fixture in enumerate(_listed(fixtures), 1)]
     programs = [nc] if isinstance(nc, Run | str) or hasattr(nc, "__fspath__") else list(nc)
     if not programs:
         raise wrong_argument("nc", nc, "give an NC program")
@@ -135,7 +136,12 @@ def simulate(
     runs = [restore_rapids(as_run(program, loaded, others), rapid_feed) for program in programs]  # type: ignore[arg-type]
     toolpaths = as_toolpaths(cl, None, False, observer)
     shapes = _tools(runs, tools, libraries, toolpaths)
-    remarks = [*_remarks(runs, shapes), *_outside(setup)]
+    widths = {name: _cutting_width(tool) for name, tool in shapes.items()}
+    wide = cell or default_cell(shape, min(widths.values(), default=math.inf))
+    check_narrow_tools(widths, wide)
+    setup = Setup(shape, design, wide, accuracy or _TOLERANCE * wide)
+    simulation.check_cell(shape, wide)
+    remarks += [*_remarks(runs, shapes), *_sideways(runs, shape), *_lengths(runs), *_outside(setup)]
     jobs = [_job(run, shapes, until if run is runs[-1] else None) for run in runs]
     remarks += [Problem(job.run.files[0], 0, job.broken_off) for job in jobs if job.broken_off]
     observer.problems(remarks)
@@ -155,6 +161,9 @@ def simulate(
         remarks.append(Problem("part", 0, what, "close the mesh", Severity.WARNING))
         observer.problems(remarks[-1:])
     told = len(remarks)
+    if found.start_volume - found.stock.volume <= 0.0:
+        what, cure = "takes nothing from the stock", "check the place of the stock, and the tools"
+        remarks.append(Problem(jobs[0].run.files[0], 0, what, cure, Severity.WARNING))
     touched = [
         _collisions(job, number, mesh, around, near or 0.0, found.stopped, remarks) for number, job in enumerate(jobs)
     ]
@@ -162,8 +171,10 @@ def simulate(
     return make_result(loaded.key, found, jobs, touched, tuple(remarks), toolpaths)
 
 
-def _mesh(mesh: str | Path | TriangleMesh, name: str) -> TriangleMesh:
-    return mesh.named(name) if isinstance(mesh, TriangleMesh) else load_mesh(mesh, name=name, closed=True)
+def _mesh(mesh: str | Path | TriangleMesh, name: str, remarks: list[Problem]) -> TriangleMesh:
+    if isinstance(mesh, TriangleMesh):
+        return mesh.named(name)
+    return load_mesh(mesh, name=name, closed=True, warn=remarks.append)
 
 
 def _listed(fixtures: Any) -> list[Any]:
@@ -229,6 +240,48 @@ def _cuts_without_call(run: Run) -> bool:
     return bool((run.kind[rows] != Kind.RAPID).any())
 
 
+def _cutting_width(tool: ToolShape) -> float:
+    """The greatest diameter of what cuts of a tool, mm."""
+    points = [
+        point for section in tool.sections if section.role is Role.CUTTER
+        for element in section.outline for point in (element.start, element.end)
+    ]  # fmt: skip
+    return 2.0 * max((radius for radius, _ in points), default=math.inf)
+
+
+def _lengths(runs: Sequence[Run]) -> list[Problem]:
+    """Cuts without a tool length, or with that of another tool, in programs that select lengths."""
+    found = []
+    for run in runs:
+        rows = np.flatnonzero(run.kind != Kind.RAPID)
+        edge, tool = run.edge[rows], run.tool[rows]
+        unset = -1 if run.uses_length_numbers else 0
+        if (edge == unset).any() and (edge > 0).any():
+            row = int(rows[np.argmax(edge == unset)])
+            what, cure = "cuts without a tool length, which other tools of the program have", "select it before the cut"
+            found.append(Problem(file_of_row(run, row), int(run.line[row]), what, cure))
+        if run.uses_length_numbers:
+            for number in np.unique(edge[edge > 0]).tolist():
+                own = np.flatnonzero(edge == number)
+                others = own[tool[own] != tool[own[0]]]
+                if len(others):
+                    row = int(rows[others[0]])
+                    what = f"cuts with the length of tool {run.tools[int(tool[own[0]])]}, number {number}"
+                    found.append(Problem(file_of_row(run, row), int(run.line[row]), what, "select its own length"))
+    return found
+
+
+def _sideways(runs: Sequence[Run], stock: StockShape) -> list[Problem]:
+    """Retracts across the tool axis to places that are not known."""
+    what = "goes to a machine position across the tool axis, and the tool is no higher than the stock"
+    cure = "retract along the tool axis first, or give zero and tool_length, so that the way is known"
+    return [
+        Problem(file_of_row(run, row), int(run.line[row]), what, cure)
+        for run in runs
+        for row in sideways_exits(run, stock.low, stock.high).tolist()
+    ]
+
+
 def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]:
     """What was taken for granted, and what is not simulated."""
     found = [
@@ -237,6 +290,11 @@ def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]
         for remark in shape.remarks
     ]
     for run in runs:
+        found += merge_repeated(
+            Problem(each.file, each.line, each.text, severity=Severity.WARNING)
+            for each in run.diagnostics
+            if each.severity is Severity.WARNING
+        )
         compensated = run.state.compensation.rows_with(1), run.state.compensation.rows_with(-1)
         rows = np.concatenate(compensated)
         if len(rows):

@@ -52,15 +52,18 @@ class Finding:
     place: tuple[float, float, float]
 
 
-def row_findings(run: Run, rows: RowsCut, shape: ToolShape, limit: float) -> Iterator[Finding]:
-    """Yield the findings of consecutive rows with one tool; what is no deeper than ``limit`` mm is none."""
+def row_findings(run: Run, rows: RowsCut, shape: ToolShape, limit: float, turning: Flags) -> Iterator[Finding]:
+    """Yield the findings of consecutive rows with one tool; what is no deeper than ``limit`` mm is none.
+
+    ``turning`` says for all rows of the run whether the spindle turns, as ``spindle_turns`` has it.
+    """
     name = tool_name(run, rows.tool)
     first, end = rows.first, rows.first + len(rows.removed)
-    kind, spindle = run.kind[first:end], run.state.spindle.part(first, end)
+    kind = run.kind[first:end]
     rapid = kind == Kind.RAPID
     cuts = rows.cut.depth > limit
     yield from _runs(What.RAPID, (name, "stock"), first, rapid & cuts, rows.cut.depth, rows.cut.place)
-    standing = ~rapid & (spindle == 0) & cuts
+    standing = ~rapid & ~turning[first:end] & cuts
     yield from _runs(What.STANDING, (name, "stock"), first, standing, rows.cut.depth, rows.cut.place)
     yield from _runs(What.GOUGE, (name, "part"), first, rows.gouge.depth > limit, rows.gouge.depth, rows.gouge.place)
     for section, met in rows.met.items():
@@ -68,6 +71,26 @@ def row_findings(run: Run, rows: RowsCut, shape: ToolShape, limit: float) -> Ite
         what = What.HOLDER if role is Role.HOLDER else What.SHANK
         body = f"{what.name.lower()} of {name}"
         yield from _runs(what, (body, "stock"), first, met.depth > limit, met.depth, met.place)
+
+
+def spindle_turns(run: Run) -> Flags:
+    """Whether the spindle turns in each row, (n,).
+
+    A tool change stops it until the program says it again. A cycle that drives the spindle starts it by itself.
+    """
+    turning = (run.spindle != 0) & (run.rpm > 0.0)
+    said, row = True, 0
+    for event in run.events:
+        if event.kind not in ("tool_change", "spindle"):
+            continue
+        if not said:
+            turning[row : event.before_row] = False
+        said, row = event.kind == "spindle", event.before_row
+    if not said:
+        turning[row:] = False
+    for hole in run.spindle_holes:
+        turning[hole.first : hole.end] = True
+    return np.asarray(turning)
 
 
 def tool_name(run: Run, tool: int) -> str:

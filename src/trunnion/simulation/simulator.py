@@ -15,7 +15,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.model.run import Run
 from trunnion.simulation.deviation import Excess, left_on, missing_from
-from trunnion.simulation.findings import Finding, air_cuts, row_findings
+from trunnion.simulation.findings import Finding, air_cuts, row_findings, spindle_turns
 from trunnion.simulation.removal import cut
 from trunnion.simulation.spans import Spans
 from trunnion.simulation.stock import Stock
@@ -179,7 +179,7 @@ def _cut_job(
     progress: Callable[[int, int], None] | None,
 ) -> Iterator[OperationCut]:
     """Yield the operations of a program when each of them has ended."""
-    run, current = job.run, None
+    run, current, turning = job.run, None, spindle_turns(job.run)
     chunks = cut(stock, run, pieces, setup.tolerance, design=design, end=job.end, threads=threads, progress=progress)
     for rows in chunks:
         name = run.tools[rows.tool]
@@ -190,7 +190,7 @@ def _cut_job(
         current.end = rows.first + len(rows.removed)
         current.removed += float(rows.removed.sum())
         current.gouged += float(rows.gouged.sum())
-        current.findings += row_findings(run, rows, job.tools[name], setup.limit)
+        current.findings += row_findings(run, rows, job.tools[name], setup.limit, turning)
         current.air.append(air_cuts(run, rows))
     if current is not None:
         yield current

@@ -8,6 +8,7 @@ Units:  mm, workpiece frame. A box is given by its sizes and its lowest corner, 
 
 import math
 import re
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -15,7 +16,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.errors import InputError, argument_problem
+from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.simulation.lattice import Lattice
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
 from trunnion.simulation.spans import Spans, box_spans, cylinder_spans, mesh_spans
@@ -53,8 +54,8 @@ class StockShape:
         return cylinder_spans(lattice, bundle) if self.is_cylinder else box_spans(lattice, bundle)
 
 
-def stock_shape(text: str | Path | TriangleMesh) -> StockShape:
-    """Return the solid that a text states.
+def stock_shape(text: str | Path | TriangleMesh, warn: Callable[[Problem], None] | None = None) -> StockShape:
+    """Return the solid that a text states; ``warn`` takes what is odd about a mesh.
 
     Raises
     ------
@@ -66,7 +67,7 @@ def stock_shape(text: str | Path | TriangleMesh) -> StockShape:
         return StockShape(low, high, mesh=text)
     kind, colon, sizes = str(text).partition(":")
     if not colon or kind not in ("box", "cylinder"):
-        mesh = load_mesh(text, name="stock", closed=True)
+        mesh = load_mesh(text, name="stock", closed=True, warn=warn)
         return StockShape(mesh.bounds[0], mesh.bounds[1], mesh=mesh)
     words = [word.strip() for word in sizes.split(",")]
     if not all(_NUMBER.fullmatch(word) for word in words):
@@ -91,11 +92,22 @@ def _wrong(text: object, what: str) -> InputError:
     return InputError(argument_problem("stock", f"{text} {what}", _FORM))
 
 
-def default_cell(shape: StockShape) -> float:
-    """A cell for a solid, mm: the 200th part of its longest side, in two digits."""
-    cell = float((shape.high - shape.low).max()) / _CELLS
+def default_cell(shape: StockShape, narrowest: float) -> float:
+    """A cell for a solid, mm: the 200th part of its longest side, and no more than half of the narrowest tool."""
+    cell = min(float((shape.high - shape.low).max()) / _CELLS, 0.5 * narrowest)
     digit = 10.0 ** (math.floor(math.log10(cell)) - 1)
-    return math.ceil(cell / digit - 1e-9) * digit
+    return math.floor(cell / digit + 1e-9) * digit
+
+
+def check_narrow_tools(tools: Mapping[str, float], cell: float) -> None:
+    """Raise ``InputError`` for tools that could pass between the rays; diameters by the names of tools, mm."""
+    narrow = {name: wide for name, wide in tools.items() if wide < math.sqrt(2.0) * cell}
+    if narrow:
+        name, wide = min(narrow.items(), key=lambda each: each[1])
+        what = f"is {cell:g} mm, and tool {name}, {wide:g} mm wide, may pass between the rays unseen"
+        digit = 10.0 ** (math.floor(math.log10(wide)) - 1)
+        cure = f"take cells of {math.floor(0.5 * wide / digit) * digit:g} mm"
+        raise InputError(argument_problem("cell", what, cure))
 
 
 def check_cell(shape: StockShape, cell: float) -> None:

@@ -28,6 +28,9 @@ from trunnion.verification.kinematics.machine_positions import MachinePositions
 #: Rows whose sweeps are made at a time.
 CHUNK_ROWS = 8192
 
+#: A slide that moves the tool along its axis by so much of its way takes it out of the part.
+_ALONG = 0.5
+
 #: Sweeps that one row may have: a rotary axis that winds a thousand turns is an error of the program.
 _MOST_PIECES = 4096
 
@@ -157,6 +160,30 @@ def _placed(run: Run, first: int, end: int) -> Flags:
         return np.ones(end - first + 1, np.bool_)
     slides = list(run.machine.linear)
     return ~np.asarray(positions.at(np.arange(first - 1, end))[:, slides].any(axis=1))
+
+
+def sideways_exits(run: Run, low: Floats, high: Floats) -> Ints:
+    """Rows that go to a machine position across the tool axis, the tool being no higher than a box, (3,) to (3,) mm.
+
+    Where it stands in the workpiece frame is not known after them: it may have gone through the box.
+    """
+    positions = MachinePositions.of(run)
+    if positions.known or not len(run):
+        return np.zeros(0, np.int64)
+    slides = list(run.machine.linear)
+    at = positions.at(np.arange(-1, len(run)))[:, slides]
+    rows = np.flatnonzero(~at[:-1].any(axis=1) & at[1:].any(axis=1))
+    poses = run.positions(rows - 1)
+    along = np.empty((len(rows), 3))
+    for k, slide in enumerate(slides):
+        moved = poses.joints.copy()
+        moved[:, slide] += 1.0
+        step = forward(run.machine, moved)[0] - forward(run.machine, poses.joints)[0]
+        along[:, k] = np.abs(np.einsum("ij,ij->i", step, poses.axis))
+    retracts = (at[1:][rows] & (along > _ALONG)).any(axis=1)
+    top = np.maximum(low * poses.axis, high * poses.axis).sum(axis=1)
+    below = np.einsum("ij,ij->i", poses.tip, poses.axis) < top - 1e-6
+    return np.asarray(rows[~retracts & below])
 
 
 def _along_axis_where_unplaced(run: Run, sweeps: RowSweeps, placed: Flags, sizes: SweepSizes) -> RowSweeps:
