@@ -19,12 +19,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.simulation.removal import Cutter
-from trunnion.simulation.stock_shapes import make_stock, stock_shape
-from trunnion.simulation.sweeps import CHUNK_ROWS, RowSweeps
-from trunnion.simulation.tool_pieces import revolved_pieces
-from trunnion.simulation.tool_profile import ToolShape
-from trunnion.simulation.tool_shapes import ball, flat
+from trunnion.simulation.cutting.removal import Cutter
+from trunnion.simulation.cutting.sweeps import CHUNK_ROWS, RowSweeps
+from trunnion.simulation.stock.solids import make_stock, stock_shape
+from trunnion.simulation.tools.pieces import revolved_pieces
+from trunnion.simulation.tools.profile import ToolShape
+from trunnion.simulation.tools.shapes import ball, flat
 
 
 @dataclass(frozen=True, slots=True)

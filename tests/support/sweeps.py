@@ -5,13 +5,13 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.simulation.lattice import BUNDLE_AXES, Lattice
-from trunnion.simulation.removal import Cutter, RowsCut
-from trunnion.simulation.spans import box_spans
-from trunnion.simulation.stock import Stock
-from trunnion.simulation.sweeps import RowSweeps
-from trunnion.simulation.tool_pieces import revolved_pieces
-from trunnion.simulation.tool_profile import Role, ToolShape
+from trunnion.simulation.cutting.removal import Cutter, RowsCut
+from trunnion.simulation.cutting.sweeps import RowSweeps
+from trunnion.simulation.stock.lattice import BUNDLE_AXES, Lattice
+from trunnion.simulation.stock.material import Stock
+from trunnion.simulation.stock.spans import box_spans
+from trunnion.simulation.tools.pieces import revolved_pieces
+from trunnion.simulation.tools.profile import Role, ToolShape
 
 #: A cube of 1 mm: its corners, and its faces, which turn left seen from outside.
 CUBE = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])

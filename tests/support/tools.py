@@ -8,8 +8,8 @@ from hypothesis import assume
 from hypothesis import strategies as st
 
 from trunnion.arrays import Floats
-from trunnion.simulation.tool_pieces import RevolvedPieces
-from trunnion.simulation.tool_shapes import ToolKind, ToolSizes, shape_faults
+from trunnion.simulation.tools.pieces import RevolvedPieces
+from trunnion.simulation.tools.shapes import ToolKind, ToolSizes, shape_faults
 
 
 def pieces_volume(pieces: RevolvedPieces) -> float:

@@ -18,14 +18,14 @@ from trunnion.errors import InputError, Problem, Severity, argument_problem, mer
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.simulation.collisions import Collision, check_collisions, fixture_body, machine_bodies, part_body
+from trunnion.simulation.cutting.sweeps import sideways_exits
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
 from trunnion.simulation.simulator import Job, Setup
-from trunnion.simulation.stock_shapes import StockShape, check_narrow_tools, default_cell, stock_shape
-from trunnion.simulation.sweeps import sideways_exits
-from trunnion.simulation.tool_choice import choose_tools, tools_of_toolpaths
-from trunnion.simulation.tool_library import read_tools
-from trunnion.simulation.tool_profile import Role, ToolShape
-from trunnion.simulation.tool_text import parse_tool
+from trunnion.simulation.stock.solids import StockShape, check_narrow_tools, default_cell, stock_shape
+from trunnion.simulation.tools.choice import choose_tools, tools_of_toolpaths
+from trunnion.simulation.tools.library import read_tools
+from trunnion.simulation.tools.profile import Role, ToolShape
+from trunnion.simulation.tools.text import parse_tool
 from trunnion.verification import restore_rapids
 
 #: Part of a cell within which motions are simulated by default.

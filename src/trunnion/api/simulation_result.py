@@ -10,9 +10,9 @@ from trunnion.errors import Problem, Severity
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.simulation.collisions import Collision
-from trunnion.simulation.deviation import Excess
 from trunnion.simulation.findings import Finding, What
 from trunnion.simulation.simulator import Job, OperationCut, Simulation, row_runs, tip_lengths
+from trunnion.simulation.stock.deviation import Excess
 from trunnion.verification import verify as verify_run
 
 #: The number of the tool with which a program cuts that calls none.

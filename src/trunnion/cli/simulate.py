@@ -12,9 +12,9 @@ from trunnion.cli.results import as_json, print_result
 from trunnion.cli.terminal import Terminal
 from trunnion.files import atomic_file
 from trunnion.machines.motion_time import format_duration
-from trunnion.simulation.deviation import Excess
 from trunnion.simulation.meshes import check_mesh_name, save_mesh
-from trunnion.simulation.surface import stock_surface
+from trunnion.simulation.stock.deviation import Excess
+from trunnion.simulation.stock.surface import stock_surface
 from trunnion.wording import counted, one_line
 
 #: Findings that the text shows of each kind; the data has all.

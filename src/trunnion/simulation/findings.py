@@ -15,8 +15,8 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.simulation.removal import RowsCut
-from trunnion.simulation.tool_profile import Role, ToolShape
+from trunnion.simulation.cutting.removal import RowsCut
+from trunnion.simulation.tools.profile import Role, ToolShape
 
 #: Rows without a finding that do not end a run of rows with one.
 _PAUSE: Final = 2

@@ -14,14 +14,14 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.model.run import Run
-from trunnion.simulation.deviation import Excess, left_on, missing_from
+from trunnion.simulation.cutting.removal import cut
 from trunnion.simulation.findings import Finding, air_cuts, row_findings, spindle_turns
-from trunnion.simulation.removal import cut
-from trunnion.simulation.spans import Spans
-from trunnion.simulation.stock import Stock
-from trunnion.simulation.stock_shapes import StockShape, make_stock
-from trunnion.simulation.tool_pieces import RevolvedPieces, revolved_pieces
-from trunnion.simulation.tool_profile import ToolShape
+from trunnion.simulation.stock.deviation import Excess, left_on, missing_from
+from trunnion.simulation.stock.material import Stock
+from trunnion.simulation.stock.solids import StockShape, make_stock
+from trunnion.simulation.stock.spans import Spans
+from trunnion.simulation.tools.pieces import RevolvedPieces, revolved_pieces
+from trunnion.simulation.tools.profile import ToolShape
 
 #: Part of the tolerance that the facets of a tool's round corners take.
 _FACETS: Final = 0.25

@@ -23,9 +23,9 @@ from trunnion.simulation.collisions import (
 )
 from trunnion.simulation.collisions.queries import Solid, touches
 from trunnion.simulation.meshes import TriangleMesh, box_mesh, save_mesh
-from trunnion.simulation.tool_profile import ToolShape
-from trunnion.simulation.tool_shapes import flat
-from trunnion.simulation.tool_sizes import BodyPiece
+from trunnion.simulation.tools.profile import ToolShape
+from trunnion.simulation.tools.shapes import flat
+from trunnion.simulation.tools.sizes import BodyPiece
 
 HEAD = "G710 G90 G500 D0\nTRAFOOF\n"
 

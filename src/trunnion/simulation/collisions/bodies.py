@@ -18,7 +18,7 @@ from trunnion.errors import InputError, Problem, Severity
 from trunnion.machines import BodyBox, BodyCylinder, BodyFile, Machine, MachineBody
 from trunnion.machines.links import SPINDLE, WORKPIECE
 from trunnion.simulation.meshes import TriangleMesh, box_mesh, cylinder_mesh, load_mesh, revolved_mesh
-from trunnion.simulation.tool_profile import Element, ProfileArc, Section, ToolShape
+from trunnion.simulation.tools.profile import Element, ProfileArc, Section, ToolShape
 
 #: How far the straight pieces of a round outline may be inside of it, mm; they are widened by as much.
 _ARC_TOLERANCE: Final = 0.01

@@ -15,7 +15,7 @@ from trunnion.simulation.collisions.motion import axis_pieces
 from trunnion.simulation.collisions.pairs import body_pairs
 from trunnion.simulation.collisions.queries import Solid
 from trunnion.simulation.collisions.watching import PairWatch
-from trunnion.simulation.tool_profile import ToolShape
+from trunnion.simulation.tools.profile import ToolShape
 
 #: Bodies closer to each other than this are looked at again after moving by so much, mm: what touches and leaves within
 #: it, less than half of it deep, may be missed.

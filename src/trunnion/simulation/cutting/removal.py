@@ -1,0 +1,257 @@
+"""Cutting: a run removes material from stock, and what happened in each row is measured.
+
+In:     stock, a run, the pieces of each tool, and the design if it is known.
+Out:    the stock that is left; for each row the volume removed and how deep the tool went where it must not.
+Units:  mm, workpiece frame.
+
+The rows are taken in chunks. For each chunk the sweeps that may reach a tile are listed, and the tiles are cut side by
+side, each by one thread and in the order of the program: the result does not depend on the number of threads.
+
+How deep something is in something else is measured along the rays of all three bundles; the depth is the smallest of
+the three greatest thicknesses.
+"""
+
+import os
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.arrays import Floats, Ints
+from trunnion.model.run import Run
+from trunnion.simulation.cutting.cut_kernel import (
+    CUT_DEPTH,
+    GOUGE_DEPTH,
+    GOUGED,
+    MET,
+    REMOVED,
+    CutterTable,
+    Rays,
+    Sweeps,
+    bin_sweeps,
+    cut_tile,
+)
+from trunnion.simulation.cutting.ray_kernel import element_table, piece_list
+from trunnion.simulation.cutting.sweeps import RowSweeps, SweepSizes, row_sweeps, tool_ranges
+from trunnion.simulation.stock.lattice import BUNDLE_AXES
+from trunnion.simulation.stock.material import Stock, Tile
+from trunnion.simulation.stock.spans import Spans, no_spans
+from trunnion.simulation.tools.pieces import RevolvedPieces
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Depths:
+    """How deep something went in each of k rows, mm, and where: (k,) and (k, 3); NaN places where it did not."""
+
+    depth: Floats
+    place: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RowsCut:
+    """What consecutive rows from ``first`` on did, with the tool of index ``tool``.
+
+    removed  (k,) mm³ of stock
+    gouged   (k,) mm³ of the design
+    cut      how deep the cutter went into the stock
+    gouge    how deep it went into the design
+    met      for each section of the tool that does not cut, how deep it went into the stock
+    """
+
+    first: int
+    tool: int
+    removed: Floats
+    gouged: Floats
+    cut: Depths
+    gouge: Depths
+    met: Mapping[int, Depths]
+
+
+def cut(
+    stock: Stock,
+    run: Run,
+    tools: Mapping[int, RevolvedPieces],
+    tolerance: float,
+    *,
+    design: tuple[Spans, Spans, Spans] | None = None,
+    end: int | None = None,
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Iterator[RowsCut]:
+    """Cut stock with the rows of a run, chunk by chunk; the stock is changed.
+
+    Parameters
+    ----------
+    stock
+        The material.
+    run
+        The program.
+    tools
+        The pieces of each tool, by its index in ``run.tools``. Rows of a tool that is not there are not simulated.
+    tolerance
+        How far motions may be off, mm.
+    design
+        The finished part as spans of the same lattice.
+    end
+        The row at which to end; by default after the last one.
+    threads
+        How many tiles are cut at a time; by default as many as there are processors.
+    progress
+        Is called with rows done and rows in all.
+    """
+    end = len(run) if end is None else end
+    cutter = Cutter(stock, design, tolerance)
+    with ThreadPoolExecutor(threads or os.cpu_count() or 1) as executor:
+        for first, last, tool in tool_ranges(run, end):
+            if tool in tools:
+                sweeps = row_sweeps(run, first, last, cutter.sizes(tools[tool]))
+                yield cutter.cut(sweeps, tools[tool], executor)
+            if progress:
+                progress(last, end)
+
+
+class Cutter:
+    """Cuts stock with sweeps; ``design`` and ``tolerance`` as for ``cut``."""
+
+    def __init__(self, stock: Stock, design: tuple[Spans, Spans, Spans] | None, tolerance: float) -> None:
+        self._stock = stock
+        self._tolerance = tolerance
+        self._rays = [_rays(stock, tile, design) for tile in stock.tiles]
+        self._boxes = [tile.box for tile in stock.tiles]
+
+    def sizes(self, pieces: RevolvedPieces) -> SweepSizes:
+        """What motions of a tool are divided for."""
+        lattice = self._stock.lattice
+        cuts = pieces.cuts if pieces.cuts.any() else np.ones_like(pieces.cuts)
+        reach, radius = float(pieces.bounds[cuts, 1].max()), float(pieces.bounds[cuts, 2].max())
+        whole = float(pieces.bounds[:, 1].max())
+        size = float(np.linalg.norm(lattice.high - lattice.low))
+        return SweepSizes(max(reach, radius, 0.5 * whole), radius, self._tolerance, 2.0 * size + whole)
+
+    def cut(self, sweeps: RowSweeps, pieces: RevolvedPieces, executor: ThreadPoolExecutor) -> RowsCut:
+        """Cut with the sweeps of some rows."""
+        low, high = float(pieces.bounds[:, 0].min()), float(pieces.bounds[:, 1].max())
+        boxes = _boxes(sweeps, low, high, float(pieces.bounds[:, 2].max()))
+        columns = MET + int(pieces.section.max()) + 1
+        total = _Totals(sweeps, columns)
+        table = element_table(pieces)
+        tool = CutterTable(piece_list(pieces, table), table, pieces.cuts, pieces.section)
+        for bundle in range(3):
+            axes = BUNDLE_AXES[bundle]
+            own = Sweeps(sweeps.poses(axes), sweeps.row)
+            which = [k for k, tile in enumerate(self._stock.tiles) if tile.bundle == bundle]
+            lists = _lists(
+                boxes[:, [2 * axes[0], 2 * axes[0] + 1, 2 * axes[1], 2 * axes[1] + 1, 2 * axes[2], 2 * axes[2] + 1]],
+                np.array([self._boxes[k] for k in which]),
+            )
+            work = [(k, wanted) for k, wanted in zip(which, lists, strict=True) if len(wanted)]
+
+            def one(job: tuple[int, Ints], own: Sweeps = own) -> tuple[Floats, Floats]:
+                return self._cut_tile(job[0], own, job[1], tool, columns)
+
+            for (_, wanted), (measured, places) in zip(work, executor.map(one, work), strict=True):
+                total.add(bundle, own.row[wanted], measured, places)
+        return total.result(pieces)
+
+    def _cut_tile(self, k: int, sweeps: Sweeps, wanted: Ints, tool: CutterTable, columns: int) -> tuple[Floats, Floats]:
+        tile = self._stock.tiles[k]
+        measured, places = np.zeros((len(wanted), columns)), np.zeros((len(wanted), columns, 3))
+        done = 0
+        while True:
+            done = cut_tile(
+                self._rays[k], tile.count, tile.ends, tile.rows, tile.normals, sweeps, wanted, done, tool,
+                0.01 * self._tolerance, measured, places,
+            )  # fmt: skip
+            if done == len(wanted):
+                break
+            tile.widen()
+        self._boxes[k] = tile.box
+        return measured, places
+
+
+def _rays(stock: Stock, tile: Tile, design: tuple[Spans, Spans, Spans] | None) -> Rays:
+    area = stock.cell_area(tile.bundle)
+    if design is None:
+        spans = no_spans(len(tile.count))
+    else:
+        width = stock.lattice.rays(tile.bundle)[1]
+        columns = tile.first_v + np.arange(len(tile.v))
+        rays = ((tile.first_u + np.arange(len(tile.u)))[:, None] * width + columns).ravel()
+        spans = design[tile.bundle].at(rays)
+    return Rays(tile.u, tile.v, area, spans.first, spans.ends, np.abs(spans.normals[:, 2]) / 127.0)
+
+
+def _boxes(sweeps: RowSweeps, low: float, high: float, widest: float) -> Floats:
+    """Boxes around the cylinder in which the whole tool is: lowest and highest x, y and z of each sweep, (m, 6)."""
+    boxes = np.empty((len(sweeps.row), 6))
+    boxes[:, 0::2], boxes[:, 1::2] = np.inf, -np.inf
+    for tip, axis in ((sweeps.start, sweeps.axis), (sweeps.end_tip, sweeps.end_axis)):
+        across = widest * np.sqrt(np.maximum(0.0, 1.0 - axis * axis))
+        boxes[:, 0::2] = np.minimum(boxes[:, 0::2], tip + np.minimum(low * axis, high * axis) - across)
+        boxes[:, 1::2] = np.maximum(boxes[:, 1::2], tip + np.maximum(low * axis, high * axis) + across)
+    return boxes
+
+
+def _lists(boxes: Floats, tiles: Floats) -> list[Ints]:
+    """The sweeps that may reach each tile, in order."""
+    counts = np.zeros(len(tiles), np.int64)
+    bin_sweeps(boxes, tiles, np.full(1, -1), counts)
+    first = np.concatenate(([0], np.cumsum(counts)))
+    flat = np.empty(first[-1], np.int64)
+    bin_sweeps(boxes, tiles, first, flat)
+    return [flat[first[k] : first[k + 1]] for k in range(len(tiles))]
+
+
+class _Totals:
+    """What tiles have measured, put together by rows."""
+
+    def __init__(self, sweeps: RowSweeps, columns: int) -> None:
+        count = sweeps.end - sweeps.first
+        self._first, self._tool = sweeps.first, sweeps.tool
+        self._sums = np.zeros((count, columns))
+        self._greatest = np.zeros((3, count, columns))
+        self._places = np.full((3, count, columns, 3), np.nan)
+
+    def add(self, bundle: int, row: Ints, measured: Floats, places: Floats) -> None:
+        """Add the sweeps of a tile."""
+        at = row - self._first
+        np.add.at(self._sums, at, measured)
+        for column in np.flatnonzero(measured.any(axis=0)).tolist():
+            if column in (REMOVED, GOUGED):
+                continue
+            order = np.lexsort((measured[:, column], at))
+            last = order[np.concatenate((at[order][1:] != at[order][:-1], [True]))]
+            rows = at[last]
+            better = measured[last, column] > self._greatest[bundle, rows, column]
+            rows, last = rows[better], last[better]
+            self._greatest[bundle, rows, column] = measured[last, column]
+            self._places[bundle, rows, column] = _from_bundle(bundle, places[last, column])
+
+    def result(self, pieces: RevolvedPieces) -> RowsCut:
+        """What the rows did."""
+        sections = sorted(set(pieces.section[~pieces.cuts].tolist()))
+        return RowsCut(
+            self._first,
+            self._tool,
+            self._sums[:, REMOVED] / 3.0,
+            self._sums[:, GOUGED] / 3.0,
+            self._depths(CUT_DEPTH),
+            self._depths(GOUGE_DEPTH),
+            {section: self._depths(MET + section) for section in sections},
+        )
+
+    def _depths(self, column: int) -> Depths:
+        """The smallest of what the bundles have seen."""
+        lengths = np.where(self._greatest[:, :, column] > 0.0, self._greatest[:, :, column], np.inf)
+        bundle = lengths.argmin(axis=0)
+        rows = np.arange(lengths.shape[1])
+        depth = lengths[bundle, rows]
+        return Depths(np.where(np.isfinite(depth), depth, 0.0), self._places[bundle, rows, column])
+
+
+def _from_bundle(bundle: int, places: Floats) -> Floats:
+    """Coordinates of a bundle as those of the workpiece frame."""
+    found = np.empty_like(places)
+    found[:, list(BUNDLE_AXES[bundle])] = places
+    return found

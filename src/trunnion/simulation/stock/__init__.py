@@ -1,0 +1,1 @@
+"""Stock: material along the rays of a lattice, its surface, and how it differs from the design."""

@@ -1,0 +1,200 @@
+"""The finished stock against the design: what is left on it, and what is missing.
+
+In:     stock as it is, and the stretches of the design and of the stock at the start along the same rays.
+Out:    volumes, the greatest thickness, and the places where it is.
+Units:  mm, workpiece frame.
+
+The thickness at a ray is that of ``cut_kernel``. At a place the smallest of the three bundles counts: a sliver that is
+thin across a wall is long for the rays along the wall.
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats, Floats2, Ints
+from trunnion.jit import kernel
+from trunnion.simulation.stock.lattice import BUNDLE_AXES
+from trunnion.simulation.stock.material import Stock
+from trunnion.simulation.stock.spans import Spans
+
+#: Places that are told, and how many cells they are apart at least.
+_MOST_PLACES: Final = 10
+_APART: Final = 5.0
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A place in the workpiece frame, mm, and how thick what is wrong is there, mm."""
+
+    at: tuple[float, float, float]
+    thickness: float
+
+
+@dataclass(frozen=True, slots=True)
+class Excess:
+    """What one solid has and the other has not: mm³, the greatest thickness in mm, and the thickest places."""
+
+    volume: float
+    largest: float
+    places: tuple[Place, ...]
+
+
+def left_on(stock: Stock, design: tuple[Spans, Spans, Spans], limit: float) -> Excess:
+    """What the stock has beyond the design; places thinner than ``limit`` are not told."""
+    return _excess(stock, [stock.spans(bundle) for bundle in range(3)], list(design), limit)
+
+
+def missing_from(
+    stock: Stock, start: tuple[Spans, Spans, Spans], design: tuple[Spans, Spans, Spans], limit: float
+) -> Excess:
+    """What of the design was in the stock at the start, and is there no more."""
+    was = [_common(own, wanted) for own, wanted in zip(start, design, strict=True)]
+    return _excess(stock, was, [stock.spans(bundle) for bundle in range(3)], limit)
+
+
+def _excess(stock: Stock, solid: list[Spans], other: list[Spans], limit: float) -> Excess:
+    lattice, volume = stock.lattice, 0.0
+    firsts, tables = [], []
+    for bundle in range(3):
+        first, table = _difference(solid[bundle], other[bundle])
+        volume += stock.cell_area(bundle) * float((table[:, 1] - table[:, 0]).sum()) / 3.0
+        firsts.append(first)
+        tables.append(table)
+    points, thickness = [np.zeros((0, 3))], [np.zeros(0)]
+    for bundle in range(3):
+        axes = list(BUNDLE_AXES[bundle])
+        u, v = lattice.ray_positions(bundle)
+        ray = np.repeat(np.arange(len(firsts[bundle]) - 1), np.diff(firsts[bundle]))
+        place = np.empty((len(ray), 3))
+        place[:, axes[0]], place[:, axes[1]] = u[ray // len(v)], v[ray % len(v)]
+        place[:, axes[2]] = tables[bundle][:, :2].mean(axis=1)
+        thin = tables[bundle][:, 2].copy()
+        for across in range(3):
+            if across != bundle:
+                cell = np.floor((place - lattice.low) / lattice.cell).astype(np.int64)
+                cell = np.clip(cell, 0, np.array(lattice.counts) - 1)
+                one, two, along = BUNDLE_AXES[across]
+                at = cell[:, one] * lattice.counts[two] + cell[:, two]
+                thinner_here(firsts[across], tables[across], at, place[:, along].copy(), thin)
+        points.append(place)
+        thickness.append(thin)
+    place, thin = np.concatenate(points), np.concatenate(thickness)
+    largest = float(thin.max(initial=0.0))
+    return Excess(volume, largest, _thickest(place, thin, limit, _APART * float(lattice.cell.max())))
+
+
+def _thickest(place: Floats, thickness: Floats, limit: float, apart: float) -> tuple[Place, ...]:
+    """The thickest places, apart from each other."""
+    kept: list[Place] = []
+    chosen = np.zeros((0, 3))
+    open_ = np.flatnonzero(thickness > limit)
+    open_ = open_[np.argsort(-thickness[open_], kind="stable")]
+    while len(open_) and len(kept) < _MOST_PLACES:
+        at = place[open_[0]]
+        x, y, z = at.tolist()
+        kept.append(Place((x, y, z), float(thickness[open_[0]])))
+        chosen = np.concatenate((chosen, at[None]))
+        open_ = open_[np.linalg.norm(place[open_] - at, axis=1) >= apart]
+    return tuple(kept)
+
+
+def _common(one: Spans, two: Spans) -> Spans:
+    """What both have."""
+    counts = np.zeros(len(one.first) - 1, np.int64)
+    arrays = one.first, one.ends, _slopes(one), two.first, two.ends, _slopes(two)
+    common_stretches(*arrays, counts, np.zeros((0, 2)), np.zeros((0, 2)), True)
+    first = np.concatenate(([0], np.cumsum(counts)))
+    ends, slopes = np.zeros((first[-1], 2)), np.zeros((first[-1], 2))
+    common_stretches(*arrays, first[:-1].copy(), ends, slopes, False)
+    normals = np.zeros((2 * len(ends), 3), np.int8)
+    normals[:, 2] = np.round(127.0 * slopes.ravel()).astype(np.int8)
+    return Spans(first, ends.ravel(), normals)
+
+
+def _slopes(spans: Spans) -> Floats:
+    return np.asarray(np.abs(spans.normals[:, 2].astype(np.float64)) / 127.0)
+
+
+def _difference(solid: Spans, other: Spans) -> tuple[Ints, Floats]:
+    """Stretches of a solid outside another: first of each ray, and a row of start, end and thickness for each."""
+    counts = np.zeros(len(solid.first) - 1, np.int64)
+    arrays = solid.first, solid.ends, _slopes(solid), other.first, other.ends, _slopes(other)
+    difference_stretches(*arrays, counts, np.zeros((0, 3)), True)
+    first = np.concatenate(([0], np.cumsum(counts)))
+    table = np.zeros((first[-1], 3))
+    difference_stretches(*arrays, first[:-1].copy(), table, False)
+    return first, table
+
+
+@kernel(writes="at table")
+def difference_stretches(
+    first: Ints,
+    ends: Floats,
+    slope: Floats,
+    other_first: Ints,
+    other_ends: Floats,
+    other_slope: Floats,
+    at: Ints,
+    table: Floats2,
+    counting: bool,
+) -> None:
+    """Count the stretches of each ray outside another solid in ``at``; or write start, end, thickness from there on."""
+    for ray in range(len(first) - 1):
+        for s in range(first[ray], first[ray + 1]):
+            start, from_slope = ends[2 * s], slope[2 * s]
+            for m in range(other_first[ray], other_first[ray + 1] + 1):
+                last = m == other_first[ray + 1]
+                end, to_slope = ends[2 * s + 1], slope[2 * s + 1]
+                if not last:
+                    if other_ends[2 * m + 1] <= start:
+                        continue
+                    if other_ends[2 * m] < end:
+                        end, to_slope = other_ends[2 * m], other_slope[2 * m]
+                if end - start > 1e-7:
+                    if not counting:
+                        k = at[ray]
+                        table[k, 0], table[k, 1] = start, end
+                        table[k, 2] = (end - start) * min(from_slope, to_slope)
+                    at[ray] += 1
+                if last or other_ends[2 * m + 1] >= ends[2 * s + 1]:
+                    break
+                start, from_slope = other_ends[2 * m + 1], other_slope[2 * m + 1]
+
+
+@kernel(writes="at ends slopes")
+def common_stretches(
+    first: Ints,
+    one: Floats,
+    one_slope: Floats,
+    other_first: Ints,
+    other: Floats,
+    other_slope: Floats,
+    at: Ints,
+    ends: Floats2,
+    slopes: Floats2,
+    counting: bool,
+) -> None:
+    """Count the stretches that both solids have in ``at``; or write their ends and the slopes there from there on."""
+    for ray in range(len(first) - 1):
+        for s in range(first[ray], first[ray + 1]):
+            for m in range(other_first[ray], other_first[ray + 1]):
+                start, end = max(one[2 * s], other[2 * m]), min(one[2 * s + 1], other[2 * m + 1])
+                if end - start > 1e-7:
+                    if not counting:
+                        k = at[ray]
+                        ends[k, 0], ends[k, 1] = start, end
+                        slopes[k, 0] = one_slope[2 * s] if one[2 * s] >= other[2 * m] else other_slope[2 * m]
+                        beyond = one[2 * s + 1] <= other[2 * m + 1]
+                        slopes[k, 1] = one_slope[2 * s + 1] if beyond else other_slope[2 * m + 1]
+                    at[ray] += 1
+
+
+@kernel(writes="thin")
+def thinner_here(first: Ints, table: Floats2, rays: Ints, along: Floats, thin: Floats) -> None:
+    """Lower ``thin`` (n,) to the thickness of the stretch of ray ``rays[k]`` in which ``along[k]`` lies, if it does."""
+    for k in range(len(rays)):
+        for s in range(first[rays[k]], first[rays[k] + 1]):
+            if table[s, 0] <= along[k] <= table[s, 1]:
+                thin[k] = min(thin[k], table[s, 2])

@@ -1,0 +1,142 @@
+"""Stock as stretches of material along the rays of a lattice, in tiles.
+
+A tile is at most 64 by 64 rays of one bundle with arrays of its own. One thread at a time works on it, so the material
+is the same for any number of threads. Where a ray needs more stretches than its tile has room for, the tile gets room.
+
+Memory: 4 bytes for each ray, and 15 for each of its ends of stretches, of which there is room for four at first.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.arrays import Floats, Lines
+from trunnion.simulation.stock.lattice import BUNDLE_AXES, Lattice
+from trunnion.simulation.stock.spans import Spans
+
+#: Rays of a tile along u and along v.
+TILE_RAYS: Final = 64
+
+#: Room for stretches of a ray at first.
+_STRETCHES: Final = 2
+
+#: ``Tile.rows`` of an end that no motion has made.
+UNCUT: Final = -1
+
+
+@dataclass(slots=True, eq=False)
+class Tile:
+    """Some rays of a bundle, v fastest.
+
+    u, v     where the rays are, mm
+    count    (r,)         int32    stretches of each ray
+    ends     (r, 2 s)     float64  their starts and ends along w, mm
+    rows     (r, 2 s)     int32    rows of the run that made them, ``UNCUT`` for the stock itself
+    normals  (r, 2 s, 3)  int8     unit normals out of the material in (u, v, w), in 127ths
+    """
+
+    bundle: int
+    first_u: int
+    first_v: int
+    u: Floats
+    v: Floats
+    count: Lines
+    ends: Floats
+    rows: Lines
+    normals: NDArray[np.int8]
+
+    def widen(self) -> None:
+        """Make room for twice the stretches."""
+        self.ends = np.concatenate((self.ends, np.zeros_like(self.ends)), axis=1)
+        self.rows = np.concatenate((self.rows, np.full_like(self.rows, UNCUT)), axis=1)
+        self.normals = np.concatenate((self.normals, np.zeros_like(self.normals)), axis=1)
+
+    @property
+    def box(self) -> Floats:
+        """Lowest and highest u, v, w of its material, (6,), mm; without any, the lowest are above the highest."""
+        some = np.flatnonzero(self.count)
+        if not len(some):
+            return np.array([math.inf, -math.inf] * 3)
+        low, high = self.ends[some, 0].min(), self.ends[some, 2 * self.count[some] - 1].max()
+        return np.array([self.u[0], self.u[-1], self.v[0], self.v[-1], low, high])
+
+    def volume_per_area(self) -> float:
+        """The length of all stretches together, mm."""
+        used = np.arange(self.ends.shape[1] // 2) < self.count[:, None]
+        return float((self.ends[:, 1::2] - self.ends[:, 0::2])[used].sum())
+
+    def spans(self) -> Spans:
+        """Its stretches."""
+        used = np.repeat(np.arange(self.ends.shape[1] // 2) < self.count[:, None], 2, axis=1)
+        return Spans(np.concatenate(([0], np.cumsum(self.count))), self.ends[used], self.normals[used])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stock:
+    """Material: a lattice, and the tiles of its three bundles."""
+
+    lattice: Lattice
+    tiles: tuple[Tile, ...]
+
+    @staticmethod
+    def of_spans(lattice: Lattice, spans: tuple[Spans, Spans, Spans]) -> "Stock":
+        """Stock that is given by the spans of each bundle."""
+        return Stock(lattice, tuple(tile for bundle in range(3) for tile in _tiles(lattice, bundle, spans[bundle])))
+
+    def bundle(self, bundle: int) -> Iterator[Tile]:
+        """The tiles of one bundle."""
+        return (tile for tile in self.tiles if tile.bundle == bundle)
+
+    def cell_area(self, bundle: int) -> float:
+        """Area that a ray of a bundle stands for, mm²."""
+        u, v, _ = BUNDLE_AXES[bundle]
+        cell = self.lattice.cell
+        return float(cell[u] * cell[v])
+
+    def spans(self, bundle: int) -> Spans:
+        """The stretches of all rays of a bundle."""
+        width = self.lattice.rays(bundle)[1]
+        rays, counts, ends, normals = [], [], [], []
+        for tile in self.bundle(bundle):
+            own = tile.spans()
+            columns = tile.first_v + np.arange(len(tile.v))
+            rays.append(((tile.first_u + np.arange(len(tile.u)))[:, None] * width + columns).ravel())
+            counts.append(np.diff(own.first))
+            ends.append(own.ends)
+            normals.append(own.normals)
+        ray, count = np.concatenate(rays), np.concatenate(counts)
+        first = np.concatenate(([0], np.cumsum(count)))
+        order = np.empty(len(ray), np.int64)
+        order[ray] = np.arange(len(ray))
+        return Spans(first, np.concatenate(ends), np.concatenate(normals)).at(order)
+
+    @property
+    def volume(self) -> float:
+        """Volume of the material, mm³: the mean of the three bundles."""
+        return sum(self.cell_area(tile.bundle) * tile.volume_per_area() for tile in self.tiles) / 3.0
+
+
+def _tiles(lattice: Lattice, bundle: int, spans: Spans) -> Iterator[Tile]:
+    u, v = lattice.ray_positions(bundle)
+    for first_u in range(0, len(u), TILE_RAYS):
+        for first_v in range(0, len(v), TILE_RAYS):
+            own_u, own_v = u[first_u : first_u + TILE_RAYS], v[first_v : first_v + TILE_RAYS]
+            columns = first_v + np.arange(len(own_v))
+            rays = ((first_u + np.arange(len(own_u)))[:, None] * len(v) + columns).ravel()
+            yield _tile(bundle, first_u, first_v, own_u, own_v, spans.at(rays))
+
+
+def _tile(bundle: int, first_u: int, first_v: int, u: Floats, v: Floats, spans: Spans) -> Tile:
+    count = np.diff(spans.first).astype(np.int32)
+    room = max(_STRETCHES, int(count.max(initial=0)))
+    ends = np.zeros((len(count), 2 * room))
+    normals = np.zeros((len(count), 2 * room, 3), np.int8)
+    used = np.repeat(np.arange(room) < count[:, None], 2, axis=1)
+    ends[used] = spans.ends
+    normals[used] = spans.normals
+    rows = np.full(ends.shape, UNCUT, np.int32)
+    return Tile(bundle, first_u, first_v, u, v, count, ends, rows, normals)

@@ -1,0 +1,134 @@
+"""Stock from what states it: a box, a cylinder or a closed mesh.
+
+In:     ``box:X,Y,Z[,x0,y0,z0]``, ``cylinder:D,H[,z0]`` or a mesh, and the cell.
+Out:    ``Stock``.
+Units:  mm, workpiece frame. A box is given by its sizes and its lowest corner, by default 0,0,0; a cylinder stands on
+        Z = z0, by default 0, with its axis through X0 Y0.
+"""
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.simulation.meshes import TriangleMesh, load_mesh
+from trunnion.simulation.stock.lattice import Lattice
+from trunnion.simulation.stock.material import Stock
+from trunnion.simulation.stock.spans import Spans, box_spans, cylinder_spans, mesh_spans
+
+#: Bytes that rays may take at first; slots may multiply it by three.
+MOST_BYTES: Final = 3_000_000_000
+
+#: Bytes of a ray: its count, and four ends with a row and a normal each.
+_RAY_BYTES: Final = 4 + 4 * 15
+
+#: Cells along the longest side of the stock where none are asked for.
+_CELLS: Final = 200
+
+#: Sizes that a number may have, mm.
+_LARGEST: Final = 1e5
+
+_NUMBER: Final = re.compile(r"[+-]?(\d{1,9}(\.\d{0,12})?|\.\d{1,12})", re.ASCII)
+_FORM: Final = "write box:X,Y,Z[,x0,y0,z0] or cylinder:D,H[,z0] in mm, or name a mesh file"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StockShape:
+    """A solid: its box, (3,) each, whether it is the upright cylinder in it, and its mesh if it has one."""
+
+    low: Floats
+    high: Floats
+    is_cylinder: bool = False
+    mesh: TriangleMesh | None = None
+
+    def spans(self, lattice: Lattice, bundle: int) -> Spans:
+        """Its stretches along the rays of a bundle."""
+        if self.mesh is not None:
+            return mesh_spans(self.mesh.vertices, self.mesh.faces, lattice, bundle)
+        return cylinder_spans(lattice, bundle) if self.is_cylinder else box_spans(lattice, bundle)
+
+
+def stock_shape(text: str | Path | TriangleMesh, warn: Callable[[Problem], None] | None = None) -> StockShape:
+    """Return the solid that a text states; ``warn`` takes what is odd about a mesh.
+
+    Raises
+    ------
+    InputError
+        If it states none, with the cure.
+    """
+    if isinstance(text, TriangleMesh):
+        low, high = text.bounds
+        return StockShape(low, high, mesh=text)
+    kind, colon, sizes = str(text).partition(":")
+    if not colon or kind not in ("box", "cylinder"):
+        mesh = load_mesh(text, name="stock", closed=True, warn=warn)
+        return StockShape(mesh.bounds[0], mesh.bounds[1], mesh=mesh)
+    words = [word.strip() for word in sizes.split(",")]
+    if not all(_NUMBER.fullmatch(word) for word in words):
+        raise _wrong(text, "is no list of numbers")
+    numbers = [float(word) for word in words]
+    if not all(abs(number) <= _LARGEST for number in numbers):
+        raise _wrong(text, f"has a number beyond {_LARGEST:g} mm")
+    if len(numbers) not in ((3, 6) if kind == "box" else (2, 3)):
+        raise _wrong(text, f"has {len(numbers)} numbers")
+    if min(numbers[: 3 if kind == "box" else 2]) <= 0.0:
+        raise _wrong(text, "has a size that is not above 0")
+    if kind == "box":
+        low = np.array(numbers[3:] or (0.0, 0.0, 0.0))
+        return StockShape(low, low + numbers[:3])
+    radius, bottom = 0.5 * numbers[0], numbers[2] if len(numbers) > 2 else 0.0
+    return StockShape(
+        np.array([-radius, -radius, bottom]), np.array([radius, radius, bottom + numbers[1]]), is_cylinder=True
+    )
+
+
+def _wrong(text: object, what: str) -> InputError:
+    return InputError(argument_problem("stock", f"{text} {what}", _FORM))
+
+
+def default_cell(shape: StockShape, narrowest: float) -> float:
+    """A cell for a solid, mm: the 200th part of its longest side, and no more than half of the narrowest tool."""
+    cell = min(float((shape.high - shape.low).max()) / _CELLS, 0.5 * narrowest)
+    digit = 10.0 ** (math.floor(math.log10(cell)) - 1)
+    return math.floor(cell / digit + 1e-9) * digit
+
+
+def check_narrow_tools(tools: Mapping[str, float], cell: float) -> None:
+    """Raise ``InputError`` for tools that could pass between the rays; diameters by the names of tools, mm."""
+    narrow = {name: wide for name, wide in tools.items() if wide < math.sqrt(2.0) * cell}
+    if narrow:
+        name, wide = min(narrow.items(), key=lambda each: each[1])
+        what = f"is {cell:g} mm, and tool {name}, {wide:g} mm wide, may pass between the rays unseen"
+        digit = 10.0 ** (math.floor(math.log10(wide)) - 1)
+        cure = f"take cells of {math.floor(0.5 * wide / digit) * digit:g} mm"
+        raise InputError(argument_problem("cell", what, cure))
+
+
+def check_cell(shape: StockShape, cell: float) -> None:
+    """Raise ``InputError`` where the rays would not find room, with the cell that would do."""
+    size = shape.high - shape.low
+
+    def needed(width: float) -> float:
+        across = size[0] * size[1] + size[1] * size[2] + size[2] * size[0]
+        return float(across) / width**2 * _RAY_BYTES
+
+    if needed(cell) > MOST_BYTES:
+        fits = cell * math.sqrt(needed(cell) / MOST_BYTES)
+        digit = 10.0 ** (math.floor(math.log10(fits)) - 1)
+        fits = math.ceil(fits / digit) * digit
+        what = f"cells of {cell:g} mm take {needed(cell) / 1e9:.0f} GB of memory for this stock"
+        raise InputError(argument_problem("cell", what, f"cells of {fits:g} mm take less than {MOST_BYTES / 1e9:g} GB"))
+
+
+def make_stock(shape: StockShape, cell: float) -> Stock:
+    """Return the material of a solid in cells of at most ``cell`` mm."""
+    check_cell(shape, cell)
+    lattice = Lattice.of_box(shape.low, shape.high, cell)
+    spans = shape.spans(lattice, 0), shape.spans(lattice, 1), shape.spans(lattice, 2)
+    return Stock.of_spans(lattice, spans)

@@ -1,0 +1,310 @@
+"""Tool libraries as Autodesk's CAM exports them: JSON with a list of tools under ``data``, also packed as ``.tools``.
+
+Each tool has its kind (``type``), its unit and its sizes (``geometry``): DC diameter, RE corner radius, TA angle of the
+side from the tool axis, SIG whole angle of the tip, LCF flute length, LB length out of the holder, OAL overall length,
+SFDM shank diameter.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from typing import Any, Final, TypeAlias
+
+from trunnion.errors import InputError, Problem
+from trunnion.simulation.tools.library.json_text import JsonObject, finite, short_text
+from trunnion.simulation.tools.library.library import LibraryTool, ToolLibrary, UnusableTool
+from trunnion.simulation.tools.shapes import shape_faults
+from trunnion.simulation.tools.sizes import (
+    ANGLE_LIMITS,
+    MOST_PIECES,
+    MOST_TEETH,
+    BodyPiece,
+    ToolKind,
+    ToolSizes,
+    ball_height,
+    groove_depth,
+)
+
+_Form: TypeAlias = Callable[[JsonObject, JsonObject], ToolSizes]
+
+_UNITS: Final[Mapping[str, float]] = {"millimeters": 1.0, "inches": 25.4}
+
+_SAY_IT: Final = "state the tool itself: its kind and its sizes"
+
+#: Most tools of a library.
+_MOST_TOOLS: Final = 20_000
+
+#: How far two sizes that say the same may differ, as a part of the diameter.
+_SAME: Final = 1e-3
+
+
+def read_autodesk(file: str, root: Mapping[str, Any]) -> ToolLibrary:
+    """Return the tools of a library; ``root`` is what its JSON holds.
+
+    Raises
+    ------
+    InputError
+        If there is no list of tools in it, or an entry of it is none.
+    """
+    library = JsonObject(root)
+    entries = library.children("data", _MOST_TOOLS)
+    if library.faults:
+        raise InputError(
+            [Problem(file, 0, what, "export the library again, or fewer tools") for what in library.faults]
+        )
+    tools: list[LibraryTool] = []
+    unusable: list[UnusableTool] = []
+    for tool in entries:
+        if tool.values.get("type") == "holder":
+            continue
+        # Mistakes of one tool are no mistakes of the others.
+        found = _read_tool(file, tool.path, JsonObject(tool.values))
+        if isinstance(found, LibraryTool):
+            tools.append(found)
+        else:
+            unusable.append(found)
+    return ToolLibrary(file, tuple(tools), tuple(unusable))
+
+
+def _read_tool(file: str, place: str, tool: JsonObject) -> LibraryTool | UnusableTool:
+    number = finite(tool.child("post-process").values.get("number"))
+    called = int(number) if number is not None and number >= 0 and number == int(number) else None
+    name = short_text(tool.values.get("description")) or short_text(tool.values.get("product-id"))
+    found = _sizes(tool)
+    if not tool.faults and found:
+        faults = shape_faults(found)
+        tool.faults.extend(f"its {size.replace('_', ' ')} {what}; {cure}" for size, what, cure in faults)
+    if tool.faults or not found:
+        shown = " ".join(filter(None, ("tool", "" if called is None else str(called), name)))
+        problems = (Problem(file, 0, f"{shown} ({place}): {what}", _SAY_IT) for what in tool.faults)
+        return UnusableTool(called, name, tuple(problems))
+    kind = short_text(tool.values.get("type"))
+    return LibraryTool(found, called, name, kind, tuple(_remarks(kind, tool)))
+
+
+def _remarks(kind: str, tool: JsonObject) -> Iterator[str]:
+    """What was taken for granted of a tool."""
+    if kind in _AS_CYLINDERS:
+        yield f"it is a {kind}: simulated as a cylinder"
+    if not tool.child("geometry").length("LB"):
+        yield "its length below the holder (LB) is missing: all of it (OAL) stands free"
+    if tool.values.get("holder") and not tool.child("holder").children("segments", MOST_PIECES):
+        yield "its holder has no form (segments): none is simulated"
+
+
+def _sizes(tool: JsonObject) -> ToolSizes | None:
+    """The sizes of a tool; None if its kind or its unit is not known, which is a fault of it."""
+    kind, unit = short_text(tool.values.get("type")), short_text(tool.values.get("unit"))
+    if kind not in _FORMS:
+        tool.faults.append(f"{kind} is a type that is not read" if kind else "it has no type")
+        return None
+    if unit not in _UNITS:
+        tool.faults.append(f'its unit is {unit}, not "millimeters" or "inches"' if unit else "it has no unit")
+        return None
+    geometry = tool.child("geometry", _UNITS[unit])
+    found = _with_body(_FORMS[kind](tool, geometry), tool, geometry)
+    if found.kind is ToolKind.LOLLIPOP and 0.0 < found.neck_diameter < found.diameter:
+        found = replace(found, flute_length=min(found.flute_length, ball_height(found)))
+    return found
+
+
+def _with_body(form: ToolSizes, tool: JsonObject, geometry: JsonObject) -> ToolSizes:
+    """A cutter with what stands above it."""
+    length = geometry.length("LB")
+    pieces, gauge = _holder(tool, geometry)
+    if not length:
+        length = geometry.length("OAL")
+        if pieces:
+            geometry.faults.append("geometry.LB is missing: nothing says where its holder begins")
+    flute_length = form.flute_length or min(geometry.length("LCF"), length or math.inf)
+    shank = _pieces(tool.child("shaft", geometry.scale))
+    found = replace(
+        form, flute_length=flute_length, length=length, shank=shank, holder=pieces,
+        shank_diameter=0.0 if shank else geometry.length("SFDM"),
+        gauge_length=length + gauge if pieces and gauge else 0.0,
+    )  # fmt: skip
+    return _with_shoulder(found, geometry)
+
+
+def _with_shoulder(found: ToolSizes, geometry: JsonObject) -> ToolSizes:
+    """A tool with its shoulder, which goes from the cutter to the shank."""
+    diameter = geometry.length("shoulder-diameter") or (0.0 if found.kind is ToolKind.TAPER else found.diameter)
+    top = min(geometry.length("shoulder-length"), found.length)
+    if found.kind is ToolKind.THREAD_MILL:
+        # Below LCF it is as thick as the grooves.
+        root, flutes = found.diameter - 2.0 * groove_depth(found) if found.pitch else 0.0, geometry.length("LCF")
+        return _with_pieces(found, [(root, flutes - found.flute_length), (diameter, top - flutes)])
+    if found.kind is ToolKind.CHAMFER and 0.0 < diameter < found.diameter and found.side_angle:
+        return _with_return_flank(found, diameter, top)
+    if found.kind in (ToolKind.LOLLIPOP, ToolKind.T_SLOT):
+        return replace(found, neck_diameter=diameter, neck_length=max(top, found.flute_length))
+    if top < found.flute_length or not diameter:
+        return found
+    return replace(found, neck_diameter=diameter, neck_length=top)
+
+
+def _with_return_flank(found: ToolSizes, neck: float, top: float) -> ToolSizes:
+    """A chamfer mill on a neck: above its cone it narrows as it widened, whatever LCF says."""
+    slope = math.tan(math.radians(found.side_angle))
+    peak = 0.5 * max(found.diameter - found.tip_diameter, 0.0) / slope
+    back = 0.5 * (found.diameter - neck) / slope
+    flank = BodyPiece(found.diameter, neck, back)
+    pieces = (flank, BodyPiece(neck, neck, top - peak - back)) if top > peak + back else (flank,)
+    return replace(found, flute_length=peak, shank=pieces + found.shank)
+
+
+def _with_pieces(found: ToolSizes, cylinders: list[tuple[float, float]]) -> ToolSizes:
+    """A tool with cylinders below its shank: diameters and heights; those of no height are none."""
+    pieces = tuple(BodyPiece(diameter, diameter, height) for diameter, height in cylinders if height > 0.0)
+    return replace(found, shank=pieces + found.shank)
+
+
+def _holder(tool: JsonObject, geometry: JsonObject) -> tuple[tuple[BodyPiece, ...], float]:
+    """The pieces of a holder up to the gauge point, and how far that is above its lower end; 0 if nothing says it."""
+    unit = short_text(tool.child("holder").values.get("unit"))
+    if unit and unit not in _UNITS:
+        tool.faults.append(f'its holder has the unit {unit}, not "millimeters" or "inches"')
+    holder = tool.child("holder", _UNITS.get(unit, geometry.scale))
+    pieces, gauge = _pieces(holder), holder.length("gaugeLength")
+    return (_below(pieces, gauge) if gauge else pieces), gauge
+
+
+def _pieces(owner: JsonObject) -> tuple[BodyPiece, ...]:
+    """The pieces of a shaft or a holder from below to above; steps have no height."""
+    found = (
+        BodyPiece(piece.length("lower-diameter"), piece.length("upper-diameter"), piece.length("height"))
+        for piece in owner.children("segments", MOST_PIECES)
+    )
+    return tuple(piece for piece in found if piece.height)
+
+
+def _below(pieces: tuple[BodyPiece, ...], height: float) -> tuple[BodyPiece, ...]:
+    """The pieces of a holder up to the gauge point: above it they are in the spindle."""
+    found: list[BodyPiece] = []
+    for piece in pieces:
+        share = min(height / piece.height, 1.0)
+        if share <= 0.0:
+            break
+        upper = piece.lower_diameter + share * (piece.upper_diameter - piece.lower_diameter)
+        found.append(BodyPiece(piece.lower_diameter, upper, share * piece.height))
+        height -= piece.height
+    return tuple(found)
+
+
+def _refuse(geometry: JsonObject, key: str, why: str) -> None:
+    """Note a size whose meaning is not settled, unless it is absent."""
+    if geometry.values.get(key):
+        geometry.faults.append(f"{geometry.path}.{key} is {str(geometry.values[key])[:40]}: {why}")
+
+
+def _flat(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
+    _refuse(geometry, "RE", "a flat end mill has no corner radius")
+    return ToolSizes(ToolKind.FLAT, geometry.length("DC"))
+
+
+def _ball(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
+    diameter, radius = geometry.length("DC"), geometry.length("RE")
+    if radius and abs(radius - 0.5 * diameter) > _SAME * diameter:
+        _refuse(geometry, "RE", f"half the diameter is {0.5 * diameter / geometry.scale:g}")
+    return ToolSizes(ToolKind.BALL, diameter)
+
+
+def _bull(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
+    radius = geometry.length("RE")
+    return ToolSizes(ToolKind.BULL if radius else ToolKind.FLAT, geometry.length("DC"), radius)
+
+
+def _face(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
+    """A straight one is a bull nose; an upper radius means nothing without an angle."""
+    _refuse(geometry, "TA", "a face mill with an angle is not read")
+    return _bull(tool, geometry)
+
+
+def _taper(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
+    """DC is where side and bottom would meet, also where a ball stands there."""
+    diameter, radius, angle = geometry.length("DC"), geometry.length("RE"), geometry.angle("TA")
+    form = short_text(tool.values.get("tapered-type"))
+    if form not in ("tapered_bull_nose", "tapered_ball") and radius:
+        geometry.faults.append(f"its tapered-type is {form or 'missing'}, not tapered_bull_nose or tapered_ball")
+    if not angle:
+        return _bull(tool, geometry)
+    if form != "tapered_ball" or angle >= ANGLE_LIMITS["side_angle"]:
+        return ToolSizes(ToolKind.TAPER, diameter, radius, side_angle=angle)
+    b = math.radians(angle)
+    meeting = 2.0 * radius * (1.0 - math.sin(b)) / math.cos(b)
+    if abs(meeting - diameter) > _SAME * diameter:
+        shown = f"{meeting / geometry.scale:.6g}"
+        _refuse(geometry, "DC", f"a ball of this RE with this TA has {shown} where side and bottom would meet")
+    return ToolSizes(ToolKind.TAPER_BALL, 2.0 * radius, side_angle=angle)
+
+
+def _chamfer(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
+    _refuse(geometry, "RE", "a rounded tip of a chamfer mill is not read")
+    tip = geometry.length("tip-diameter")
+    return ToolSizes(ToolKind.CHAMFER, geometry.length("DC"), tip_diameter=tip, side_angle=geometry.angle("TA"))
+
+
+def _countersink(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
+    tip, angle = geometry.length("tip-diameter"), 0.5 * geometry.angle("SIG")
+    return ToolSizes(ToolKind.CHAMFER, geometry.length("DC"), tip_diameter=tip, side_angle=angle)
+
+
+def _drill(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
+    _refuse(geometry, "tip-diameter", "a drill ends in a point")
+    angle = geometry.angle("SIG")
+    if angle == ANGLE_LIMITS["tip_angle"]:
+        return ToolSizes(ToolKind.FLAT, geometry.length("DC"))
+    return ToolSizes(ToolKind.DRILL, geometry.length("DC"), tip_angle=angle)
+
+
+def _cylinder(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
+    return _drill(tool, geometry) if geometry.angle("SIG") else ToolSizes(ToolKind.FLAT, geometry.length("DC"))
+
+
+def _lollipop(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
+    return ToolSizes(ToolKind.LOLLIPOP, geometry.length("DC"))
+
+
+def _slot(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
+    """Both corners are round; a head lower than they are is as high."""
+    radius = geometry.length("RE")
+    height = max(geometry.length("LCF"), 2.0 * radius)
+    return ToolSizes(ToolKind.T_SLOT, geometry.length("DC"), radius, radius, flute_length=height)
+
+
+def _thread_mill(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
+    """Teeth begin at the tip, as many as NT says and LCF holds."""
+    if geometry.values.get("thread-tip-type") != "point":
+        geometry.faults.append("the crest of its teeth is not a point, which is not read")
+    pitch, angle = geometry.length("TP"), geometry.angle("thread-profile-angle")
+    teeth = geometry.number("NT", MOST_TEETH)
+    if pitch:
+        teeth = min(teeth, geometry.length("LCF") / pitch + _SAME)
+    return ToolSizes(
+        ToolKind.THREAD_MILL, geometry.length("DC"), pitch=pitch, thread_angle=angle,
+        flute_length=math.floor(teeth) * pitch,
+    )  # fmt: skip
+
+
+_FORMS: Final[Mapping[str, _Form]] = {
+    "flat end mill": _flat,
+    "ball end mill": _ball,
+    "bull nose end mill": _bull,
+    "face mill": _face,
+    "tapered mill": _taper,
+    "chamfer mill": _chamfer,
+    "counter sink": _countersink,
+    "drill": _drill,
+    "spot drill": _drill,
+    "reamer": _cylinder,
+    "counter bore": _cylinder,
+    "boring bar": _cylinder,
+    "tap right hand": _cylinder,
+    "tap left hand": _cylinder,
+    "lollipop mill": _lollipop,
+    "slot mill": _slot,
+    "thread mill": _thread_mill,
+}
+
+#: Types that are no cylinders, but cut one nearly.
+_AS_CYLINDERS: Final = frozenset({"boring bar", "tap right hand", "tap left hand"})

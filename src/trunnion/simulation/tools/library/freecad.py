@@ -1,0 +1,178 @@
+"""Tool bits of FreeCAD: JSON with the name of a shape and its parameters, which are texts with their unit."""
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Final
+
+from trunnion.errors import Problem
+from trunnion.simulation.tools.library.json_text import finite, short_text
+from trunnion.simulation.tools.library.library import LibraryTool, ToolLibrary, UnusableTool
+from trunnion.simulation.tools.shapes import shape_faults
+from trunnion.simulation.tools.sizes import ANGLE_LIMITS, BodyPiece, ToolKind, ToolSizes
+
+#: mm to a unit of length, degrees to a unit of angle; a parameter without a unit is in mm or degrees.
+_LENGTHS: Final[Mapping[str, float]] = {"": 1.0, "mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, '"': 25.4}
+_ANGLES: Final = frozenset({"", "°", "deg"})
+
+_VALUE: Final = re.compile(r"(\d{1,12}(?:\.\d{0,20})?)\s*([^\d.,\s]{0,5})", re.ASCII)
+
+#: Names of shapes, in small letters without hyphens -> kind.
+_KINDS: Final[Mapping[str, ToolKind]] = {
+    "endmill": ToolKind.FLAT,
+    "reamer": ToolKind.FLAT,
+    "tap": ToolKind.DRILL,
+    "ballend": ToolKind.BALL,
+    "bullnose": ToolKind.BULL,
+    "torus": ToolKind.BULL,
+    "drill": ToolKind.DRILL,
+    "chamfer": ToolKind.CHAMFER,
+    "vbit": ToolKind.CHAMFER,
+    "taperedballnose": ToolKind.TAPER_BALL,
+    "threadmill": ToolKind.THREAD_MILL,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class _Parameters:
+    """The parameters of a tool bit, with what is wrong in them."""
+
+    values: Mapping[str, Any]
+    faults: list[str] = field(default_factory=list)
+
+    def length(self, key: str) -> float:
+        """A length in mm; 0 if there is none."""
+        number, unit = self._value(key)
+        if unit not in _LENGTHS:
+            self.faults.append(f"{key} has the unit {unit}, which is none of length")
+            return 0.0
+        return number * _LENGTHS[unit]
+
+    def angle(self, key: str) -> float:
+        """An angle in degrees; 0 if there is none."""
+        number, unit = self._value(key)
+        if unit not in _ANGLES:
+            self.faults.append(f"{key} has the unit {unit}, which is none of angles")
+            return 0.0
+        return number
+
+    def _value(self, key: str) -> tuple[float, str]:
+        value = self.values.get(key)
+        if value is None:
+            return 0.0, ""
+        if isinstance(value, str) and (match := _VALUE.fullmatch(value.strip())):
+            return float(match[1]), match[2].strip()
+        number = finite(value)
+        if number is None or number < 0.0:
+            self.faults.append(f"{key} is {str(value)[:40]}, not a number with its unit")
+            return 0.0, ""
+        return number, ""
+
+
+def read_freecad(file: str, root: Mapping[str, Any]) -> ToolLibrary:
+    """Return the one tool of a tool bit; ``root`` is what its JSON holds. It has a name, and no number."""
+    name = short_text(root.get("name")) or short_text(root.get("label"))
+    shape = short_text(root.get("shape-type")) or short_text(root.get("shape")).removesuffix(".fcstd")
+    given = root.get("parameter")
+    parameters = _Parameters(given if isinstance(given, dict) else {})
+    known = re.split(r"[/\\]", shape)[-1].casefold().replace("-", "").replace("_", "")
+    whats = []
+    sizes = None
+    if known not in _KINDS:
+        whats = [f"{shape or 'none'} is a shape that is not read"]
+    else:
+        sizes = _sizes(known, parameters)
+        whats = parameters.faults or [
+            f"its {size.replace('_', ' ')} {what}; {cure}" for size, what, cure in shape_faults(sizes)
+        ]
+    if whats or sizes is None:
+        cure = "state the tool itself: its kind and its sizes"
+        problems = tuple(Problem(file, 0, f"tool bit {name}: {what}", cure) for what in whats)
+        return ToolLibrary(file, (), (UnusableTool(None, name, problems),))
+    remarks = [f"a tool bit has no holder: all of its length, {sizes.length:g} mm, stands free"] if sizes.length else []
+    remarks += ["it is a tap: simulated without its thread"] if known == "tap" else []
+    return ToolLibrary(file, (LibraryTool(sizes, None, name, shape, tuple(remarks)),))
+
+
+def _sizes(shape: str, bit: _Parameters) -> ToolSizes:
+    """The sizes of a tool bit. Its holder is not in it: all of its length stands free."""
+    form = ToolSizes(
+        _KINDS[shape],
+        bit.length("Diameter"),
+        flute_length=min(bit.length("CuttingEdgeHeight"), bit.length("Length")),
+        length=bit.length("Length"),
+        shank_diameter=bit.length("ShankDiameter"),
+    )
+    return _FORMS[shape](form, bit) if shape in _FORMS else form
+
+
+def _bull(form: ToolSizes, bit: _Parameters) -> ToolSizes:
+    flat = bit.length("FlatRadius")
+    corner = 0.5 * form.diameter - flat if flat else bit.length("CornerRadius") or bit.length("TorusRadius")
+    return replace(form, corner_radius=corner)
+
+
+def _drill(form: ToolSizes, bit: _Parameters) -> ToolSizes:
+    return replace(form, tip_angle=bit.angle("TipAngle"))
+
+
+def _tap(form: ToolSizes, bit: _Parameters) -> ToolSizes:
+    """CuttingEdgeLength counts from where the tip ends."""
+    angle = bit.angle("TipAngle")
+    tip = _cone(0.5 * form.diameter, 0.5 * angle)
+    return replace(form, tip_angle=angle, flute_length=tip + bit.length("CuttingEdgeLength"))
+
+
+def _cone(radius: float, angle: float) -> float:
+    """The height of a cone of a radius with an angle from its axis; 0 if it has none."""
+    return radius / math.tan(math.radians(angle)) if angle else 0.0
+
+
+def _chamfer(form: ToolSizes, bit: _Parameters) -> ToolSizes:
+    """It is as wide as its cone, which is as high as the cutting edge; Diameter is that of no part of it."""
+    tip, side_angle = bit.length("TipDiameter"), 0.5 * bit.angle("CuttingEdgeAngle")
+    diameter = tip + 2.0 * form.flute_length * math.tan(math.radians(side_angle))
+    return replace(form, diameter=diameter, tip_diameter=tip, side_angle=side_angle)
+
+
+def _v_bit(form: ToolSizes, bit: _Parameters) -> ToolSizes:
+    """Its cone is as wide as Diameter; CuttingEdgeHeight is that of the cylinder above."""
+    tip, side_angle = bit.length("TipDiameter"), 0.5 * bit.angle("CuttingEdgeAngle")
+    cone = _cone(0.5 * (form.diameter - tip), side_angle)
+    return replace(form, tip_diameter=tip, side_angle=side_angle, flute_length=cone + bit.length("CuttingEdgeHeight"))
+
+
+def _taper_ball(form: ToolSizes, bit: _Parameters) -> ToolSizes:
+    """TaperAngle is the whole angle. The cone goes on above the cutting edge up to TaperDiameter."""
+    side_angle, radius = 0.5 * bit.angle("TaperAngle"), 0.5 * form.diameter
+    b = math.radians(side_angle)
+    edge = radius / math.cos(b) + (form.flute_length - radius) * math.tan(b)
+    rest = 0.5 * bit.length("TaperDiameter") - edge
+    pieces = (BodyPiece(2.0 * edge, 2.0 * (edge + rest), _cone(rest, side_angle)),) if rest > 0.0 and b else ()
+    return replace(form, side_angle=side_angle, shank=pieces)
+
+
+def _thread_mill(form: ToolSizes, bit: _Parameters) -> ToolSizes:
+    """One tooth at the tip, on a neck."""
+    crest, neck, angle = bit.length("Crest"), bit.length("NeckDiameter"), bit.angle("cuttingAngle")
+    if not (neck and 0.0 < angle < ANGLE_LIMITS["thread_angle"]):
+        bit.faults.append("a tooth needs NeckDiameter and cuttingAngle")
+        return form
+    height = crest + max(form.diameter - neck, 0.0) * math.tan(math.radians(0.5 * angle))
+    return replace(
+        form, crest=crest, thread_angle=angle, pitch=height, flute_length=height,
+        neck_diameter=neck, neck_length=max(bit.length("NeckLength"), height),
+    )  # fmt: skip
+
+
+_FORMS: Final[Mapping[str, Callable[[ToolSizes, _Parameters], ToolSizes]]] = {
+    "bullnose": _bull,
+    "torus": _bull,
+    "drill": _drill,
+    "tap": _tap,
+    "chamfer": _chamfer,
+    "vbit": _v_bit,
+    "taperedballnose": _taper_ball,
+    "threadmill": _thread_mill,
+}

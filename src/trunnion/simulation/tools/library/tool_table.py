@@ -1,0 +1,73 @@
+"""LinuxCNC's tool table: numbers and diameters of tools, and nothing of their form.
+
+A line is ``T3 P3 D10.0 Z+95.2 ;comment``, in the unit of the machine, which is not in the file.
+"""
+
+import re
+from typing import Final
+
+from trunnion.errors import InputError, Problem
+from trunnion.simulation.tools.library.library import ToolLibrary
+from trunnion.simulation.tools.sizes import GREATEST
+
+_WORD: Final = re.compile(r"([A-Za-z])([+-]?(?:\d{1,12}(?:\.\d{0,20})?|\.\d{1,20}))", re.ASCII)
+
+#: Letters that a line may have: tool, pocket, diameter, offsets of the axes, angles and orientation of a lathe tool.
+_LETTERS: Final = frozenset("TPDXYZABCUVWIJQ")
+
+_LINE: Final = "write T3 P3 D10.0 Z+95.2 ;comment"
+
+
+def read_tool_table(file: str, text: str, unit: float) -> ToolLibrary:
+    """Return the diameters of a tool table.
+
+    Parameters
+    ----------
+    file
+        For messages.
+    text
+        Of the table.
+    unit
+        mm to a unit of the table.
+
+    Raises
+    ------
+    InputError
+        If it is no tool table, with every mistake and its line.
+    """
+    diameters: dict[int, float] = {}
+    seen: set[int] = set()
+    problems: list[Problem] = []
+    for line, content in enumerate(text.split("\n"), 1):
+        words, what = _words(content.partition(";")[0])
+        if what:
+            problems.append(Problem(file, line, what, _LINE))
+        if not words or what:
+            continue
+        number, diameter = int(words["T"]), words.get("D", 0.0) * unit
+        if number in seen:
+            problems.append(Problem(file, line, f"tool {number} is there twice", "number tools apart"))
+        elif not 0.0 <= diameter <= GREATEST:
+            problems.append(Problem(file, line, f"tool {number} has the diameter {words['D']:g}", "write one above 0"))
+        elif diameter:
+            diameters[number] = diameter
+        seen.add(number)
+    if problems:
+        raise InputError(problems)
+    return ToolLibrary(file, diameters=diameters)
+
+
+def _words(line: str) -> tuple[dict[str, float], str]:
+    """The words of a line, and what is wrong with it; none of both for an empty one."""
+    words: dict[str, float] = {}
+    for part in line.split():
+        match = _WORD.fullmatch(part)
+        letter = match[1].upper() if match else ""
+        if not match or letter not in _LETTERS:
+            return {}, f'"{part[:40]}" is no word of a tool table'
+        if letter in words:
+            return {}, f"has {letter} twice"
+        words[letter] = float(match[2])
+    if words and ("T" not in words or words["T"] < 0.0 or words["T"] != int(words["T"])):
+        return {}, "has no number of a tool, which is a whole number behind T"
+    return words, ""
