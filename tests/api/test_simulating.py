@@ -148,6 +148,16 @@ def test_a_machine_position_across_the_tool_in_the_stock_is_an_error(tmp_path: P
     assert ("rapid through stock", 70) in {(one.kind, one.block) for one in known.findings}
 
 
+def test_a_swivel_beside_the_stock_needs_the_zero(tmp_path: Path) -> None:
+    program = SLOT.replace("N70 G0 Z20", "N70 G0 Z10\nN75 G0 A30\nN78 G0 A0\nN80 G0 Z20")
+    found = simulate(tmp_path, program)
+    assert [one.line for one in found.remarks if "turns rotary axes without TCP" in one.what] == [9]
+    assert not found.passed
+    assert not found.findings  # none is invented
+    home = SLOT.replace("N70 G0 Z20", "N70 G53 G0 Z0\nN75 G0 A30\nN78 G0 A0")
+    assert simulate(tmp_path, home).passed
+
+
 @pytest.mark.parametrize(
     "program",
     [SLOT.replace("N50", "T1 M6\nG43 H1\nN50"), SLOT.replace("S1000 M3", "S0 M3"), SLOT.replace("S1000 M3", "M3")],
@@ -192,6 +202,16 @@ def test_a_tool_that_could_pass_between_the_rays_is_refused(tmp_path: Path) -> N
 def test_what_the_reader_warns_of_is_told(tmp_path: Path) -> None:
     found = simulate(tmp_path, SLOT.replace("N60", "G54\nN55 G55\nN60"))
     assert [one for one in found.remarks if "work offset" in one.what]
+
+
+def test_a_block_before_which_it_ends_may_stand_before_what_runs_earlier(tmp_path: Path) -> None:
+    nc = tmp_path / "part.h"
+    nc.write_text(
+        "0 BEGIN PGM PART MM\n1 TOOL CALL 1 Z S3000\n2 L X-20 Y+0 R0 FMAX M3\n3 L Z+20 FMAX\n4 CALL LBL 1\n"
+        "5 L Z+30 FMAX\n6 M30\n7 LBL 1\n8 L Z-5 FMAX\n9 L X+70 F500\n10 L Z+20 FMAX\n11 LBL 0\n12 END PGM PART MM\n"
+    )
+    found = trunnion.simulate(nc, machine="dmu65", stock=STOCK, tools=[TOOL], cell=0.5, until=5)
+    assert found.removed == pytest.approx(2500.0, rel=1e-3)
 
 
 def test_several_programs_cut_the_same_stock(tmp_path: Path) -> None:

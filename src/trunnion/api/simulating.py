@@ -18,7 +18,7 @@ from trunnion.errors import InputError, Problem, Severity, argument_problem, mer
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.simulation.collisions import Collision, check_collisions, fixture_body, machine_bodies, part_body
-from trunnion.simulation.cutting.sweeps import sideways_exits
+from trunnion.simulation.cutting.sweeps import sideways_exits, unknown_swivels
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
 from trunnion.simulation.simulator import Job, Setup
 from trunnion.simulation.stock.solids import StockShape, check_narrow_tools, default_cell, stock_shape
@@ -141,7 +141,7 @@ def simulate(
     check_narrow_tools(widths, wide)
     setup = Setup(shape, design, wide, accuracy or _TOLERANCE * wide)
     simulation.check_cell(shape, wide)
-    remarks += [*_remarks(runs, shapes), *_sideways(runs, shape), *_lengths(runs), *_outside(setup)]
+    remarks += [*_remarks(runs, shapes), *_unknown_ways(runs, shape), *_lengths(runs), *_outside(setup)]
     jobs = [_job(run, shapes, until if run is runs[-1] else None) for run in runs]
     remarks += [Problem(job.run.files[0], 0, job.broken_off) for job in jobs if job.broken_off]
     observer.problems(remarks)
@@ -271,15 +271,20 @@ def _lengths(runs: Sequence[Run]) -> list[Problem]:
     return found
 
 
-def _sideways(runs: Sequence[Run], stock: StockShape) -> list[Problem]:
-    """Retracts across the tool axis to places that are not known."""
-    what = "goes to a machine position across the tool axis, and the tool is no higher than the stock"
-    cure = "retract along the tool axis first, or give zero and tool_length, so that the way is known"
-    return [
-        Problem(file_of_row(run, row), int(run.line[row]), what, cure)
-        for run in runs
-        for row in sideways_exits(run, stock.low, stock.high).tolist()
-    ]
+def _unknown_ways(runs: Sequence[Run], stock: StockShape) -> list[Problem]:
+    """Motions near the stock whose way is not known: across the tool axis to machine positions, and swivels."""
+    across = "goes to a machine position across the tool axis, and the tool is no higher than the stock"
+    first = "retract along the tool axis first, or give zero and tool_length, so that the way is known"
+    swivel = "turns rotary axes without TCP beside the stock, and nobody knows about which place"
+    known = "retract to a machine position first, or give zero and tool_length"
+    found = []
+    for run in runs:
+        for rows, what, cure in (
+            (sideways_exits(run, stock.low, stock.high), across, first),
+            (unknown_swivels(run, stock.low, stock.high), swivel, known),
+        ):
+            found += [Problem(file_of_row(run, row), int(run.line[row]), what, cure) for row in rows.tolist()]
+    return list(merge_repeated(found))
 
 
 def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]:
@@ -339,7 +344,9 @@ def _job(run: Run, shapes: dict[str, ToolShape], until: str | int | None) -> Job
 def _row_of_block(run: Run, until: str | int) -> int:
     text = str(until).strip().upper().removeprefix("N")
     number = int(text) if text.isascii() and text.isdecimal() and len(text) < 10 else -1
-    rows = np.flatnonzero((run.block_number >= number) & (run.file == 0)) if number >= 0 else np.zeros(0, np.int64)
+    own = np.flatnonzero((run.block_number >= number) & (run.file == 0)) if number >= 0 else np.zeros(0, np.int64)
+    # A block without motion is followed by the next number, not by what runs next: subprograms may stand behind it.
+    rows = own[run.block_number[own] == run.block_number[own].min()] if len(own) else own
     if not len(rows):
         cure = "give the N number of a block of the last program"
         raise InputError(argument_problem("until", f"{run.files[0]} has no block {until}", cure))

@@ -9,7 +9,7 @@ tool's outermost cutting point and of the tip are within the tolerance of the mo
 
 Where the workpiece zero or the tool's length is not known, nobody knows where a machine position (G53, M91) is in the
 workpiece frame. There the tool is taken to leave the part and to come back to it along its axis; between these motions
-nothing is swept.
+nothing is swept. Nor is it known then where the part is when rotary axes turn without TCP: such rapids are not swept.
 """
 
 import math
@@ -30,6 +30,9 @@ CHUNK_ROWS = 8192
 
 #: A slide that moves the tool along its axis by so much of its way takes it out of the part.
 _ALONG = 0.5
+
+#: Smaller rotary motion, degrees, is none.
+_STILL = 1e-3
 
 #: Sweeps that one row may have: a rotary axis that winds a thousand turns is an error of the program.
 _MOST_PIECES = 4096
@@ -115,9 +118,10 @@ def row_sweeps(run: Run, first: int, end: int, sizes: SweepSizes) -> RowSweeps:
         first, end, int(run.state.tool[first]), samples.row, before_tip, samples.tip, before_axis, samples.axis
     )
     placed = _placed(run, first, end)
-    if placed.all() or not count:
+    if not count or MachinePositions.of(run).known:
         return sweeps
-    return _along_axis_where_unplaced(run, sweeps, placed, sizes)
+    turns = _turns_without_tcp(run, np.arange(first, end)) & (run.kind[first:end] == Kind.RAPID)
+    return _along_axis_where_unplaced(run, sweeps, placed, turns, sizes)
 
 
 def _pieces(run: Run, first: int, joints: Floats, tip: Floats, axis: Floats, sizes: SweepSizes) -> Ints:
@@ -162,6 +166,29 @@ def _placed(run: Run, first: int, end: int) -> Flags:
     return ~np.asarray(positions.at(np.arange(first - 1, end))[:, slides].any(axis=1))
 
 
+def unknown_swivels(run: Run, low: Floats, high: Floats) -> Ints:
+    """Rows that turn rotary axes without TCP, nobody knowing about which place of the workpiece frame.
+
+    Those with the tool farther from a box, (3,) to (3,) mm, than the box is large are left out, and those that begin or
+    end at a machine position.
+    """
+    if MachinePositions.of(run).known or not len(run):
+        return np.zeros(0, np.int64)
+    placed = _placed(run, 0, len(run))
+    rows = np.flatnonzero(_turns_without_tcp(run, np.arange(len(run))) & placed[:-1] & placed[1:])
+    tip = run.positions(rows - 1).tip
+    apart = np.linalg.norm(np.maximum(np.maximum(low - tip, tip - high), 0.0), axis=1)
+    return np.asarray(rows[apart < np.linalg.norm(high - low)])
+
+
+def _turns_without_tcp(run: Run, rows: Ints) -> Flags:
+    """Which rows turn a rotary axis while TCP is off."""
+    rotary = list(run.machine.rotary)
+    before = np.where((rows > 0)[:, None], run.joints[np.maximum(rows - 1, 0)], run.start)[:, rotary]
+    turned = np.abs(run.joints[rows][:, rotary] - before).max(axis=1, initial=0.0)
+    return np.asarray((turned > _STILL) & ~run.state.tcp.at(rows))
+
+
 def sideways_exits(run: Run, low: Floats, high: Floats) -> Ints:
     """Rows that go to a machine position across the tool axis, the tool being no higher than a box, (3,) to (3,) mm.
 
@@ -186,7 +213,9 @@ def sideways_exits(run: Run, low: Floats, high: Floats) -> Ints:
     return np.asarray(rows[~retracts & below])
 
 
-def _along_axis_where_unplaced(run: Run, sweeps: RowSweeps, placed: Flags, sizes: SweepSizes) -> RowSweeps:
+def _along_axis_where_unplaced(
+    run: Run, sweeps: RowSweeps, placed: Flags, turns: Flags, sizes: SweepSizes
+) -> RowSweeps:
     row = sweeps.row - sweeps.first
     before, after = placed[row], placed[row + 1]
     keep = before & after
@@ -195,6 +224,7 @@ def _along_axis_where_unplaced(run: Run, sweeps: RowSweeps, placed: Flags, sizes
     ends = np.concatenate((row[1:] != row[:-1], [True]))
     leaves, comes = before & ~after & begins, ~before & after & ends
     keep |= leaves | comes
+    keep &= ~turns[row]
     start, end_tip = sweeps.start.copy(), sweeps.end_tip.copy()
     axis, end_axis = sweeps.axis.copy(), sweeps.end_axis.copy()
     end_axis[leaves] = axis[leaves]
