@@ -138,6 +138,30 @@ def test_it_ends_after_the_first_finding_or_before_a_block(tmp_path: Path) -> No
         simulate(tmp_path, program, until="N7777")
 
 
+def steps(word: str, depth: float) -> str:
+    """The slot in steps of 0.09 mm."""
+    way = "\n".join(f"{word} X{-20 + 0.09 * k:.3f}" for k in range(1, 1001))
+    return HEAD + f"N50 G1 Z-{depth} F500\n{way}\nG0 Z20\nM5\nM30\n"
+
+
+@pytest.mark.parametrize(
+    ("program", "kind", "depth"),
+    [
+        (steps("G0", 5.0), "rapid through stock", 5.0),
+        (steps("G1", 5.0).replace("S1000 M3", "S1000"), "cuts with the spindle off", 5.0),
+        (steps("G1", 5.25), "gouge", 0.25),
+    ],
+    ids=["rapid", "standing", "gouge"],
+)
+def test_small_steps_hide_nothing(tmp_path: Path, program: str, kind: str, depth: float) -> None:
+    found = simulate(tmp_path, program, part=slotted(5.0))
+    (finding,) = [one for one in found.findings if one.kind == kind]
+    assert finding.depth == pytest.approx(depth, abs=0.02)
+    assert finding.line > 100
+    first = simulate(tmp_path, program, part=slotted(5.0), stop_at="first")
+    assert 0.0 < first.removed < 0.5 * found.removed
+
+
 def test_a_machine_position_across_the_tool_in_the_stock_is_an_error(tmp_path: Path) -> None:
     program = SLOT.replace("N70 G0 Z20", "N65 G1 X20\nN70 G53 G0 X20 Y60\nN80 G53 G0 Z0")
     found = simulate(tmp_path, program)

@@ -52,11 +52,13 @@ def cut_path(
     tolerance: float = 0.01,
     threads: int = 1,
     cutter: Cutter | None = None,
+    idle: bool = False,
 ) -> RowsCut:
     """Cut stock with a path."""
     pieces, _ = revolved_pieces(shape, tolerance)
     with ThreadPoolExecutor(threads) as executor:
-        return (cutter or Cutter(stock, None, tolerance)).cut(sweeps, pieces, executor)
+        at_rest = np.full(sweeps.end, idle)
+        return (cutter or Cutter(stock, None, tolerance)).cut(sweeps, pieces, executor, at_rest)
 
 
 def bundle_volumes(stock: Stock) -> list[float]:

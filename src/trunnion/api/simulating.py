@@ -23,7 +23,7 @@ from trunnion.simulation.meshes import TriangleMesh, load_mesh
 from trunnion.simulation.simulator import Job, Setup
 from trunnion.simulation.stock.solids import StockShape, check_narrow_tools, default_cell, stock_shape
 from trunnion.simulation.tools.choice import choose_tools, tools_of_toolpaths
-from trunnion.simulation.tools.library import read_tools
+from trunnion.simulation.tools.library import ToolLibrary, read_tools
 from trunnion.simulation.tools.profile import Role, ToolShape
 from trunnion.simulation.tools.text import parse_tool
 from trunnion.verification import restore_rapids
@@ -42,6 +42,7 @@ def simulate(
     near: float | None = None,
     tools: Iterable[str | ToolShape] = (),
     libraries: Sequence[FilePath] = (),
+    unit: Literal["mm", "inch"] | None = None,
     cl: ToolpathLike | Iterable[ToolpathLike] = (),
     subprograms: Sequence[FilePath] = (),
     cell: float | None = None,
@@ -75,6 +76,8 @@ def simulate(
         Tools as text, such as ``"3=ball:10,length=60,flutes=20"``, or as bodies; they come first.
     libraries
         Tool libraries, for tools that ``tools`` does not have.
+    unit
+        Length unit of LinuxCNC's tool tables, which state none.
     cl
         CL files, for tools that neither has.
     subprograms
@@ -135,7 +138,7 @@ def simulate(
     others, rapid_feed = check_paths("subprograms", subprograms), rapid_feed_of(loaded)
     runs = [restore_rapids(as_run(program, loaded, others), rapid_feed) for program in programs]  # type: ignore[arg-type]
     toolpaths = as_toolpaths(cl, None, False, observer)
-    shapes = _tools(runs, tools, libraries, toolpaths)
+    shapes = _tools(runs, tools, _libraries(libraries, unit), toolpaths)
     widths = {name: _cutting_width(tool) for name, tool in shapes.items()}
     wide = cell or default_cell(shape, min(widths.values(), default=math.inf))
     check_narrow_tools(widths, wide)
@@ -217,17 +220,23 @@ def _lengths_known(job: Job) -> bool:
     return all(known or job.tools[name].length for name in used if name in job.tools)
 
 
+def _libraries(libraries: Sequence[FilePath], unit: str | None) -> list[ToolLibrary]:
+    if unit is not None:
+        check_choice("unit", unit, ("mm", "inch"))
+    return [read_tools(path, unit or "") for path in check_paths("libraries", libraries)]
+
+
 def _tools(
-    runs: Sequence[Run], tools: Iterable[str | ToolShape], libraries: Sequence[FilePath], toolpaths: Any
+    runs: Sequence[Run], tools: Iterable[str | ToolShape], read: Sequence[ToolLibrary], toolpaths: Any
 ) -> dict[str, ToolShape]:
     """The bodies of the tools with which the programs move at feed or at rapid."""
-    read = [read_tools(path) for path in check_paths("libraries", libraries)]
     diameters = {number: wide for library in reversed(read) for number, wide in library.diameters.items()}
     stated = [tool if isinstance(tool, ToolShape) else parse_tool(tool, diameters) for tool in tools]
     called = [run.tools[int(index)] for run in runs for index in run.state.tool.distinct()]
-    if any(_cuts_without_call(run) for run in runs):
+    in_spindle = any(tool.number == int(NO_CALL) for tool in stated)
+    if in_spindle or any(_cuts_without_call(run) for run in runs):
         called.append(NO_CALL)
-        if not any(tool.number == int(NO_CALL) for tool in stated):
+        if not in_spindle:
             what, cure = "the program cuts before it calls a tool", "state the one that is in the spindle: 0=ball:10"
             raise InputError(argument_problem("tools", what, cure))
     found = choose_tools(called, stated, read, tools_of_toolpaths(toolpaths))

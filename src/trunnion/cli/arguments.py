@@ -262,6 +262,7 @@ def _add_simulate(parser: argparse.ArgumentParser) -> None:
         "--tools", action="append", default=[], metavar="LIBRARY", dest="libraries",
         help="tool library: TOML, .tools or .json of Autodesk, FreeCAD's .fctb, LinuxCNC's tool.tbl; may be repeated",
     )  # fmt: skip
+    parser.add_argument("--unit", choices=("mm", "inch"), help="length unit of tool tables, which state none")
     parser.add_argument("--cl", action="append", default=[], metavar="CL", help="CL file whose tools these are")
     _add_subprograms(parser, "they")
     parser.add_argument(

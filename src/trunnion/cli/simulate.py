@@ -38,6 +38,7 @@ def run(arguments: argparse.Namespace) -> int:
         near=arguments.near,
         tools=arguments.tools,
         libraries=arguments.libraries,
+        unit=arguments.unit,
         cl=cl_inputs(arguments.cl),
         subprograms=arguments.subprograms,
         cell=arguments.cell,

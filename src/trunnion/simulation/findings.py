@@ -16,6 +16,7 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.simulation.cutting.removal import RowsCut
+from trunnion.simulation.stock.deviation import Gouges
 from trunnion.simulation.tools.profile import Role, ToolShape
 
 #: Rows without a finding that do not end a run of rows with one.
@@ -59,18 +60,42 @@ def row_findings(run: Run, rows: RowsCut, shape: ToolShape, limit: float, turnin
     """
     name = tool_name(run, rows.tool)
     first, end = rows.first, rows.first + len(rows.removed)
-    kind = run.kind[first:end]
-    rapid = kind == Kind.RAPID
-    cuts = rows.cut.depth > limit
-    yield from _runs(What.RAPID, (name, "stock"), first, rapid & cuts, rows.cut.depth, rows.cut.place)
-    standing = ~rapid & ~turning[first:end] & cuts
-    yield from _runs(What.STANDING, (name, "stock"), first, standing, rows.cut.depth, rows.cut.place)
-    yield from _runs(What.GOUGE, (name, "part"), first, rows.gouge.depth > limit, rows.gouge.depth, rows.gouge.place)
+    rapid = run.kind[first:end] == Kind.RAPID
+    deep = rows.idle.depth > limit
+    yield from _runs(What.RAPID, (name, "stock"), first, rapid & deep, rows.idle.depth, rows.idle.place, pause=0)
+    standing = ~rapid & ~turning[first:end] & deep
+    yield from _runs(What.STANDING, (name, "stock"), first, standing, rows.idle.depth, rows.idle.place)
     for section, met in rows.met.items():
         role = shape.sections[section].role
         what = What.HOLDER if role is Role.HOLDER else What.SHANK
         body = f"{what.name.lower()} of {name}"
         yield from _runs(what, (body, "stock"), first, met.depth > limit, met.depth, met.place)
+
+
+def gouge_findings(run: Run, tool: int, first: int, end: int, gouges: Gouges, apart: float) -> Iterator[Finding]:
+    """Yield the gouges of rows ``first`` to ``end`` (exclusive); rows no farther ``apart`` than this, mm, are one."""
+    own = np.flatnonzero((gouges.row >= first) & (gouges.row < end))
+    own = own[np.lexsort((-gouges.thickness[own], gouges.row[own]))]
+    rows, which = np.unique(gouges.row[own], return_index=True)
+    if not len(rows):
+        return
+    steps = np.linalg.norm(np.diff(run.tip[first:end], axis=0, prepend=run.tip[first : first + 1]), axis=1)
+    way = np.cumsum(steps)[rows - first]
+    breaks = (np.diff(rows) > 1 + _PAUSE) & (np.diff(way) > apart)
+    for part in np.split(np.arange(len(rows)), np.flatnonzero(breaks) + 1):
+        worst = part[gouges.thickness[own[which[part]]].argmax()]
+        place = own[which[worst]]
+        x, y, z = gouges.place[place].tolist()
+        depth = float(gouges.thickness[place])
+        between = tool_name(run, tool), "part"
+        yield Finding(
+            What.GOUGE, between, (int(rows[part[0]]), int(rows[part[-1]])), int(rows[worst]), depth, (x, y, z)
+        )
+
+
+def idle_rows(run: Run, turning: Flags) -> Flags:
+    """Rows that must not cut: rapids, and those in which the spindle stands, (n,)."""
+    return np.asarray((run.kind == Kind.RAPID) | ~turning)
 
 
 def spindle_turns(run: Run) -> Flags:
@@ -99,13 +124,19 @@ def tool_name(run: Run, tool: int) -> str:
 
 
 def _runs(
-    what: What, between: tuple[str, str], first: int, flags: Flags, depth: Floats, place: Floats
+    what: What,
+    between: tuple[str, str],
+    first: int,
+    flags: Flags,
+    depth: Floats,
+    place: Floats,
+    pause: int = _PAUSE,
 ) -> Iterator[Finding]:
     """Consecutive rows as one finding."""
     found = np.flatnonzero(flags)
     if not len(found):
         return
-    for part in np.split(found, np.flatnonzero(np.diff(found) > 1 + _PAUSE) + 1):
+    for part in np.split(found, np.flatnonzero(np.diff(found) > 1 + pause) + 1):
         worst = int(part[depth[part].argmax()])
         x, y, z = place[worst].tolist()
         rows = int(part[0]) + first, int(part[-1]) + first

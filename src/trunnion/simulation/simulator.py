@@ -15,13 +15,16 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.model.run import Run
 from trunnion.simulation.cutting.removal import cut
-from trunnion.simulation.findings import Finding, air_cuts, row_findings, spindle_turns
-from trunnion.simulation.stock.deviation import Excess, left_on, missing_from
+from trunnion.simulation.findings import Finding, air_cuts, gouge_findings, idle_rows, row_findings, spindle_turns
+from trunnion.simulation.stock.deviation import Excess, Gouges, left_on, missing_from
 from trunnion.simulation.stock.material import Stock
 from trunnion.simulation.stock.solids import StockShape, make_stock
 from trunnion.simulation.stock.spans import Spans
 from trunnion.simulation.tools.pieces import RevolvedPieces, revolved_pieces
 from trunnion.simulation.tools.profile import ToolShape
+
+#: Gouges that are nearer to each other along the path than so many cells are one.
+_APART: Final = 5.0
 
 #: Part of the tolerance that the facets of a tool's round corners take.
 _FACETS: Final = 0.25
@@ -143,13 +146,30 @@ def _simulate(
     for number, job in enumerate(jobs):
         pieces, off = _pieces(job, _FACETS * setup.tolerance)
         error = max(error, off)
-        operations += _cut_job(setup, number, job, pieces, stock, design, threads, _shifted(progress, done, total))
+        operations += _cut_job(setup, jobs, number, pieces, stock, design, threads, _shifted(progress, done, total))
         done += job.end
     left = gouge = None
     if design is not None:
-        left, gouge = left_on(stock, design, setup.limit), missing_from(stock, start, design, setup.limit)
+        left = left_on(stock, design, setup.limit)
+        gouge, gouges = missing_from(stock, start, design, setup.limit)
+        apart = _APART * float(stock.lattice.cell.max())
+        for one in operations:
+            _add_gouges(one, jobs, gouges, apart)
     seconds = time.perf_counter() - begin
     return Simulation(setup, tuple(operations), stock, start_volume, error, left, gouge, leaks, stopped, seconds)
+
+
+def _add_gouges(one: OperationCut, jobs: Sequence[Job], gouges: Gouges, apart: float) -> None:
+    """Add what an operation took from the design to its findings."""
+    offset, run = _offset(jobs, one.job), jobs[one.job].run
+    own = Gouges(gouges.row - offset, gouges.thickness, gouges.place)
+    one.findings += gouge_findings(run, int(run.state.tool[one.first]), one.first, one.end, own, apart)
+    one.findings.sort(key=lambda finding: finding.rows)
+
+
+def _offset(jobs: Sequence[Job], job: int) -> int:
+    """What is added to the rows of a job in the stock: rows of all jobs count on."""
+    return sum(len(each.run) for each in jobs[:job])
 
 
 def _shifted(progress: Callable[[int, int], None] | None, before: int, total: int) -> Callable[[int, int], None] | None:
@@ -170,8 +190,8 @@ def _pieces(job: Job, tolerance: float) -> tuple[dict[int, RevolvedPieces], floa
 
 def _cut_job(
     setup: Setup,
+    jobs: Sequence[Job],
     number: int,
-    job: Job,
     pieces: Mapping[int, RevolvedPieces],
     stock: Stock,
     design: tuple[Spans, Spans, Spans] | None,
@@ -179,8 +199,13 @@ def _cut_job(
     progress: Callable[[int, int], None] | None,
 ) -> Iterator[OperationCut]:
     """Yield the operations of a program when each of them has ended."""
-    run, current, turning = job.run, None, spindle_turns(job.run)
-    chunks = cut(stock, run, pieces, setup.tolerance, design=design, end=job.end, threads=threads, progress=progress)
+    job, current = jobs[number], None
+    run = job.run
+    turning = spindle_turns(run)
+    chunks = cut(
+        stock, run, pieces, setup.tolerance, idle=idle_rows(run, turning), design=design, offset=_offset(jobs, number),
+        end=job.end, threads=threads, progress=progress,
+    )  # fmt: skip
     for rows in chunks:
         name = run.tools[rows.tool]
         if current is None or current.tool != name or current.end != rows.first:

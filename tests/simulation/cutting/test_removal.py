@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from tests.support.sweeps import block, bundle_volumes, cut_path, divided, path, ray_points, stamped_depth
 from trunnion.arrays import Floats
 from trunnion.simulation.cutting.removal import Cutter
+from trunnion.simulation.stock.deviation import left_on, missing_from
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.shapes import BodySizes, ball, bull, flat
 
@@ -60,7 +61,6 @@ def test_a_plunge_leaves_a_hole(cell: float) -> None:
     cut = cut_path(stock, path([(0.3, 0.2, 5.0), (0.3, 0.2, -7.0), (0.3, 0.2, 5.0)]), flat(8.0, **BODY), cell / 10)
     assert cut.removed[0] == pytest.approx(16.0 * math.pi * 7.0, abs=2.0 * math.pi * 8.0 * 7.0 * cell / 4.0)
     assert cut.removed[1] == 0.0
-    assert cut.cut.depth[0] == pytest.approx(7.0)
 
 
 @st.composite
@@ -135,13 +135,37 @@ def test_the_shank_that_meets_stock_is_measured_and_cuts_nothing() -> None:
     assert cut.removed[0] == pytest.approx(40.0 * (3.0 - 2.0) * 5.0, rel=0.05)
 
 
-def test_what_is_taken_from_the_design_is_measured() -> None:
-    stock = block((-10.0, -10.0, -10.0), (10.0, 10.0, 0.0), 0.5)
+def test_idle_motions_meet_what_was_there_before_the_first_of_them() -> None:
+    tips = [(-30.0 + 0.05 * k, 0.0, -4.0) for k in range(1200)]
+    whole, divided = path([tips[0], tips[-1]]), path(tips)
+    for sweeps in (whole, divided):
+        stock = block((-10.0, -10.0, -10.0), (10.0, 10.0, 0.0), 0.5)
+        cut = cut_path(stock, sweeps, flat(6.0, **BODY), idle=True)
+        assert cut.idle.depth.max() == pytest.approx(4.0)
+        assert cut.removed.sum() == pytest.approx(20.0 * 6.0 * 4.0, rel=1e-3)
+        assert cut_path(stock, sweeps, flat(6.0, **BODY), idle=True).idle.depth.max() < 1e-3
+
+
+def test_what_is_missing_from_the_design_is_found_with_the_row_that_took_it() -> None:
     design = block((-10.0, -10.0, -10.0), (10.0, 10.0, 0.0), 0.5)
     cut_path(design, path([(-30.0, 0.0, -4.0), (30.0, 0.0, -4.0)]), flat(6.0, **BODY))
-    spans = design.spans(0), design.spans(1), design.spans(2)
-    deeper = path([(-30.0, 0.0, -4.3), (30.0, 0.0, -4.3)])
-    cut = cut_path(stock, deeper, flat(6.0, **BODY), cutter=Cutter(stock, spans, 0.01))
-    assert cut.gouge.depth[0] == pytest.approx(0.3)
+    wanted = design.spans(0), design.spans(1), design.spans(2)
+    stock = block((-10.0, -10.0, -10.0), (10.0, 10.0, 0.0), 0.5)
+    start = stock.spans(0), stock.spans(1), stock.spans(2)
+    # The second of three motions is 0.3 mm too deep.
+    tips = [
+        (-30.0, 0.0, -4.0),
+        (-3.0, 0.0, -4.0),
+        (-3.0, 0.0, -4.3),
+        (3.0, 0.0, -4.3),
+        (3.0, 0.0, -4.0),
+        (30.0, 0.0, -4.0),
+    ]
+    cut = cut_path(stock, path(tips), flat(6.0, **BODY), cutter=Cutter(stock, wanted, 0.01))
+    gouge, rows = missing_from(stock, start, wanted, 0.05)
+    assert gouge.largest == pytest.approx(0.3)
+    assert set(rows.row.tolist()) == {1, 2}
+    assert rows.thickness.max() == pytest.approx(0.3)
     # Thinner than a cell: rays along it count it as a whole one or not at all.
-    assert cut.gouged[0] == pytest.approx(0.3 * 6.0 * 20.0, abs=0.5 * 6.0 * 20.0)
+    assert cut.gouged.sum() == pytest.approx(0.3 * 6.0 * 9.0, abs=0.5 * 6.0 * 12.0)
+    assert left_on(stock, wanted, 0.05).largest <= 0.01

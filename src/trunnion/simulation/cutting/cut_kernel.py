@@ -1,12 +1,15 @@
 """A tile of rays as sweeps pass through it: material is removed, and what the tool meets is measured.
 
 In:     the material of a tile, the sweeps that reach it in the order of the program, and the pieces of the tool.
-Out:    the material that is left; for each sweep the volume it removed, and the greatest thickness that it removed,
-        that was part of the design, and that a section of the tool which does not cut has met.
+Out:    the material that is left; for each sweep the volume it removed, how much of it was part of the design, and
+        the greatest thickness that an idle cutter, or a section of the tool which does not cut, has met.
 Units:  mm, coordinates (u, v, w) of the tile's bundle.
 
 The thickness at a ray is the length of its stretch times the smaller |n_w| of the surfaces at both ends: for two
 parallel planes their distance, however the ray passes them.
+
+Idle are rapids and motions with a spindle that stands. What they meet is measured against the material before the first
+of them, and then removed: a way in small steps meets as much as the same way in one.
 """
 
 import math
@@ -24,7 +27,10 @@ Rows2: TypeAlias = Annotated[Lines, 2]
 Normals: TypeAlias = Annotated[NDArray[np.int8], 3]
 
 #: Columns of what is measured of each sweep.
-REMOVED, CUT_DEPTH, GOUGED, GOUGE_DEPTH, MET = 0, 1, 2, 3, 4
+REMOVED, GOUGED, MET_IDLE, MET = 0, 1, 2, 3
+
+#: What to do with a sweep: cut, or measure what the cutter or everything else meets.
+_CUT, _IDLE, _REST = 0, 1, 2
 
 #: Shorter stretches than this do not count as material, mm: rounding of a path that is cut again.
 TRACE = 1e-7
@@ -35,7 +41,6 @@ class Rays(NamedTuple):
 
     design_first  (nu * nv + 1,) the stretches of ray k within the design are design_first[k]:design_first[k + 1]
     design        (2 m,)         their starts and ends along w, mm
-    design_slope  (2 m,)         |n_w| of the design's normals there
     """
 
     u: Floats
@@ -43,15 +48,6 @@ class Rays(NamedTuple):
     area: float
     design_first: Ints
     design: Floats
-    design_slope: Floats
-
-
-class Design(NamedTuple):
-    """The stretches of the design, as in ``Rays``."""
-
-    first: Ints
-    ends: Floats
-    slope: Floats
 
 
 class CutterTable(NamedTuple):
@@ -64,13 +60,14 @@ class CutterTable(NamedTuple):
 
 
 class Sweeps(NamedTuple):
-    """Short motions of one tool, n of them: tip and tool axis at start and end, and the row of the run.
+    """Short motions of one tool, n of them: tip and tool axis at start and end, the row of each, and which are idle.
 
     Columns of ``poses`` (n, 12) are those of ``Motion``: start tip, start axis, the way of the tip, end axis.
     """
 
     poses: Floats2
     row: Ints
+    idle: Flags
 
 
 @kernel(writes="count ends rows normals measured places")
@@ -94,69 +91,123 @@ def cut_tile(
     ends      (r, 2 s)    starts and ends of up to s stretches, ascending
     rows      (r, 2 s)    rows of the run that made them, -1 for the stock itself
     normals   (r, 2 s, 3) unit normals out of the material there, in 127ths
-    measured  (k, 4 + q)  for each sweep: volume removed, greatest thickness removed, volume gouged, greatest thickness
-                          gouged, greatest thickness that section q of the tool met; mm³ and mm
-    places    (k, 4 + q, 3)  (u, v, w) of the greatest thicknesses
+    measured  (k, 3 + q)  for each sweep: volume removed, and of the design, mm³; the greatest thickness that the cutter
+                          met while idle, and that section q of the tool met, mm
+    places    (k, 3 + q, 3)  (u, v, w) of the greatest thicknesses
 
     Returns the index in ``wanted`` at which a ray needs more than s stretches, or their number. The sweep of that
     index has to be made again.
     """
+    inside = _material(rays.u, rays.v, count, ends)
+    pending = -1
+    k = begin
+    while True:
+        idle = k < len(wanted) and sweeps.idle[wanted[k]]
+        if pending >= 0 and not idle:
+            for j in range(pending, k):
+                if not _pass(
+                    j,
+                    _CUT,
+                    rays,
+                    count,
+                    ends,
+                    rows,
+                    normals,
+                    sweeps,
+                    wanted[j],
+                    tool,
+                    tolerance,
+                    inside,
+                    measured,
+                    places,
+                ):
+                    return j
+            pending = -1
+        if k == len(wanted):
+            return k
+        if idle:
+            if pending < 0:
+                pending = k
+            _pass(
+                k, _IDLE, rays, count, ends, rows, normals, sweeps, wanted[k], tool, tolerance, inside, measured, places
+            )
+        elif not _pass(
+            k, _CUT, rays, count, ends, rows, normals, sweeps, wanted[k], tool, tolerance, inside, measured, places
+        ):
+            return k
+        _pass(k, _REST, rays, count, ends, rows, normals, sweeps, wanted[k], tool, tolerance, inside, measured, places)
+        k += 1
+
+
+@inner
+def _pass(
+    k: int,
+    task: int,
+    rays: Rays,
+    count: Lines,
+    ends: Floats2,
+    rows: Rows2,
+    normals: Normals,
+    sweeps: Sweeps,
+    sweep: int,
+    tool: CutterTable,
+    tolerance: float,
+    inside: tuple[float, float, float, float, float, float],
+    measured: Floats2,
+    places: Floats3,
+) -> bool:
+    """Cut or measure with one sweep; False if a ray needs more room for stretches."""
     low_u, low_v = rays.u[0], rays.v[0]
     nu, nv = len(rays.u), len(rays.v)
     step_u = rays.u[1] - low_u if nu > 1 else 1.0
     step_v = rays.v[1] - low_v if nv > 1 else 1.0
-    design = Design(rays.design_first, rays.design, rays.design_slope)
-    area = rays.area
+    design_first, design, area = rays.design_first, rays.design, rays.area
     table = tool.elements
-    inside = _material(rays.u, rays.v, count, ends)
-    for k in range(begin, len(wanted)):
-        sweep = wanted[k]
-        p = sweeps.poses[sweep]
-        motion = Motion(p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8], p[9], p[10], p[11])
-        back = Motion(p[0] + p[6], p[1] + p[7], p[2] + p[8], p[9], p[10], p[11], -p[6], -p[7], -p[8], p[3], p[4], p[5])
-        row = sweeps.row[sweep]
-        for cutting in (True, False):
-            for number in range(len(tool.cuts)):
-                if tool.cuts[number] != cutting:
+    p = sweeps.poses[sweep]
+    motion = Motion(p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7], p[8], p[9], p[10], p[11])
+    back = Motion(p[0] + p[6], p[1] + p[7], p[2] + p[8], p[9], p[10], p[11], -p[6], -p[7], -p[8], p[3], p[4], p[5])
+    row = sweeps.row[sweep]
+    for number in range(len(tool.cuts)):
+        if tool.cuts[number] == (task == _REST):
+            continue
+        q = tool.pieces[number]
+        piece = Piece(int(q[0]), int(q[1]), q[2], q[3], q[4], q[5], q[6])
+        low, high = near_part(motion, piece, inside)
+        if low > high:
+            continue
+        box = swept_box(motion, piece, low, high)
+        first_u = max(0, math.ceil((box[0] - low_u) / step_u))
+        last_u = min(nu - 1, math.floor((box[1] - low_u) / step_u))
+        first_v = max(0, math.ceil((box[2] - low_v) / step_v))
+        last_v = min(nv - 1, math.floor((box[3] - low_v) / step_v))
+        column = MET_IDLE if task == _IDLE else MET + tool.section[number]
+        view = strip(motion, piece)
+        for i in range(first_u, last_u + 1):
+            for j in range(first_v, last_v + 1):
+                ray = i * nv + j
+                if count[ray] == 0:
                     continue
-                q = tool.pieces[number]
-                piece = Piece(int(q[0]), int(q[1]), q[2], q[3], q[4], q[5], q[6])
-                low, high = near_part(motion, piece, inside)
-                if low > high:
+                bottom, top = ends[ray, 0], ends[ray, 2 * count[ray] - 1]
+                if bottom >= box[5] or top <= box[4]:
                     continue
-                box = swept_box(motion, piece, low, high)
-                first_u = max(0, math.ceil((box[0] - low_u) / step_u))
-                last_u = min(nu - 1, math.floor((box[1] - low_u) / step_u))
-                first_v = max(0, math.ceil((box[2] - low_v) / step_v))
-                last_v = min(nv - 1, math.floor((box[3] - low_v) / step_v))
-                column = MET + tool.section[number]
-                view = strip(motion, piece)
-                for i in range(first_u, last_u + 1):
-                    for j in range(first_v, last_v + 1):
-                        ray = i * nv + j
-                        if count[ray] == 0:
-                            continue
-                        bottom, top = ends[ray, 0], ends[ray, 2 * count[ray] - 1]
-                        if bottom >= box[5] or top <= box[4]:
-                            continue
-                        u, v = rays.u[i], rays.v[j]
-                        ahead = (u - view.u) * view.v_axis - (v - view.v) * view.u_axis
-                        if abs(ahead) > view.widest:
-                            continue
-                        # What the tool leaves behind it is farthest out at its start: from there the search is shorter.
-                        leaves = ahead * view.along < 0.0
-                        if view.along == 0.0:
-                            leaves = (u - view.u) * motion.du + (v - view.v) * motion.dv < 0.0
-                        found = swept_ends(u, v, back if leaves else motion, piece, table, tolerance, bottom, top)
-                        if not found.hit or not _meets(ray, found.low, found.high, count, ends):
-                            continue
-                        if cutting:
-                            _measure(k, ray, u, v, found, area, design, count, ends, normals, measured, places)
-                            if not _remove(ray, found, row, count, ends, rows, normals):
-                                return k
-                        else:
-                            _meet(k, ray, u, v, found, count, ends, normals, measured, places, column)
-    return len(wanted)
+                u, v = rays.u[i], rays.v[j]
+                ahead = (u - view.u) * view.v_axis - (v - view.v) * view.u_axis
+                if abs(ahead) > view.widest:
+                    continue
+                # What the tool leaves behind it is farthest out at its start: from there the search is shorter.
+                leaves = ahead * view.along < 0.0
+                if view.along == 0.0:
+                    leaves = (u - view.u) * motion.du + (v - view.v) * motion.dv < 0.0
+                found = swept_ends(u, v, back if leaves else motion, piece, table, tolerance, bottom, top)
+                if not found.hit or not _meets(ray, found.low, found.high, count, ends):
+                    continue
+                if task == _CUT:
+                    _measure(k, ray, found, area, design_first, design, count, ends, measured)
+                    if not _remove(ray, found, row, count, ends, rows, normals):
+                        return False
+                else:
+                    _meet(k, ray, u, v, found, count, ends, normals, measured, places, column)
+    return True
 
 
 @inner
@@ -182,32 +233,22 @@ def _meets(ray: int, low: float, high: float, count: Lines, ends: Floats2) -> bo
 def _measure(
     k: int,
     ray: int,
-    u: float,
-    v: float,
     found: Ends,
     area: float,
-    design: Design,
+    design_first: Ints,
+    design: Floats,
     count: Lines,
     ends: Floats2,
-    normals: Normals,
     measured: Floats2,
-    places: Floats3,
 ) -> None:
     """Measure what is removed from a ray, and how much of it belongs to the design."""
     for s in range(count[ray]):
         start, end = max(found.low, ends[ray, 2 * s]), min(found.high, ends[ray, 2 * s + 1])
         if end - start < TRACE:
             continue
-        from_slope, to_slope = _slopes(ray, s, found, ends, normals)
         measured[k, REMOVED] += (end - start) * area
-        _thicker(k, u, v, start, end, min(from_slope, to_slope), measured, places, CUT_DEPTH)
-        for m in range(design.first[ray], design.first[ray + 1]):
-            inside, outside = max(start, design.ends[2 * m]), min(end, design.ends[2 * m + 1])
-            if outside - inside > TRACE:
-                measured[k, GOUGED] += (outside - inside) * area
-                one = design.slope[2 * m] if inside > start else from_slope
-                two = design.slope[2 * m + 1] if outside < end else to_slope
-                _thicker(k, u, v, inside, outside, min(one, two), measured, places, GOUGE_DEPTH)
+        for m in range(design_first[ray], design_first[ray + 1]):
+            measured[k, GOUGED] += max(0.0, min(end, design[2 * m + 1]) - max(start, design[2 * m])) * area
 
 
 @inner
@@ -224,7 +265,7 @@ def _meet(
     places: Floats3,
     column: int,
 ) -> None:
-    """Measure the material of a ray that a section met which does not cut."""
+    """Measure the material of a ray that an idle cutter met, or a section that does not cut."""
     for s in range(count[ray]):
         start, end = max(found.low, ends[ray, 2 * s]), min(found.high, ends[ray, 2 * s + 1])
         if end - start > TRACE:

@@ -18,13 +18,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
 from trunnion.simulation.cutting.cut_kernel import (
-    CUT_DEPTH,
-    GOUGE_DEPTH,
     GOUGED,
     MET,
+    MET_IDLE,
     REMOVED,
     CutterTable,
     Rays,
@@ -54,8 +53,7 @@ class RowsCut:
 
     removed  (k,) mm³ of stock
     gouged   (k,) mm³ of the design
-    cut      how deep the cutter went into the stock
-    gouge    how deep it went into the design
+    idle     how deep the cutter went into the stock in rapids, and with the spindle standing
     met      for each section of the tool that does not cut, how deep it went into the stock
     """
 
@@ -63,8 +61,7 @@ class RowsCut:
     tool: int
     removed: Floats
     gouged: Floats
-    cut: Depths
-    gouge: Depths
+    idle: Depths
     met: Mapping[int, Depths]
 
 
@@ -74,7 +71,9 @@ def cut(
     tools: Mapping[int, RevolvedPieces],
     tolerance: float,
     *,
+    idle: Flags | None = None,
     design: tuple[Spans, Spans, Spans] | None = None,
+    offset: int = 0,
     end: int | None = None,
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
@@ -91,8 +90,12 @@ def cut(
         The pieces of each tool, by its index in ``run.tools``. Rows of a tool that is not there are not simulated.
     tolerance
         How far motions may be off, mm.
+    idle
+        Rows that must not cut, (n,): rapids, and those in which the spindle stands.
     design
         The finished part as spans of the same lattice.
+    offset
+        What is added to the numbers of rows in ``Tile.rows``.
     end
         The row at which to end; by default after the last one.
     threads
@@ -106,7 +109,7 @@ def cut(
         for first, last, tool in tool_ranges(run, end):
             if tool in tools:
                 sweeps = row_sweeps(run, first, last, cutter.sizes(tools[tool]))
-                yield cutter.cut(sweeps, tools[tool], executor)
+                yield cutter.cut(sweeps, tools[tool], executor, idle, offset)
             if progress:
                 progress(last, end)
 
@@ -129,8 +132,16 @@ class Cutter:
         size = float(np.linalg.norm(lattice.high - lattice.low))
         return SweepSizes(max(reach, radius, 0.5 * whole), radius, self._tolerance, 2.0 * size + whole)
 
-    def cut(self, sweeps: RowSweeps, pieces: RevolvedPieces, executor: ThreadPoolExecutor) -> RowsCut:
-        """Cut with the sweeps of some rows."""
+    def cut(
+        self,
+        sweeps: RowSweeps,
+        pieces: RevolvedPieces,
+        executor: ThreadPoolExecutor,
+        idle: Flags | None = None,
+        offset: int = 0,
+    ) -> RowsCut:
+        """Cut with the sweeps of some rows; the rest as for ``cut``."""
+        at_rest = np.zeros(len(sweeps.row), np.bool_) if idle is None else idle[sweeps.row]
         low, high = float(pieces.bounds[:, 0].min()), float(pieces.bounds[:, 1].max())
         boxes = _boxes(sweeps, low, high, float(pieces.bounds[:, 2].max()))
         columns = MET + int(pieces.section.max()) + 1
@@ -139,7 +150,7 @@ class Cutter:
         tool = CutterTable(piece_list(pieces, table), table, pieces.cuts, pieces.section)
         for bundle in range(3):
             axes = BUNDLE_AXES[bundle]
-            own = Sweeps(sweeps.poses(axes), sweeps.row)
+            own = Sweeps(sweeps.poses(axes), sweeps.row + offset, at_rest)
             which = [k for k, tile in enumerate(self._stock.tiles) if tile.bundle == bundle]
             lists = _lists(
                 boxes[:, [2 * axes[0], 2 * axes[0] + 1, 2 * axes[1], 2 * axes[1] + 1, 2 * axes[2], 2 * axes[2] + 1]],
@@ -151,7 +162,7 @@ class Cutter:
                 return self._cut_tile(job[0], own, job[1], tool, columns)
 
             for (_, wanted), (measured, places) in zip(work, executor.map(one, work), strict=True):
-                total.add(bundle, own.row[wanted], measured, places)
+                total.add(bundle, sweeps.row[wanted], measured, places)
         return total.result(pieces)
 
     def _cut_tile(self, k: int, sweeps: Sweeps, wanted: Ints, tool: CutterTable, columns: int) -> tuple[Floats, Floats]:
@@ -179,7 +190,7 @@ def _rays(stock: Stock, tile: Tile, design: tuple[Spans, Spans, Spans] | None) -
         columns = tile.first_v + np.arange(len(tile.v))
         rays = ((tile.first_u + np.arange(len(tile.u)))[:, None] * width + columns).ravel()
         spans = design[tile.bundle].at(rays)
-    return Rays(tile.u, tile.v, area, spans.first, spans.ends, np.abs(spans.normals[:, 2]) / 127.0)
+    return Rays(tile.u, tile.v, area, spans.first, spans.ends)
 
 
 def _boxes(sweeps: RowSweeps, low: float, high: float, widest: float) -> Floats:
@@ -236,8 +247,7 @@ class _Totals:
             self._tool,
             self._sums[:, REMOVED] / 3.0,
             self._sums[:, GOUGED] / 3.0,
-            self._depths(CUT_DEPTH),
-            self._depths(GOUGE_DEPTH),
+            self._depths(MET_IDLE),
             {section: self._depths(MET + section) for section in sections},
         )
 

@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Floats, Floats2, Ints
+from trunnion.arrays import Floats, Floats2, Ints, Lines
 from trunnion.jit import kernel
 from trunnion.simulation.stock.lattice import BUNDLE_AXES
 from trunnion.simulation.stock.material import Stock
@@ -41,20 +41,39 @@ class Excess:
     places: tuple[Place, ...]
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Gouges:
+    """Which rows made the surfaces at which something is missing: (k,) row, thickness in mm, and place (k, 3)."""
+
+    row: Ints
+    thickness: Floats
+    place: Floats
+
+
 def left_on(stock: Stock, design: tuple[Spans, Spans, Spans], limit: float) -> Excess:
     """What the stock has beyond the design; places thinner than ``limit`` are not told."""
-    return _excess(stock, [stock.spans(bundle) for bundle in range(3)], list(design), limit)
+    volume, place, thin, _ = _compared(stock, [stock.spans(bundle) for bundle in range(3)], list(design))
+    return _excess(stock, volume, place, thin, limit)
 
 
 def missing_from(
     stock: Stock, start: tuple[Spans, Spans, Spans], design: tuple[Spans, Spans, Spans], limit: float
-) -> Excess:
-    """What of the design was in the stock at the start, and is there no more."""
+) -> tuple[Excess, Gouges]:
+    """What of the design was in the stock at the start, and is there no more; and the rows that took it away.
+
+    A row is found by the surface that it has left there: what was cut deeper later, the later row did.
+    """
     was = [_common(own, wanted) for own, wanted in zip(start, design, strict=True)]
-    return _excess(stock, was, [stock.spans(bundle) for bundle in range(3)], limit)
+    volume, place, thin, rows = _compared(stock, was, [stock.spans(bundle) for bundle in range(3)])
+    deep = np.flatnonzero(thin > limit)
+    row = np.concatenate((rows[deep, 0], rows[deep, 1]))
+    known = row >= 0
+    gouges = Gouges(row[known], np.tile(thin[deep], 2)[known], np.tile(place[deep], (2, 1))[known])
+    return _excess(stock, volume, place, thin, limit), gouges
 
 
-def _excess(stock: Stock, solid: list[Spans], other: list[Spans], limit: float) -> Excess:
+def _compared(stock: Stock, solid: list[Spans], other: list[Spans]) -> tuple[float, Floats, Floats, Ints]:
+    """Volume of what only the first solid has; place, thickness and the rows at both ends of each stretch."""
     lattice, volume = stock.lattice, 0.0
     firsts, tables = [], []
     for bundle in range(3):
@@ -62,7 +81,7 @@ def _excess(stock: Stock, solid: list[Spans], other: list[Spans], limit: float) 
         volume += stock.cell_area(bundle) * float((table[:, 1] - table[:, 0]).sum()) / 3.0
         firsts.append(first)
         tables.append(table)
-    points, thickness = [np.zeros((0, 3))], [np.zeros(0)]
+    points, thickness, rows = [np.zeros((0, 3))], [np.zeros(0)], [np.zeros((0, 2), np.int64)]
     for bundle in range(3):
         axes = list(BUNDLE_AXES[bundle])
         u, v = lattice.ray_positions(bundle)
@@ -80,9 +99,13 @@ def _excess(stock: Stock, solid: list[Spans], other: list[Spans], limit: float) 
                 thinner_here(firsts[across], tables[across], at, place[:, along].copy(), thin)
         points.append(place)
         thickness.append(thin)
-    place, thin = np.concatenate(points), np.concatenate(thickness)
+        rows.append(tables[bundle][:, 3:].astype(np.int64))
+    return volume, np.concatenate(points), np.concatenate(thickness), np.concatenate(rows)
+
+
+def _excess(stock: Stock, volume: float, place: Floats, thin: Floats, limit: float) -> Excess:
     largest = float(thin.max(initial=0.0))
-    return Excess(volume, largest, _thickest(place, thin, limit, _APART * float(lattice.cell.max())))
+    return Excess(volume, largest, _thickest(place, thin, limit, _APART * float(stock.lattice.cell.max())))
 
 
 def _thickest(place: Floats, thickness: Floats, limit: float, apart: float) -> tuple[Place, ...]:
@@ -118,13 +141,14 @@ def _slopes(spans: Spans) -> Floats:
 
 
 def _difference(solid: Spans, other: Spans) -> tuple[Ints, Floats]:
-    """Stretches of a solid outside another: first of each ray, and a row of start, end and thickness for each."""
+    """Stretches of a solid outside another: first of each ray, and for each start, end, thickness, and the rows that
+    cut the other where it ends below, and where it begins above; -1 for none."""
     counts = np.zeros(len(solid.first) - 1, np.int64)
     arrays = solid.first, solid.ends, _slopes(solid), other.first, other.ends, _slopes(other)
-    difference_stretches(*arrays, counts, np.zeros((0, 3)), True)
+    difference_stretches(*arrays, other.rows, counts, np.zeros((0, 5)), True)
     first = np.concatenate(([0], np.cumsum(counts)))
-    table = np.zeros((first[-1], 3))
-    difference_stretches(*arrays, first[:-1].copy(), table, False)
+    table = np.zeros((first[-1], 5))
+    difference_stretches(*arrays, other.rows, first[:-1].copy(), table, False)
     return first, table
 
 
@@ -136,11 +160,12 @@ def difference_stretches(
     other_first: Ints,
     other_ends: Floats,
     other_slope: Floats,
+    other_rows: Lines,
     at: Ints,
     table: Floats2,
     counting: bool,
 ) -> None:
-    """Count the stretches of each ray outside another solid in ``at``; or write start, end, thickness from there on."""
+    """Count the stretches of each ray outside another solid in ``at``; or write them, as ``_difference`` has them."""
     for ray in range(len(first) - 1):
         for s in range(first[ray], first[ray + 1]):
             start, from_slope = ends[2 * s], slope[2 * s]
@@ -157,6 +182,9 @@ def difference_stretches(
                         k = at[ray]
                         table[k, 0], table[k, 1] = start, end
                         table[k, 2] = (end - start) * min(from_slope, to_slope)
+                        below, above = m > other_first[ray], m < other_first[ray + 1]
+                        table[k, 3] = other_rows[2 * m - 1] if below else -1.0
+                        table[k, 4] = other_rows[2 * m] if above else -1.0
                     at[ray] += 1
                 if last or other_ends[2 * m + 1] >= ends[2 * s + 1]:
                     break

@@ -72,7 +72,7 @@ class Tile:
     def spans(self) -> Spans:
         """Its stretches."""
         used = np.repeat(np.arange(self.ends.shape[1] // 2) < self.count[:, None], 2, axis=1)
-        return Spans(np.concatenate(([0], np.cumsum(self.count))), self.ends[used], self.normals[used])
+        return Spans(np.concatenate(([0], np.cumsum(self.count))), self.ends[used], self.normals[used], self.rows[used])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,7 +100,7 @@ class Stock:
     def spans(self, bundle: int) -> Spans:
         """The stretches of all rays of a bundle."""
         width = self.lattice.rays(bundle)[1]
-        rays, counts, ends, normals = [], [], [], []
+        rays, counts, ends, normals, rows = [], [], [], [], []
         for tile in self.bundle(bundle):
             own = tile.spans()
             columns = tile.first_v + np.arange(len(tile.v))
@@ -108,11 +108,12 @@ class Stock:
             counts.append(np.diff(own.first))
             ends.append(own.ends)
             normals.append(own.normals)
+            rows.append(own.rows)
         ray, count = np.concatenate(rays), np.concatenate(counts)
         first = np.concatenate(([0], np.cumsum(count)))
         order = np.empty(len(ray), np.int64)
         order[ray] = np.arange(len(ray))
-        return Spans(first, np.concatenate(ends), np.concatenate(normals)).at(order)
+        return Spans(first, np.concatenate(ends), np.concatenate(normals), np.concatenate(rows)).at(order)
 
     @property
     def volume(self) -> float:

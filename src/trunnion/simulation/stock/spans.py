@@ -6,13 +6,13 @@ Units:  mm, workpiece frame; positions along a ray count from the zero of its ax
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.arrays import Flags, Floats, Floats2, Ints, Ints2
+from trunnion.arrays import Flags, Floats, Floats2, Ints, Ints2, Lines
 from trunnion.jit import inner, kernel
 from trunnion.simulation.stock.lattice import BUNDLE_AXES, Lattice
 
@@ -27,13 +27,19 @@ class Spans:
     first    (r + 1,)  int64
     ends     (2 m,)    float64  starts and ends along w, mm
     normals  (2 m, 3)  int8     unit normals out of the solid there in (u, v, w), in 127ths
+    rows     (2 m,)    int32    rows of the runs that cut them, -1 where none did
     leaks    rays that pass an odd number of faces, and were left empty
     """
 
     first: Ints
     ends: Floats
     normals: NDArray[np.int8]
+    rows: Lines = field(default_factory=lambda: np.zeros(0, np.int32))
     leaks: int = 0
+
+    def __post_init__(self) -> None:
+        if len(self.rows) != len(self.ends):
+            object.__setattr__(self, "rows", np.full(len(self.ends), -1, np.int32))
 
     def at(self, rays: Ints) -> "Spans":
         """The spans of some rays."""
@@ -41,7 +47,7 @@ class Spans:
         first = np.concatenate(([0], np.cumsum(sizes)))
         source = np.repeat(self.first[rays] - first[:-1], sizes) + np.arange(first[-1])
         both = np.column_stack((2 * source, 2 * source + 1)).ravel()
-        return Spans(first, self.ends[both], self.normals[both])
+        return Spans(first, self.ends[both], self.normals[both], self.rows[both])
 
 
 def no_spans(rays: int) -> Spans:
@@ -109,7 +115,7 @@ def mesh_spans(vertices: Floats, faces: Ints, lattice: Lattice, bundle: int) -> 
     rows = crossings[kept]
     begin = np.concatenate(([0], np.cumsum(stretches)))
     leaks = int(np.count_nonzero(counts % 2))
-    return Spans(begin, rows[:, 0].copy(), np.round(127.0 * rows[:, 1:]).astype(np.int8), leaks)
+    return Spans(begin, rows[:, 0].copy(), np.round(127.0 * rows[:, 1:]).astype(np.int8), leaks=leaks)
 
 
 def _closed(first: Ints, crossings: Floats) -> tuple[Flags, Ints]:
