@@ -107,7 +107,19 @@ def judge(name: str, mutation: Mutation, folder: Path) -> Outcome:
     failed = [check for check in checked(name, run).checks if not check.passed]
     if not failed:
         return Outcome("MISSED") if first is not None else Outcome("OUTSIDE", changed[0])
-    return _placed(mutation, failed, run, first or set())
+    shows = (first or set()) | _first_in_another_offset(untouched(name), run)
+    return _placed(mutation, failed, run, shows)
+
+
+def _first_in_another_offset(one: Run, two: Run) -> set[int]:
+    """The line of the first motion of ``two`` in another work offset than in ``one``, machine positions not counted.
+
+    An offset may turn rotary axes, though nothing else says so where they are positioned alone.
+    """
+    if len(one) != len(two):
+        return set()
+    rows = np.flatnonzero((one.work_offset != two.work_offset) & ~two.machine_frame)
+    return set(two.line[rows[:1]].tolist())
 
 
 def _placed(mutation: Mutation, failed: list[Check], run: Run, first: set[int]) -> Outcome:

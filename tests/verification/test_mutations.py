@@ -93,6 +93,8 @@ def test_every_fault_that_changes_the_work_is_reported_at_its_block(name: str, t
         (38, "", "OUTSIDE", HOME),
         (201, "", "OUTSIDE", AFTER),
         (10, "N100 G40 G17 G710 G54 G90 G60 G601 FNORM", "OUTSIDE", HOME),
+        # The rotary axes are placed in it before G54 is selected, three blocks before the tool comes to the part.
+        (10, "N100 G40 G17 G510 G94 G90 G60 G601 FNORM", "CAUGHT", "SHOWS"),
         (34, "N340 M2", "CAUGHT", "BLOCK"),
     ],
 )
