@@ -24,7 +24,12 @@ from trunnion.verification.matching.intermediate_points import FollowedPath, Fol
 from trunnion.verification.matching.pairs import ArcSegments, Matching
 from trunnion.verification.matching.resync import find_resync
 from trunnion.verification.matching.rewind_retracts import rewind_retract_length
-from trunnion.verification.matching.rows_to_match import distinct_cl_rows, rows_to_match
+from trunnion.verification.matching.rows_to_match import (
+    distinct_cl_rows,
+    repeats_exactly,
+    repeats_of_another_kind,
+    rows_to_match,
+)
 from trunnion.verification.row_ranges import CHUNK, RowRanges
 
 #: Motions that are compared at first, and after each mismatch.
@@ -51,10 +56,15 @@ _MAX_GAP_SEARCH = 1000
 
 
 def match_by_count(run: Run, expected: ExpectedPath) -> Matching | None:
-    """Match in order if there are as many motions as points, else None; whether they fit is not looked at."""
+    """Match in order if there are as many motions as points, else None; whether they fit is not looked at.
+
+    Nor are they matched where a motion that no point asks for only makes up for a repeated point that has none.
+    """
     rows = rows_to_match(run, expected)
     if len(rows) == len(expected):
-        return Matching(rows, RowRanges.from_ranges([(0, len(expected))]))
+        matching = Matching(rows, RowRanges.from_ranges([(0, len(expected))]))
+        by_chance = any(repeats_of_another_kind(run, expected, nc, cl).any() for nc, cl in matching.pair_chunks())
+        return None if by_chance else matching
     distinct = distinct_cl_rows(expected)
     return Matching(rows, distinct) if len(rows) == len(distinct) else None
 
@@ -117,6 +127,7 @@ class _PathMatcher:
             last = self._turn_rows[later] if later < len(self._turn_rows) else self._m
             count = min(size, self._n - i, int(last) - j)
             fits = self._fits(i, j, count)
+            fits &= ~repeats_of_another_kind(self._run, self._expected, *self._pairs(i, j, count))
             same = count if fits.all() else int(np.argmin(fits))
             self._pair(i, j, same)
             i, j = i + same, j + same
@@ -142,6 +153,8 @@ class _PathMatcher:
         repeats = self._count_repeats(i, j)
         if repeats:
             return 0, repeats
+        if repeats_exactly(self._expected, np.array([j]))[0]:
+            return 0, 1
         if self._rows[i] in self._approaches:
             self._extra.append(self._rows[i])
             return 1, 0
@@ -164,6 +177,10 @@ class _PathMatcher:
         self._nc += self._rows.ranges(i, i + count)
         self._cl.append((j, count))
 
+    def _pairs(self, i: int, j: int, count: int) -> tuple[Ints, Ints]:
+        """Rows of ``count`` motions from the i-th on, and CL rows from j on."""
+        return self._rows.rows(i, i + count), np.arange(j, j + count)
+
     def _limits_at(self, j: int) -> tuple[float, float]:
         """How far pairs may be apart, mm and as the length of a vector; checks apply the exact tolerances later."""
         tip, axis = self._limits[int(np.searchsorted(self._expected.first_rows, j, "right")) - 1]
@@ -176,7 +193,7 @@ class _PathMatcher:
 
     def _fits(self, i: int, j: int, count: int) -> Flags:
         """Which of ``count`` motions from the i-th on are at the points from CL row j on, (count,) bool."""
-        rows, points = self._rows.rows(i, i + count), np.arange(j, j + count)
+        rows, points = self._pairs(i, j, count)
         actual = self._run.positions(rows)
         tip, axis = self._limits_of(points)
         fits = (np.abs(actual.tip - self._expected.tip(points)) <= tip[:, None]).all(axis=1)

@@ -75,6 +75,31 @@ def _plane_changes_at_points(run: Run, expected: ExpectedPath) -> Ints:
     return np.asarray(rows[arrives])
 
 
+def repeats_of_another_kind(run: Run, expected: ExpectedPath, nc: Ints, cl: Ints) -> Flags:
+    """Which pairs join a motion and a CL point that repeats the one before it, but at rapid or at feed otherwise.
+
+    Such a point makes no block: the motion is another, as one that only turns the rotary axes at the pole.
+
+    Parameters
+    ----------
+    nc, cl : (k,)
+        Rows of the run and CL rows.
+    """
+    kind, wanted = run.kind[nc], expected.kind(cl)
+    found = (kind != wanted) & (kind != Kind.ARC) & (wanted != Kind.ARC)
+    if found.any():
+        found[found] = repeats_exactly(expected, cl[found])
+    return np.asarray(found)
+
+
+def repeats_exactly(expected: ExpectedPath, cl: Ints) -> Flags:
+    """Which CL rows are the same as the one before them within an operation, with no hole between, (k,) bool."""
+    before = np.maximum(cl - 1, 0)
+    same = (expected.tip(cl) == expected.tip(before)).all(axis=1) & (expected.axis(cl) == expected.axis(before)).all(1)
+    apart = np.concatenate((expected.first_rows, np.array(sorted(expected.hole_exits), np.int64)))
+    return np.asarray(same & (expected.kind(cl) != Kind.ARC) & ~np.isin(cl, apart))
+
+
 def distinct_cl_rows(expected: ExpectedPath) -> RowRanges:
     """CL rows that do not repeat the point before them within an operation; arcs always count."""
     return RowRanges.from_flags(_distinct_flags(expected))

@@ -6,10 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import assume, event, given, settings
+from hypothesis import assume, event, example, given, settings
 from hypothesis import strategies as st
 
 from tests.support.klartext import CONTROLS, MACHINES, PATHS, SIMULTANEOUS, TCP, Post, motion, proven, toolpath_of
+from tests.support.operations import moves_of, rapids_at
+from tests.support.path_strategies import directions
 from tests.support.posting import FOOT, HEAD
 from trunnion.errors import InputError, RefusedError
 from trunnion.machines import AngleOutput
@@ -99,8 +101,17 @@ def test_a_rewind_is_said_by_the_rotary_axes(post: Post) -> None:
     assert out.count(" LN ") > 100
 
 
+def resting(tilt: list[float], azimuth: list[float], *rapids: int) -> Moves:
+    """A tip that rests while the tool axis turns."""
+    moves = moves_of(np.zeros((len(tilt), 3)), directions(np.array(tilt), np.array(azimuth)))
+    return rapids_at(moves, list(rapids))
+
+
 @settings(max_examples=15)
 @given(name=st.sampled_from(sorted(MACHINES)), moves=PATHS)
+# A repeated rapid makes no block, and the turn at the pole, or a point of a coarse step, makes up the number of blocks.
+@example(name="xyzbc_trt", moves=resting([0.0, 0.0, 12.0], [30.0, 30.0, 90.0], 0, 1))
+@example(name="matsuura_mx330", moves=resting([0.3, 0.3, 12.0], [30.0, 30.0, 90.0], 0, 1))
 def test_axes_stand_where_rotary_words_would_have_them(name: str, moves: Moves, folder: Path) -> None:
     """The control finds the planned position for each vector; where it would not, the block has rotary words."""
     machine, control = MACHINES[name], CONTROLS["mikron_600u"]
