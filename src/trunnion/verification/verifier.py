@@ -35,6 +35,7 @@ from trunnion.verification.deviations.point_deviations import PointDeviations
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.expected.tolerances import Tolerances
 from trunnion.verification.kinematics.axis_motion import AxisMotionAnalyzer
+from trunnion.verification.kinematics.positioning_moves import oriented_by_vector
 from trunnion.verification.kinematics.rapid_feeds import restore_rapids
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.matching.pairs import Matching
@@ -180,7 +181,7 @@ def _measure(
     """Errors between points and deviations at points; the analyzer gets the same rows."""
     run, sections = context.run, context.expected.sections
     errors = _linearization_errors(context, [section.tolerances for section in sections])
-    deviations = PointDeviations(run.machine, context.expected, context.matching, MAX_PLACES, run.programmed)
+    deviations = PointDeviations(run.machine, context.expected, context.matching, MAX_PLACES, oriented_by_vector(run))
     _add_rows(run, analyzer, deviations, errors)
     return errors, deviations
 

@@ -1,8 +1,10 @@
 """Programmed surface normals against the contact points of the CL files.
 
-Blocks that position rotary axes by their own words cannot have a normal.
+Blocks that position rotary axes by their own words cannot have a normal. A block that brings the tool back after a
+retract to turn has the normal of the point that it comes back to; no other block without a CL point has one.
 """
 
+from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
@@ -11,7 +13,9 @@ from trunnion.arrays import Floats, Ints
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.context import MAX_PLACES, ComparedContext
+from trunnion.verification.expected.path import Section
 from trunnion.verification.kinematics.positioning_moves import ROTARY_WORDS
+from trunnion.verification.matching.rewind_retracts import find_rewind_retracts
 from trunnion.verification.results import Check, Place
 from trunnion.wording import counted
 
@@ -20,7 +24,7 @@ _TITLE: Final = "surface normals against the contact points"
 
 def check_normals(context: ComparedContext) -> list[Check]:
     """One check; none where neither the CL files nor the program have normals."""
-    run, matching = context.run, context.matching
+    run = context.run
     normals = [
         (section, normal)
         for section in context.expected.sections
@@ -31,10 +35,13 @@ def check_normals(context: ComparedContext) -> list[Check]:
     places: list[Place] = []
     wrong = right = 0
     largest = limit = 0.0
+    compared = [np.zeros(0, np.int64)]
+    returns = _returns(context)
     for section, normal in normals:
         tolerance = section.tolerances.normal
         limit = max(limit, tolerance)
-        for nc, cl in matching.pair_chunks(*matching.pair_range(section.first, section.end)):
+        for nc, cl in _pairs(context, section, returns):
+            compared.append(nc)
             wanted, actual = normal[cl - section.first], _programmed_normals(run, nc)
             off = np.abs(actual - wanted).max(axis=1)
             both, line = np.isfinite(off), run.kind[nc] == Kind.LINEAR
@@ -59,12 +66,33 @@ def check_normals(context: ComparedContext) -> list[Check]:
                     value = float(off[k]) if both[k] else 0.0
                     full = f"{text} by {value:.9f}" if both[k] else text
                     places.append(context.place_with_cl(int(nc[k]), value, full, int(cl[k])))
+    left = np.setdiff1d(run.normals.row, np.concatenate(compared)) if normals else compared[0]
+    wrong += len(left)
+    for row in left[: MAX_PLACES - len(places)].tolist():
+        places.append(context.place(row, 0.0, "has a surface normal, but goes to no contact point"))
     summary = f"{counted(right, 'normal')} as the contact points have them, largest difference {largest:.9f}"
     if not normals:
         summary = f"{counted(len(run.normals), 'normal')}, and the CL files have no contact points to compare them with"
     if wrong:
         summary += f", {wrong} are not"
     return [Check("normal", _TITLE, not wrong, summary, largest, limit or None, "", tuple(places))]
+
+
+def _returns(context: ComparedContext) -> tuple[Ints, Ints]:
+    """Rows that come back to a CL point from a retract to turn, and the CL rows of these points, (k,) each."""
+    matching = context.matching
+    found = find_rewind_retracts(context.run, matching.extra, context.expected.max_tip_tolerance)
+    at_points = [retract for retract in found if retract.first - 1 in matching.nc]
+    rows = [matching.cl[matching.nc.count_before(retract.first - 1)] for retract in at_points]
+    return np.array([retract.end - 1 for retract in at_points], np.int64), np.array(rows, np.int64)
+
+
+def _pairs(context: ComparedContext, section: Section, returns: tuple[Ints, Ints]) -> Iterator[tuple[Ints, Ints]]:
+    """Rows of the run and CL rows of one operation that go together."""
+    matching = context.matching
+    yield from matching.pair_chunks(*matching.pair_range(section.first, section.end))
+    here = (returns[1] >= section.first) & (returns[1] < section.end)
+    yield returns[0][here], returns[1][here]
 
 
 def _programmed_normals(run: Run, nc: Ints) -> Floats:

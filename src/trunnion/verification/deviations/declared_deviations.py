@@ -16,10 +16,11 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.machines import Machine, forward
 from trunnion.model.deviations import Deviations
-from trunnion.model.run import ProgrammedWord, Run
+from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.expected.path import ExpectedPath, Section
 from trunnion.verification.kinematics.axis_difference import degrees_apart
+from trunnion.verification.kinematics.positioning_moves import oriented_by_vector
 from trunnion.verification.matching.pairs import Matching
 
 #: By how much a lean may exceed the requested angle for rounding, degrees.
@@ -106,7 +107,7 @@ def _feeds_not_lowered(section: Section, declared: Deviations) -> Iterator[Devia
 def misplaced_lean_positions(run: Run, expected: ExpectedPath, matching: Matching) -> list[DeviationFault]:
     """Rows whose rotary axes are not where they were declared to be; whole turns of endless ones do not count."""
     faults = []
-    columns = list(run.machine.rotary)
+    columns, by_vector = list(run.machine.rotary), oriented_by_vector(run)
     for section, declared, nc, cl in _declared_chunks(expected, matching):
         here, k = _indices_among(cl - section.first, declared.leaned_rows)
         if not len(here):
@@ -115,8 +116,7 @@ def misplaced_lean_positions(run: Run, expected: ExpectedPath, matching: Matchin
         for r, column in enumerate(columns):
             if run.machine.axes[column].endless:
                 off[:, r] -= 360.0 * np.rint(off[:, r] / 360.0)
-        by_vector = (run.programmed[nc[here]] & int(ProgrammedWord.VECTOR)) != 0
-        worst = np.where(by_vector, 0.0, np.abs(off).max(axis=1))
+        worst = np.where(by_vector[nc[here]], 0.0, np.abs(off).max(axis=1))
         for bad in np.flatnonzero(~(worst <= section.tolerances.angle)).tolist():
             text = f"a rotary axis is {worst[bad]:.6f} degrees from where it was declared to be near the pole"
             faults.append(DeviationFault(int(cl[here[bad]]), float(worst[bad]), text))

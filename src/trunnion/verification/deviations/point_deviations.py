@@ -12,10 +12,10 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Codes, Floats, Floats2, Ints
+from trunnion.arrays import Flags, Floats, Floats2, Ints
 from trunnion.jit import kernel
 from trunnion.machines import Machine
-from trunnion.model.run import ProgrammedWord, RowPositions
+from trunnion.model.run import RowPositions
 from trunnion.verification.expected.path import ExpectedPath, Section
 from trunnion.verification.kinematics.axis_difference import RotaryGeometry, axis_difference, degrees_apart
 from trunnion.verification.matching.pairs import Matching
@@ -43,12 +43,15 @@ class DeviationSummary:
 
 
 class PointDeviations:
-    """Collects the deviations of all pairs, chunk by chunk; up to ``max_rows`` bad pairs are kept."""
+    """Collects the deviations of all pairs, chunk by chunk; up to ``max_rows`` bad pairs are kept.
+
+    ``by_vector`` (n,) says which rows of the run get their tool axis from a vector.
+    """
 
     def __init__(
-        self, machine: Machine, expected: ExpectedPath, matching: Matching, max_rows: int, programmed: Codes
+        self, machine: Machine, expected: ExpectedPath, matching: Matching, max_rows: int, by_vector: Flags
     ) -> None:
-        self._expected, self._matching, self._programmed = expected, matching, programmed
+        self._expected, self._matching, self._by_vector = expected, matching, by_vector
         self._tip, self._axis = _Collector(max_rows), _Collector(max_rows)
         self._geometry = RotaryGeometry.of(machine)
         self._ends = [matching.cl.count_before(section.end) for section in expected.sections]
@@ -72,7 +75,7 @@ class PointDeviations:
             positions.tip, positions.axis, positions.joints, moves.tip, moves.axis, nc, cl, geometry.column,
             geometry.sense, geometry.first, geometry.second, off_tip, off_axis,
         )  # fmt: skip
-        by_vector = (self._programmed[row] & int(ProgrammedWord.VECTOR)) != 0
+        by_vector = self._by_vector[row]
         if by_vector.any():  # a programmed vector is off by an angle, not in rotary axes
             off_axis[by_vector] = degrees_apart(positions.axis[nc[by_vector]], moves.axis[cl[by_vector]])
         if tolerances.plane:

@@ -27,6 +27,17 @@ _SAME_AXIS = 1e-9
 _FEW = 64
 
 
+def oriented_by_vector(run: Run) -> Flags:
+    """Rows whose tool axis comes from a programmed vector, their own or the last before them, (n,) bool."""
+    by_vector = np.asarray((run.programmed & int(ProgrammedWord.VECTOR)) != 0)
+    if not by_vector.any():
+        return by_vector
+    orients = by_vector | ((run.programmed & int(ROTARY_WORDS)) != 0)
+    last = np.maximum.accumulate(np.where(orients, np.arange(len(run)), 0))
+    # What turns rotary axes without words of theirs, as home positions and planes do, ends it too.
+    return np.asarray(by_vector[last] & (run.rotary == run.rotary[last]).all(axis=1))
+
+
 def rotary_positioning_flags(run: Run, start: int, end: int) -> Flags:
     """Which of consecutive rows only position rotary axes, at rapid with TCP off, (end - start,) bool."""
     turns = _turns_only(run.programmed[start:end])

@@ -6,11 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import assume, event, given, settings
+from hypothesis import assume, event, example, given, settings
 from hypothesis import strategies as st
 
 from tests.support.klartext import CONTROLS, MACHINES, PATHS, SHARES, Post, motion, proven, toolpath_of
-from tests.support.operations import moves_of
+from tests.support.operations import moves_of, rapids_at
+from tests.support.path_strategies import directions, winding
 from tests.support.planes import reachable
 from tests.support.posting import FOOT, HEAD
 from trunnion.arrays import Floats
@@ -123,8 +124,16 @@ def summary(found: Verification) -> str:
     return next((check.summary for check in found.checks if check.key == "normal"), "")
 
 
+#: A tool axis near the pole, which the digits of a vector place better than the rotary axis there.
+NEAR_POLE = rapids_at(
+    moves_of(np.linspace([-40.0, 0.0, 0.0], [40.0, 0.0, 5.0], 3), directions(np.full(3, 1.5), np.full(3, 1.5))), [0]
+)
+
+
 @settings(max_examples=25)
 @given(name=st.sampled_from(sorted(MACHINES)), moves=PATHS, seed=st.integers(0, 99))
+@example(name="dmu65", moves=NEAR_POLE, seed=0)
+@example(name="generic_head_head_ca", moves=winding(12.0, 0.0, 700.0, 30), seed=0)  # draws back to turn
 def test_normals_beside_a_tool_axis_that_changes_are_proven(name: str, moves: Moves, seed: int, folder: Path) -> None:
     shift = 20.0 * np.sin(np.arange(len(moves)))[:, None] * [1.0, 0.5, 0.2]
     moves = touched(replace(moves, tip=np.round(moves.tip + shift, 5)), seed)
@@ -172,7 +181,9 @@ def test_normals_in_planes_are_proven(name: str, share: tuple[float, float], see
     assert (f"{count} normals" in summary(found)) == bool(count)
 
 
-def test_a_rewind_draws_back_without_a_normal_and_comes_back_with_it(post: Post) -> None:
+def test_a_rewind_draws_back_without_a_normal_and_comes_back_with_it(
+    post: Post, capfd: pytest.CaptureFixture[str]
+) -> None:
     machine = post.folder / "ended.toml"
     text = 'extends = "generic_head_head_ca"\n[control]\nextends = "heidenhain_tnc640"\n'
     machine.write_text(text, encoding="utf-8")
@@ -192,6 +203,14 @@ def test_a_rewind_draws_back_without_a_normal_and_comes_back_with_it(post: Post)
     back = next(line for line in lines[turn + 1 :] if line.startswith("L"))
     assert "NX" not in away
     assert " NZ+1 TX" in back
+    # Its normal is proven too, though it goes to no CL point of its own.
+    file = post.folder / "part.h"
+    for new in (" NX+0 NY+0 NZ+1", " NX+0.6 NY+0 NZ+0.8", ""):
+        changed = out.replace(back, back.replace(" NX+0 NY+0 NZ+1", new))
+        file.write_text(changed, encoding="utf-8")
+        code = main(["verify", str(file), "--machine", str(machine), "--cl", str(post.folder / "part.cls")])
+        (told,) = [line for line in capfd.readouterr().out.splitlines() if line.startswith("normal ")]
+        assert (code, "1 are not" in told) == ((0, False) if changed == out else (1, True))
 
 
 # Whoever verifies looks at them
