@@ -61,6 +61,8 @@ def _expected_settings(program: Program, options: PlanOptions) -> ExpectedValues
         by_operation=by_operation,
         span=axis_tolerance if without_tcp or math.isfinite(axis_tolerance) else None,
         span_tip=options.tip_tolerance if without_tcp else None,
+        blocks_in_compensation=program.control.blocks_in_compensation,
+        stops_in_compensation=program.control.stops_in_compensation,
         axis_tolerance=options.default_axis_tolerance,
         absolute=options.absolute_frame,
         max_inverse_time_feed=inverse_time.five_axis.greatest if inverse_time else None,

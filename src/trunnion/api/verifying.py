@@ -159,6 +159,8 @@ def verify(
             absolute=frame == "absolute",
             rapid_feed=rapid_feed_of(loaded),
             rigid_tap=m_code(defaults.get("rigid_tap", "")),
+            blocks_in_compensation=control.blocks_in_compensation if control else 1,
+            stops_in_compensation=control.stops_in_compensation if control else False,
             axis_tolerance=control.axis_tolerance if control else AxisTolerance(),
         ),
         columns=columns,

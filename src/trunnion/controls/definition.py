@@ -137,6 +137,9 @@ class Control:
     feed_without_tcp      one of ``FEEDS_WITHOUT_TCP``
     shorter_way           endless axes take the shorter way, so that none crosses the end of its displayed turn
     own_blocks            spindle, coolant and radius compensation have blocks of their own
+    blocks_in_compensation  most blocks in a row without motion in the plane, within radius compensation, before which
+                          the control still finds the corner; ``NO_LIMIT`` where it reads as many as there are
+    stops_in_compensation  it finds the corner across a stop (M0, M1) too
     threads_stop_spindle  the spindle stands still after a thread, until the program starts it again
     first_lines           lines at the start of a program before which nothing may be written, not even a comment
     axis_tolerance        how far the tool axis may leave its path between CL points where no setting says it
@@ -178,6 +181,8 @@ class Control:
     feed_without_tcp: str
     shorter_way: bool
     own_blocks: bool
+    blocks_in_compensation: int
+    stops_in_compensation: bool
     threads_stop_spindle: bool
     first_lines: int
     axis_tolerance: AxisTolerance

@@ -195,3 +195,6 @@ SAFE_START_CHOICES: Final = ("own", ALL_LEFT_ON)
 PLANES_USED: Final = "planes_used"
 TCP_USED: Final = "tcp_used"
 OFFSETS_DIFFER: Final = "offsets_differ"
+
+#: ``Control.blocks_in_compensation`` of controls without a limit.
+NO_LIMIT: Final = 9999

@@ -38,6 +38,8 @@ class ExpectedValues:
     tool_deltas            what the program may add to a tool, mm, by word (DL, DR)
     axis_tolerance         how far the tool axis may be off between points of a cut where ``span`` does not say it
     max_feed               largest F per minute of the control: no block need be faster; None: no limit
+    blocks_in_compensation  most blocks in a row without motion in the plane within radius compensation
+    stops_in_compensation  whether a stop may stand within it
     by_operation           tool, work offset and edge of single operations, by their names
     """
 
@@ -54,6 +56,8 @@ class ExpectedValues:
     rigid_tap: int | None = None
     tool_deltas: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
     axis_tolerance: AxisTolerance = field(default_factory=AxisTolerance)
+    blocks_in_compensation: int = 1
+    stops_in_compensation: bool = False
     by_operation: Mapping[str, OperationSettings] = field(default_factory=dict)
 
     def for_operation(self, name: str) -> OperationSettings:

@@ -5,6 +5,7 @@ from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import LoadTool, Sense, SpindleOff, SpindleOn, Stop
 from trunnion.output.program import Program
 from trunnion.output.validation.compensation import compensation_problems
+from trunnion.output.validation.compensation_corners import corner_problems
 from trunnion.output.validation.cycles import cycle_problems
 from trunnion.output.validation.events import block_skip_problems, event_problems
 from trunnion.output.validation.feeds import missing_feed_problems, rounded_feed_problems
@@ -73,7 +74,7 @@ def _motion_problems(program: Program, motion: Motion) -> list[Problem]:
     if motion.mode is MachiningMode.TCP and program.control.vectors_exclude_angles:
         problems += tool_vector_problems(program, motion)
     problems += [*plane_entry_problems(program, motion), *normal_problems(program, motion)]
-    problems += compensation_problems(program, motion)
+    problems += [*compensation_problems(program, motion), *corner_problems(program, motion)]
     if motion.mode is MachiningMode.WITHOUT_TCP and program.template_suffix(motion):
         problems += problems_without_tcp(program, motion)
     return [*problems, *missing_feed_problems(program, motion), *rounded_feed_problems(program, motion)]

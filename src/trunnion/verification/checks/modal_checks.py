@@ -7,6 +7,7 @@ import numpy as np
 
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
+from trunnion.verification.checks.compensation_corners import compensated_blind
 from trunnion.verification.checks.compensation_planes import compensated_askew
 from trunnion.verification.checks.low_rapids import low_rapids
 from trunnion.verification.checks.smoothing_faults import wide_tolerances
@@ -38,6 +39,7 @@ def check_modal_state(context: Context) -> Check:
     places += wide_tolerances(context)
     places += _without_units(context)
     places += compensated_askew(context)
+    places += compensated_blind(context)
     if len(run) and not any(event.kind == "end" for event in run.events):
         last = max(context.last_line, run.lines[-1])
         places.append(Place(last, -1, 0.0, "the program has no end (M30 or M2) after this"))

@@ -1,0 +1,86 @@
+"""Blocks and stops within radius compensation across which the control does not see the next corner."""
+
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Flags, Ints
+from trunnion.model.run import CHUNK_ROWS, Run
+from trunnion.model.toolpath import Kind
+from trunnion.verification.context import Context
+from trunnion.verification.results import Place
+
+#: A smaller motion in the plane, mm, is none.
+_STILL: Final = 1e-6
+
+
+def compensated_blind(context: Context) -> Iterator[Place]:
+    """The first stop, and the first too many blocks without motion, between two compensated motions.
+
+    The control offsets a corner when it has read the motion after it. It reads a number of blocks ahead at most, and
+    some none at a stop: there it takes the tool square to the end of the motion before, into the wall of an inside
+    corner.
+    """
+    run, settings = context.run, context.settings
+    on = np.flatnonzero(run.compensation != 0)
+    if not len(on):
+        return
+    cure = "the control does not see the next corner, and may cut into it"
+    if not settings.stops_in_compensation:
+        within = set(on[1:][np.diff(on) == 1].tolist())
+        stops = (
+            event for event in run.events if event.kind in ("stop", "optional_stop") and event.before_row in within
+        )
+        for event in stops:
+            yield context.place_of_event(event, 0.0, f"stops within radius compensation: {cure}")
+            break
+    moving = _moves_in_plane(run, on)
+    # Blocks without motion up to each row, from the first row with compensation on.
+    blocks = np.cumsum(_blocks_before(run, on) + ~moving)
+    spell = np.cumsum(np.diff(on, prepend=on[0] - 1) != 1)
+    at = np.flatnonzero(moving)
+    count = np.diff(blocks[at])
+    count[np.diff(spell[at]) != 0] = 0
+    too_many = np.flatnonzero(count > settings.blocks_in_compensation)
+    if len(too_many):
+        found = int(count[too_many[0]])
+        text = f"{found} blocks without motion in the plane of radius compensation before this, and the control reads"
+        text = f"{text} {settings.blocks_in_compensation}: {cure}"
+        yield context.place(int(on[at[too_many[0] + 1]]), float(found), text)
+
+
+def _moves_in_plane(run: Run, rows: Ints) -> Flags:
+    """Whether rows move across the tool, (k,)."""
+    moving = np.ones(len(rows), np.bool_)
+    for first in range(0, len(rows), CHUNK_ROWS):
+        part = rows[first : first + CHUNK_ROWS]
+        here = run.positions(part)
+        way = here.tip - run.positions(part - 1).tip
+        across = way - np.einsum("ij,ij->i", way, here.axis)[:, None] * here.axis
+        moving[first : first + CHUNK_ROWS] = (np.abs(across).max(axis=1) > _STILL) | (run.kind[part] == Kind.ARC)
+    return moving
+
+
+def _blocks_before(run: Run, rows: Ints) -> Ints:
+    """How many blocks stand between each row and the one before it, (k,); lines of comments are none.
+
+    From one file to another these are the blocks that are known to switch something.
+    """
+    lines = run.line.astype(np.int64)
+    before = np.maximum(rows - 1, 0)
+    gap = np.maximum(lines[rows] - lines[before] - 1, 0)
+    file = run.state.file
+    elsewhere = (file.at(rows) != file.at(before)) | (lines[rows] < lines[before])
+    switching = {(event.before_row, event.file, event.line) for event in run.events}
+    only_comments = {(each.before_row, each.file, each.line) for each in run.comments} - switching
+    gap -= _count_at(rows, only_comments, lines)
+    gap[elsewhere] = _count_at(rows, switching, lines)[elsewhere]
+    return np.asarray(np.maximum(gap, 0))
+
+
+def _count_at(rows: Ints, found: set[tuple[int, int, int]], lines: Ints) -> Ints:
+    """How many lines of (row before which, file, line) precede each row, but for those of motions."""
+    here = [row for row, _, line in found if row >= len(lines) or (line != lines[row] and line != lines[row - 1])]
+    counts = np.bincount(np.array(here, np.int64), minlength=len(lines) + 1)
+    return np.asarray(counts[rows])
