@@ -41,6 +41,7 @@ def corner_problems(program: Program, motion: Motion) -> list[Problem]:
     across, rows = _moves_across(operation), len(operation.moves)
     last = _last_row_across(operation, across)
     ahead = program.control.blocks_in_compensation
+    ends = {event.row for event in events if isinstance(event, CutterComp) and event.side == "OFF"} | {rows}
     problems = list[Problem]()
     side, count, under_way, next_row = "OFF", 0, False, 0
 
@@ -64,12 +65,13 @@ def corner_problems(program: Program, motion: Motion) -> list[Problem]:
                 side, count, under_way = event.side, 0, False
                 continue
             side = event.side
-        if side == "OFF":
+        # Before the first motion and behind the last one there is no corner.
+        if side == "OFF" or not under_way or event.row in ends or event.row > last[event.row]:
             continue
         if isinstance(event, Stop) and not program.control.stops_in_compensation:
             what = f"{'OPSTOP' if event.optional else 'STOP'} within CUTCOM, where the control reads no further"
             problems.append(_problem(program, motion, event.line, what))
-        elif under_way and event.row < rows and event.row <= last[event.row]:
+        else:
             add(event.line, _blocks(program, event))
     return problems
 

@@ -23,6 +23,8 @@ def compensated_blind(context: Context) -> Iterator[Place]:
     corner.
     """
     run, settings = context.run, context.settings
+    if set(run.state.compensation.distinct().tolist()) <= {0}:
+        return
     on = np.flatnonzero(run.compensation != 0)
     if not len(on):
         return
