@@ -13,7 +13,7 @@ from tests.support.cl_dialects import EVERY, Step, Vector, Z, write_in
 from trunnion.cl import read_cl
 from trunnion.cl.read_back import read_back_problems
 from trunnion.cl.writers import WRITERS as OURS
-from trunnion.model.toolpath import CycleOn, Event, Kind, Message, SpindleOn, Toolpath
+from trunnion.model.toolpath import CutterComp, CycleOn, Event, Kind, Message, Operation, SpindleOn, Toolpath
 from trunnion.planning.holes.cycles import cycle_from_event
 
 lengths = st.integers(-200_000, 200_000).map(lambda number: number / 1000)
@@ -116,7 +116,7 @@ def content(toolpath: Toolpath) -> dict[str, Any]:
     events = [
         told(event, begin + event.row)
         for operation, begin in pairs
-        for event in operation.events
+        for event in [*operation.events, *end_of_side(operation)]
         if not isinstance(event, Message) or event.text in _COMMENTS  # some dialects have notes of their own
     ]
     kind = np.concatenate([operation.moves.kind for operation in operations])
@@ -137,6 +137,12 @@ def content(toolpath: Toolpath) -> dict[str, Any]:
         ],
         "events": events,
     }  # fmt: skip
+
+
+def end_of_side(operation: Operation) -> list[Event]:
+    """The end of radius compensation with its operation, where the dialect does not say it."""
+    sides = [event.side for event in operation.events if isinstance(event, CutterComp)]
+    return [CutterComp(len(operation.moves), 0, "OFF")] if sides and sides[-1] != "OFF" else []
 
 
 def changes(tools: list[tuple[int, float, float]]) -> list[tuple[int, float, float]]:

@@ -9,6 +9,17 @@ from trunnion.model.toolpath import CutterComp
 CUT = ["RAPID", "GOTO/0,0,50", "FEDRAT/200,MMPM", "GOTO/0,0,-2"]
 
 
+UPRIGHT_CUT = ["MULTAX", "RAPID", "GOTO/0,0,50,0,0,1", "FEDRAT/200,MMPM", "GOTO/0,0,-2,0,0,1"]
+#: The way home between operations of one tool.
+NEXT = {
+    "catia": ["$$ OPERATION NAME : B"],
+    "ncl": ["$$-> FEATNO / 2"],
+    "solidworks": ["GOHOME"],
+    "fusion": ["LOADTL/5, 0, 60., 5"],
+    "apt": ["GOHOME"],
+}
+
+
 def text(dialect: str, *lines: str) -> str:
     return "\n".join([*HEADS[dialect], *lines, "FINI"]) + "\n"
 
@@ -78,14 +89,35 @@ def test_a_system_that_is_none_is_refused(fails: Fail) -> None:
     assert "columns of CSYS" in problem.what
 
 
-def test_compensation_that_ends_with_its_operation_is_told(read: Read) -> None:
-    on = ["CUTCOM/LEFT", "GOTO/40,0,-2"]
-    (problem,) = read(text("catia", *CUT, *on, "$$ OPERATION NAME : B", *CUT, "CUTCOM/OFF")).remarks
-    assert "CUTCOM/LEFT of line 10 ends with its operation: B" in problem.what
-    again = ["CUTCOM/OFF", "$$ OPERATION NAME : B", *CUT, *on, "CUTCOM/OFF"]
-    assert len(read(text("catia", *CUT, *on, *again)).operations) == 2
-    (joined,) = read(text("catia", *CUT, *on, "$$ OPERATION NAME : B", "GOTO/50,0,-2", "CUTCOM/OFF")).operations
+ON = ["CUTCOM/LEFT", "GOTO/40,0,-2"]
+
+
+@pytest.mark.parametrize("dialect", ["catia", "ncl", "solidworks", "fusion", "apt"])
+def test_compensation_on_where_another_operation_of_the_tool_cuts_is_refused(fails: Fail, dialect: str) -> None:
+    (problem,) = fails(text(dialect, *CUT, *ON, *NEXT[dialect], *CUT, "CUTCOM/OFF", *NEXT[dialect], *CUT))
+    line = len(HEADS[dialect]) + 5
+    assert f"cuts without CUTCOM, and that of line {line} (LEFT) is still on" in problem.what
+    assert problem.line > line
+
+
+def test_compensation_on_where_the_axis_system_changes_is_refused(fails: Fail) -> None:
+    systems = [["$$*CATIA0", "$$ A", f"$$ 1 0 0 {x}", "$$ 0 1 0 0", "$$ 0 0 1 0"] for x in (0, 9)]
+    lines = [*systems[0], *UPRIGHT_CUT, "CUTCOM/LEFT", "GOTO/40,0,-2,0,0,1", *systems[1], *UPRIGHT_CUT]
+    (problem,) = fails(text("catia", *lines))
+    assert "cuts without CUTCOM" in problem.what
+
+
+def test_compensation_that_nothing_cuts_with_is_no_error(read: Read) -> None:
+    name = "$$ OPERATION NAME : B"
+    own = [name, "RAPID", "GOTO/0,0,50", *ON]
+    assert len(read(text("catia", *CUT, *ON, *own)).operations) == 2
+    again = ["CUTCOM/OFF", name, *CUT, *ON, "CUTCOM/OFF"]
+    assert len(read(text("catia", *CUT, *ON, *again)).operations) == 2
+    (joined,) = read(text("catia", *CUT, *ON, name, "GOTO/50,0,-2", "CUTCOM/OFF")).operations
     assert [event.side for event in joined.events if isinstance(event, CutterComp)] == ["LEFT", "OFF"]
+    tools = [*CUT, *ON, "TPRINT/T6", "LOADTL/6", *CUT, name, *CUT]
+    (problem,) = read(text("catia", *tools)).remarks
+    assert "that of line 10 (LEFT) is still on: with another tool it ends" in problem.what
 
 
 def test_an_operation_whose_coolant_ended_is_told(read: Read) -> None:

@@ -16,7 +16,7 @@ from trunnion.cl.writers import WRITERS
 from trunnion.cl.writers.catia import CatiaWriter
 from trunnion.errors import InputError
 from trunnion.model.arcs import arc_gaps
-from trunnion.model.toolpath import Kind, Operation, SpindleOn, Toolpath, UnknownStatement
+from trunnion.model.toolpath import CutterComp, Kind, Operation, SpindleOn, Toolpath, UnknownStatement
 
 OTHERS = ("catia", "ncl")
 
@@ -114,6 +114,20 @@ def test_behind_gohome_the_name_goes_on(dialect: str, body: Body, tmp_path: Path
     names = [operation.name for operation in back.operations]
     assert names == (["OP"] * 3 if dialect == "catia" else ["FEATNO 1", "FEATNO 1", "FEATNO 2"])
     assert any("OP states no tolerance" in what for what in lost)
+
+
+@pytest.mark.parametrize("dialect", OTHERS)
+def test_compensation_ends_with_its_operation(dialect: str, body: Body, tmp_path: Path) -> None:
+    on = body("RAPID", "GOTO/0,0,0", "CUTCOM/LEFT", "FEDRAT/MMPM,100", "GOTO/1,0,0")
+    for begin in ((), ("RAPID",)):  # one operation with the one before, and one of its own
+        after = body("FEDRAT/MMPM,100", *begin, "GOTO/2,0,0", "FEDRAT/MMPM,100", "GOTO/3,0,0")
+        back, _ = again(Toolpath("a", (on, after)), dialect, tmp_path)
+        sides = [(event.row, event.side) for event in back.operations[0].events if isinstance(event, CutterComp)]
+        assert sides == [(1, "LEFT"), (2, "OFF")]
+        for other in WRITERS:
+            again(back, other, tmp_path)
+    home = body("CUTCOM/RIGHT", "FEDRAT/MMPM,100", "GOTO/0,0,0", "GOHOME", "RAPID", "GOTO/1,0,0")
+    assert "a.cls:6: error: CUTCOM/RIGHT is on at GOHOME" in refused(dialect, home)
 
 
 @pytest.mark.parametrize("dialect", OTHERS)

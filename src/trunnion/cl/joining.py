@@ -13,11 +13,14 @@ from trunnion.cl.diagnostics import Diagnostics
 from trunnion.model.toolpath import Coolant, CutterComp, CycleOff, CycleOn, Event, GoHome, LoadTool, Message
 
 
-def join_cuts(builders: Iterable[OperationBuilder], diagnostics: Diagnostics) -> list[OperationBuilder]:
+def join_cuts(
+    builders: Iterable[OperationBuilder], diagnostics: Diagnostics, *, in_sections: bool
+) -> list[OperationBuilder]:
     """Return the operations, those that begin with a cut joined to the one before, with a remark.
 
     An operation stays for itself if it has no operation before that it continues, another tool, comes from home or a
-    FROM of its own, or begins with a rapid or a hole. A cut that begins with another register of the tool is an error.
+    FROM of its own, or begins with a rapid or a hole. Errors are a cut that begins with another register of the tool,
+    and one that goes on with the radius compensation of the operation before; ``in_sections`` that ends with its own.
     """
     joined: list[OperationBuilder] = []
     number: int | None = None
@@ -26,9 +29,10 @@ def join_cuts(builders: Iterable[OperationBuilder], diagnostics: Diagnostics) ->
         before = joined[-1] if joined and builder.continues else None
         loads = [event for event in builder.events if isinstance(event, LoadTool)]
         if before is None or not _begins_with_cut(before, builder) or _has_other_tool(before, builder, loads, number):
+            if not in_sections:
+                side = _side_lost(joined[-1:], builder, side, loads, number, diagnostics)
+                _report_lost_coolant(builder, joined[-1:], diagnostics)
             joined.append(builder)
-            _report_lost_side(builder, side, diagnostics)
-            _report_lost_coolant(builder, joined[-2:-1], diagnostics)
         else:
             register = _register(joined)
             if first := next((load for load in loads if load.row == 0 and load.adjust != register), None):
@@ -41,8 +45,7 @@ def join_cuts(builders: Iterable[OperationBuilder], diagnostics: Diagnostics) ->
                 before.events.append(Message(builder.first - before.first, builder.line, builder.name))
             _append(before, builder)
         number = loads[-1].number if loads else number
-        sides = [event for event in builder.events if isinstance(event, CutterComp)]
-        side = sides[-1] if sides else side if builder.continues else None
+        side = None if in_sections else _last_side(builder, side)
     return joined
 
 
@@ -83,20 +86,48 @@ def _report_lost_coolant(builder: OperationBuilder, before: list[OperationBuilde
     """Warn of an operation that says nothing of coolant behind one that leaves it on: the way home switches it off."""
     coolants = [event for each in before for event in each.events if isinstance(event, Coolant)]
     own = any(isinstance(event, Coolant) and event.kind != "OFF" for event in builder.events)
-    if builder.continues and coolants and coolants[-1].kind != "OFF" and not own:
+    if coolants and coolants[-1].kind != "OFF" and not own:
         what = f"operation {builder.name} has no COOLNT: that of the one before ends with it, and its cuts are dry"
         diagnostics.remark(builder.line, what, f"write COOLNT/{coolants[-1].kind} in each operation that needs it")
 
 
-def _report_lost_side(builder: OperationBuilder, side: CutterComp | None, diagnostics: Diagnostics) -> None:
-    """Report an operation that cuts with the radius compensation of the one before: the way home ends that."""
-    if not builder.continues or side is None or side.side == "OFF":
-        return
+def _last_side(builder: OperationBuilder, side: CutterComp | None) -> CutterComp | None:
+    """The CUTCOM in force at the end of an operation; None if there is none, or it is OFF."""
+    last = next((event for event in reversed(builder.events) if isinstance(event, CutterComp)), side)
+    return None if last is None or last.side == "OFF" else last
+
+
+def _cuts_before_side(builder: OperationBuilder) -> bool:
+    """Whether an operation cuts before a CUTCOM of its own."""
     own = next((event.row for event in builder.events if isinstance(event, CutterComp)), builder.stop - builder.first)
-    if set(range(own)) - set(builder.rapids):
-        what = f"CUTCOM/{side.side} of line {side.line} ends with its operation: {builder.name} cuts without it"
-        cure = f"write CUTCOM/OFF at the end of the operation before, and CUTCOM/{side.side} before its first cut"
-        diagnostics.remark(builder.line, what, cure)
+    return bool(set(range(own)) - set(builder.rapids))
+
+
+def _side_lost(
+    before: list[OperationBuilder],
+    builder: OperationBuilder,
+    side: CutterComp | None,
+    loads: list[LoadTool],
+    number: int | None,
+    diagnostics: Diagnostics,
+) -> CutterComp | None:
+    """Report an operation that cuts on with the radius compensation of the one before: the way home ends that.
+
+    With the same tool its path would be off by the radius, which is an error. Another tool begins without, as a remark
+    says. Return what is still to report at the operations that follow.
+    """
+    if side is None:
+        return None
+    changes = any(_has_other_tool(each, builder, loads, number) for each in before)
+    if not _cuts_before_side(builder):
+        return None if changes else side
+    what = f"operation {builder.name} cuts without CUTCOM, and that of line {side.line} ({side.side}) is still on"
+    cure = f"write CUTCOM/OFF before the operation before ends, or CUTCOM/{side.side} before the first cut of this one"
+    if changes:
+        diagnostics.remark(builder.line, f"{what}: with another tool it ends", cure)
+    else:
+        diagnostics.error(builder.line, what, cure)
+    return None
 
 
 def _begins_with_cut(before: OperationBuilder, builder: OperationBuilder) -> bool:

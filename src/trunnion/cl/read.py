@@ -160,7 +160,8 @@ def read_source(
     unit = interpreter.unit(units)
     if unit != 1.0:
         columns.tip[: scanner.rows] *= unit
-    builders = join_cuts(join_first_tool(interpreter.builders, diagnostics), diagnostics)
+    builders = join_first_tool(interpreter.builders, diagnostics)
+    builders = join_cuts(builders, diagnostics, in_sections=recognized.dialect.in_sections)
     columns = with_spline_points(builders, columns, scanner.rows, unit, spline_tolerance, diagnostics)
     modal_axis = np.array([0.0, 0.0, 1.0])
     operations = tuple(assemble_operation(builder, columns, unit, modal_axis, diagnostics) for builder in builders)

@@ -1,11 +1,11 @@
 """Whether a CL file that was written says what the toolpath does: it is read again and compared, row by row.
 
-What dialects say in different words is the same here: a tool that is loaded again, a cycle that ends with its
-operation, a depth with or without its sign, a retract that is that of the rapid height.
+What dialects say in different words is the same here: a tool that is loaded again, a cycle or radius compensation that
+ends with its operation, a depth with or without its sign, a retract that is that of the rapid height.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, Final, NamedTuple
@@ -18,6 +18,7 @@ from trunnion.cl.writers import WRITERS
 from trunnion.cl.writers.checks import rows_with_own_feed
 from trunnion.errors import InputError, Problem
 from trunnion.model.toolpath import (
+    CutterComp,
     CycleOff,
     CycleOn,
     Event,
@@ -64,9 +65,10 @@ def read_back_problems(expected: Toolpath, path: Path, dialect: str) -> list[Pro
         return [Problem(expected.file, 0, f"as {title} it would be taken for {found.recognized}", _CURE)]
     if expected.dialect == dialect and not _same_system(expected.system, found.system):
         return [Problem(expected.file, 0, f"as {title} it would read back in another coordinate system", _CURE)]
+    names = {name for each in (expected, found) for operation in each.operations for name in operation.joined}
     return [
         Problem(expected.file, line, f"as {title} it would read back with another {what}", _CURE)
-        for line, what in _differences(_Rows.of(expected), _Rows.of(found))
+        for line, what in _differences(_Rows.of(expected, names), _Rows.of(found, names))
     ]
 
 
@@ -82,7 +84,8 @@ class _Rows(NamedTuple):
     line: Any
 
     @staticmethod
-    def of(toolpath: Toolpath) -> "_Rows":
+    def of(toolpath: Toolpath, names: Set[str]) -> "_Rows":
+        """The rows without messages that are ``names`` of joined operations: one file may have operations for them."""
         operations = [operation for operation in toolpath.operations if len(operation.moves) or operation.events]
         begins = np.cumsum([0, *(len(operation.moves) for operation in operations)]).tolist()
         moves, arcs = [o.moves for o in operations], [o.arcs for o in operations]
@@ -103,7 +106,7 @@ class _Rows(NamedTuple):
             "tool diameter": np.concatenate([np.full(len(o.moves), o.tool.diameter) for o in operations]),
         }
         line = np.concatenate([m.line for m in moves])
-        return _Rows(columns, list(_said(operations, begins)), line)
+        return _Rows(columns, list(_said(operations, begins, names)), line)
 
 
 def _differences(expected: _Rows, found: _Rows) -> Iterator[tuple[int, str]]:
@@ -142,16 +145,17 @@ def _differ(name: str, ours: Floats, theirs: Floats) -> Any:
     return off.any(axis=1) if off.ndim == 2 else off
 
 
-def _said(operations: list[Operation], begins: list[int]) -> Iterator[tuple[int, int, tuple[object, ...]]]:
+def _said(
+    operations: list[Operation], begins: list[int], names: Set[str]
+) -> Iterator[tuple[int, int, tuple[object, ...]]]:
     """Row, line and content of each event that changes something."""
     loaded: tuple[int, int] | None = None
     cycle: tuple[object, ...] | None = None
+    side = "OFF"
     for operation, begin in zip(operations, begins, strict=False):
-        names = list(operation.joined)
         for event in sorted(operation.events, key=lambda event: event.row):
             said = _content(event)
-            if isinstance(event, Message) and event.text in names:
-                names.remove(event.text)
+            if isinstance(event, Message) and not event.display and event.text in names:
                 continue
             if isinstance(event, LoadTool):
                 repeated = loaded is not None and loaded[0] == event.number and event.adjust in (0, loaded[1])
@@ -160,6 +164,8 @@ def _said(operations: list[Operation], begins: list[int]) -> Iterator[tuple[int,
                 repeated, cycle = said == cycle, said
             elif isinstance(event, CycleOff):
                 repeated, cycle = cycle is None, None
+            elif isinstance(event, CutterComp):
+                repeated, side = event.side == side == "OFF", event.side
             else:
                 repeated = isinstance(event, SetMode)
             if not repeated:
@@ -167,6 +173,9 @@ def _said(operations: list[Operation], begins: list[int]) -> Iterator[tuple[int,
         if cycle is not None:
             yield begin + len(operation.moves), operation.line, _content(CycleOff(0, 0))
             cycle = None
+        if side != "OFF":
+            yield begin + len(operation.moves), operation.line, _content(CutterComp(0, 0, "OFF"))
+            side = "OFF"
 
 
 def _content(event: Event) -> tuple[object, ...]:

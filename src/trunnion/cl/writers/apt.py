@@ -18,6 +18,7 @@ from trunnion.model.apt_cutter import apt_cutter
 from trunnion.model.arcs import FLAT_ARC
 from trunnion.model.frames import into_frame
 from trunnion.model.toolpath import (
+    CutterComp,
     CycleOff,
     CycleOn,
     Event,
@@ -161,6 +162,7 @@ class AptWriter(ClWriter):
             elif isinstance(event, LoadTool) and event.row > 0:
                 what = f"{operation.name} loads a second tool, and in {self.title} that begins another operation"
                 yield self._lost(event.line, what, "begin an operation for it, with its form")
+        yield from self._side_losses(operation)
         yield from self._feed_losses(operation)
 
     def arc_losses(self, operation: Operation, index: int) -> Iterator[Problem]:
@@ -179,6 +181,16 @@ class AptWriter(ClWriter):
             yield self._lost(event.line, what, "output the holes as motion")
         if not {"FEDTO", "RAPTO"} <= {word for word, _ in event.values}:
             yield self._lost(event.line, "CYCLE without FEDTO or RAPTO", "write the depth and the height of the cycle")
+
+    def _side_losses(self, operation: Operation) -> Iterator[Problem]:
+        """Radius compensation that is on at a GOHOME with motion behind it, which begins another operation here."""
+        side = "OFF"
+        for event in operation.events:
+            if isinstance(event, CutterComp):
+                side = event.side
+            elif isinstance(event, GoHome) and 0 < event.row < len(operation.moves) and side != "OFF":
+                what = f"CUTCOM/{side} is on at GOHOME, and in {self.title} another operation begins behind it"
+                yield self._lost(event.line, what, "write CUTCOM/OFF before GOHOME")
 
     def _feed_losses(self, operation: Operation) -> Iterator[Problem]:
         """Points without a feed behind operations that have one: here feeds go on."""
@@ -209,9 +221,11 @@ class AptWriter(ClWriter):
         return [*lines, *self._title] if isinstance(event, GoHome) and event.row < self._rows else lines
 
     def end(self, operation: Operation) -> list[str]:
-        """The end of a cycle: in a toolpath it ends with its operation."""
+        """The ends of a cycle and of radius compensation: in a toolpath they end with their operation."""
         cycles = [event for event in operation.events if isinstance(event, CycleOn | CycleOff)]
-        return self.statement("CYCLE", "OFF") if cycles and isinstance(cycles[-1], CycleOn) else []
+        lines = self.statement("CYCLE", "OFF") if cycles and isinstance(cycles[-1], CycleOn) else []
+        sides = [event.side for event in operation.events if isinstance(event, CutterComp)]
+        return [*lines, *(self.statement("CUTCOM", "OFF") if sides and sides[-1] != "OFF" else [])]
 
     def foot(self) -> list[str]:
         """The end of the file."""
