@@ -134,9 +134,9 @@ def test_tools_have_no_names(post: Post) -> None:
 
 
 def test_a_line_longer_than_the_control_reads_is_refused(post: Post) -> None:
-    code, lines, err = post.all(HEAD + FOOT, "--set", f"title={'x' * 250}")
-    assert (code, lines) == (2, [])
-    assert "a line has more than the 255 bytes that LinuxCNC reads" in err
+    code, lines, err = post.all(HEAD + f"INSERT/(MSG, {'x' * 250})\n" + FOOT)
+    assert (code, lines) == (1, [])
+    assert "255" in err
 
 
 def test_what_was_written_is_posted_again_for_another_machine_and_control(post: Post, tmp_path: Path) -> None:
