@@ -21,8 +21,11 @@ CYCLE_32 = "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1"
 WORDS = [
     ("matsuura_mx330", ["G05.1 Q1", "G05.1 Q1 R10", "G05.1 Q3 X0 Y0 Z0", "G05.1 Q0"], ["G05.1 Q8", "G05.1 Q1 R11"]),
     ("matsuura_mx330", ["G05 P10000", "G05 P0", "G08 P1", "G08 P0"], ["G05 P1000", "G08 P2"]),
-    ("matsuura_mx330", ["G10 L2 P6 X1.", "G10 L20 P1 X1.", "G10 L12 P5 R3."], ["G10 L2 P0 X1.", "G10 L20 P0 X1."]),
+    ("matsuura_mx330", ["G10 L2 P6 X1.", "G10 L20 P1 X1."], ["G10 L12 P5 R3.", "G10 L2 P0 X1.", "G10 L20 P0 X1."]),
     ("matsuura_mx330", ["G30 P2 Z0", "G4 P1500"], ["G30 P9 Z0", "G10 L12 P0 R3.", "G4 P-5", "G10 L4 P1 R3."]),
+    ("matsuura_mx330", [], ["G10 L1 P3 R1.", "G10 L3 P1 L50", "G10 L10 P3 R5.", "G10 L11 P3 R0.1", "G10 L13 P3 R0.1"]),
+    ("xyzac_trt", ["G10 L2 P1 X1", "G10 L0", "M68 E2 Q1"], ["G10 L1 P6 Z5", "G10 L10 P6 Z5", "G10 L11 P6 Z5"]),
+    ("xyzac_trt", [], ["M68 E3 Q0", "M67 E3 Q1"]),
     ("haas_umc750", ["G187 P1", "G187 P3 E0.02"], ["G187 P4", "G187 P"]),
     ("xyzac_trt", ["G64 P0.02 Q0.01", "M50 P0", "M66 P3 L4 Q1"], ["G64 P-0.02", "M50 P2", "M66 P3 L5 Q1"]),
     ("hs664rt", ["G17 Q1", "G4 HD1."], ["G17 Q2", "G4 HD-1", "G4", "G1 F100\nG4 HD1. X5."]),

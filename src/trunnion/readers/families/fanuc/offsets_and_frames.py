@@ -113,7 +113,7 @@ class OffsetInterpreter(CallInterpreter):
         control.update_frame()
 
     def _set_data(self, block: Block) -> None:
-        """G10: set a work offset, or data of tools."""
+        """G10: set a work offset; what writes data of tools is an error, as the path does not show it."""
         control = self.control
         kind, number = block.take("L"), block.take("P")
         known = words.DATA_NUMBERS.get(int(kind)) if kind is not None and kind == int(kind) else None
@@ -122,9 +122,10 @@ class OffsetInterpreter(CallInterpreter):
             for letter in "RXYZQDH":
                 block.take(letter)
             raise BlockError(fault)
-        if kind in (10.0, 11.0, 12.0, 13.0, 1.0, 3.0):
+        if kind is not None and kind in words.TOOL_DATA:
             for letter in "RXYZQDH":
                 block.take(letter)
+            self._note(f"G10 L{kind:g} {words.TOOL_DATA[int(kind)]}: not simulated", Severity.ERROR)
             return
         if (
             kind not in (2.0, 20.0)

@@ -136,8 +136,18 @@ VALUES: Final = {
     (OTHER_HOME, "P"): whole(2, 4),
 }
 
-#: G10: what P may be, by L. Those besides L2 and L20 are data of tools.
-DATA_NUMBERS: Final = {2: whole(1, 6), 20: whole(1, 300), **dict.fromkeys((1, 3, 10, 11, 12, 13), whole(1, 999))}
+#: G10: what it writes into the data of tools, by L.
+TOOL_DATA: Final = {
+    1: "writes the offset of a tool",
+    3: "writes the groups of the tool life, which call other tools",
+    10: "writes the length of a tool",
+    11: "writes the wear of a tool's length",
+    12: "writes the radius of a tool",
+    13: "writes the wear of a tool's radius",
+}
+
+#: G10: what P may be, by L.
+DATA_NUMBERS: Final = {2: whole(1, 6), 20: whole(1, 300), **dict.fromkeys(TOOL_DATA, whole(1, 999))}
 
 #: M codes that act after the motion of their block.
 AFTER_MOTION: Final = frozenset({0, 1, 2, 5, 9, 30, 98, 99, 198})

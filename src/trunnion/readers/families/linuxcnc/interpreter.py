@@ -213,6 +213,8 @@ class LinuxcncInterpreter(CycleInterpreter):
         for letter in words.WITHOUT_PATH_EFFECT_M.get(code, "") or words.WORDS_OF_M_CODE.get(code, ""):
             value, known = block.take(letter), words.VALUES_M.get((code, letter))
             fault = "" if value is None or known is None else fault_of_value(f"M{code}", letter, value, known)
+            if code in words.ANALOG_OUTPUTS and letter == "E" and value == words.KINEMATICS_OUTPUT:
+                fault = f"M{code} E{value:g} switches the kinematics: not simulated; M428 and M429 are"
             if fault:
                 self._note(fault, Severity.ERROR)
         if code in (words.TCP_ON, words.TCP_OFF):

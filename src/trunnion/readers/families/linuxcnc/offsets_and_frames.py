@@ -11,6 +11,7 @@ from trunnion.readers.control.affine_map import rotation_matrix
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import RAPID
+from trunnion.readers.families.linuxcnc import words
 from trunnion.readers.families.linuxcnc.control import ORDER, LinuxcncControl, Offset
 from trunnion.readers.families.linuxcnc.flow import OWordInterpreter
 from trunnion.readers.families.linuxcnc.words import AXIS_OFFSET_SWITCHES, AXIS_OFFSETS, DWELL, HOMES, SET_DATA
@@ -80,13 +81,15 @@ class OffsetInterpreter(OWordInterpreter):
         control.update_frame()
 
     def _set_data(self, block: Block) -> None:
-        """G10: set a work offset, or data of a tool."""
+        """G10: set a work offset; what writes data of a tool is an error, as the path does not show it."""
         control = self.control
         kind = block.take("L")
         system = block.take("P")
-        if kind in (0.0, 1.0, 10.0, 11.0):
+        if kind in words.TOOL_DATA or kind == words.RELOAD_TOOLS:
             for letter in "XYZABCUVWRIJQ":
                 block.take(letter)
+            if kind in words.TOOL_DATA:
+                self._note(f"G10 L{kind:g} writes length and radius of a tool: not simulated", Severity.ERROR)
             return
         if kind not in (2.0, 20.0) or system is None or system != int(system) or not 0 <= system <= 9:
             raise BlockError("G10 needs L2 or L20, and P from 0 to 9")

@@ -104,6 +104,14 @@ WITHOUT_PATH_EFFECT_M: Final = {
     68: "EQ",
 }
 
+#: G10: L that writes length and radius of a tool, and the one that reads the tool table again.
+TOOL_DATA: Final = frozenset({1, 10, 11})
+RELOAD_TOOLS: Final = 0
+
+#: M codes that set an analog output, and the output that switches the kinematics where these can be switched.
+ANALOG_OUTPUTS: Final = frozenset({67, 68})
+KINEMATICS_OUTPUT: Final = 3
+
 #: What the values of these words may be, by G code or M code, and letter.
 VALUES: Final = {(430, "H"): whole(0, 99999), (410, "D"): whole(0, 99999), (420, "D"): whole(0, 99999)}
 VALUES_M: Final = {
