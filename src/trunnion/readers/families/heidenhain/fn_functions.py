@@ -16,7 +16,7 @@ from trunnion.readers.families.heidenhain.parameters import (
     formula,
     guarded,
 )
-from trunnion.readers.families.heidenhain.words import FN_NOT_SIMULATED
+from trunnion.readers.families.heidenhain.words import FN_NOT_SIMULATED, FN_SYSTEM_DATA
 
 #: The left side of an assignment to a parameter.
 ASSIGNED: Final = re.compile(r"(Q[LR]?[0-9]{1,4})[ \t]*=[ \t]*")
@@ -67,7 +67,8 @@ def execute(text: str, parameters: Parameters, note: Note) -> str | None:
     if number in _CONDITIONS:
         return _jump(number, rest, parameters)
     if number in FN_NOT_SIMULATED:
-        note(f"FN {number} {FN_NOT_SIMULATED[number]}: not simulated", Severity.WARNING)
+        severity = Severity.ERROR if number == FN_SYSTEM_DATA else Severity.WARNING
+        note(f"FN {number} {FN_NOT_SIMULATED[number]}: not simulated", severity)
         return None
     target = ASSIGNED.match(rest.removeprefix("SYSREAD").lstrip() if number == _SYSTEM else rest)
     if target is None:

@@ -161,6 +161,9 @@ CYCLES_NOT_SIMULATED: Final = {
     274: "OCM side finishing", 275: "trochoidal slot", 276: "three-dimensional contour train",
 }  # fmt: skip
 
+#: Writes system data, those of tools and presets among them, which the path does not show.
+FN_SYSTEM_DATA: Final = 17
+
 #: FN functions that are not simulated: what they do.
 FN_NOT_SIMULATED: Final = {
     14: "an error message", 15: "prints", 16: "prints to a file", 17: "writes system data", 19: "speaks to the PLC",
