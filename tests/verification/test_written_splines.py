@@ -161,15 +161,12 @@ def test_by_default_and_where_it_is_not_certain_splines_are_lines(folder: Path, 
     tilted.write_text(PART.replace("0,0,50,0,0,1", "0,0,50,0,0.6,0.8"))
     compensated = tmp_path / "compensated.cls"
     compensated.write_text(PART.replace("GOTO/30,-5,5", "GOTO/30,-5,5\nCUTCOM/LEFT"))
-    other_start = tmp_path / "start.cls"
-    other_start.write_text(PART.replace("NURBS/\nKNOT/0.25", "FROM/0,0.1,5\nNURBS/\nKNOT/0.25"))
     asked = {"splines": "polynomial"}
     cases = [
         (folder / "part.cls", {}, 0),
         (tilted, asked, 0),
         (compensated, asked, 0),
         (folder / "part.cls", {**asked, "programs": "operations", "split": "1000"}, 0),
-        (other_start, asked, 1),
     ]
     for cl, setting, count in cases:
         planned = trunnion.plan(cl, machine="yl569", settings=setting)
