@@ -168,27 +168,26 @@ def difference_stretches(
     """Count the stretches of each ray outside another solid in ``at``; or write them, as ``_difference`` has them."""
     for ray in range(len(first) - 1):
         for s in range(first[ray], first[ray + 1]):
-            start, from_slope = ends[2 * s], slope[2 * s]
+            start, from_slope, from_other = ends[2 * s], slope[2 * s], False
             for m in range(other_first[ray], other_first[ray + 1] + 1):
                 last = m == other_first[ray + 1]
-                end, to_slope = ends[2 * s + 1], slope[2 * s + 1]
+                end, to_slope, to_other = ends[2 * s + 1], slope[2 * s + 1], False
                 if not last:
                     if other_ends[2 * m + 1] <= start:
                         continue
                     if other_ends[2 * m] < end:
-                        end, to_slope = other_ends[2 * m], other_slope[2 * m]
+                        end, to_slope, to_other = other_ends[2 * m], other_slope[2 * m], True
                 if end - start > 1e-7:
                     if not counting:
                         k = at[ray]
                         table[k, 0], table[k, 1] = start, end
                         table[k, 2] = (end - start) * min(from_slope, to_slope)
-                        below, above = m > other_first[ray], m < other_first[ray + 1]
-                        table[k, 3] = other_rows[2 * m - 1] if below else -1.0
-                        table[k, 4] = other_rows[2 * m] if above else -1.0
+                        table[k, 3] = other_rows[2 * m - 1] if from_other else -1.0
+                        table[k, 4] = other_rows[2 * m] if to_other else -1.0
                     at[ray] += 1
                 if last or other_ends[2 * m + 1] >= ends[2 * s + 1]:
                     break
-                start, from_slope = other_ends[2 * m + 1], other_slope[2 * m + 1]
+                start, from_slope, from_other = other_ends[2 * m + 1], other_slope[2 * m + 1], True
 
 
 @kernel(writes="at ends slopes")
