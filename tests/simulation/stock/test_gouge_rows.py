@@ -24,10 +24,3 @@ def test_a_wall_across_a_pocket_did_not_cut_this_one() -> None:
 def test_a_gouge_through_a_wall_is_that_of_both_surfaces() -> None:
     _, table = _difference(_spans([0.0, 10.0]), _spans([0.0, 4.0, 6.0, 10.0], [-1, 7, 8, -1]))
     assert table[:, 3:].tolist() == [[7.0, 8.0]]
-
-
-def test_a_rib_that_is_gone_is_told_by_what_is_left_around_it() -> None:
-    solid, left = _spans([0.0, 2.0, 5.0, 6.0, 8.0, 9.0]), _spans([0.0, 2.0, 8.0, 9.0], [-1, 7, 8, -1])
-    _, table = _difference(solid, left)
-    assert table[:, :2].tolist() == [[5.0, 6.0]]
-    assert table[:, 3:].tolist() == [[7.0, 8.0]]

@@ -142,7 +142,7 @@ def _slopes(spans: Spans) -> Floats:
 
 def _difference(solid: Spans, other: Spans) -> tuple[Ints, Floats]:
     """Stretches of a solid outside another: first of each ray, and for each start, end, thickness, and the rows that
-    cut the other where it ends below, and where it begins above; -1 for none, and where only air is between."""
+    cut the other where it ends below, and where it begins above; -1 for none."""
     counts = np.zeros(len(solid.first) - 1, np.int64)
     arrays = solid.first, solid.ends, _slopes(solid), other.first, other.ends, _slopes(other)
     difference_stretches(*arrays, other.rows, counts, np.zeros((0, 5)), True)
@@ -168,32 +168,26 @@ def difference_stretches(
     """Count the stretches of each ray outside another solid in ``at``; or write them, as ``_difference`` has them."""
     for ray in range(len(first) - 1):
         for s in range(first[ray], first[ray + 1]):
-            start, from_slope = ends[2 * s], slope[2 * s]
+            start, from_slope, from_other = ends[2 * s], slope[2 * s], False
             for m in range(other_first[ray], other_first[ray + 1] + 1):
                 last = m == other_first[ray + 1]
-                end, to_slope = ends[2 * s + 1], slope[2 * s + 1]
+                end, to_slope, to_other = ends[2 * s + 1], slope[2 * s + 1], False
                 if not last:
                     if other_ends[2 * m + 1] <= start:
                         continue
                     if other_ends[2 * m] < end:
-                        end, to_slope = other_ends[2 * m], other_slope[2 * m]
+                        end, to_slope, to_other = other_ends[2 * m], other_slope[2 * m], True
                 if end - start > 1e-7:
                     if not counting:
                         k = at[ray]
                         table[k, 0], table[k, 1] = start, end
                         table[k, 2] = (end - start) * min(from_slope, to_slope)
-                        below, above = m > other_first[ray], not last
-                        # Beyond air, the other's surface is not the one that is left here: a rib that is gone has none.
-                        starts = below and other_ends[2 * m - 1] >= start
-                        stops = above and other_ends[2 * m] <= end
-                        if starts or stops:
-                            below, above = starts, stops
-                        table[k, 3] = other_rows[2 * m - 1] if below else -1.0
-                        table[k, 4] = other_rows[2 * m] if above else -1.0
+                        table[k, 3] = other_rows[2 * m - 1] if from_other else -1.0
+                        table[k, 4] = other_rows[2 * m] if to_other else -1.0
                     at[ray] += 1
                 if last or other_ends[2 * m + 1] >= ends[2 * s + 1]:
                     break
-                start, from_slope = other_ends[2 * m + 1], other_slope[2 * m + 1]
+                start, from_slope, from_other = other_ends[2 * m + 1], other_slope[2 * m + 1], True
 
 
 @kernel(writes="at ends slopes")
