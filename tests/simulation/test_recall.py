@@ -42,7 +42,7 @@ def _some(contour: Sound, hub: Sound, reference: Reference) -> Iterator[Defect]:
 
 def test_defects_are_found_in_the_right_block(sounds: list[Sound], references: list[Reference], folder: Path) -> None:
     found = []
-    for defect in _some(*sounds, references[1]):
+    for defect in _some(sounds[0], sounds[1], references[1]):
         reference = references[sounds.index(next(each for each in sounds if each.name == defect.sound.name))]
         found.append(outcome(defect, reference, folder))
     assert len(found) >= 15
