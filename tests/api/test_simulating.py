@@ -256,6 +256,19 @@ def test_a_program_with_an_error_cuts_up_to_there(tmp_path: Path) -> None:
     assert [remark for remark in found.remarks if "it is cut up to there" in remark.what]
 
 
+@pytest.mark.parametrize(
+    ("argument", "value"),
+    [("nc", 5), ("nc", []), ("tools", [7]), ("fixtures", 3), ("part", 4), ("cell", -1.0), ("threads", 0)],
+)
+def test_an_argument_that_is_none_is_named(tmp_path: Path, argument: str, value: object) -> None:
+    given: dict[str, object] = {"nc": tmp_path / "part.ngc", "machine": "xyzac_trt", "stock": STOCK, "tools": TOOL}
+    (tmp_path / "part.ngc").write_text(SLOT)
+    assert trunnion.simulate(**given, cell=1.0).passed  # type: ignore[arg-type]
+    with pytest.raises(trunnion.InputError) as raised:
+        trunnion.simulate(**given | {argument: value})  # type: ignore[arg-type]
+    assert raised.value.problems[0].file == argument
+
+
 def test_a_tool_is_never_guessed(tmp_path: Path) -> None:
     with pytest.raises(trunnion.InputError, match="tool 1"):
         simulate(tmp_path, SLOT, tools=[])

@@ -1,6 +1,7 @@
 """Simulation of NC programs: what they leave of the stock, what they hit, and the part that comes out."""
 
 import math
+import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, Final, Literal
@@ -8,17 +9,17 @@ from typing import Any, Final, Literal
 import numpy as np
 
 from trunnion import readers, simulation
-from trunnion.api.arguments import check_choice, check_observer, check_paths, check_whole, wrong_argument
+from trunnion.api.arguments import check_choice, check_observer, check_path, check_paths, check_whole, wrong_argument
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.api.settings import check_tolerance, set_up_machine
-from trunnion.api.simulation_result import NO_CALL, SimulationResult, file_of_row, make_result
+from trunnion.api.simulation_remarks import simulation_remarks
+from trunnion.api.simulation_result import NO_CALL, SimulationResult, make_result
 from trunnion.api.verifying import rapid_feed_of
-from trunnion.errors import InputError, Problem, Severity, argument_problem, merge_repeated
+from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.simulation.collisions import Collision, check_collisions, fixture_body, machine_bodies, part_body
-from trunnion.simulation.cutting.sweeps import sideways_exits, unknown_swivels
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
 from trunnion.simulation.simulator import Job, Setup
 from trunnion.simulation.stock.solids import StockShape, check_narrow_tools, default_cell, stock_shape
@@ -131,12 +132,13 @@ def simulate(
     check_tolerance("near", near, optional=True)
     mesh = None if part is None else _mesh(part, "part", remarks)
     design = None if mesh is None else StockShape(mesh.bounds[0], mesh.bounds[1], mesh=mesh)
-    around = [_mesh(fixture, f"fixture {k}", remarks) for k, fixture in enumerate(_listed(fixtures), 1)]
-    programs = [nc] if isinstance(nc, Run | str) or hasattr(nc, "__fspath__") else list(nc)
+    given = _listed("fixtures", fixtures, TriangleMesh)
+    around = [_mesh(fixture, f"fixture {k}", remarks) for k, fixture in enumerate(given, 1)]
+    programs: list[FilePath | Run] = _listed("nc", nc, Run)
     if not programs:
         raise wrong_argument("nc", nc, "give an NC program")
     others, rapid_feed = check_paths("subprograms", subprograms), rapid_feed_of(loaded)
-    runs = [restore_rapids(as_run(program, loaded, others), rapid_feed) for program in programs]  # type: ignore[arg-type]
+    runs = [restore_rapids(as_run(program, loaded, others), rapid_feed) for program in programs]
     toolpaths = as_toolpaths(cl, None, False, observer)
     shapes = _tools(runs, tools, _libraries(libraries, unit), toolpaths)
     widths = {name: _cutting_width(tool) for name, tool in shapes.items()}
@@ -144,7 +146,7 @@ def simulate(
     check_narrow_tools(widths, wide)
     setup = Setup(shape, design, wide, accuracy or _TOLERANCE * wide)
     simulation.check_cell(shape, wide)
-    remarks += [*_remarks(runs, shapes), *_unknown_ways(runs, shape), *_lengths(runs), *_outside(setup)]
+    remarks += simulation_remarks(setup, runs, shapes)
     jobs = [_job(run, shapes, until if run is runs[-1] else None) for run in runs]
     remarks += [Problem(job.run.files[0], 0, job.broken_off) for job in jobs if job.broken_off]
     observer.problems(remarks)
@@ -177,13 +179,19 @@ def simulate(
 def _mesh(mesh: str | Path | TriangleMesh, name: str, remarks: list[Problem]) -> TriangleMesh:
     if isinstance(mesh, TriangleMesh):
         return mesh.named(name)
+    check_path(name, mesh)
     return load_mesh(mesh, name=name, closed=True, warn=remarks.append)
 
 
-def _listed(fixtures: Any) -> list[Any]:
-    """One fixture, or several."""
-    alone = isinstance(fixtures, str | Path | TriangleMesh)
-    return [fixtures] if alone else list(fixtures)
+def _listed(name: str, values: Any, record: type) -> list[Any]:
+    """One or several texts, paths or records; errors name the argument."""
+    single = (str, os.PathLike, record)
+    if isinstance(values, single):
+        return [values]
+    listed = list(values) if isinstance(values, Iterable) else [None]
+    if not all(isinstance(value, single) for value in listed):
+        raise wrong_argument(name, values, f"give a text, a path, a {record.__name__}, or a list of them")
+    return listed
 
 
 def _collisions(
@@ -231,7 +239,8 @@ def _tools(
 ) -> dict[str, ToolShape]:
     """The bodies of the tools with which the programs move at feed or at rapid."""
     diameters = {number: wide for library in reversed(read) for number, wide in library.diameters.items()}
-    stated = [tool if isinstance(tool, ToolShape) else parse_tool(tool, diameters) for tool in tools]
+    given = _listed("tools", tools, ToolShape)
+    stated = [tool if isinstance(tool, ToolShape) else parse_tool(tool, diameters) for tool in given]
     called = [run.tools[int(index)] for run in runs for index in run.state.tool.distinct()]
     in_spindle = any(tool.number == int(NO_CALL) for tool in stated)
     if in_spindle or any(_cuts_without_call(run) for run in runs):
@@ -256,82 +265,6 @@ def _cutting_width(tool: ToolShape) -> float:
         for element in section.outline for point in (element.start, element.end)
     ]  # fmt: skip
     return 2.0 * max((radius for radius, _ in points), default=math.inf)
-
-
-def _lengths(runs: Sequence[Run]) -> list[Problem]:
-    """Cuts without a tool length, or with that of another tool, in programs that select lengths."""
-    found = []
-    for run in runs:
-        rows = np.flatnonzero(run.kind != Kind.RAPID)
-        edge, tool = run.edge[rows], run.tool[rows]
-        unset = -1 if run.uses_length_numbers else 0
-        if (edge == unset).any() and (edge > 0).any():
-            row = int(rows[np.argmax(edge == unset)])
-            what, cure = "cuts without a tool length, which other tools of the program have", "select it before the cut"
-            found.append(Problem(file_of_row(run, row), int(run.line[row]), what, cure))
-        if run.uses_length_numbers:
-            for number in np.unique(edge[edge > 0]).tolist():
-                own = np.flatnonzero(edge == number)
-                others = own[tool[own] != tool[own[0]]]
-                if len(others):
-                    row = int(rows[others[0]])
-                    what = f"cuts with the length of tool {run.tools[int(tool[own[0]])]}, number {number}"
-                    found.append(Problem(file_of_row(run, row), int(run.line[row]), what, "select its own length"))
-    return found
-
-
-def _unknown_ways(runs: Sequence[Run], stock: StockShape) -> list[Problem]:
-    """Motions near the stock whose way is not known: across the tool axis to machine positions, and swivels."""
-    across = "goes to a machine position across the tool axis, and the tool is no higher than the stock"
-    first = "retract along the tool axis first, or give zero and tool_length, so that the way is known"
-    swivel = "turns rotary axes without TCP beside the stock, and nobody knows about which place"
-    known = "retract to a machine position first, or give zero and tool_length"
-    found = []
-    for run in runs:
-        for rows, what, cure in (
-            (sideways_exits(run, stock.low, stock.high), across, first),
-            (unknown_swivels(run, stock.low, stock.high), swivel, known),
-        ):
-            found += [Problem(file_of_row(run, row), int(run.line[row]), what, cure) for row in rows.tolist()]
-    return list(merge_repeated(found))
-
-
-def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]:
-    """What was taken for granted, and what is not simulated."""
-    found = [
-        Problem(f"tool {name}", 0, remark, severity=Severity.WARNING)
-        for name, shape in shapes.items()
-        for remark in shape.remarks
-    ]
-    for run in runs:
-        found += merge_repeated(
-            Problem(each.file, each.line, each.text, severity=Severity.WARNING)
-            for each in run.diagnostics
-            if each.severity is Severity.WARNING
-        )
-        compensated = run.state.compensation.rows_with(1), run.state.compensation.rows_with(-1)
-        rows = np.concatenate(compensated)
-        if len(rows):
-            row = int(rows.min())
-            what = "radius compensation is on: the programmed path is taken for that of the tool's centre"
-            cure = "compensation for wear is simulated as it should be; a programmed contour is not"
-            found.append(Problem(file_of_row(run, row), int(run.line[row]), what, cure, Severity.WARNING))
-        if run.machine.workpiece_zero is None and bool(run.state.machine_frame.values.any()):
-            what = "machine positions are taken as retracts along the tool axis: the workpiece zero is not known"
-            cure = "give zero and tool_length"
-            found.append(Problem(run.files[0], 0, what, cure, Severity.WARNING))
-    return found
-
-
-def _outside(setup: Setup) -> list[Problem]:
-    if setup.part is None:
-        return []
-    beyond = max(float((setup.stock.low - setup.part.low).max()), float((setup.part.high - setup.stock.high).max()))
-    if beyond <= setup.tolerance:
-        return []
-    what = f"reaches {beyond:.3f} mm beyond the stock: what is outside is not compared"
-    cure = "check the zero of part and stock"
-    return [Problem("part", 0, what, cure, Severity.WARNING)]
 
 
 def _job(run: Run, shapes: dict[str, ToolShape], until: str | int | None) -> Job:

@@ -1,10 +1,11 @@
 """The arguments of the command line."""
 
 import argparse
+import re
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from importlib import import_module
-from typing import Any, cast
+from typing import Any, Final, cast
 
 from trunnion import __version__
 
@@ -35,6 +36,9 @@ class _Setting(argparse.Action):
             )
         setattr(namespace, self.dest, [*settings, (key, value)])
 
+
+#: An option in a line of usage.
+_OPTION: Final = re.compile(r"--[a-z][a-z-]*")
 
 #: Dialects of CL files; listed here, so that a command line is taken apart before any reader is imported.
 DIALECTS = ("clsf", "ncl", "solidworks", "clt", "catia", "fusion", "apt")
@@ -108,7 +112,7 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
 
 def _unknown_option(words: Sequence[str], command: argparse.ArgumentParser) -> str:
     """The first word that looks like an option and is none, nor the beginning of one; empty if there is none."""
-    known = tuple(command._option_string_actions)  # noqa: SLF001 - there is no other list of them
+    known = _OPTION.findall(command.format_usage())
     for word in words:
         name = word.partition("=")[0]
         if name == "--":

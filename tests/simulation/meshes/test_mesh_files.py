@@ -178,3 +178,23 @@ def test_what_cannot_be_written_is_said_and_leaves_the_old_file(box: TriangleMes
         save_mesh(box, tmp_path / "old.stl", inputs=[tmp_path / "old.stl"])
     assert [path.name for path in tmp_path.iterdir()] == ["old.stl"]
     assert (tmp_path / "old.stl").read_bytes() == b"old"
+
+
+@pytest.mark.parametrize("ending", [".3mf", ".glb", ".ply", ".stl", ".obj"])
+def test_a_file_with_any_damaged_byte_is_read_or_refused(ending: str, box: TriangleMesh, tmp_path: Path) -> None:
+    path = tmp_path / f"box{ending}"
+    if ending == ".obj":
+        path.write_text(obj(box))
+    else:
+        save_mesh(box, path)
+    whole = path.read_bytes()
+    refused = 0
+    for at in range(0, len(whole), 3):
+        damaged = bytearray(whole)
+        damaged[at] ^= 0x55
+        path.write_bytes(damaged)
+        try:
+            load_mesh(path)
+        except InputError:
+            refused += 1
+    assert refused > 0

@@ -149,6 +149,8 @@ def _read_by_trimesh(ending: str) -> Callable[[bytes, str], tuple[Floats, Ints, 
             mesh = scene.to_mesh()
             vertices = np.array(mesh.vertices, np.float64).reshape(-1, 3)
             faces = np.array(mesh.faces, np.int64).reshape(-1, 3)
+        except (MemoryError, ImportError):
+            raise
         except Exception as error:  # whatever a parser raises for a damaged file
             reason = str(error).strip().split("\n")[0][:100] or type(error).__name__
             raise InputError(Problem(label, 0, f"is damaged: {reason}", "export it again")) from None

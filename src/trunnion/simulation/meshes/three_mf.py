@@ -3,6 +3,7 @@
 import io
 import xml.etree.ElementTree as ET
 import zipfile
+import zlib
 from dataclasses import dataclass, field
 from typing import Final
 from xml.sax.saxutils import quoteattr
@@ -47,7 +48,9 @@ def read_three_mf(data: bytes, label: str, max_bytes: int, max_facets: int) -> t
         collected = _Collected(objects, label, max_facets)
         for name, place in items:
             collected.add(name, place, 0)
-    except (KeyError, ValueError, ET.ParseError, zipfile.BadZipFile, NotImplementedError, EOFError, OSError) as error:
+    except (
+        KeyError, ValueError, ET.ParseError, zipfile.BadZipFile, zlib.error, NotImplementedError, EOFError, OSError,
+    ) as error:  # fmt: skip
         raise InputError(Problem(label, 0, f"is damaged: {error}", "export or copy it again")) from None
     except RuntimeError as error:  # a packed file with a password
         raise InputError(Problem(label, 0, f"cannot be unpacked: {error}", "export it again")) from None

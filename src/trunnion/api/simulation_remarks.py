@@ -1,0 +1,95 @@
+"""What a simulation cannot know of its programs, and what it takes for granted."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from trunnion.api.simulation_result import file_of_row
+from trunnion.errors import Problem, Severity, merge_repeated
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
+from trunnion.simulation.cutting.sweeps import sideways_exits, unknown_swivels
+from trunnion.simulation.simulator import Setup
+from trunnion.simulation.stock.solids import StockShape
+from trunnion.simulation.tools.profile import ToolShape
+
+
+def simulation_remarks(setup: Setup, runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]:
+    """Return all remarks: errors where a crash may be hidden, else warnings."""
+    return [*_remarks(runs, shapes), *_unknown_ways(runs, setup.stock), *_lengths(runs), *_outside(setup)]
+
+
+def _lengths(runs: Sequence[Run]) -> list[Problem]:
+    """Cuts without a tool length, or with that of another tool, in programs that select lengths."""
+    found = []
+    for run in runs:
+        rows = np.flatnonzero(run.kind != Kind.RAPID)
+        edge, tool = run.edge[rows], run.tool[rows]
+        unset = -1 if run.uses_length_numbers else 0
+        if (edge == unset).any() and (edge > 0).any():
+            row = int(rows[np.argmax(edge == unset)])
+            what, cure = "cuts without a tool length, which other tools of the program have", "select it before the cut"
+            found.append(Problem(file_of_row(run, row), int(run.line[row]), what, cure))
+        if run.uses_length_numbers:
+            for number in np.unique(edge[edge > 0]).tolist():
+                own = np.flatnonzero(edge == number)
+                others = own[tool[own] != tool[own[0]]]
+                if len(others):
+                    row = int(rows[others[0]])
+                    what = f"cuts with the length of tool {run.tools[int(tool[own[0]])]}, number {number}"
+                    found.append(Problem(file_of_row(run, row), int(run.line[row]), what, "select its own length"))
+    return found
+
+
+def _unknown_ways(runs: Sequence[Run], stock: StockShape) -> list[Problem]:
+    """Motions near the stock whose way is not known: across the tool axis to machine positions, and swivels."""
+    across = "goes to a machine position across the tool axis, and the tool is no higher than the stock"
+    first = "retract along the tool axis first, or give zero and tool_length, so that the way is known"
+    swivel = "turns rotary axes without TCP beside the stock, and nobody knows about which place"
+    known = "retract to a machine position first, or give zero and tool_length"
+    found = []
+    for run in runs:
+        for rows, what, cure in (
+            (sideways_exits(run, stock.low, stock.high), across, first),
+            (unknown_swivels(run, stock.low, stock.high), swivel, known),
+        ):
+            found += [Problem(file_of_row(run, row), int(run.line[row]), what, cure) for row in rows.tolist()]
+    return list(merge_repeated(found))
+
+
+def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]:
+    """What was taken for granted, and what is not simulated."""
+    found = [
+        Problem(f"tool {name}", 0, remark, severity=Severity.WARNING)
+        for name, shape in shapes.items()
+        for remark in shape.remarks
+    ]
+    for run in runs:
+        found += merge_repeated(
+            Problem(each.file, each.line, each.text, severity=Severity.WARNING)
+            for each in run.diagnostics
+            if each.severity is Severity.WARNING
+        )
+        compensated = run.state.compensation.rows_with(1), run.state.compensation.rows_with(-1)
+        rows = np.concatenate(compensated)
+        if len(rows):
+            row = int(rows.min())
+            what = "radius compensation is on: the programmed path is taken for that of the tool's centre"
+            cure = "compensation for wear is simulated as it should be; a programmed contour is not"
+            found.append(Problem(file_of_row(run, row), int(run.line[row]), what, cure, Severity.WARNING))
+        if run.machine.workpiece_zero is None and bool(run.state.machine_frame.values.any()):
+            what = "machine positions are taken as retracts along the tool axis: the workpiece zero is not known"
+            cure = "give zero and tool_length"
+            found.append(Problem(run.files[0], 0, what, cure, Severity.WARNING))
+    return found
+
+
+def _outside(setup: Setup) -> list[Problem]:
+    if setup.part is None:
+        return []
+    beyond = max(float((setup.stock.low - setup.part.low).max()), float((setup.part.high - setup.stock.high).max()))
+    if beyond <= setup.tolerance:
+        return []
+    what = f"reaches {beyond:.3f} mm beyond the stock: what is outside is not compared"
+    cure = "check the zero of part and stock"
+    return [Problem("part", 0, what, cure, Severity.WARNING)]
