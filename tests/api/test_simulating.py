@@ -111,6 +111,10 @@ def test_a_fixture_is_hit_and_come_near_to(tmp_path: Path) -> None:
     found = simulate(tmp_path, SLOT, fixtures=higher, stop_at="first")
     (finding,) = found.findings
     assert (finding.kind, finding.block, finding.between) == ("collision", 60, ("fixture 1", "cutter of 1"))
+    later = SLOT.replace("N70 G0 Z20", "N70 G0 X-20\nN80 G0 Y15\nN90 G0 X70\nN95 G0 Z20")
+    stopped = simulate(tmp_path, later, fixtures=higher, stop_at="first")
+    assert [one.block for one in stopped.findings] == [60]
+    assert 90 in {one.block for one in simulate(tmp_path, later, fixtures=higher).findings}
     assert finding.depth == pytest.approx(2.0, abs=0.1)
     assert found.remarks[-1].what.startswith("the bodies of the machine are not checked")
 
@@ -254,6 +258,11 @@ def test_a_program_with_an_error_cuts_up_to_there(tmp_path: Path) -> None:
     assert not found.passed
     assert found.removed == 0.0
     assert [remark for remark in found.remarks if "it is cut up to there" in remark.what]
+
+
+def test_a_file_that_is_no_program_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(trunnion.InputError, match="is this a program of xyzac_trt"):
+        simulate(tmp_path, "".join(f"line {k} of a text\n" for k in range(30)))
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 import math
 import os
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final, Literal
 
@@ -17,17 +18,22 @@ from trunnion.api.simulation_remarks import simulation_remarks
 from trunnion.api.simulation_result import NO_CALL, SimulationResult, make_result
 from trunnion.api.verifying import rapid_feed_of
 from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.simulation.collisions import Collision, check_collisions, fixture_body, machine_bodies, part_body
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
-from trunnion.simulation.simulator import Job, Setup
+from trunnion.simulation.simulator import Job, Setup, Simulation
 from trunnion.simulation.stock.solids import StockShape, check_narrow_tools, default_cell, stock_shape
 from trunnion.simulation.tools.choice import choose_tools, tools_of_toolpaths
 from trunnion.simulation.tools.library import ToolLibrary, read_tools
 from trunnion.simulation.tools.profile import Role, ToolShape
 from trunnion.simulation.tools.text import parse_tool
 from trunnion.verification import restore_rapids
+from trunnion.wording import counted
+
+#: Fewer errors do not say that a file is no program of the machine.
+_FEW_ERRORS: Final = 5
 
 #: Part of a cell within which motions are simulated by default.
 _TOLERANCE: Final = 0.1
@@ -139,6 +145,7 @@ def simulate(
         raise wrong_argument("nc", nc, "give an NC program")
     others, rapid_feed = check_paths("subprograms", subprograms), rapid_feed_of(loaded)
     runs = [restore_rapids(as_run(program, loaded, others), rapid_feed) for program in programs]
+    _check_programs(runs, loaded)
     toolpaths = as_toolpaths(cl, None, False, observer)
     shapes = _tools(runs, tools, _libraries(libraries, unit), toolpaths)
     widths = {name: _cutting_width(tool) for name, tool in shapes.items()}
@@ -150,9 +157,25 @@ def simulate(
     jobs = [_job(run, shapes, until if run is runs[-1] else None) for run in runs]
     remarks += [Problem(job.run.files[0], 0, job.broken_off) for job in jobs if job.broken_off]
     observer.problems(remarks)
-    total = sum(job.end for job in jobs)
+    told = len(remarks)
+    touched = [_collisions(job, number, mesh, around, near or 0.0, remarks) for number, job in enumerate(jobs)]
+    if stop_at == "first":
+        jobs = _up_to_first_hit(jobs, touched)
+    found = _cut(setup, jobs, stop_at == "first", threads, observer)
+    if found.leaks:
+        what = f"{found.leaks} of {found.stock.lattice.ray_count} rays pass a hole in it, and were left empty"
+        remarks.append(Problem("part", 0, what, "close the mesh", Severity.WARNING))
+    if found.start_volume - found.stock.volume <= 0.0:
+        what, cure = "takes nothing from the stock", "check the place of the stock, and the tools"
+        remarks.append(Problem(runs[0].files[0], 0, what, cure, Severity.WARNING))
+    observer.problems(remarks[told:])
+    return make_result(loaded.key, found, jobs, _until_stop(jobs, touched, found), tuple(remarks), toolpaths)
+
+
+def _cut(setup: Setup, jobs: Sequence[Job], to_first: bool, threads: int | None, observer: Observer) -> Simulation:
+    """Cut the stock, with progress."""
     done = 0
-    with observer.progress("cutting", total, "blocks") as tell:
+    with observer.progress("cutting", sum(job.end for job in jobs), "blocks") as tell:
 
         def progress(rows: int, _: int) -> None:
             nonlocal done
@@ -160,20 +183,27 @@ def simulate(
                 tell(rows - done)
                 done = rows
 
-        found = simulation.simulate(setup, jobs, stop_at_first=stop_at == "first", threads=threads, progress=progress)
-    if found.leaks:
-        what = f"{found.leaks} of {found.stock.lattice.ray_count} rays pass a hole in it, and were left empty"
-        remarks.append(Problem("part", 0, what, "close the mesh", Severity.WARNING))
-        observer.problems(remarks[-1:])
-    told = len(remarks)
-    if found.start_volume - found.stock.volume <= 0.0:
-        what, cure = "takes nothing from the stock", "check the place of the stock, and the tools"
-        remarks.append(Problem(jobs[0].run.files[0], 0, what, cure, Severity.WARNING))
-    touched = [
-        _collisions(job, number, mesh, around, near or 0.0, found.stopped, remarks) for number, job in enumerate(jobs)
-    ]
-    observer.problems(remarks[told:])
-    return make_result(loaded.key, found, jobs, touched, tuple(remarks), toolpaths)
+        return simulation.simulate(setup, jobs, stop_at_first=to_first, threads=threads, progress=progress)
+
+
+def _up_to_first_hit(jobs: Sequence[Job], touched: Sequence[Sequence[Collision]]) -> list[Job]:
+    """The jobs as far as the row in which bodies first touch."""
+    kept = []
+    for job, collisions in zip(jobs, touched, strict=True):
+        first = min((each.row for each in collisions if not each.is_near), default=None)
+        kept.append(job if first is None else replace(job, end=first + 1))
+        if first is not None:
+            break
+    return kept
+
+
+def _until_stop(
+    jobs: Sequence[Job], touched: Sequence[Sequence[Collision]], found: Simulation
+) -> list[list[Collision]]:
+    """The collisions of jobs in the rows that were simulated."""
+    last, row = found.stopped or (len(jobs), -1)
+    ends = [job.end if number < last else (row + 1 if number == last else 0) for number, job in enumerate(jobs)]
+    return [[each for each in own if each.row < end] for own, end in zip(touched, ends, strict=False)]
 
 
 def _mesh(mesh: str | Path | TriangleMesh, name: str, remarks: list[Problem]) -> TriangleMesh:
@@ -200,10 +230,9 @@ def _collisions(
     part: TriangleMesh | None,
     fixtures: Sequence[TriangleMesh],
     near: float,
-    stopped: tuple[int, int] | None,
     remarks: list[Problem],
 ) -> list[Collision]:
-    """What touches, or comes near, while a program runs as far as it was simulated."""
+    """What touches, or comes near, while a program runs as far as it is simulated."""
     machine = job.run.machine
     bodies = [fixture_body(mesh, machine) for mesh in fixtures]
     if fixtures and part is not None:
@@ -216,9 +245,8 @@ def _collisions(
         remarks.append(Problem(job.run.files[0], 0, what, cure, Severity.WARNING))
     if not bodies:
         return []
-    end = job.end if stopped is None or stopped[0] != number else stopped[1] + 1
     found = check_collisions(job.run, bodies, job.tools, near=near)
-    return [each for each in found if each.row < end]
+    return [each for each in found if each.row < job.end]
 
 
 def _lengths_known(job: Job) -> bool:
@@ -265,6 +293,16 @@ def _cutting_width(tool: ToolShape) -> float:
         for element in section.outline for point in (element.start, element.end)
     ]  # fmt: skip
     return 2.0 * max((radius for radius, _ in points), default=math.inf)
+
+
+def _check_programs(runs: Sequence[Run], machine: Machine) -> None:
+    """Refuse what is no program of the machine: more lines of it are not understood than it has motions."""
+    for run in runs:
+        wrong = sorted({(each.file, each.line): each for each in run.errors}.items())
+        if len(wrong) > max(_FEW_ERRORS, len(run)):
+            (file, line), first = wrong[0]
+            what = f"{first.text}; {counted(len(wrong), 'line')} of it not understood"
+            raise InputError(Problem(file, line, what, f"is this a program of {machine.key}?"))
 
 
 def _job(run: Run, shapes: dict[str, ToolShape], until: str | int | None) -> Job:

@@ -120,9 +120,12 @@ def test_the_result_does_not_depend_on_the_number_of_threads() -> None:
 
 def test_a_comb_of_many_slots_needs_more_room_and_gets_it() -> None:
     stock = block((0.0, 0.0, -5.2), (40.0, 8.0, 0.0), 0.4)
+    start, removed = stock.volume, 0.0
     for k in range(12):
-        cut_path(stock, path([(2.0 + 3.2 * k, -5.0, -3.2), (2.0 + 3.2 * k, 15.0, -3.2)]), flat(1.6, **BODY), 0.05)
+        cut = cut_path(stock, path([(2.0 + 3.2 * k, -5.0, -3.2), (2.0 + 3.2 * k, 15.0, -3.2)]), flat(1.6, **BODY), 0.05)
+        removed += float(cut.removed.sum())
     assert max(int(tile.count.max()) for tile in stock.tiles) == 13
+    assert removed == pytest.approx(start - stock.volume, rel=1e-9)
     assert stock.volume == pytest.approx(40.0 * 8.0 * 5.2 - 12 * 1.6 * 3.2 * 8.0, rel=1e-6)
 
 

@@ -202,9 +202,10 @@ def _pass(
                 if not found.hit or not _meets(ray, found.low, found.high, count, ends):
                     continue
                 if task == _CUT:
-                    _measure(k, ray, found, area, design_first, design, count, ends, measured)
-                    if not _remove(ray, found, row, count, ends, rows, normals):
+                    if not _fits(ray, found, count, ends):
                         return False
+                    _measure(k, ray, found, area, design_first, design, count, ends, measured)
+                    _remove(ray, found, row, count, ends, rows, normals)
                 else:
                     _meet(k, ray, u, v, found, count, ends, normals, measured, places, column)
     return True
@@ -303,10 +304,20 @@ def _thicker(
 
 
 @inner
-def _remove(ray: int, found: Ends, row: int, count: Lines, ends: Floats2, rows: Rows2, normals: Normals) -> bool:
-    """Take what the tool covers from a ray; False if it would have more stretches than there is room for."""
+def _fits(ray: int, found: Ends, count: Lines, ends: Floats2) -> bool:
+    """Whether a ray has room for what is left of it: a cut within a stretch makes two of it."""
+    if count[ray] < ends.shape[1] // 2:
+        return True
+    divided = False
+    for s in range(count[ray]):
+        divided = divided or (ends[ray, 2 * s] < found.low - TRACE and ends[ray, 2 * s + 1] > found.high + TRACE)
+    return not divided
+
+
+@inner
+def _remove(ray: int, found: Ends, row: int, count: Lines, ends: Floats2, rows: Rows2, normals: Normals) -> None:
+    """Take what the tool covers from a ray."""
     low, high = found.low, found.high
-    room = ends.shape[1] // 2
     s = 0
     while s < count[ray]:
         start, end = ends[ray, 2 * s], ends[ray, 2 * s + 1]
@@ -317,8 +328,6 @@ def _remove(ray: int, found: Ends, row: int, count: Lines, ends: Floats2, rows: 
             break
         keeps_start, keeps_end = start < low - TRACE, end > high + TRACE
         if keeps_start and keeps_end:
-            if count[ray] == room:
-                return False
             for m in range(2 * count[ray] - 1, 2 * s, -1):
                 _copy_end(ray, m, m + 2, ends, rows, normals)
             count[ray] += 1
@@ -335,7 +344,6 @@ def _remove(ray: int, found: Ends, row: int, count: Lines, ends: Floats2, rows: 
             for m in range(2 * s + 2, 2 * count[ray]):
                 _copy_end(ray, m, m - 2, ends, rows, normals)
             count[ray] -= 1
-    return True
 
 
 @inner
