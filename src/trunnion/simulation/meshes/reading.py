@@ -17,7 +17,7 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem, Severity, unusable_file
-from trunnion.simulation.extras import import_extra
+from trunnion.extras import import_extra
 from trunnion.simulation.meshes.findings import LARGEST_EXTENT, SMALLEST_EXTENT, MeshFindings, judge_mesh
 from trunnion.simulation.meshes.stl import read_stl
 from trunnion.simulation.meshes.three_mf import read_three_mf

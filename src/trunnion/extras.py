@@ -1,4 +1,4 @@
-"""Packages that only the simulation needs, imported when it does."""
+"""Packages of optional extras, imported when something needs them."""
 
 import importlib
 from typing import Any
