@@ -11,8 +11,8 @@ from typing import Any, Final
 import numpy as np
 
 from trunnion.arrays import Floats, Floats2, Floats3
-from trunnion.jit import inner, kernel
 from trunnion.extras import import_extra
+from trunnion.jit import inner, kernel
 from trunnion.simulation.meshes import TriangleMesh
 
 #: How many contacts are asked for when the place of a touch is told.
