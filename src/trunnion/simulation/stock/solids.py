@@ -40,12 +40,21 @@ _FORM: Final = "write box:X,Y,Z[,x0,y0,z0] or cylinder:D,H[,z0] in mm, or name a
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StockShape:
-    """A solid: its box, (3,) each, whether it is the upright cylinder in it, and its mesh if it has one."""
+    """A solid: its box, (3,) each, whether it is the upright cylinder in it, and its mesh if it has one.
+
+    kept  the lattice and the spans of stock that an earlier set-up has left
+    """
 
     low: Floats
     high: Floats
     is_cylinder: bool = False
     mesh: TriangleMesh | None = None
+    kept: tuple[Lattice, tuple[Spans, Spans, Spans]] | None = None
+
+    @staticmethod
+    def of_kept(lattice: Lattice, spans: tuple[Spans, Spans, Spans]) -> "StockShape":
+        """What an earlier set-up has left."""
+        return StockShape(lattice.low, lattice.high, kept=(lattice, spans))
 
     def spans(self, lattice: Lattice, bundle: int) -> Spans:
         """Its stretches along the rays of a bundle."""
@@ -127,7 +136,9 @@ def check_cell(shape: StockShape, cell: float) -> None:
 
 
 def make_stock(shape: StockShape, cell: float) -> Stock:
-    """Return the material of a solid in cells of at most ``cell`` mm."""
+    """Return the material of a solid in cells of at most ``cell`` mm, or in those that it has already."""
+    if shape.kept is not None:
+        return Stock.of_spans(*shape.kept)
     check_cell(shape, cell)
     lattice = Lattice.of_box(shape.low, shape.high, cell)
     spans = shape.spans(lattice, 0), shape.spans(lattice, 1), shape.spans(lattice, 2)
