@@ -1,8 +1,8 @@
 """What a simulation found, as records for scripts and data."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from typing import Any, Final
+from dataclasses import dataclass, replace
+from typing import Any, Final, TypeVar
 
 import numpy as np
 
@@ -37,6 +37,7 @@ class SimulationFinding:
     seconds   when, from the beginning of the program
     depth     how deep, mm
     place     where, workpiece frame, mm
+    setup     name of the set-up; empty where there is only one
     """
 
     kind: str
@@ -50,6 +51,7 @@ class SimulationFinding:
     seconds: float
     depth: float
     place: tuple[float, float, float]
+    setup: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +67,7 @@ class NearMiss:
     seconds: float
     distance: float
     place: tuple[float, float, float]
+    setup: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +80,7 @@ class AirCut:
     last_line: int
     last_block: int
     length: float
+    setup: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +103,10 @@ class SimulatedOperation:
     seconds: float
     air: float
     findings: int
+    setup: str = ""
+
+
+_Named = TypeVar("_Named", SimulationFinding, NearMiss, AirCut, SimulatedOperation)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -110,9 +118,12 @@ class SimulationResult:
     limit      what is no deeper than this is not told, mm
     removed    mm³ of the stock
     left       what the stock has beyond the part; None without a part
-    gouge      what of the part is missing; None without a part
+    gouge      what of the part is missing; None without a part. Both are those of the last set-up
     remarks    what was not simulated, or was taken for granted
     seconds    of computing
+    simulation  that of the last set-up
+    setup      its name, where this is one of several
+    setups     the results of each, where there are several
     """
 
     programs: tuple[str, ...]
@@ -130,10 +141,14 @@ class SimulationResult:
     remarks: tuple[Problem, ...]
     seconds: float
     simulation: Simulation
+    setup: str = ""
+    setups: tuple["SimulationResult", ...] = ()
 
     @property
     def passed(self) -> bool:
         """Whether nothing was found that must not be: no finding, no gouge, no program that breaks off."""
+        if self.setups:
+            return all(each.passed for each in self.setups)
         broken = any(remark.severity is Severity.ERROR for remark in self.remarks)
         gouged = self.gouge is not None and self.gouge.largest > self.limit
         return not self.findings and not gouged and not broken
@@ -146,8 +161,10 @@ def make_result(
     touched: Sequence[Sequence[Collision]],
     remarks: tuple[Problem, ...],
     toolpaths: Any,
+    *,
+    setup: str = "",
 ) -> SimulationResult:
-    """Put together what programs have cut, hit and come near to."""
+    """Put together what programs have cut, hit and come near to in a set-up."""
     verified = [verify_run(job.run, toolpaths if len(jobs) == 1 else ()) for job in jobs]
     seconds = [np.cumsum(each.seconds) for each in verified]
     lengths = [tip_lengths(job.run) for job in jobs]
@@ -169,13 +186,45 @@ def make_result(
         findings += (_finding(run, _of_collision(each), at, cl_line) for each in hits)
         misses += (_near_miss(run, each, at) for each in collisions if each.is_near)
     x, y, z = found.stock.lattice.cell.tolist()
-    setup = found.setup
     return SimulationResult(
-        tuple(job.run.files[0] for job in jobs), machine, (x, y, z), setup.tolerance + found.error, setup.limit,
-        found.start_volume - found.stock.volume, tuple(operations), tuple(findings), tuple(misses),
-        tuple(sorted(air, key=lambda each: -each.length)[:_MOST_AIR]), found.left, found.gouge, remarks,
-        found.seconds, found,
+        tuple(job.run.files[0] for job in jobs), machine, (x, y, z),
+        found.setup.tolerance + found.error, found.setup.limit, found.start_volume - found.stock.volume,
+        _named(operations, setup), _named(findings, setup), _named(misses, setup), _longest(_named(air, setup)),
+        found.left, found.gouge, remarks, found.seconds, found, setup,
     )  # fmt: skip
+
+
+def join_results(results: Sequence[SimulationResult]) -> SimulationResult:
+    """The results of set-ups in their order as one; a single one stays as it is."""
+    last = results[-1]
+    if len(results) == 1:
+        return last
+    return replace(
+        last,
+        programs=tuple(program for each in results for program in each.programs),
+        machine=", ".join(dict.fromkeys(each.machine for each in results)),
+        cell=max((each.cell for each in results), key=max),
+        accuracy=max(each.accuracy for each in results),
+        limit=max(each.limit for each in results),
+        removed=sum(each.removed for each in results),
+        operations=tuple(one for each in results for one in each.operations),
+        findings=tuple(one for each in results for one in each.findings),
+        near=tuple(one for each in results for one in each.near),
+        air=_longest([one for each in results for one in each.air]),
+        remarks=tuple(one for each in results for one in each.remarks),
+        seconds=sum(each.seconds for each in results),
+        setup="",
+        setups=tuple(results),
+    )
+
+
+def _named(found: Iterable[_Named], setup: str) -> tuple[_Named, ...]:
+    """Records with the name of their set-up."""
+    return tuple(replace(each, setup=setup) for each in found) if setup else tuple(found)
+
+
+def _longest(air: Iterable[AirCut]) -> tuple[AirCut, ...]:
+    return tuple(sorted(air, key=lambda each: -each.length)[:_MOST_AIR])
 
 
 def _operation(run: Run, one: OperationCut, seconds: float, lines: tuple[int, int], air: float) -> SimulatedOperation:

@@ -251,10 +251,13 @@ def _add_convert(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_simulate(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("files", nargs="+", metavar="NC", help="NC program; several cut the same stock in their order")
-    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs them")
     parser.add_argument(
-        "--stock", required=True, metavar="STOCK",
+        "files", nargs="+", metavar="NC|PROJECT",
+        help="NC program; several cut the same stock in their order. Or a project (.toml), which may state all options",
+    )  # fmt: skip
+    parser.add_argument("--machine", metavar="NAME_OR_FILE", help="machine that runs them")
+    parser.add_argument(
+        "--stock", metavar="STOCK",
         help="box:X,Y,Z[,x0,y0,z0] (sizes, lowest corner), cylinder:D,H[,z0], or a mesh file; mm",
     )  # fmt: skip
     parser.add_argument("--part", metavar="MESH", help="the finished part, to compare with what is left of the stock")
@@ -278,9 +281,7 @@ def _add_simulate(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--accuracy", type=_tolerance, metavar="MM", help="of motions and tools; a tenth of a cell")
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
-    parser.add_argument(
-        "--stop-at", choices=("none", "first"), default="none", help="end after the block of the first finding"
-    )
+    parser.add_argument("--stop-at", choices=("none", "first"), help="end after the block of the first finding")
     parser.add_argument("--until", metavar="BLOCK", help="N number of the block before which the last program ends")
     parser.add_argument("--json", metavar="FILE", help="all results as data; - is stdout")
     parser.add_argument("--save-stock", metavar="FILE", help="the finished stock: .stl, .ply, .3mf or .glb")

@@ -6,6 +6,7 @@ from dataclasses import asdict
 from typing import Final
 
 from trunnion.api.simulating import simulate
+from trunnion.api.simulation_project import project_files
 from trunnion.api.simulation_result import AirCut, NearMiss, SimulationFinding, SimulationResult
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result
@@ -27,6 +28,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Simulate programs; 0 if nothing was found, else 1."""
     read = [*arguments.files, *named_files(arguments.cl), *arguments.libraries, *arguments.subprograms]
     read += [mesh for mesh in (arguments.part, arguments.stock, *arguments.fixtures) if mesh is not None]
+    read += project_files(arguments.files)
     if arguments.save_stock is not None:
         check_mesh_name(arguments.save_stock)
     found = simulate(
@@ -66,8 +68,8 @@ def simulation_lines(found: SimulationResult) -> Iterator[str]:
     for operation in found.operations:
         air = f", {operation.air:.0f} mm in air" if operation.air else ""
         yield (
-            f"{operation.file}:{operation.line}: tool {operation.tool}: {operation.removed:.1f} mm³ removed"
-            f" in {format_duration(operation.seconds)}{air}"
+            f"{_of_setup(operation.setup)}{operation.file}:{operation.line}: tool {operation.tool}:"
+            f" {operation.removed:.1f} mm³ removed in {format_duration(operation.seconds)}{air}"
         )
     shown = dict[str, int]()
     for finding in found.findings:
@@ -79,13 +81,19 @@ def simulation_lines(found: SimulationResult) -> Iterator[str]:
             yield f"and {count - _MOST} more: {kind}"
     for miss in found.near[:_MOST]:
         yield _near_line(miss)
-    if found.left is not None:
-        yield _excess_line("left on the part", found.left)
-    if found.gouge is not None:
-        yield _excess_line("missing from the part", found.gouge)
+    for each in found.setups or (found,):
+        if each.left is not None and each.simulation is found.simulation:
+            yield _of_setup(each.setup) + _excess_line("left on the part", each.left)
+        if each.gouge is not None:
+            yield _of_setup(each.setup) + _excess_line("missing from the part", each.gouge)
     cell = " x ".join(f"{width:.4g}" for width in found.cell)
     yield f"{found.removed:.1f} mm³ removed; cells of {cell} mm, motions and tools within {found.accuracy:.4g} mm"
     yield "nothing found" if found.passed else f"{counted(len(found.findings), 'finding')}: the program must not run"
+
+
+def _of_setup(name: str) -> str:
+    """How lines about a set-up begin."""
+    return f"{name}: " if name else ""
 
 
 def _finding_line(finding: SimulationFinding) -> str:
@@ -93,8 +101,8 @@ def _finding_line(finding: SimulationFinding) -> str:
     x, y, z = finding.place
     block = f" N{finding.block}" if finding.block >= 0 else ""
     return (
-        f"{finding.file}:{finding.line}:{block} {finding.kind}: {finding.between[0]}, {finding.between[1]}:"
-        f" {finding.depth:.3f} mm deep at X{x:.3f} Y{y:.3f} Z{z:.3f}{last}"
+        f"{_of_setup(finding.setup)}{finding.file}:{finding.line}:{block} {finding.kind}:"
+        f" {finding.between[0]}, {finding.between[1]}: {finding.depth:.3f} mm deep at X{x:.3f} Y{y:.3f} Z{z:.3f}{last}"
     )
 
 
@@ -103,7 +111,8 @@ def _near_line(miss: NearMiss) -> str:
     block = f" N{miss.block}" if miss.block >= 0 else ""
     where = f"X{x:.3f} Y{y:.3f} Z{z:.3f}"
     return (
-        f"{miss.file}:{miss.line}:{block} near: {' and '.join(miss.between)}: {miss.distance:.3f} mm apart at {where}"
+        f"{_of_setup(miss.setup)}{miss.file}:{miss.line}:{block} near: {' and '.join(miss.between)}:"
+        f" {miss.distance:.3f} mm apart at {where}"
     )
 
 
@@ -127,6 +136,7 @@ def simulation_data(found: SimulationResult) -> dict[str, object]:
         "removed_mm3": _number(found.removed),
         "left": _excess(found.left),
         "gouge": _excess(found.gouge),
+        "setups": [_setup(each) for each in found.setups],
         "collisions": [_finding(each) for each in found.findings],
         "near": [_near(each) for each in found.near],
         "air": [_air(each) for each in found.air],
@@ -135,6 +145,7 @@ def simulation_data(found: SimulationResult) -> dict[str, object]:
                 "file": each.file, "tool": each.tool, "line": each.line, "last_line": each.last_line,
                 "removed_mm3": _number(each.removed), "gouged_mm3": _number(each.gouged),
                 "seconds": _number(each.seconds), "air_mm": _number(each.air), "findings": each.findings,
+                "setup": each.setup or None,
             }
             for each in found.operations
         ],
@@ -144,12 +155,20 @@ def simulation_data(found: SimulationResult) -> dict[str, object]:
     }  # fmt: skip
 
 
+def _setup(found: SimulationResult) -> dict[str, object]:
+    return {
+        "name": found.setup, "machine": found.machine, "programs": list(found.programs), "passed": found.passed,
+        "cells_mm": _numbers(found.cell), "removed_mm3": _number(found.removed), "left": _excess(found.left),
+        "gouge": _excess(found.gouge),
+    }  # fmt: skip
+
+
 def _finding(finding: SimulationFinding) -> dict[str, object]:
     return {
         "kind": finding.kind, "between": list(finding.between), "file": finding.file, "line": finding.line,
         "block": _block(finding.block), "last_line": finding.last_line, "last_block": _block(finding.last_block),
         "cl_line": finding.cl_line or None, "seconds": _number(finding.seconds), "depth_mm": _number(finding.depth),
-        "place": _numbers(finding.place),
+        "place": _numbers(finding.place), "setup": finding.setup or None,
     }  # fmt: skip
 
 
@@ -158,6 +177,7 @@ def _near(each: NearMiss) -> dict[str, object]:
         "between": list(each.between), "file": each.file, "line": each.line, "block": _block(each.block),
         "last_line": each.last_line, "last_block": _block(each.last_block), "seconds": _number(each.seconds),
         "distance_mm": _number(each.distance), "place": _numbers(each.place),
+        "setup": each.setup or None,
     }  # fmt: skip
 
 
@@ -165,6 +185,7 @@ def _air(each: AirCut) -> dict[str, object]:
     return {
         "file": each.file, "line": each.line, "block": _block(each.block), "last_line": each.last_line,
         "last_block": _block(each.last_block), "length_mm": _number(each.length),
+        "setup": each.setup or None,
     }  # fmt: skip
 
 

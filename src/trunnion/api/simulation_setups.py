@@ -1,0 +1,222 @@
+"""What is simulated, as arguments or a project file state it, and what is read for it.
+
+In:     ``SimulationInput``: stock and set-ups by names of files, texts and numbers.
+Out:    ``PreparedSetup`` records: runs, bodies of tools, meshes.
+Units:  mm, degrees.
+"""
+
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Final, TypeAlias
+
+import numpy as np
+
+from trunnion import readers
+from trunnion.api.arguments import check_choice, check_path, check_paths, wrong_argument
+from trunnion.api.observer import Observer
+from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
+from trunnion.api.settings import set_up_machine, work_offset_setting
+from trunnion.api.simulation_result import NO_CALL
+from trunnion.api.verifying import rapid_feed_of
+from trunnion.errors import ArgumentName, InputError, Problem, argument_problem
+from trunnion.machines import Machine
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind, Toolpath
+from trunnion.simulation.meshes import TriangleMesh, load_mesh
+from trunnion.simulation.stock.turning import Pose
+from trunnion.simulation.tools.choice import choose_tools, tools_of_toolpaths
+from trunnion.simulation.tools.library import ToolLibrary, read_tools
+from trunnion.simulation.tools.profile import Role, ToolShape
+from trunnion.simulation.tools.text import parse_tool
+from trunnion.verification import restore_rapids
+from trunnion.wording import counted
+
+#: Argument -> file, line and key of a project that states it.
+Places: TypeAlias = Mapping[str, tuple[str, int, str]]
+
+#: Fewer errors do not say that a file is no program of the machine.
+_FEW_ERRORS: Final = 5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SetupInput:
+    """One set-up: the stock as it is clamped, and what runs there. The rest as ``trunnion.simulate`` has it.
+
+    name         for findings; empty where there is one set-up only
+    pose         where the last set-up's workpiece frame lies in this one's; None: where it was
+    part         None: that of the last set-up, where it lies now
+    work_offset  in which the programs must cut; None: in any
+    places       where a project file states arguments
+    """
+
+    programs: Sequence[FilePath | Run]
+    machine: MachineLike
+    name: str = ""
+    pose: Pose | None = None
+    part: str | Path | TriangleMesh | None = None
+    fixtures: Sequence[str | Path | TriangleMesh] = ()
+    work_offset: str | None = None
+    tools: Iterable[str | ToolShape] = ()
+    libraries: Sequence[FilePath] = ()
+    unit: str | None = None
+    cl: ToolpathLike | Iterable[ToolpathLike] = ()
+    subprograms: Sequence[FilePath] = ()
+    zero: str | Iterable[float] | None = None
+    tool_length: str | float | None = None
+    until: str | int | None = None
+    places: Places = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SimulationInput:
+    """Stock, and the set-ups in which it is cut one after another; the rest as ``trunnion.simulate`` has it."""
+
+    stock: str | Path | TriangleMesh
+    setups: Sequence[SetupInput]
+    cell: float | None = None
+    accuracy: float | None = None
+    near: float | None = None
+    stop_at: str | None = None
+    threads: int | None = None
+    places: Places = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PreparedSetup:
+    """A set-up that has been read: its machine, runs, tools by their names in programs, and meshes."""
+
+    given: SetupInput
+    machine: Machine
+    runs: tuple[Run, ...]
+    tools: dict[str, ToolShape]
+    part: TriangleMesh | None
+    fixtures: tuple[TriangleMesh, ...]
+    toolpaths: list[Toolpath]
+
+
+def prepare_setup(given: SetupInput, remarks: list[Problem], observer: Observer) -> PreparedSetup:
+    """Read all that a set-up needs.
+
+    Raises
+    ------
+    InputError
+        When a file or an argument cannot be used, or nothing says the form of a tool.
+    """
+    machine = as_machine(given.machine)
+    readers.reader_of(machine)
+    machine = set_up_machine(machine, given.zero, given.tool_length)
+    part = None if given.part is None else _mesh(given.part, "part", remarks)
+    around = listed("fixtures", given.fixtures, TriangleMesh)
+    fixtures = tuple(_mesh(fixture, f"fixture {k}", remarks) for k, fixture in enumerate(around, 1))
+    programs: list[FilePath | Run] = listed("nc", given.programs, Run)
+    if not programs:
+        raise wrong_argument("nc", given.programs, "give an NC program")
+    others, rapid_feed = check_paths("subprograms", given.subprograms), rapid_feed_of(machine)
+    runs = tuple(restore_rapids(as_run(program, machine, others), rapid_feed) for program in programs)
+    _check_programs(runs, machine)
+    toolpaths = as_toolpaths(given.cl, None, False, observer)
+    tools = _tools(runs, given.tools, _libraries(given.libraries, given.unit), toolpaths)
+    if given.work_offset is not None:
+        remarks += _other_offsets(runs, given.work_offset, machine)
+    return PreparedSetup(given, machine, runs, tools, part, fixtures, toolpaths)
+
+
+@contextmanager
+def told_with_places(places: Places) -> Iterator[None]:
+    """Tell problems with arguments at the places where a project states them."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError([_with_place(problem, places) for problem in error.problems]) from None
+
+
+def _with_place(problem: Problem, places: Places) -> Problem:
+    if not isinstance(problem.file, ArgumentName) or problem.file not in places:
+        return problem
+    file, line, key = places[problem.file]
+    return replace(problem, file=file, line=line, what=f"{key}: {problem.what}")
+
+
+def listed(name: str, values: Any, record: type) -> list[Any]:
+    """One or several texts, paths or records; errors name the argument."""
+    single = (str, os.PathLike, record)
+    if isinstance(values, single):
+        return [values]
+    found = list(values) if isinstance(values, Iterable) else [None]
+    if not all(isinstance(value, single) for value in found):
+        raise wrong_argument(name, values, f"give a text, a path, a {record.__name__}, or a list of them")
+    return found
+
+
+def cutting_width(tool: ToolShape) -> float:
+    """The greatest diameter of what cuts of a tool, mm; infinite where nothing does."""
+    points = [
+        point for section in tool.sections if section.role is Role.CUTTER
+        for element in section.outline for point in (element.start, element.end)
+    ]  # fmt: skip
+    return 2.0 * max((radius for radius, _ in points), default=float("inf"))
+
+
+def _mesh(mesh: str | Path | TriangleMesh, name: str, remarks: list[Problem]) -> TriangleMesh:
+    if isinstance(mesh, TriangleMesh):
+        return mesh.named(name)
+    check_path(name, mesh)
+    return load_mesh(mesh, name=name, closed=True, warn=remarks.append)
+
+
+def _libraries(libraries: Sequence[FilePath], unit: str | None) -> list[ToolLibrary]:
+    if unit is not None:
+        check_choice("unit", unit, ("mm", "inch"))
+    return [read_tools(path, unit or "") for path in check_paths("libraries", libraries)]
+
+
+def _tools(
+    runs: Sequence[Run], tools: Iterable[str | ToolShape], read: Sequence[ToolLibrary], toolpaths: Any
+) -> dict[str, ToolShape]:
+    """The bodies of the tools with which the programs move at feed or at rapid."""
+    diameters = {number: wide for library in reversed(read) for number, wide in library.diameters.items()}
+    given = listed("tools", tools, ToolShape)
+    stated = [tool if isinstance(tool, ToolShape) else parse_tool(tool, diameters) for tool in given]
+    called = [run.tools[int(index)] for run in runs for index in run.state.tool.distinct()]
+    in_spindle = any(tool.number == int(NO_CALL) for tool in stated)
+    if in_spindle or any(_cuts_without_call(run) for run in runs):
+        called.append(NO_CALL)
+        if not in_spindle:
+            what, cure = "the program cuts before it calls a tool", "state the one that is in the spindle: 0=ball:10"
+            raise InputError(argument_problem("tools", what, cure))
+    found = choose_tools(called, stated, read, tools_of_toolpaths(toolpaths))
+    return found | ({"": found[NO_CALL]} if NO_CALL in found else {})
+
+
+def _cuts_without_call(run: Run) -> bool:
+    """Whether a program moves at feed before it calls a tool: the operator has put one in."""
+    rows = np.concatenate([run.state.tool.rows_with(index) for index, name in enumerate(run.tools) if not name])
+    return bool((run.kind[rows] != Kind.RAPID).any())
+
+
+def _check_programs(runs: Sequence[Run], machine: Machine) -> None:
+    """Refuse what is no program of the machine: more lines of it are not understood than it has motions."""
+    for run in runs:
+        wrong = sorted({(each.file, each.line): each for each in run.errors}.items())
+        if len(wrong) > max(_FEW_ERRORS, len(run)):
+            (file, line), first = wrong[0]
+            what = f"{first.text}; {counted(len(wrong), 'line')} of it not understood"
+            raise InputError(Problem(file, line, what, f"is this a program of {machine.key}?"))
+
+
+def _other_offsets(runs: Sequence[Run], wanted: str, machine: Machine) -> list[Problem]:
+    """Errors where programs cut in another work offset than that of their set-up."""
+    offset = work_offset_setting(wanted, machine)
+    found = []
+    for run in runs:
+        rows = np.flatnonzero((run.kind != Kind.RAPID) & ~run.machine_frame & (run.work_offset != offset))
+        if len(rows):
+            row = int(rows[0])
+            other = int(run.work_offset[row])
+            name = run.work_offset_name(other) if other else "no work offset"
+            what, cure = f"cuts in {name}, and the set-up is in {wanted}", "select the set-up's own work offset"
+            found.append(Problem(run.files[int(run.file[row])], int(run.line[row]), what, cure))
+    return found

@@ -1,0 +1,220 @@
+"""Set-ups that are simulated one after another: the stock that one leaves is that of the next."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from trunnion import simulation
+from trunnion.api.arguments import check_choice, check_whole
+from trunnion.api.observer import Observer
+from trunnion.api.settings import check_tolerance
+from trunnion.api.simulation_remarks import simulation_remarks
+from trunnion.api.simulation_result import SimulationResult, join_results, make_result
+from trunnion.api.simulation_setups import (
+    PreparedSetup,
+    SimulationInput,
+    cutting_width,
+    prepare_setup,
+    told_with_places,
+)
+from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.model.run import Run
+from trunnion.simulation.collisions import Collision, check_collisions, fixture_body, machine_bodies, part_body
+from trunnion.simulation.meshes import TriangleMesh
+from trunnion.simulation.simulator import Job, Setup, Simulation
+from trunnion.simulation.stock.solids import StockShape, check_narrow_tools, default_cell, stock_shape
+from trunnion.simulation.stock.turning import Pose, turned_stock
+from trunnion.simulation.tools.profile import ToolShape
+
+#: Part of a cell within which motions are simulated by default.
+_TOLERANCE: Final = 0.1
+
+
+def simulate_setups(given: SimulationInput, observer: Observer) -> SimulationResult:
+    """Read everything, then cut the stock in one set-up after another.
+
+    Raises
+    ------
+    InputError
+        When a file or an argument cannot be used, or nothing says the form of a tool.
+    """
+    with told_with_places(given.places):
+        return _simulate_setups(given, observer)
+
+
+def _simulate_setups(given: SimulationInput, observer: Observer) -> SimulationResult:
+    check_choice("stop_at", given.stop_at or "none", ("none", "first"))
+    for name, value in (("cell", given.cell), ("accuracy", given.accuracy), ("near", given.near)):
+        check_tolerance(name, value, optional=True)
+    threads = None if given.threads is None else check_whole("threads", given.threads, 1)
+    remarks: list[list[Problem]] = [[] for _ in given.setups]
+    shape = stock_shape(given.stock, remarks[0].append)
+    setups = []
+    for each, told in zip(given.setups, remarks, strict=True):
+        with told_with_places(each.places):
+            setups.append(prepare_setup(each, told, observer))
+    widths = {name: cutting_width(tool) for each in setups for name, tool in each.tools.items()}
+    cell = given.cell or default_cell(shape, min(widths.values(), default=math.inf))
+    check_narrow_tools(widths, cell)
+    simulation.check_cell(shape, cell)
+    steps = _Steps(cell, given.accuracy or _TOLERANCE * cell, given, threads, observer)
+    results: list[SimulationResult] = []
+    for own, told in zip(setups, remarks, strict=True):
+        result = steps.follow(own, shape, told)
+        results.append(result)
+        if given.stop_at == "first" and result.findings:
+            break
+    return join_results(results)
+
+
+class _Steps:
+    """Cuts stock in set-ups, each time what the last one has left."""
+
+    def __init__(
+        self, cell: float, tolerance: float, given: SimulationInput, threads: int | None, observer: Observer
+    ) -> None:
+        self._cell, self._tolerance, self._given = cell, tolerance, given
+        self._threads, self._observer = threads, observer
+        self._part: TriangleMesh | None = None
+        self._left: Simulation | None = None
+
+    def follow(self, own: PreparedSetup, shape: StockShape, remarks: list[Problem]) -> SimulationResult:
+        """Cut the stock in a set-up; ``shape`` is the first one's."""
+        pose = own.given.pose or Pose()
+        if self._left is not None:
+            shape = StockShape.of_kept(*turned_stock(self._left.stock, pose, self._cell))
+            self._part = None if self._part is None else self._part.moved(pose.matrix)
+            if not pose.keeps_rays:
+                what = f"is turned through its surface: it may be {0.5 * self._cell:.4g} mm off, and what is thinner"
+                what += f" than a cell of {self._cell:g} mm may be lost"
+                remarks.append(Problem("stock", 0, what, "turn it by quarters to lose nothing", Severity.WARNING))
+        self._part = own.part or self._part
+        part = self._part
+        design = None if part is None else StockShape(part.bounds[0], part.bounds[1], mesh=part)
+        setup = Setup(shape, design, self._cell, self._tolerance)
+        result = self._simulated(own, setup, part, remarks)
+        self._left = result.simulation
+        return result
+
+    def _simulated(
+        self, own: PreparedSetup, setup: Setup, part: TriangleMesh | None, remarks: list[Problem]
+    ) -> SimulationResult:
+        given, runs = self._given, own.runs
+        remarks += simulation_remarks(setup, runs, own.tools)
+        jobs = [_job(run, own.tools, own.given.until if run is runs[-1] else None) for run in runs]
+        remarks += [Problem(job.run.files[0], 0, job.broken_off) for job in jobs if job.broken_off]
+        self._observer.problems(remarks)
+        told = len(remarks)
+        around, near = own.fixtures, given.near or 0.0
+        touched = [_collisions(job, number, part, around, near, remarks) for number, job in enumerate(jobs)]
+        if given.stop_at == "first":
+            jobs = _up_to_first_hit(jobs, touched)
+        found = _cut(setup, jobs, given.stop_at == "first", self._threads, self._observer)
+        if found.leaks:
+            what = f"{found.leaks} of {found.stock.lattice.ray_count} rays pass a hole in it, and were left empty"
+            remarks.append(Problem("part", 0, what, "close the mesh", Severity.WARNING))
+        if found.start_volume - found.stock.volume <= 0.0:
+            what, cure = "takes nothing from the stock", "check the place of the stock, and the tools"
+            remarks.append(Problem(runs[0].files[0], 0, what, cure, Severity.WARNING))
+        self._observer.problems(remarks[told:])
+        collisions = _until_stop(jobs, touched, found)
+        return make_result(
+            own.machine.key, found, jobs, collisions, tuple(remarks), own.toolpaths, setup=own.given.name
+        )
+
+
+def _cut(setup: Setup, jobs: Sequence[Job], to_first: bool, threads: int | None, observer: Observer) -> Simulation:
+    """Cut the stock, with progress."""
+    done = 0
+    with observer.progress("cutting", sum(job.end for job in jobs), "blocks") as tell:
+
+        def progress(rows: int, _: int) -> None:
+            nonlocal done
+            if rows > done:
+                tell(rows - done)
+                done = rows
+
+        return simulation.simulate(setup, jobs, stop_at_first=to_first, threads=threads, progress=progress)
+
+
+def _up_to_first_hit(jobs: Sequence[Job], touched: Sequence[Sequence[Collision]]) -> list[Job]:
+    """The jobs as far as the row in which bodies first touch."""
+    kept = []
+    for job, collisions in zip(jobs, touched, strict=True):
+        first = min((each.row for each in collisions if not each.is_near), default=None)
+        kept.append(job if first is None else replace(job, end=first + 1))
+        if first is not None:
+            break
+    return kept
+
+
+def _until_stop(
+    jobs: Sequence[Job], touched: Sequence[Sequence[Collision]], found: Simulation
+) -> list[list[Collision]]:
+    """The collisions of jobs in the rows that were simulated."""
+    last, row = found.stopped or (len(jobs), -1)
+    ends = [job.end if number < last else (row + 1 if number == last else 0) for number, job in enumerate(jobs)]
+    return [[each for each in own if each.row < end] for own, end in zip(touched, ends, strict=False)]
+
+
+def _collisions(
+    job: Job,
+    number: int,
+    part: TriangleMesh | None,
+    fixtures: Sequence[TriangleMesh],
+    near: float,
+    remarks: list[Problem],
+) -> list[Collision]:
+    """What touches, or comes near, while a program runs as far as it is simulated."""
+    machine = job.run.machine
+    bodies = [fixture_body(mesh, machine) for mesh in fixtures]
+    if fixtures and part is not None:
+        bodies.append(part_body(part, machine))
+    if machine.workpiece_zero is not None and _lengths_known(job):
+        bodies += machine_bodies(machine, remarks.append)
+    elif number == 0 and machine.bodies:
+        what = "the bodies of the machine are not checked: workpiece zero and tool lengths are not known"
+        cure = "give zero, and tool_length or a tool with its holder"
+        remarks.append(Problem(job.run.files[0], 0, what, cure, Severity.WARNING))
+    if not bodies:
+        return []
+    found = check_collisions(job.run, bodies, job.tools, near=near)
+    return [each for each in found if each.row < job.end]
+
+
+def _lengths_known(job: Job) -> bool:
+    """Whether the length of every tool that the program calls is known, from its tip to the gauge point."""
+    used = [job.run.tools[int(index)] for index in job.run.state.tool.distinct()]
+    known = job.run.machine.tool_length is not None
+    return all(known or job.tools[name].length for name in used if name in job.tools)
+
+
+def _job(run: Run, shapes: dict[str, ToolShape], until: str | int | None) -> Job:
+    end, why = len(run), ""
+    errors = sorted(run.errors, key=lambda each: each.line)
+    if errors:
+        first = errors[0]
+        number = run.files.index(first.file) if first.file in run.files else 0
+        later = np.flatnonzero((run.file == number) & (run.line >= first.line))
+        end = int(later[0]) if len(later) else len(run)
+        why = f"line {first.line}: {first.text}; it is cut up to there"
+    if until is not None:
+        row = _row_of_block(run, until)
+        if row < end:
+            end, why = row, ""
+    return Job(run, shapes, end, why)
+
+
+def _row_of_block(run: Run, until: str | int) -> int:
+    text = str(until).strip().upper().removeprefix("N")
+    number = int(text) if text.isascii() and text.isdecimal() and len(text) < 10 else -1
+    own = np.flatnonzero((run.block_number >= number) & (run.file == 0)) if number >= 0 else np.zeros(0, np.int64)
+    # A block without motion is followed by the next number, not by what runs next: subprograms may stand behind it.
+    rows = own[run.block_number[own] == run.block_number[own].min()] if len(own) else own
+    if not len(rows):
+        cure = "give the N number of a block of the last program"
+        raise InputError(argument_problem("until", f"{run.files[0]} has no block {until}", cure))
+    return int(rows[0])
