@@ -19,6 +19,8 @@ Functions
     convert        NC program -> CL file, or program for another machine
     diff           two NC programs -> Comparison
     simulate       NC programs and stock -> SimulationResult: what is cut, and what is hit
+    read_points    table of measured points -> PointTable of each curve
+    fit_curve      points -> CurveFit: a B-spline curve, and how far it is off
     write_report   Verification -> page or data
     write_plot     ClDescription -> page with the path in space
 
@@ -32,6 +34,9 @@ if TYPE_CHECKING:
     from trunnion.api.comparing import diff as diff
     from trunnion.api.converting import ConvertResult as ConvertResult
     from trunnion.api.converting import convert as convert
+    from trunnion.api.curves import fit_curve as fit_curve
+    from trunnion.api.curves import read_points as read_points
+    from trunnion.api.curves import write_curve_picture as write_curve_picture
     from trunnion.api.describing import ControlDescription as ControlDescription
     from trunnion.api.describing import describe_control as describe_control
     from trunnion.api.describing import describe_controls as describe_controls
@@ -57,6 +62,10 @@ if TYPE_CHECKING:
     from trunnion.errors import RefusedError as RefusedError
     from trunnion.errors import Severity as Severity
     from trunnion.errors import TrunnionError as TrunnionError
+    from trunnion.geometry.curves import BSplineCurve as BSplineCurve
+    from trunnion.geometry.fitting import CurveFit as CurveFit
+    from trunnion.geometry.point_tables import PointTable as PointTable
+    from trunnion.geometry.spans import Span as Span
     from trunnion.machines.machine import Axis as Axis
     from trunnion.machines.machine import Machine as Machine
     from trunnion.model.motion import Decision as Decision
@@ -75,11 +84,13 @@ __version__ = "0.1.0"
 #: Public name -> its module.
 _MODULES: Final = {
     "Axis": "machines.machine",
+    "BSplineCurve": "geometry.curves",
     "Check": "verification.results",
     "ClDescription": "api.describing_cl",
-    "ControlDescription": "api.describing",
     "Comparison": "verification.comparison.result",
+    "ControlDescription": "api.describing",
     "ConvertResult": "api.converting",
+    "CurveFit": "geometry.fitting",
     "Decision": "model.motion",
     "InputError": "errors",
     "Machine": "machines.machine",
@@ -89,6 +100,7 @@ _MODULES: Final = {
     "Operation": "model.toolpath",
     "Place": "verification.results",
     "Plan": "model.motion",
+    "PointTable": "geometry.point_tables",
     "PostResult": "api.post_result",
     "Problem": "errors",
     "ProofFailedError": "api.post_result",
@@ -96,6 +108,7 @@ _MODULES: Final = {
     "Run": "model.run",
     "Severity": "errors",
     "SimulationResult": "api.simulation_result",
+    "Span": "geometry.spans",
     "Toolpath": "model.toolpath",
     "TrunnionError": "errors",
     "Verification": "verification.results",
@@ -105,24 +118,29 @@ _MODULES: Final = {
     "describe_controls": "api.describing",
     "describe_machine": "api.describing_machine",
     "diff": "api.comparing",
+    "fit_curve": "api.curves",
     "load_machine": "api.reading",
     "plan": "api.planning",
     "post": "api.posting",
     "read_cl": "api.reading",
+    "read_points": "api.curves",
     "read_program": "api.reading",
     "simulate": "api.simulating",
     "verify": "api.verifying",
+    "write_curve_picture": "api.curves",
     "write_plot": "api.plotting",
     "write_report": "api.reports",
 }
 
 __all__ = [
     "Axis",
+    "BSplineCurve",
     "Check",
     "ClDescription",
     "Comparison",
     "ControlDescription",
     "ConvertResult",
+    "CurveFit",
     "Decision",
     "InputError",
     "Machine",
@@ -132,6 +150,7 @@ __all__ = [
     "Operation",
     "Place",
     "Plan",
+    "PointTable",
     "PostResult",
     "Problem",
     "ProofFailedError",
@@ -139,6 +158,7 @@ __all__ = [
     "Run",
     "Severity",
     "SimulationResult",
+    "Span",
     "Toolpath",
     "TrunnionError",
     "Verification",
@@ -149,13 +169,16 @@ __all__ = [
     "describe_controls",
     "describe_machine",
     "diff",
+    "fit_curve",
     "load_machine",
     "plan",
     "post",
     "read_cl",
+    "read_points",
     "read_program",
     "simulate",
     "verify",
+    "write_curve_picture",
     "write_plot",
     "write_report",
 ]

@@ -140,6 +140,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     )
     _add_simulate(commands.add_parser("simulate", help="cut stock with NC programs: what is left, and what is hit"))
     _add_info(commands.add_parser("info", help="show what CL files hold; no machine is needed"))
+    _add_curve(commands.add_parser("curve", help="fit curves to measured points; no machine is needed"))
     _add_machines(commands.add_parser("machines", help="list the machines, or print one definition"))
     _add_controls(commands.add_parser("controls", help="list the controls, or explain one with all its settings"))
     _add_check(commands.add_parser("check", help="validate the definition of a machine or a control"))
@@ -296,6 +297,25 @@ def _add_info(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="data in place of text")
     parser.add_argument("--plot", metavar="FILE", help="the path by operation in space, as a page (.html)")
     parser.set_defaults(run=_lazy_command("info", "info"))
+
+
+def _add_curve(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", metavar="POINTS", help="table of points (.csv): columns x, y, z, or tip_x, tip_y, …")
+    ends = "natural (no curvature), tangent:X,Y,Z or derivative:X,Y,Z (by the parameter, which goes from 0 to 1)"
+    parser.add_argument("--start", default="natural", metavar="END", help=f"how curves begin: {ends}")
+    parser.add_argument("--end", default="natural", metavar="END", help="how they end")
+    parser.add_argument(
+        "--parameterization", choices=("chord-length", "centripetal"), default="chord-length",
+        help="how far apart the parameters of two points are; chord-length",
+    )  # fmt: skip
+    parser.add_argument(
+        "--tolerance", type=_tolerance, metavar="MM", help="pass the points within it, with few control points"
+    )
+    parser.add_argument("--fair", type=_tolerance, metavar="MM", help="first move points by as much, for an even curve")
+    parser.add_argument("--scale", type=_tolerance, default=1.0, metavar="FACTOR", help="multiply the points by it")
+    parser.add_argument("--json", action="store_true", help="data in place of text")
+    parser.add_argument("--picture", metavar="FILE", help="curves with their curvature combs (.svg)")
+    parser.set_defaults(run=_lazy_command("curve", "run"))
 
 
 def _add_machines(parser: argparse.ArgumentParser) -> None:

@@ -1,0 +1,76 @@
+"""What a curve does at its ends."""
+
+import math
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from trunnion.errors import InputError, argument_problem
+
+Vector: TypeAlias = tuple[float, float, float]
+
+_CURE = "write natural, tangent:X,Y,Z (a direction) or derivative:X,Y,Z (by the parameter, which goes from 0 to 1)"
+
+
+@dataclass(frozen=True, slots=True)
+class Natural:
+    """No curvature at the end."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tangent:
+    """A given direction in the sense of the path.
+
+    vector     mm
+    is_derivative  it is the derivative with respect to the parameter; else a direction, and the derivative is as long
+                   as the chords are together, the speed at which the whole curve is run through
+    """
+
+    vector: Vector
+    is_derivative: bool = False
+
+    def derivative(self, chords: float) -> Vector:
+        """The derivative with respect to the parameter of a curve whose chords are ``chords`` mm long together."""
+        if self.is_derivative:
+            return self.vector
+        scale = chords / math.hypot(*self.vector)
+        x, y, z = self.vector
+        return x * scale, y * scale, z * scale
+
+
+End: TypeAlias = Natural | Tangent
+
+
+@dataclass(frozen=True, slots=True)
+class Ends:
+    """Both ends of a curve."""
+
+    start: End = Natural()
+    end: End = Natural()
+
+    @property
+    def is_natural(self) -> bool:
+        """Whether no end has a direction."""
+        return isinstance(self.start, Natural) and isinstance(self.end, Natural)
+
+
+def parse_end(argument: str, text: object) -> End:
+    """An end from ``natural``, ``tangent:X,Y,Z`` or ``derivative:X,Y,Z``.
+
+    Raises
+    ------
+    InputError
+        For another text; ``argument`` names it.
+    """
+    if isinstance(text, Natural | Tangent):
+        return text
+    kind, _, numbers = str(text).partition(":")
+    if kind == "natural" and not numbers:
+        return Natural()
+    try:
+        x, y, z = (float(number) for number in numbers.split(","))
+    except ValueError:
+        raise InputError(argument_problem(argument, f"is {text!r}", _CURE)) from None
+    length = math.hypot(x, y, z)
+    if kind not in ("tangent", "derivative") or not (math.isfinite(length) and length > 0.0):
+        raise InputError(argument_problem(argument, f"is {text!r}", _CURE))
+    return Tangent((x, y, z), is_derivative=kind == "derivative")

@@ -1,0 +1,45 @@
+"""What is wrong with measured points."""
+
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+
+from trunnion.errors import Problem, Severity
+from trunnion.geometry.point_tables import PointTable
+
+#: Points that are nearer than this are the same, mm.
+SAME: Final = 1e-6
+
+#: A path that turns by more than this at a point probably has its points out of order, degrees.
+_BACK: Final = 120.0
+
+#: A step that is so many times as long as the middle one leaves points out, or goes to another curve.
+_JUMP: Final = 20.0
+
+_LEAST_POINTS: Final = 3
+
+
+def point_faults(table: PointTable) -> Iterator[Problem]:
+    """Errors, and warnings of what is probably wrong, of the points of a curve."""
+    file, points, lines = table.file, table.points, table.lines
+    if len(points) < _LEAST_POINTS:
+        what = f"{table.called} has {len(points)} points"
+        yield Problem(file, lines[0] if len(lines) else 0, what, f"give at least {_LEAST_POINTS}")
+        return
+    steps = np.diff(points, axis=0)
+    lengths = np.linalg.norm(steps, axis=1)
+    same = np.flatnonzero(lengths <= SAME)
+    for k in same.tolist():
+        what = f"{table.called} has the same point here as in line {lines[k]}"
+        yield Problem(file, lines[k + 1], what, "leave one of them out")
+    if len(same):
+        return
+    cosine = np.einsum("ij,ij->i", steps[:-1], steps[1:]) / (lengths[:-1] * lengths[1:])
+    for k in np.flatnonzero(cosine < np.cos(np.radians(_BACK))).tolist():
+        angle = np.degrees(np.arccos(max(cosine[k], -1.0)))
+        what = f"{table.called} turns back here by {angle:.0f} degrees"
+        yield Problem(file, lines[k + 1], what, "are its points in their order?", Severity.WARNING)
+    for k in np.flatnonzero(lengths > _JUMP * np.median(lengths)).tolist():
+        what = f"{table.called} has a gap of {lengths[k]:.3f} mm before this point"
+        yield Problem(file, lines[k + 1], what, "are points missing?", Severity.WARNING)

@@ -1,0 +1,217 @@
+"""Tables of measured points: text with a line for a point and columns for X, Y and Z of one or more curves.
+
+    index,tip_x_mm,tip_y_mm,tip_z_mm,hub_x_mm,hub_y_mm,hub_z_mm
+    1,35.515,-21.597,44.149,11.690,-12.681,46.682
+
+Columns whose names end in ``x``, ``y`` and ``z`` (and ``_mm``, ``_in`` or ``_inch``) after the same beginning are a
+curve; others are left out. Columns are parted by commas, semicolons, tabs or blanks. Where semicolons or tabs do it,
+a comma may be the decimal sign. Empty lines and those that begin with ``#`` are passed over. Without names there are
+three columns, or four of which the first numbers the points.
+"""
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.encoding import EncodingDetector
+from trunnion.errors import InputError, Problem, unusable_file
+from trunnion.wording import counted
+
+#: Larger files are no tables of measured points.
+_MOST_BYTES: Final = 64_000_000
+
+_COLUMN: Final = re.compile(
+    r"(?:(?P<curve>.{1,80})[_ .])?(?P<axis>[xyz])(?:[_ ]?[(\[]?(?P<unit>mm|inch|in)[)\]]?)?", re.IGNORECASE
+)
+
+_INCH: Final = 25.4
+
+#: Columns of a table without names: X, Y and Z, after a number of the point if there is one.
+_UNNAMED: Final = {3: (0, 1, 2), 4: (1, 2, 3)}
+
+#: No machine cuts what is larger, mm.
+_GREATEST: Final = 1e6
+
+_CURE: Final = "name the columns x, y and z, or tip_x, tip_y, tip_z, hub_x and so on"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PointTable:
+    """The points of a curve of a table.
+
+    file    what messages call it
+    name    of the curve; empty if the table gives none
+    points  (n, 3) mm
+    lines   of the points in the file
+    """
+
+    file: str
+    name: str
+    points: Floats
+    lines: Sequence[int]
+
+    @property
+    def called(self) -> str:
+        """What messages call the curve."""
+        return f"the curve {self.name}" if self.name else "the curve"
+
+
+@dataclass(frozen=True, slots=True)
+class _Columns:
+    """Where a curve stands in a line."""
+
+    name: str
+    places: tuple[int, ...]
+    unit: float
+
+
+def read_point_table(file: Path) -> list[PointTable]:
+    """The curves of a table, in the order of their columns.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or is no table of points; with every mistake and its line.
+    """
+    problem = unusable_file(file, "a table of points")
+    if problem is not None:
+        raise InputError(problem)
+    with file.open("rb") as stream:
+        data = stream.read(_MOST_BYTES + 1)
+    if len(data) > _MOST_BYTES:
+        what = f"is larger than {_MOST_BYTES // 1_000_000} MB"
+        raise InputError(Problem(str(file), 0, what, "is it a table of points?"))
+    detector = EncodingDetector()
+    detector.add(data.removeprefix(b"\xef\xbb\xbf"))
+    text = data.decode("utf-8-sig" if detector.encoding() == "utf-8" else detector.encoding(), "replace")
+    return parse_point_table(str(file), text)
+
+
+def parse_point_table(file: str, text: str) -> list[PointTable]:
+    """The curves of a table's text; ``file`` is for messages. Errors as ``read_point_table`` raises them."""
+    rows = list(_rows(text))
+    if not rows:
+        raise InputError(Problem(file, 0, "holds no points", _CURE))
+    first_line, first = rows[0]
+    if _has_number(first):
+        columns = _unnamed(file, first_line, first)
+    else:
+        columns = _named(file, first_line, first)
+        rows = rows[1:]
+    problems: list[Problem] = []
+    tables = [_table(file, each, rows, len(first), problems) for each in columns]
+    problems += _torn(file, rows, len(first))
+    empty = [one for one in tables if not len(one.points)]
+    problems += [Problem(file, first_line, f"has no points of {one.called}", _CURE) for one in empty]
+    if problems:
+        raise InputError(sorted(problems, key=lambda one: one.line))
+    return tables
+
+
+def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
+    """Line and cells of each line that has any."""
+    lines = [(number, line.strip()) for number, line in enumerate(text.splitlines(), 1)]
+    lines = [(number, line) for number, line in lines if line and not line.startswith("#")]
+    if not lines:
+        return
+    head = lines[0][1]
+    separator = next((sign for sign in (";", "\t", ",") if sign in head), None)
+    comma_is_decimal = separator == ";" or (separator == "\t" and any("," in line for _, line in lines))
+    for number, line in lines:
+        cells = [cell.strip().strip('"') for cell in line.split(separator)]
+        if comma_is_decimal:
+            cells = [cell.replace(",", ".") for cell in cells]
+        yield number, cells
+
+
+def _number(cell: str) -> float | None:
+    try:
+        value = float(cell)
+    except ValueError:
+        return None
+    return value if "_" not in cell else None
+
+
+def _has_number(cells: Sequence[str]) -> bool:
+    return any(_number(cell) is not None for cell in cells)
+
+
+def _unnamed(file: str, line: int, cells: Sequence[str]) -> list[_Columns]:
+    count = len(cells)
+    if count not in _UNNAMED:
+        raise InputError(Problem(file, line, f"has {counted(count, 'column')} without names", _CURE))
+    return [_Columns("", _UNNAMED[count], 1.0)]
+
+
+def _named(file: str, line: int, cells: Sequence[str]) -> list[_Columns]:
+    """The curves that the names of columns tell of."""
+    found: dict[str, dict[str, tuple[int, float]]] = {}
+    for place, cell in enumerate(cells):
+        match = _COLUMN.fullmatch(cell)
+        if match is None:
+            continue
+        axes = found.setdefault(match["curve"] or "", {})
+        axis, unit = match["axis"].lower(), (match["unit"] or "mm").lower()
+        if axis in axes:
+            raise InputError(Problem(file, line, f"has two columns for {cell}", "leave one of them out"))
+        axes[axis] = place, 1.0 if unit == "mm" else _INCH
+    problems, curves = [], []
+    for name, axes in found.items():
+        missing = [axis for axis in "xyz" if axis not in axes]
+        units = {unit for _, unit in axes.values()}
+        if missing:
+            what = f"the curve {name or 'without a name'} has no column for {' and '.join(missing)}"
+            problems.append(Problem(file, line, what, _CURE))
+        elif len(units) > 1:
+            problems.append(Problem(file, line, f"the curve {name} is in mm and in inches", "give it one unit"))
+        else:
+            curves.append(_Columns(name, tuple(axes[axis][0] for axis in "xyz"), units.pop()))
+    if problems:
+        raise InputError(problems)
+    if not curves:
+        raise InputError(Problem(file, line, "names no columns of points", _CURE))
+    return curves
+
+
+def _table(
+    file: str, columns: _Columns, rows: Sequence[tuple[int, list[str]]], width: int, problems: list[Problem]
+) -> PointTable:
+    """The points of a curve; adds what is wrong with its cells. Where it ends before the others, cells are empty."""
+    points, lines = list[list[float]](), list[int]()
+    ended = 0
+    for line, cells in rows:
+        if len(cells) != width:
+            continue  # told once for all curves
+        texts = [cells[place] for place in columns.places]
+        if not any(texts):
+            ended = ended or line
+            continue
+        values = [_number(text) for text in texts]
+        bad = [text for text, value in zip(texts, values, strict=True) if value is None or not math.isfinite(value)]
+        if bad:
+            problems.append(Problem(file, line, f"{bad[0]!r} is not a number", "write X, Y and Z as numbers"))
+            continue
+        if ended:
+            what = f"the curve {columns.name} goes on after it ended in line {ended}"
+            problems.append(Problem(file, line, what, "fill or delete the empty cells"))
+            break
+        point = [columns.unit * value for value in values if value is not None]
+        if max(map(abs, point)) > _GREATEST:
+            problems.append(Problem(file, line, f"is {max(map(abs, point)):g} mm away", "write lengths in mm"))
+        points.append(point)
+        lines.append(line)
+    return PointTable(file, columns.name, np.array(points, float).reshape(-1, 3), lines)
+
+
+def _torn(file: str, rows: Sequence[tuple[int, list[str]]], width: int) -> Iterator[Problem]:
+    """Lines with more or fewer cells than the first."""
+    for line, cells in rows:
+        if len(cells) != width:
+            what = f"has {counted(len(cells), 'column')} where the first line has {width}"
+            yield Problem(file, line, what, "let every line have the same columns")
