@@ -17,6 +17,7 @@ from trunnion.api.settings import (
     split_by_operation,
     with_limit_margin,
 )
+from trunnion.api.simulation_setups import SimulationInput
 from trunnion.controls import Control, load_control
 from trunnion.controls.inches import in_units
 from trunnion.controls.vocabulary import MM, PROGRAM_CHOICES
@@ -55,6 +56,7 @@ class PostJob:
     report        file of the report; None: there is none
     columns       work out the columns of the verification
     beside        files of subprograms that exist already and that templates call
+    simulation    stock and all else that the program is simulated with; None: it is not
     """
 
     machine: Machine
@@ -67,6 +69,7 @@ class PostJob:
     columns: bool = False
     own_settings: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     beside: tuple[Path, ...] = ()
+    simulation: SimulationInput | None = None
 
     @property
     def printed(self) -> dict[str, str]:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from trunnion.api.reading import FilePath
 from trunnion.api.reports import write_report
+from trunnion.api.simulation_result import SimulationResult
 from trunnion.api.targets import written_text
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.model.motion import Decision, Motion, Plan
@@ -25,6 +26,7 @@ class PostResult:
     problems      warnings about CL files, plan and program, and what ``force`` overruled
     output        file of the program; None: it was not written to a file
     subprograms   files of its subprograms
+    simulation    what it cuts and hits; None: it was not simulated
     """
 
     toolpaths: tuple[Toolpath, ...]
@@ -33,6 +35,7 @@ class PostResult:
     problems: tuple[Problem, ...]
     output: Path | None = None
     subprograms: tuple[Path, ...] = ()
+    simulation: SimulationResult | None = None
     _memory: io.BytesIO | None = None
 
     def __repr__(self) -> str:

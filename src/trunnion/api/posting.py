@@ -18,6 +18,13 @@ from trunnion.api.machining_times import operation_times, prints_times, write_ti
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.planning import load_toolpaths, plan_program
 from trunnion.api.post_result import PostResult, ProofFailedError
+from trunnion.api.posted_simulation import (
+    SimulationLike,
+    simulate_posted,
+    simulation_checks,
+    simulation_files,
+    simulation_input,
+)
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.api.reports import add_report, check_report_name
 from trunnion.api.settings import Settings
@@ -45,6 +52,7 @@ def post(
     report: FilePath | None = None,
     columns: bool = True,
     subprograms: Sequence[FilePath] = (),
+    simulation: SimulationLike | None = None,
     observer: Observer = SILENT,
 ) -> PostResult:
     """Post CL files as one NC program, and prove it.
@@ -79,6 +87,12 @@ def post(
         report needs them; without them a program of any length takes little memory.
     subprograms
         Files of subprograms that exist already and that templates of the definition call. No others are opened.
+    simulation
+        Simulate the program too, as ``trunnion.simulate`` does, with its arguments ``stock``, ``part``, ``fixtures``,
+        ``near``, ``tools``, ``libraries``, ``unit``, ``cell`` and ``accuracy``: ``{"stock": "box:100,80,30"}``. Or the
+        path of a project file of one set-up, also as ``{"project": path}`` with others in its place. Tools come from
+        the CL files where nothing else has them. What is found fails the checks ``removal``, ``collision`` and
+        ``gouge``; the result has it as ``simulation``.
     observer
         Receives the progress, warnings, the plan and the proof.
 
@@ -109,7 +123,8 @@ def post(
     """
     return post_beside(
         cl, (), machine=machine, output=output, settings=settings, strict=strict, force=force, explain=explain,
-        report=report, columns=columns, subprograms=subprograms, observer=observer,
+        report=report, columns=columns, subprograms=subprograms, simulation=simulation,
+        observer=observer,
     )  # fmt: skip
 
 
@@ -127,6 +142,7 @@ def post_beside(
     columns: bool,
     subprograms: Sequence[FilePath],
     observer: Observer,
+    simulation: SimulationLike | None = None,
 ) -> PostResult:
     """Post CL files as ``post`` does, and write over none of the other files of the same work."""
     check_observer(observer)
@@ -138,6 +154,9 @@ def post_beside(
     existing = check_paths("subprograms", subprograms)
     job = replace(job, beside=tuple(existing))
     inputs = [*cl_files(cl), *definition_files(machine, loaded), *existing, *others]
+    if simulation is not None:
+        job = replace(job, simulation=simulation_input(simulation, job.machine))
+        inputs += simulation_files(simulation)
     with open_target(output, report=report, inputs=inputs) as target:
         compile_ahead(kernels.POSTING)
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
@@ -169,10 +188,16 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
     if verification is None:
         problems.append(_nothing_checked(job, target))
         observer.problems(problems[-1:])
-    else:
+    simulated = None
+    if job.simulation is not None:
+        simulated = simulate_posted(job.simulation, run.result(), toolpaths, observer)
+        problems += [remark for remark in simulated.remarks if remark.severity is Severity.WARNING]
+    if verification is not None:
+        if simulated is not None:
+            verification = replace(verification, checks=(*verification.checks, *simulation_checks(simulated)))
         observer.verified(verification)
     remarks = [remark for toolpath in toolpaths for remark in toolpath.remarks]
-    result = PostResult(tuple(toolpaths), planned, verification, (*remarks, *problems))
+    result = PostResult(tuple(toolpaths), planned, verification, (*remarks, *problems), simulation=simulated)
     failed = [check for check in result.checks if not check.passed]
     if failed and not job.force:
         if job.report is not None:

@@ -50,15 +50,16 @@ def is_project(path: Path) -> bool:
         return False
 
 
-def project_files(given: Iterable[FilePath]) -> list[FilePath]:
-    """All files that the projects among some files name, none of which may be written over.
+def project_files(given: Iterable[FilePath], elsewhere: Collection[str] = ()) -> list[FilePath]:
+    """All files that the projects among some files name, none of which may be written over; the rest as for
+    ``read_project``.
 
     Raises
     ------
     InputError
         If a project cannot be read.
     """
-    projects = [read_project(Path(each), ("machine", "stock")) for each in given if is_project(Path(each))]
+    projects = [read_project(Path(each), ("machine", "stock", *elsewhere)) for each in given if is_project(Path(each))]
     named = [name for each in projects for setup in each.setups for name in _named_files(setup)]
     return [*named, *(str(each.stock) for each in projects)]
 
@@ -136,7 +137,7 @@ class _Reader:
         stated = set(table.keys())
         is_alone = shared is None and "setup" not in stated
         if is_alone or shared is not None:
-            found["programs"] = self._files(table, "programs", required=True)
+            found["programs"] = self._programs(table)
         found["name"] = "" if shared is None else table.text("name", f"set-up {_number(table)}")
         for argument, key in (("subprograms",) * 2, ("fixtures",) * 2, ("cl",) * 2, ("libraries", "tool_libraries")):
             if shared is None or key in stated:
@@ -165,6 +166,13 @@ class _Reader:
         else:
             found["places"] = _places(table)
         return found
+
+    def _programs(self, table: Table) -> tuple[str, ...]:
+        """The programs of a set-up; where they are given elsewhere they may be missing, and not be there yet."""
+        if "nc" not in self._elsewhere:
+            return self._files(table, "programs", required=True)
+        table.texts("programs", ())
+        return ()
 
     def _pose(self, table: Table) -> Pose:
         pose = table.table("pose")

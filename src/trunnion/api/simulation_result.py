@@ -13,6 +13,7 @@ from trunnion.simulation.collisions import Collision
 from trunnion.simulation.findings import Finding, What
 from trunnion.simulation.simulator import Job, OperationCut, Simulation, row_runs, tip_lengths
 from trunnion.simulation.stock.deviation import Excess
+from trunnion.verification import Verification
 from trunnion.verification import verify as verify_run
 
 #: The number of the tool with which a program cuts that calls none.
@@ -34,6 +35,7 @@ class SimulationFinding:
     block     N number of that block, -1 where it has none
     last_line, last_block  of the last block of the run of blocks that do it
     cl_line   line of the CL file that the block comes from; 0 where it is not known
+    cl_file   that file
     seconds   when, from the beginning of the program
     depth     how deep, mm
     place     where, workpiece frame, mm
@@ -51,6 +53,7 @@ class SimulationFinding:
     seconds: float
     depth: float
     place: tuple[float, float, float]
+    cl_file: str = ""
     setup: str = ""
 
 
@@ -171,8 +174,7 @@ def make_result(
     findings, operations, air = list[SimulationFinding](), list[SimulatedOperation](), list[AirCut]()
     for one in found.operations:
         run, at = jobs[one.job].run, seconds[one.job]
-        cl_line = verified[one.job].cl_line
-        findings += (_finding(run, finding, at, cl_line) for finding in one.findings)
+        findings += (_finding(verified[one.job], finding, at) for finding in one.findings)
         idle = list(_air(run, one, lengths[one.job]))
         air += idle
         seconds_taken = float(at[one.end - 1]) - (float(at[one.first - 1]) if one.first else 0.0)
@@ -181,9 +183,9 @@ def make_result(
         operations.append(_operation(run, one, seconds_taken, lines, air_length))
     misses = list[NearMiss]()
     for number, collisions in enumerate(touched):
-        run, at, cl_line = jobs[number].run, seconds[number], verified[number].cl_line
+        run, at = jobs[number].run, seconds[number]
         hits = [each for each in collisions if not each.is_near]
-        findings += (_finding(run, _of_collision(each), at, cl_line) for each in hits)
+        findings += (_finding(verified[number], _of_collision(each), at) for each in hits)
         misses += (_near_miss(run, each, at) for each in collisions if each.is_near)
     x, y, z = found.stock.lattice.cell.tolist()
     return SimulationResult(
@@ -233,13 +235,15 @@ def _operation(run: Run, one: OperationCut, seconds: float, lines: tuple[int, in
     return SimulatedOperation(run.files[0], tool, *lines, one.removed, one.gouged, seconds, air, count)
 
 
-def _finding(run: Run, finding: Finding, seconds: Any, cl_line: Any) -> SimulationFinding:
-    row, last = finding.worst, finding.rows[1]
+def _finding(verified: Verification, finding: Finding, seconds: Any) -> SimulationFinding:
+    run, row, last = verified.run, finding.worst, finding.rows[1]
     x, y, z = finding.place
+    cl_line = int(verified.cl_line[row]) if len(verified.cl_line) else 0
+    cl_file = next((each.cl_file for each in verified.operations if each.first <= row < each.end), "")
     return SimulationFinding(
         str(finding.what), finding.between, file_of_row(run, row), int(run.line[row]), int(run.block_number[row]),
-        int(run.line[last]), int(run.block_number[last]), int(cl_line[row]) if len(cl_line) else 0,
-        float(seconds[row]), finding.depth, (x, y, z),
+        int(run.line[last]), int(run.block_number[last]), cl_line, float(seconds[row]), finding.depth, (x, y, z),
+        cl_file if cl_line else "",
     )  # fmt: skip
 
 

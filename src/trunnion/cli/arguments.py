@@ -165,6 +165,11 @@ def _add_post(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--force", action="store_true", help="write a program that must not run; its head says so")
     parser.add_argument("--explain", action="store_true", help="say why the axes were planned as they are")
     parser.add_argument("--report", metavar="FILE", help="what was checked, as a page (.html) or data (.json)")
+    parser.add_argument(
+        "--simulate", action="store_true", help="cut stock with the program too, and refuse what it must not do"
+    )
+    parser.add_argument("--project", metavar="PROJECT", help="project file (.toml) that states what --simulate takes")
+    _add_stock(parser)
     parser.set_defaults(run=_lazy_command("startup", "run"))
 
 
@@ -251,12 +256,7 @@ def _add_convert(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(run=_lazy_command("convert", "run"))
 
 
-def _add_simulate(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "files", nargs="+", metavar="NC|PROJECT",
-        help="NC program; several cut the same stock in their order. Or a project (.toml), which may state all options",
-    )  # fmt: skip
-    parser.add_argument("--machine", metavar="NAME_OR_FILE", help="machine that runs them")
+def _add_stock(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--stock", metavar="STOCK",
         help="box:X,Y,Z[,x0,y0,z0] (sizes, lowest corner), cylinder:D,H[,z0], or a mesh file; mm",
@@ -271,8 +271,6 @@ def _add_simulate(parser: argparse.ArgumentParser) -> None:
         help="tool library: TOML, .tools or .json of Autodesk, FreeCAD's .fctb, LinuxCNC's tool.tbl; may be repeated",
     )  # fmt: skip
     parser.add_argument("--unit", choices=("mm", "inch"), help="length unit of tool tables, which state none")
-    parser.add_argument("--cl", action="append", default=[], metavar="CL", help="CL file whose tools these are")
-    _add_subprograms(parser, "they")
     parser.add_argument(
         "--fixture", action="append", default=[], metavar="MESH", dest="fixtures",
         help="a fixture, as the program counts; may be repeated",
@@ -280,6 +278,17 @@ def _add_simulate(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--near", type=_tolerance, metavar="MM", help="tell bodies that come as near as this, too")
     parser.add_argument("--cell", type=_tolerance, metavar="MM", help="width of the cells; a 200th of the stock's side")
     parser.add_argument("--accuracy", type=_tolerance, metavar="MM", help="of motions and tools; a tenth of a cell")
+
+
+def _add_simulate(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "files", nargs="+", metavar="NC|PROJECT",
+        help="NC program; several cut the same stock in their order. Or a project (.toml), which may state all options",
+    )  # fmt: skip
+    parser.add_argument("--machine", metavar="NAME_OR_FILE", help="machine that runs them")
+    _add_stock(parser)
+    parser.add_argument("--cl", action="append", default=[], metavar="CL", help="CL file whose tools these are")
+    _add_subprograms(parser, "they")
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
     parser.add_argument("--stop-at", choices=("none", "first"), help="end after the block of the first finding")

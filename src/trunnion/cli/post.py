@@ -13,7 +13,7 @@ from trunnion.cli.cl_files import named_files, result_stem
 from trunnion.cli.results import tell
 from trunnion.cli.terminal import Terminal, check_unnamed, output_folder, output_place
 from trunnion.controls import load_control
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.files import check_outputs
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Toolpath
@@ -49,12 +49,31 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[list[Toolpath]]) -> 
             report=arguments.report,
             columns=False,
             subprograms=arguments.subprograms,
+            simulation=_simulation(arguments),
             observer=Terminal(explain=arguments.explain, recorded=arguments.explain or bool(arguments.report)),
         )
         written += [*result.subprograms, *([] if result.output is None else [result.output])]
         passed = passed and result.passed
         _print_summary(target, result)
     return 0 if passed else 1
+
+
+def _simulation(arguments: argparse.Namespace) -> dict[str, object] | None:
+    """What the program is simulated with; None: it is not.
+
+    Raises
+    ------
+    InputError
+        If something is said about a simulation, and none is asked for.
+    """
+    names = ("project", "stock", "part", "fixtures", "near", "tools", "libraries", "unit", "cell", "accuracy")
+    stated = {name: getattr(arguments, name) for name in names if getattr(arguments, name)}
+    if arguments.simulate:
+        return stated
+    if stated:
+        what = "is only for a simulation, and none is asked for"
+        raise InputError(argument_problem(next(iter(stated)), what, "add --simulate, or leave it out"))
+    return None
 
 
 def _with_dialects(files: Iterator[list[Toolpath]]) -> Iterator[list[Toolpath]]:

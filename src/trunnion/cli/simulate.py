@@ -167,7 +167,8 @@ def _finding(finding: SimulationFinding) -> dict[str, object]:
     return {
         "kind": finding.kind, "between": list(finding.between), "file": finding.file, "line": finding.line,
         "block": _block(finding.block), "last_line": finding.last_line, "last_block": _block(finding.last_block),
-        "cl_line": finding.cl_line or None, "seconds": _number(finding.seconds), "depth_mm": _number(finding.depth),
+        "cl_line": finding.cl_line or None, "cl_file": finding.cl_file or None,
+        "seconds": _number(finding.seconds), "depth_mm": _number(finding.depth),
         "place": _numbers(finding.place), "setup": finding.setup or None,
     }  # fmt: skip
 
