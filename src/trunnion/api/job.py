@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from trunnion.api.run_settings import RUN_SETTINGS
 from trunnion.api.settings import (
@@ -17,7 +17,6 @@ from trunnion.api.settings import (
     split_by_operation,
     with_limit_margin,
 )
-from trunnion.api.simulation_setups import SimulationInput
 from trunnion.controls import Control, load_control
 from trunnion.controls.inches import in_units
 from trunnion.controls.vocabulary import MM, PROGRAM_CHOICES
@@ -29,6 +28,9 @@ from trunnion.output.capabilities import control_capabilities
 from trunnion.output.subprograms import SubprogramOutput
 from trunnion.planning import Clearance, ClearanceSurface, ControlCapabilities, PlanOptions
 from trunnion.readers import check_reading
+
+if TYPE_CHECKING:  # imported where a program is simulated
+    from trunnion.api.simulation_setups import SimulationInput
 
 #: Values of the setting ``mode``.
 _MODES: Final = {
@@ -69,7 +71,7 @@ class PostJob:
     columns: bool = False
     own_settings: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     beside: tuple[Path, ...] = ()
-    simulation: SimulationInput | None = None
+    simulation: "SimulationInput | None" = None
 
     @property
     def printed(self) -> dict[str, str]:

@@ -3,10 +3,10 @@
 import io
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from trunnion.api.reading import FilePath
 from trunnion.api.reports import write_report
-from trunnion.api.simulation_result import SimulationResult
 from trunnion.api.targets import written_text
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.model.motion import Decision, Motion, Plan
@@ -14,6 +14,9 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.verification import Check, Verification
 from trunnion.wording import counted
+
+if TYPE_CHECKING:  # imported where a program is simulated
+    from trunnion.api.simulation_result import SimulationResult
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -35,7 +38,7 @@ class PostResult:
     problems: tuple[Problem, ...]
     output: Path | None = None
     subprograms: tuple[Path, ...] = ()
-    simulation: SimulationResult | None = None
+    simulation: "SimulationResult | None" = None
     _memory: io.BytesIO | None = None
 
     def __repr__(self) -> str:

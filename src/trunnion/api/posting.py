@@ -8,6 +8,7 @@ Out:    the program: planned, written, read back, run and compared with its tool
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from trunnion.api import kernels
 from trunnion.api.arguments import check_observer, check_paths
@@ -18,13 +19,6 @@ from trunnion.api.machining_times import operation_times, prints_times, write_ti
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.planning import load_toolpaths, plan_program
 from trunnion.api.post_result import PostResult, ProofFailedError
-from trunnion.api.posted_simulation import (
-    SimulationLike,
-    simulate_posted,
-    simulation_checks,
-    simulation_files,
-    simulation_input,
-)
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.api.reports import add_report, check_report_name
 from trunnion.api.settings import Settings
@@ -39,6 +33,10 @@ from trunnion.model.toolpath import Toolpath
 from trunnion.reporting import write_refusal
 from trunnion.verification import Verification, verify, without_columns
 
+if TYPE_CHECKING:  # imported where a program is simulated: others start sooner
+    from trunnion.api.posted_simulation import SimulationLike
+    from trunnion.api.simulation_result import SimulationResult
+
 
 def post(
     cl: ToolpathLike | Iterable[ToolpathLike],
@@ -52,7 +50,7 @@ def post(
     report: FilePath | None = None,
     columns: bool = True,
     subprograms: Sequence[FilePath] = (),
-    simulation: SimulationLike | None = None,
+    simulation: "SimulationLike | None" = None,
     observer: Observer = SILENT,
 ) -> PostResult:
     """Post CL files as one NC program, and prove it.
@@ -142,7 +140,7 @@ def post_beside(
     columns: bool,
     subprograms: Sequence[FilePath],
     observer: Observer,
-    simulation: SimulationLike | None = None,
+    simulation: "SimulationLike | None" = None,
 ) -> PostResult:
     """Post CL files as ``post`` does, and write over none of the other files of the same work."""
     check_observer(observer)
@@ -155,6 +153,8 @@ def post_beside(
     job = replace(job, beside=tuple(existing))
     inputs = [*cl_files(cl), *definition_files(machine, loaded), *existing, *others]
     if simulation is not None:
+        from trunnion.api.posted_simulation import simulation_files, simulation_input
+
         job = replace(job, simulation=simulation_input(simulation, job.machine))
         inputs += simulation_files(simulation)
     with open_target(output, report=report, inputs=inputs) as target:
@@ -190,11 +190,9 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
         observer.problems(problems[-1:])
     simulated = None
     if job.simulation is not None:
-        simulated = simulate_posted(job.simulation, run.result(), toolpaths, observer)
+        simulated, verification = _simulate(job, run.result(), toolpaths, verification, observer)
         problems += [remark for remark in simulated.remarks if remark.severity is Severity.WARNING]
     if verification is not None:
-        if simulated is not None:
-            verification = replace(verification, checks=(*verification.checks, *simulation_checks(simulated)))
         observer.verified(verification)
     remarks = [remark for toolpath in toolpaths for remark in toolpath.remarks]
     result = PostResult(tuple(toolpaths), planned, verification, (*remarks, *problems), simulation=simulated)
@@ -212,6 +210,19 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
     if target.report is not None and verification is not None:
         add_report(verification, target.files.add_report(target.report), target.report.name, result.decisions)
     return replace(result, output=target.path, subprograms=target.subprograms, _memory=target.memory)
+
+
+def _simulate(
+    job: PostJob, run: Run | None, toolpaths: Sequence[Toolpath], found: Verification | None, observer: Observer
+) -> "tuple[SimulationResult, Verification | None]":
+    """What the program cuts and hits, and its proof with these checks."""
+    from trunnion.api.posted_simulation import simulate_posted, simulation_checks
+
+    assert job.simulation is not None
+    simulated = simulate_posted(job.simulation, run, toolpaths, observer)
+    if found is not None:
+        found = replace(found, checks=(*found.checks, *simulation_checks(simulated)))
+    return simulated, found
 
 
 def _prove(
