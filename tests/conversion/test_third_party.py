@@ -5,10 +5,13 @@ from pathlib import Path
 
 import pytest
 
+import trunnion
 from tests.support.locations import SHARED
 from trunnion.cli import main
 from trunnion.machines import load_machine
 from trunnion.readers import run_program
+from trunnion.simulation.stock.deviation import left_on
+from trunnion.simulation.stock.material import Stock
 from trunnion.verification import compare
 
 FOLDER = SHARED / "data" / "linuxcnc"
@@ -32,6 +35,14 @@ def same(one: Path, machine: str, two: Path, to: str, tolerance: str, capfd: Cap
     assert (code, said.split(",")[0]) == (0, "same: 4492 points"), said
 
 
+def stock_of(program: Path, machine: str) -> Stock:
+    """What a program leaves of a cylinder, in cells of 1 mm: it is taken to cut with a ball mill of 6 mm."""
+    tool = "1=ball:6,length=75,flutes=60"
+    found = trunnion.simulate(program, machine=machine, stock="cylinder:76,34,-8", tools=[tool], cell=1.0)
+    assert found.removed == pytest.approx(49060.0, rel=3e-3)
+    return found.simulation.stock
+
+
 @pytest.mark.parametrize(("machine", "tolerance"), [("yl569", "0.00001"), ("dmu65", "0.0001")])
 def test_the_impeller_goes_to_another_machine_and_control_and_back(
     machine: str, tolerance: str, tmp_path: Path, capfd: Capture
@@ -42,6 +53,11 @@ def test_the_impeller_goes_to_another_machine_and_control_and_back(
     same(program, "xyzac_trt", there, machine, tolerance, capfd)
     converted(there, machine, "xyzac_trt", back)
     same(there, machine, back, "xyzac_trt", tolerance, capfd)
+    cut = [stock_of(path, each) for path, each in ((program, "xyzac_trt"), (there, machine))]
+    apart = [left_on(one, (other.spans(0), other.spans(1), other.spans(2)), 0.0) for one, other in (cut, cut[::-1])]
+    # The rapid between two operations turns by 263 degrees there, and by 97 here: it passes the blank elsewhere.
+    assert max(each.largest for each in apart) < 1.0
+    assert sum(each.volume for each in apart) < 2.0
 
 
 def test_the_boat_is_one_path_on_two_machines_but_for_what_its_generator_does() -> None:

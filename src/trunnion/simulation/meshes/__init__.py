@@ -4,6 +4,7 @@ Units: mm. Vertices are in whatever frame the caller means; a mesh knows none.
 """
 
 from trunnion.simulation.meshes.findings import MeshFindings, judge_mesh
+from trunnion.simulation.meshes.picture import picture
 from trunnion.simulation.meshes.primitives import box_mesh, cylinder_mesh, revolved_mesh
 from trunnion.simulation.meshes.reading import MESH_FORMATS, MeshUnit, load_mesh
 from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
@@ -19,6 +20,7 @@ __all__ = [
     "cylinder_mesh",
     "judge_mesh",
     "load_mesh",
+    "picture",
     "revolved_mesh",
     "save_mesh",
 ]

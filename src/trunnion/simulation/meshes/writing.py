@@ -1,4 +1,4 @@
-"""Meshes into files: STL, PLY, 3MF and GLB, whole or not at all."""
+"""Meshes into files: STL, PLY, 3MF and GLB, or a picture of it as PNG, whole or not at all."""
 
 import json
 import os
@@ -11,6 +11,7 @@ import numpy as np
 
 from trunnion.errors import InputError, Problem
 from trunnion.files import atomic_file
+from trunnion.simulation.meshes.picture import picture
 from trunnion.simulation.meshes.stl import write_stl
 from trunnion.simulation.meshes.three_mf import write_three_mf
 from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
@@ -28,7 +29,7 @@ def check_mesh_name(path: str | Path) -> None:
 
 
 def save_mesh(mesh: TriangleMesh, path: str | Path, *, inputs: Iterable[str | os.PathLike[str]] = ()) -> None:
-    """Write a mesh; the ending of the name says in which format: .stl, .ply, .3mf or .glb.
+    """Write a mesh; the ending of the name says in which format: .stl, .ply, .3mf or .glb, or .png for a picture.
 
     Lengths are mm, in GLB metres with Y upwards, as that format wants them. STL, PLY and GLB have single precision.
 
@@ -101,4 +102,5 @@ _WRITERS: Final[dict[str, Callable[[TriangleMesh], bytes]]] = {
     ".ply": _ply,
     ".3mf": write_three_mf,
     ".glb": _glb,
+    ".png": picture,
 }
