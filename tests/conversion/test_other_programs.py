@@ -213,7 +213,7 @@ def warnings_for(programs: Programs, *lines: str) -> list[tuple[int, str]]:
     [
         (["G0 X0 Y0 Z0", "N20 G1 G64 X1 F1"], 2, "G64 is not carried over"),
         (["DYNFINISH", "G0 X0 Y0 Z0", "G1 X1 F1"], 1, "DYNFINISH is not carried over"),
-        (["G0 X0 Y0 Z0", "FGROUP(X,Y)", "G1 X1 F1"], 2, "FGROUP is not carried over"),
+        (["G0 X0 Y0 Z0", "FGROUP(X,Y,Z)", "G1 X1 F1"], 2, "FGROUP is not carried over"),
         (["G0 X0 Y0 Z0", "CYCLE832(0.1,_FINISH,1)", "G1 X1 F1"], 2, "CYCLE832 is not carried over"),
         (
             ["SUPA G0 Z300", "G0 X0 Y0 Z0", "G1 X1 F1"],

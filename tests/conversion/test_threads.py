@@ -262,8 +262,9 @@ def test_a_bore_that_needs_an_angle_or_the_operator_is_refused(
 @pytest.mark.parametrize("lines", ["G331 Z-20 K1.5", "G33 Z-20 K1.5", "G63 Z-20 F750"])
 def test_threads_that_the_reader_takes_as_lines_are_refused(lines: str, tmp_path: Path) -> None:
     text = SINUMERIK.replace("MCALL {cycle}", lines)
-    found = converted("yl569", text, tmp_path)
-    assert any(error.what.endswith("is taken as a straight line") for error in found.errors)
+    (tmp_path / "part.nc").write_text(text)
+    with pytest.raises(RefusedError, match="is taken as a straight line"):
+        trunnion.convert(tmp_path / "part.nc", machine="yl569", to_cl=True)
 
 
 def test_a_thread_while_the_spindle_stands_is_refused(tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ HEADS = {
     "dmu65": "0 BEGIN PGM A MM\nTOOL CALL 1 Z S500\n",
 }
 
+PLANE = "G68.2 X0 Y0 Z0 I0 J0 K0\nG53.1"
 CYCLE_32 = "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1"
 
 #: A machine, blocks that its control knows, and blocks with values that it does not know.
@@ -32,6 +33,20 @@ WORDS = [
     ("matsuura_mx330", ["G52 X1.", "G92 X5."], ["G52", "G92"]),
     ("xyzac_trt", ["G52 X1", "G4 P1"], ["G52", "G4 P-1"]),
     ("yl569", ["G4 F1", "G4 S3"], ["G4"]),
+    ("yl569", ["G60 G64 FNORM CFC NORM"], ["G331 Z-9 K1", "G332 Z-9 K1", "G33 Z-9 K1", "G63 Z-9", "G331", "G96 S99"]),
+    ("yl569", ["WALIMON", "M40"], ["G25 S99", "G26 S1000", "G26 X5", "LIMS=1000", "SVC=90", "M41", "G621", "G810"]),
+    ("yl569", ["FGROUP()", "FGROUP(Z,X,Y)"], ["FGROUP(Z)", "FGROUP(X,Y,Z,C)", "FL[X]=9", "VELOLIM[X]=50", "FLIN"]),
+    ("yl569", ["OTOL=0.1 STOL=2 ADISPOS=.5"], ["OTOL=5", "STOL=99", "ADISPOS=9", "CTOLG=9", "OTOLG=9", "RTLIOF"]),
+    ("yl569", ["TRAORI(1)\nA3=0 C3=1"], ["TRAORI(3)", "A3=0 C3=1", "DIAMON", "DIAM90", "PROC A SAVE", "FPO"]),
+    ("yl569", ["FGREF[C]=10 G1 X1 C9", "FGREF[C]=57.296 G1 C9"], ["FGREF[C]=10 G1 C9", "FGREF[C]=10\nG1 C9\nC5"]),
+    ("yl569", ["CFTCP KONTT G62", "G41 X9 NORM"], ["G41 CFTCP", "CFIN\nG42 X9", "G41 G62", "G41 KONTT"]),
+    ("matsuura_mx330", ["G61\nG64", "G22\nG23", f"{PLANE} P0"], ["G60 X5.", "G62", "G22 X9.", "G96 S99", "G5.3 P1"]),
+    ("matsuura_mx330", ["M29 S99"], ["G33 Z-9. F1.", "G31 Z-9. F9.", f"{PLANE} P1"]),
+    ("haas_umc750", ["G187", "G187 E.02", "M83"], ["G187 P", "M39", "M41", "M50", "M82", "M86", "M138", "G60 X5."]),
+    ("xyzac_trt", ["M52 P0", "G92 X5\nG92.3", "M110"], ["M52", "M52 P1", "G92.3", "M129", "G38.2 Z0 F9", "G33 Z0 K1"]),
+    ("dmu65", ["M103", "M111", "M124", "M124 T.1", "M138", "M138 A C"], ["M103 F20", "M109", "M110", "M138 A"]),
+    ("dmu65", ["FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS"], ["M98", "M112 T.5", "M144", "M150", "LN X+1 TX+0 TZ+1"]),
+    ("dmu65", ["CYCL DEF 251"], ["CYCL DEF 239 Q570=+0", "CYCL DEF 220", "FUNCTION TCPM F CONT AXIS POS"]),
     ("yl569", ["CYCLE832(.02,_ORI_FINISH,1)", "CYCLE832(.02,112102)"], ["CYCLE832(.02,5)", "CYCLE832(.02,21,1)"]),
     ("yl569", ["CYCLE832(.02,2000012,.5)", "OVR=100"], ["CYCLE832(.02,11,-1)", "OVR=50", "G1 X1. FB=20"]),
     ("yl569", ["CYCLE83(9.,0.,1.,-9.,,-3.,,,,,,1)"], ["CYCLE83(9.,0.,1.,-9.,,-3.,,,,,,2)"]),

@@ -24,9 +24,6 @@ _NOT_LOST = frozenset(
 )
 _SURFACE_SPEED = frozenset({"G96", "G961", "G962"})
 
-#: How findings of readers end where a motion is more than a line.
-_TAKEN_AS_LINE = "is taken as a straight line"
-
 #: How findings of readers begin where the path is that of the wall, or of the tool centre as programmed.
 _WITHOUT_RADIUS = ("cycle 208:", "G41.2:", "G42.2:")
 
@@ -170,10 +167,9 @@ def warn_of_park_positions(run: Run, warn: Warnings) -> None:
 
 
 def refuse_unsimulated_motions(run: Run, warn: Warnings) -> None:
-    """Refuse what the reader only approximates: threads and probing as lines, paths without the tool's radius."""
+    """Refuse what the reader only approximates: paths without the tool's radius."""
     for found in run.diagnostics:
-        approximate = found.text.endswith(_TAKEN_AS_LINE) or found.text.startswith(_WITHOUT_RADIUS)
-        if found.severity is Severity.WARNING and approximate:
+        if found.severity is Severity.WARNING and found.text.startswith(_WITHOUT_RADIUS):
             warn.refuse(found.line, found.text, "a toolpath has no such motion", run.files.index(found.file))
 
 

@@ -1,4 +1,4 @@
-"""Tolerances within which the control may round off the path (CYCLE832, cycle 32, G64 P), against those of the CAM."""
+"""Tolerances within which the control may round off the path (CYCLE832, cycle 32, G64 P), against the CAM's."""
 
 import math
 from collections.abc import Iterator

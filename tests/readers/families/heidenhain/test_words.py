@@ -223,7 +223,8 @@ def test_machine_functions_act_before_or_after_their_block(run: Runner) -> None:
 
 def test_words_of_a_function_are_not_those_of_the_path(run: Runner) -> None:
     found = run("L X+1 F500 M128 F3000\nL X+2 M118 X1 Y1\nL X+3 M138 A C\nM94 C\nM103 F20\nL M140 MB5 F77\nL X+4")
-    assert [(f.line, f.severity) for f in found.diagnostics] == [(2, Severity.WARNING)]
+    assert [(f.line, f.severity) for f in found.diagnostics] == [(2, Severity.WARNING), (5, Severity.ERROR)]
+    assert [event.value for event in run("L X+1 F9 M124 T0.5\nM124").events if event.kind == "tolerance"] == [0.5]
     assert found.feed.tolist() == [500, 500, 500, 77, 500]
     close(found.tip[:, 1], 0.0, atol=1e-12)
 

@@ -20,6 +20,7 @@ from trunnion.readers.families.fanuc.variables import ARITHMETIC
 from trunnion.readers.program.interpreter import ProgramEnd
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
+from trunnion.readers.program.word_values import fault_of_value
 from trunnion.readers.rs274.block import Block, block_reader, read_block
 from trunnion.readers.rs274.expressions import BlockError
 from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS
@@ -185,8 +186,9 @@ class FanucInterpreter(CycleInterpreter):
         control = self.control
         if code == words.CONTOUR and "Q" not in block.words:
             self._note("G5.1 needs Q1 for on, or Q0 for off", Severity.ERROR)
-        for letter in words.WORDS_OF_CODE.get(code, ""):
-            block.take(letter)
+        taken = [letter for letter in words.WORDS_OF_CODE.get(code, "") if block.take(letter) is not None]
+        if code == words.STROKE_LIMITS and taken:
+            self._note("G22 with positions limits where the axes may go: not simulated", Severity.ERROR)
         if code in words.OFFSETS or code == words.MORE_OFFSETS:
             self._work_offset(code, block)
         elif code in (words.TCP, words.TCP_VECTOR):
@@ -194,6 +196,8 @@ class FanucInterpreter(CycleInterpreter):
         elif code == words.PLANE_OF_POSE:
             control.take_plane_of_pose()
             self._not_stated = frozenset("XYZ")
+        elif code == words.SMOOTHNESS:
+            self._smoothness(block)
         elif code == words.NO_PLANE_OF_POSE:
             control.leave_plane_of_pose()
             self._not_stated = frozenset()
@@ -218,6 +222,15 @@ class FanucInterpreter(CycleInterpreter):
             self._report_g_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
         elif code != words.ALIGN_TOOL and not self._modal_g_code(code):
             self._report_g_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
+
+    def _smoothness(self, block: Block) -> None:
+        """Execute the word that chooses a smoothness, P, and how far corners may be rounded, E."""
+        control = self.control
+        degree, rounding = block.take("P"), block.take("E")
+        if degree is not None and (fault := fault_of_value("smoothness", "P", degree, words.SMOOTHNESSES)):
+            self._note(fault, Severity.ERROR)
+        if rounding is not None:
+            control.add_tolerance(rounding * control.length_unit)
 
     def _tcp(self, code: int, block: Block) -> None:
         """G43.4 and G43.5; P selects how the tool axis moves within blocks."""

@@ -207,9 +207,7 @@ class OffsetInterpreter(CallInterpreter):
 
     def _align_with_plane(self, block: Block) -> None:
         """G53.1: turn the rotary axes to the tilted plane."""
-        which = block.take("P")
-        if which:
-            self._note(f"G53.1 P{which:g}: taken as G53.1, the way on which the axes turn least", Severity.WARNING)
+        block.take("P")
         self._counter.count_blocks(1)
         self.control.align_with_plane()
 

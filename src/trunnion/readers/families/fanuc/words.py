@@ -34,7 +34,12 @@ NURBS: Final = 62
 #: Meanings for which the family has no words, only some of its controls: codes that no program can write.
 PLANE_OF_POSE: Final = -1
 NO_PLANE_OF_POSE: Final = -2
-MEANINGS: Final = {"plane of the rotary position": PLANE_OF_POSE, "no plane of the rotary position": NO_PLANE_OF_POSE}
+SMOOTHNESS: Final = -3
+MEANINGS: Final = {
+    "plane of the rotary position": PLANE_OF_POSE,
+    "no plane of the rotary position": NO_PLANE_OF_POSE,
+    "smoothness": SMOOTHNESS,
+}
 
 #: G codes that take the axis words of their block, which then makes no other motion.
 TAKING_AXIS_WORDS: Final = frozenset(
@@ -43,20 +48,20 @@ TAKING_AXIS_WORDS: Final = frozenset(
 
 #: G codes that the path does not depend on.
 WITHOUT_PATH_EFFECT: Final = frozenset(
-    {50, 51, 80, 90, 110, 131, 150, 220, 230, 400, 430, 440, 500, 501, 600, 610, 620, 630, 640, 970}
+    {50, 51, 80, 90, 110, 131, 150, 220, 230, 400, 430, 440, 500, 501, 610, 630, 640, 970}
 )
 
 #: G codes that are not simulated: the message, and whether the path is wrong without them.
 NOT_SIMULATED: Final = {
-    53: ("not simulated", False),
+    53: ("what it chooses is not known", True),
     61: ("a smooth curve is not simulated", True),
     71: ("cylindrical interpolation is not simulated", True),
     121: ("polar coordinate interpolation is not simulated", True),
     160: ("polar positions are not simulated", True),
     270: ("a check of the reference position: where it goes is not simulated", True),
     290: ("back from the reference position: not simulated", True),
-    310: ("a skip is taken as a straight line", False),
-    330: ("thread cutting is taken as a straight line", False),
+    310: ("a skip is taken as a straight line", True),
+    330: ("thread cutting is taken as a straight line", True),
     410: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
     420: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
     412: ("radius compensation in space is not simulated", False),
@@ -71,11 +76,13 @@ NOT_SIMULATED: Final = {
     511: ("mirror images are not simulated", True),
     536: ("turning the tool upright while the tip stays is not simulated", True),
     544: ("workpiece setting errors are not simulated", True),
+    600: ("positioning from one side, past its end and back, is not simulated", True),
+    620: ("another feed at inside corners is not simulated", True),
     661: ("a modal macro call at every block is not simulated", True),
     683: ("a plane by the tool's direction is not simulated", True),
     684: ("a plane on top of another is not simulated", True),
     921: ("a preset of the work coordinates is not simulated", True),
-    960: ("constant surface speed: only the kind of feed is followed", False),
+    960: ("constant surface speed is not simulated", True),
 }
 
 #: Motions that are taken as straight lines.
@@ -132,9 +139,16 @@ VALUES: Final = {
     (440, "H"): whole(0, 999),
     (410, "D"): whole(0, 999),
     (420, "D"): whole(0, 999),
-    (ALIGN_TOOL, "P"): whole(0, 2),
+    # P1 and P2 choose another of the two positions of the rotary axes than the nearest.
+    (ALIGN_TOOL, "P"): one_of(0),
     (OTHER_HOME, "P"): whole(2, 4),
 }
+
+#: Forbids an area, if words of positions follow.
+STROKE_LIMITS: Final = 220
+
+#: The degrees of smoothness, rough to fine.
+SMOOTHNESSES: Final = whole(1, 3)
 
 #: G10: what it writes into the data of tools, by L.
 TOOL_DATA: Final = {

@@ -26,6 +26,7 @@ from trunnion.readers.families.heidenhain.path_blocks import value_of
 from trunnion.readers.families.heidenhain.plane_control import Positioning
 from trunnion.readers.families.heidenhain.plane_frames import spatial
 from trunnion.readers.families.heidenhain.words import (
+    ACT_WHEN_DEFINED,
     AXIS_SCALING,
     BORE_MILLING,
     CYCLES_NOT_SIMULATED,
@@ -247,6 +248,9 @@ class Definitions:
         title, rest = (rest, "") if begin is None else (rest[: begin.start()], rest[begin.start() :])
         q_values = self._read_parameters(number, rest, parameters)
         if number in CYCLES or number in CYCLES_NOT_SIMULATED:
+            if number in ACT_WHEN_DEFINED:
+                self._note(f"cycle {number} ({CYCLES_NOT_SIMULATED[number]}) is not simulated", Severity.ERROR)
+                return
             self.defined_cycle = Cycle(number, q_values=q_values)
             if number == BORE_MILLING:
                 text = "cycle 208: the tool's radius is the control's, and the path is that of the wall"

@@ -233,7 +233,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         self._set_compensation(block)
         in_machine = self._moves_in_machine(block)
         if vector is not None and not control.tip_programmed:
-            self._note("TX TY TZ need M128: the vector is taken as the tool axis", Severity.WARNING)
+            self._note("TX TY TZ need M128: the vector is taken as the tool axis", Severity.ERROR)
         moves, row = bool(axes) or vector is not None or circle is not None, control.row
         if moves:
             feed_written = block.feed is not None and not block.rapid

@@ -22,15 +22,18 @@ from trunnion.readers.families.heidenhain.words import (
     M_NOT_SIMULATED,
     M_PER_MINUTE,
     M_PER_TURN,
+    M_POINT_FILTER,
     M_PROGRAM_ENDS,
     M_RETRACT,
     M_SECOND_MACHINE,
     M_SHORTEST,
     M_TCP,
     M_TCP_OFF,
+    M_TILTING_AXES,
     M_TOOL_CHANGE,
     M_VALUES,
     M_WITHOUT_PATH_EFFECT,
+    M_WORDS_NOT_SIMULATED,
 )
 from trunnion.readers.program.interpreter import ProgramEnd
 from trunnion.readers.program.word_values import fault_of_value
@@ -76,6 +79,7 @@ class MFunctions:
             given = arguments.get(letter) if owner == code else None
             if given is not None and (fault := fault_of_value(f"M{code}", letter, given, known)):
                 self._note(fault, Severity.ERROR)
+        self._words_of_function(code, arguments)
         for kind, value in M_EVENTS.get(code, ()):
             control.add_event(kind, value)
         if code in (M_SHORTEST, M_NOT_SHORTEST):
@@ -105,6 +109,18 @@ class MFunctions:
             self._note(f"M{code}: {text}", Severity.ERROR if changes_path else Severity.WARNING)
         elif code not in _HANDLED_ELSEWHERE:
             control.add_event("m", float(code))
+
+    def _words_of_function(self, code: int, arguments: dict[str, float | None]) -> None:
+        """Execute the words of M functions that change feed, path or tilting axes."""
+        control = self._control
+        for (owner, letter), text in M_WORDS_NOT_SIMULATED.items():
+            if owner == code and letter in arguments:
+                self._note(f"M{code}: {text}", Severity.ERROR)
+        if code == M_POINT_FILTER and (distance := arguments.get("T")) is not None:
+            control.add_tolerance(distance * control.length_unit)
+        if code == M_TILTING_AXES and arguments and arguments.keys() != set(control.rotary_names):
+            names = " and ".join(sorted(arguments))
+            self._note(f"M{code}: tilting with {names} alone is not simulated", Severity.ERROR)
 
     def _retract(self, arguments: dict[str, float | None]) -> None:
         control = self._control

@@ -113,7 +113,7 @@ def tcpm_block(control: HeidenhainControl, block_words: Sequence[Word], note: No
             case ("F", "TCP") | ("AXIS", "POS"):
                 pass
             case "F", "CONT":
-                note("FUNCTION TCPM with F CONT: feeds count for the machine's axes", Severity.WARNING)
+                note("FUNCTION TCPM with F CONT: feeds of the machine's axes are not simulated", Severity.ERROR)
             case "AXIS", "SPAT":
                 spatial_angles = True
             case "PATHCTRL", ("AXIS" | "VECTOR"):

@@ -77,34 +77,46 @@ M_WITHOUT_PATH_EFFECT: Final = {
     97: "small contour steps",
     101: "replacement tools",
     102: "no replacement tools",
-    103: "a factor for plunging feeds",
+    103: "without F: moves down at the feed as programmed",
     107: "no message for oversize",
     108: "message for oversize again",
-    109: "contour speed at the cutting edge",
-    110: "contour speed at the cutting edge, reduced only",
     111: "contour speed as usual",
     120: "look-ahead for compensated contours",
-    124: "points that are left out",
+    124: "points that are left out, within T",
     134: "exact stop at corners with rotary axes",
     135: "no exact stop",
     138: "rotary axes that tilt",
     141: "touch probe monitoring",
-    144: "display with the head's offset",
     145: "display without it",
     148: "lift-off at a stop",
     149: "no lift-off",
 }
 
+#: Of these, those whose words change what the program does: the message.
+M_WORDS_NOT_SIMULATED: Final = {
+    (103, "F"): "moves down have another feed: not simulated",
+}
+
+#: Limits the rotary axes that tilt to those of its words.
+M_TILTING_AXES: Final = 138
+
+#: Leaves out points that are nearer to each other than its T.
+M_POINT_FILTER: Final = 124
+
 #: M functions that are not simulated: the message, and whether the path is wrong without them.
 M_NOT_SIMULATED: Final = {
-    98: ("ends an open contour corner: not simulated", False),
+    98: ("ends an open contour corner: not simulated", True),
     104: ("takes the last datum again: not simulated", True),
-    112: ("contour transitions are not simulated", False),
+    109: ("arcs have another feed: not simulated", True),
+    110: ("arcs have another feed: not simulated", True),
+    112: ("contour transitions are not simulated", True),
     114: ("compensates the tilt by itself: not simulated, M128 is", True),
     115: ("ends M114, which is not simulated", False),
     118: ("handwheel superimposed: not simulated", False),
     130: ("positions in the untilted coordinate system: not simulated", True),
     142: ("deletes modal program information: not simulated", True),
+    144: ("positions count with the offset of the head: not simulated", True),
+    150: ("suppresses the message of a limit switch: not simulated", True),
     143: ("deletes a basic rotation, which only the control knows", False),
     200: ("laser cutting is not simulated", False),
     201: ("laser cutting is not simulated", False),
@@ -160,6 +172,9 @@ CYCLES_NOT_SIMULATED: Final = {
     270: "contour train data", 271: "OCM contour data", 272: "OCM roughing", 273: "OCM floor finishing",
     274: "OCM side finishing", 275: "trochoidal slot", 276: "three-dimensional contour train",
 }  # fmt: skip
+
+#: Of these, those that act as soon as they are defined.
+ACT_WHEN_DEFINED: Final = frozenset({220, 221, 239})
 
 #: Writes system data, those of tools and presets among them, which the path does not show.
 FN_SYSTEM_DATA: Final = 17

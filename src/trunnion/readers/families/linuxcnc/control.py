@@ -54,6 +54,7 @@ class LinuxcncControl(Rs274Control):
     system             number of the work offset in force, 1 for G54
     axis_offset        offset of G92 or G52, (6,) mm and degrees
     axis_offset_active whether it counts
+    axis_offset_known  whether this program has set or cleared it
     own_words          words that the control has in place of the family's
     """
 
@@ -64,6 +65,7 @@ class LinuxcncControl(Rs274Control):
         self._offset_values: dict[int, Offset] = {}
         self.axis_offset = np.zeros(6)
         self.axis_offset_active = False
+        self.axis_offset_known = False
         unit, self.own_words = settings_of(machine)
         self.count_in(unit)
 

@@ -215,6 +215,8 @@ class LinuxcncInterpreter(CycleInterpreter):
             fault = "" if value is None or known is None else fault_of_value(f"M{code}", letter, value, known)
             if code in words.ANALOG_OUTPUTS and letter == "E" and value == words.KINEMATICS_OUTPUT:
                 fault = f"M{code} E{value:g} switches the kinematics: not simulated; M428 and M429 are"
+            if code == words.ADAPTIVE_FEED and value != 0.0:
+                fault = "M52 lets a signal scale the feed: not simulated; M52 P0 does not"
             if fault:
                 self._note(fault, Severity.ERROR)
         if code in (words.TCP_ON, words.TCP_OFF):
@@ -230,6 +232,9 @@ class LinuxcncInterpreter(CycleInterpreter):
                 block.take(letter)
             control.add_event("m", float(code))
             self._note(f"M{code} belongs to the machine: what it does is not known", Severity.WARNING)
+            if code in words.USERS_TCP:
+                text = f"M{code} switches TCP in some configurations: M428 and M429 do, or declare what it does"
+                self._note(text, Severity.ERROR)
         elif code in words.NOT_SIMULATED_M:
             self._note(f"M{code}: {words.NOT_SIMULATED_M[code]}", Severity.ERROR)
         elif code == words.TCP_USER:

@@ -50,6 +50,9 @@ class OffsetInterpreter(OWordInterpreter):
         elif code in AXIS_OFFSET_SWITCHES:
             if code == 921:
                 control.axis_offset = np.zeros(6)
+                control.axis_offset_known = True
+            if code == 923 and not control.axis_offset_known:
+                self._note("G92.3 brings back an offset that is not in the program", Severity.ERROR)
             control.axis_offset_active = code == 923
             control.update_frame()
         elif code in HOMES:
@@ -78,6 +81,7 @@ class OffsetInterpreter(OWordInterpreter):
         if float(np.abs(offset).max()) > MAX_POSITION:
             raise BlockError("an offset is larger than any machine")
         control.axis_offset, control.axis_offset_active = offset, True
+        control.axis_offset_known = True
         control.update_frame()
 
     def _set_data(self, block: Block) -> None:

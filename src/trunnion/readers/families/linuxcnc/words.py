@@ -33,11 +33,11 @@ NOT_SIMULATED: Final = {
     171: ("a plane of U V W is not simulated", True),
     181: ("a plane of U V W is not simulated", True),
     191: ("a plane of U V W is not simulated", True),
-    330: ("thread cutting is taken as a straight line", False),
-    382: ("probing is taken as a straight line", False),
-    383: ("probing is taken as a straight line", False),
-    384: ("probing is taken as a straight line", False),
-    385: ("probing is taken as a straight line", False),
+    330: ("thread cutting is taken as a straight line", True),
+    382: ("probing is taken as a straight line", True),
+    383: ("probing is taken as a straight line", True),
+    384: ("probing is taken as a straight line", True),
+    385: ("probing is taken as a straight line", True),
     410: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
     411: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
     420: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
@@ -50,7 +50,7 @@ NOT_SIMULATED: Final = {
     721: ("a turning cycle is not simulated", True),
     722: ("a turning cycle is not simulated", True),
     760: ("a threading cycle is not simulated", True),
-    960: ("constant surface speed: only the kind of feed is followed", False),
+    960: ("constant surface speed is not simulated", True),
 }
 
 #: Motions that are taken as straight lines.
@@ -112,10 +112,13 @@ RELOAD_TOOLS: Final = 0
 ANALOG_OUTPUTS: Final = frozenset({67, 68})
 KINEMATICS_OUTPUT: Final = 3
 
+#: Lets a signal scale the feed, unless its P is 0.
+ADAPTIVE_FEED: Final = 52
+
 #: What the values of these words may be, by G code or M code, and letter.
 VALUES: Final = {(430, "H"): whole(0, 99999), (410, "D"): whole(0, 99999), (420, "D"): whole(0, 99999)}
 VALUES_M: Final = {
-    **{(code, "P"): one_of(0, 1) for code in (50, 51, 52, 53)},
+    **{(code, "P"): one_of(0, 1) for code in (50, 51, 53)},
     **{(code, "P"): whole(0, 63) for code in (62, 63, 64, 65)},
     **{(66, letter): whole(0, 63) for letter in "PE"},
     (66, "L"): whole(0, 4),
@@ -137,8 +140,9 @@ NOT_SIMULATED_M: Final = {
     99: "subprograms by M98 are not simulated; O words are",
 }
 
-#: User-defined M codes.
+#: User-defined M codes, and those with which older five-axis examples switch TCP.
 USERS: Final = range(100, 200)
+USERS_TCP: Final = frozenset({128, 129})
 
 #: Switchable kinematics as the five-axis examples remap them: TCP on, TCP off, and the user's kinematics.
 TCP_ON: Final = 428

@@ -15,8 +15,11 @@ from trunnion.readers.families.sinumerik.tokens import Token, TokenKind
 from trunnion.readers.families.sinumerik.variables import Variables
 from trunnion.readers.families.sinumerik.words import (
     ACTIVE,
+    FEED_GROUP,
+    FEED_RADIUS,
     FLOW,
     FRAMES,
+    GREATEST,
     NOT_SIMULATED,
     ORIENTATION,
     OTHER_FEEDS,
@@ -68,6 +71,7 @@ class Block:
     interval     of their parameter, PL
     tolerances  within which the control may round off the path
     deltas   what the program adds to length and radius of the tool
+    feed_radius  at which F counts for rotary axes
     """
 
     axes: dict[str, AxisWord] = field(default_factory=dict)
@@ -87,6 +91,7 @@ class Block:
     traori: float = 1.0
     deltas: dict[str, float] = field(default_factory=dict)
     tolerances: list[float] = field(default_factory=list)
+    feed_radius: float | None = None
 
     @property
     def tool_axis(self) -> Floats | None:
@@ -282,6 +287,8 @@ class BlockReader:
             if follows == "(":
                 numbers = reader.arguments()
                 block.traori = _number(numbers[0]) if numbers and numbers[0] is not None else 1.0
+        elif name == FEED_GROUP and follows == "(":
+            self._feed_group(reader)
         elif name in WITHOUT_PATH_EFFECT_CALLS and follows == "(":
             _skip(reader, "(", ")")
         elif name in _MODES:
@@ -292,6 +299,21 @@ class BlockReader:
             raise ExpressionError(f"{name} needs a value")
         else:
             block.calls.append(read_call(reader, name))
+
+    @staticmethod
+    def _feed_group(reader: ExpressionReader) -> None:
+        """Read the axes that F counts for: none, which are those that it always counts for, or the slides."""
+        reader.expect("(")
+        start = reader.at
+        axes = set()
+        while not reader.accept(")"):
+            axes.add(reader.peek())
+            reader.at += 1
+            if not reader.accept(",") and reader.peek() != ")":
+                raise ExpressionError("FGROUP takes names of axes")
+        if axes and axes != {"X", "Y", "Z"}:
+            axis_names = _text(reader.tokens, start, reader.at - 1)
+            raise ExpressionError(f"F that counts for {axis_names} is not simulated; FGROUP(X,Y,Z) is")
 
     @staticmethod
     def _polynomial(reader: ExpressionReader, block: Block) -> None:
@@ -315,8 +337,12 @@ class BlockReader:
             block.deltas[name] = _number(value)
         elif name in TOLERANCES:
             block.tolerances.append(_number(value))
+        elif name == FEED_RADIUS:
+            block.feed_radius = _number(value)
         elif name in OTHER_FEEDS and value != OTHER_FEEDS[name]:
             raise ExpressionError(f"{name} changes the feed: not simulated")
+        elif name in GREATEST and not 0.0 <= _number(value) <= GREATEST[name]:
+            raise ExpressionError(f"{name} is not from 0 to {GREATEST[name]:g}: farther off than the checks allow for")
 
     def _subprograms(self, reader: ExpressionReader, name: str) -> None:
         """Read and report a word that is not simulated, with everything that belongs to it."""

@@ -22,6 +22,7 @@ from trunnion.readers.control.hole_motion import HoleMotion
 from trunnion.readers.control.row_recorder import MAX_POSITION, Note
 from trunnion.readers.control.virtual_control import LINEAR, Circle, VirtualControl
 from trunnion.readers.families.sinumerik import settings
+from trunnion.readers.families.sinumerik.words import WITHIN_COMPENSATION
 from trunnion.readers.scan.letter_blocks import letter_table
 
 #: Motions in force besides rapid and lines: G2, G3, CIP.
@@ -47,6 +48,8 @@ class SinumerikControl(VirtualControl):
         self._machine_vectors = False
         self.tool_frame = False
         self._offset_is_lost = False
+        # The word in force of each group that counts within radius compensation.
+        self._compensation_modes: dict[str, str] = {}
         super().__init__(machine, note, shortest=shortest)
         self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), comment=";", assign="=")
 
@@ -83,6 +86,23 @@ class SinumerikControl(VirtualControl):
             return
         with self.frame_change():
             self.modal.edge.set(self.row, edge)
+
+    def compensate(self, side: int) -> None:
+        """Switch radius compensation: 1 left of the path, -1 right of it, 0 off."""
+        self.modal.compensation.set(self.row, side)
+        if side:
+            for word in self._compensation_modes.values():
+                self._report_compensation_mode(word)
+
+    def modify_compensation(self, word: str) -> None:
+        """Execute a word that counts within radius compensation."""
+        self._compensation_modes[WITHIN_COMPENSATION[word][0]] = word
+        if self.modal.compensation.current:
+            self._report_compensation_mode(word)
+
+    def _report_compensation_mode(self, word: str) -> None:
+        if effect := WITHIN_COMPENSATION[word][1]:
+            self.note(f"{word} within radius compensation: {effect}, which is not simulated", Severity.ERROR)
 
     def set_working_plane(self, plane: int) -> None:
         """Select the working plane (G17, G18, G19) by its normal axis."""

@@ -281,6 +281,8 @@ class Flow:
     def _proc(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         """Define the parameters of the PROC line with the arguments of the call."""
         handed = active.variables.arguments
+        if any(token.text == "SAVE" for token in reader.tokens[reader.at :]):
+            self._note("SAVE: G words come back at the end of the subprogram, which is not simulated", Severity.ERROR)
         reader.at += 1
         if not reader.accept("("):
             return

@@ -31,6 +31,7 @@ from trunnion.readers.families.sinumerik.text import SinumerikText
 from trunnion.readers.families.sinumerik.tokens import MAX_LENGTH, Token, TokenKind, split_comment, tokenize
 from trunnion.readers.families.sinumerik.variables import Variables
 from trunnion.readers.families.sinumerik.words import (
+    DEGREE_AS_MILLIMETRE,
     FRAMES,
     G_FEEDS,
     G_LIMITS,
@@ -40,13 +41,16 @@ from trunnion.readers.families.sinumerik.words import (
     G_OFFSETS,
     G_PLANES,
     G_RADIUS_COMPENSATION,
+    G_RESERVED,
     G_SURFACE,
     G_UNITS,
     G_WITHOUT_PATH_EFFECT,
     M_AFTER_MOTION,
     M_AXIS_MODE,
+    M_GEARS,
     M_RETURN,
     TOOL_FRAMES,
+    WITHIN_COMPENSATION,
     WITHOUT_PATH_EFFECT,
 )
 from trunnion.readers.program.interpreter import ProgramEnd
@@ -61,6 +65,9 @@ _BUILT_IN: Final = frozenset({*cycles.CYCLES, "CYCLE800", "CYCLE832", "MSG", "SE
 _THREADS: Final = (33, 63, 331, 332)
 _DWELL: Final = 4
 
+#: Radii that differ by less are the same, mm.
+_SAME_RADIUS: Final = 0.001
+
 #: Beginnings of lines that may be plain blocks, so that a scan is worth starting.
 _PLAIN_START = re.compile(rb"[ \t]*(?:N[0-9]+[ \t]*)?(?:[;\r\n]|G0?[01](?![0-9])|[A-FXYZ]=?[-+.0-9])", re.IGNORECASE)
 _PREFIX_LENGTH: Final = 48
@@ -71,6 +78,8 @@ class SinumerikInterpreter(CallInterpreter):
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         super().__init__(path, machine, options)
+        # Whether F counts for rotary axes at another radius than that of a degree as a millimetre.
+        self._other_feed_radius = False
         self._block_reader = BlockReader(self.control.rotary_names, self._note)
         self._flow = self._flow_handlers()
 
@@ -85,7 +94,7 @@ class SinumerikInterpreter(CallInterpreter):
         control = self.control
         if not control.absolute or self._stack[-1].modal is not None or control.tool_frame:
             return False
-        if control.motion == POLYNOMIAL:
+        if control.motion == POLYNOMIAL or (self._other_feed_radius and not control.tcp):
             return False
         beginning = source.buffer[source.position : source.position + _PREFIX_LENGTH]
         return _PLAIN_START.match(beginning.tobytes()) is not None
@@ -193,6 +202,9 @@ class SinumerikInterpreter(CallInterpreter):
             control.select_tool(block.tool)
         if block.edge is not None:
             control.set_edge(block.edge)
+        if block.feed_radius is not None:
+            radius = block.feed_radius * control.length_unit
+            self._other_feed_radius = abs(radius - DEGREE_AS_MILLIMETRE) > _SAME_RADIUS
         for tolerance in block.tolerances:
             control.add_tolerance(tolerance * control.length_unit)
         for name, delta in block.deltas.items():
@@ -214,10 +226,12 @@ class SinumerikInterpreter(CallInterpreter):
         if {"I", "J", "K"} & block.params.keys() and control.motion <= LINEAR:
             self._note("I, J and K have no meaning for a straight line", Severity.WARNING)
         if block.vector and not control.tip_programmed:
-            self._note("A3= B3= C3= need TRAORI: the vector is taken as the tool axis", Severity.WARNING)
+            self._note("A3= B3= C3= need TRAORI: the vector is taken as the tool axis", Severity.ERROR)
         if control.tool_frame and {"X", "Y"} & block.axes.keys():
             text = "X and Y before TOROTOF point where the control's settings have them: not known"
             self._note(text, Severity.ERROR)
+        if self._other_feed_radius and control.motion != RAPID and self._only_turns(block):
+            self._note("FGREF changes the feed of the rotary axes: not simulated", Severity.ERROR)
         control.move(
             block.axes,
             block.tool_axis,
@@ -227,12 +241,18 @@ class SinumerikInterpreter(CallInterpreter):
         )
         return True
 
+    def _only_turns(self, block: Block) -> bool:
+        """Whether rotary axes alone move in a block, without TCP and at a feed that counts for them."""
+        control = self.control
+        inverse_time = control.modal.feed_mode.current == 93
+        return not (control.tcp or inverse_time or {"X", "Y", "Z"} & block.axes.keys()) and bool(block.axes)
+
     # Words
 
     def _g_code(self, code: int) -> None:
         control = self.control
         if code in G_RADIUS_COMPENSATION:
-            control.modal.compensation.set(control.row, G_RADIUS_COMPENSATION[code])
+            control.compensate(G_RADIUS_COMPENSATION[code])
         if code in (RAPID, LINEAR, CLOCKWISE, COUNTER_CLOCKWISE):
             control.motion = code
         elif code in G_PLANES:
@@ -244,7 +264,7 @@ class SinumerikInterpreter(CallInterpreter):
         elif code in G_FEEDS:
             control.modal.feed_mode.set(control.row, G_FEEDS[code])
             if code in G_SURFACE:
-                self._note(f"G{code}: constant surface speed: only the kind of feed is followed", Severity.WARNING)
+                self._note(f"G{code}: constant surface speed is not simulated", Severity.ERROR)
         elif code in G_OFFSETS:
             control.set_offset(code, f"G{code}")
             control.regain_offset(code)
@@ -253,6 +273,11 @@ class SinumerikInterpreter(CallInterpreter):
             self._note(f"G{code}: {text}", Severity.ERROR if changes_path else Severity.WARNING)
             if code in _THREADS:
                 control.motion = LINEAR
+        elif f"G{code}" in WITHIN_COMPENSATION:
+            control.modify_compensation(f"G{code}")
+        elif code in G_RESERVED:
+            text = "belongs to the machine's builder: what it does is not known; a definition can declare it"
+            self._note(f"G{code} {text}", Severity.ERROR)
         elif not (
             code in G_WITHOUT_PATH_EFFECT or code in G_RADIUS_COMPENSATION or code in G_MACHINE or code == _DWELL
         ):
@@ -263,7 +288,7 @@ class SinumerikInterpreter(CallInterpreter):
         match word:
             case "TRAORI":
                 if block.traori not in (1.0, 2.0):
-                    self._note(f"TRAORI({block.traori:g}): taken as TRAORI", Severity.WARNING)
+                    self._note(f"TRAORI({block.traori:g}): only the machine knows what it transforms", Severity.ERROR)
                 control.set_tcp(True)
                 control.lose_offset()
             case "TRAFOOF":
@@ -284,6 +309,8 @@ class SinumerikInterpreter(CallInterpreter):
                 control.compensates_in_space = word.startswith("CUT3D")
             case "SPOS":
                 control.add_event("spindle", "oriented")
+            case _ if word in WITHIN_COMPENSATION:
+                control.modify_compensation(word)
             case _:
                 # Frames and SUPA belong to the motion; the path does not depend on the others.
                 assert word in FRAMES or word in WITHOUT_PATH_EFFECT or word == "SUPA" or word.startswith("ORI")
@@ -311,6 +338,9 @@ class SinumerikInterpreter(CallInterpreter):
             raise ProgramEnd
         elif code == M_RETURN:
             self._leave_program()
+        elif code in M_GEARS:
+            text = "chooses a gear, whose speeds only the machine knows; a definition can declare it"
+            self._note(f"M{code} {text}", Severity.ERROR)
         else:
             control.add_event("m", float(code))
 

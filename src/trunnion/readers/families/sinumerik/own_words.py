@@ -9,8 +9,8 @@ from trunnion.readers.families.sinumerik import cycles, words
 _G: Final = frozenset(
     {
         0, 1, 2, 3, 4, 90, 91, *words.G_PLANES, *words.G_UNITS, *words.G_FEEDS, *words.G_OFFSETS, *words.G_MACHINE,
-        *words.G_RADIUS_COMPENSATION, *words.G_NOT_SIMULATED,
-        *(code for code, means in words.G_WITHOUT_PATH_EFFECT.items() if means != words.RESERVED),
+        *words.G_RADIUS_COMPENSATION, 62, *words.G_NOT_SIMULATED,
+        *words.G_WITHOUT_PATH_EFFECT,
     }
 )  # fmt: skip
 _M: Final = frozenset(
@@ -30,7 +30,7 @@ _NAMES: Final = (
     | words.TYPES
     | words.POSITION_MODES
     | words.ACTIVE
-    | {*cycles.CYCLES, *words.CONSTANTS, "CYCLE800", "CYCLE832"}
+    | {*cycles.CYCLES, words.FEED_GROUP, *words.CONSTANTS, "CYCLE800", "CYCLE832"}
 )
 
 #: Words that call a program: with the name of one they are words of their own.

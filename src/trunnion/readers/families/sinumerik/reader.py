@@ -7,6 +7,7 @@ from trunnion.readers.families.sinumerik.interpreter import SinumerikInterpreter
 from trunnion.readers.families.sinumerik.own_words import is_own_word
 from trunnion.readers.families.sinumerik.settings import cycles_along_tool
 from trunnion.readers.families.sinumerik.words import (
+    FEED_GROUP,
     G_WITHOUT_PATH_EFFECT,
     WITHOUT_PATH_EFFECT,
     WITHOUT_PATH_EFFECT_CALLS,
@@ -45,7 +46,8 @@ READER: Final = FamilyReader(
     WITHOUT_PATH_EFFECT
     | WITHOUT_PATH_EFFECT_VALUES
     | WITHOUT_PATH_EFFECT_CALLS
-    | {f"G{code}" for code in G_WITHOUT_PATH_EFFECT},
+    | {f"G{code}" for code in G_WITHOUT_PATH_EFFECT}
+    | {FEED_GROUP},
     WORK_OFFSETS,
     is_own_word,
     comments=rb';[^\n]*|"[^"\n]*"',

@@ -34,8 +34,8 @@ G_MACHINE: Final = frozenset({53, 153})
 #: Cutter radius compensation: left of the path, right of it, off.
 G_RADIUS_COMPENSATION: Final = {40: 0, 41: 1, 42: -1}
 
-#: What the machine's builder gives a meaning.
-RESERVED: Final = "reserved for the machine builder"
+#: G words to which the machine's builder gives a meaning: nobody else knows it.
+G_RESERVED: Final = frozenset({*range(810, 815), *range(820, 825)})
 
 #: G words that the path does not depend on.
 G_WITHOUT_PATH_EFFECT: Final = {
@@ -44,8 +44,6 @@ G_WITHOUT_PATH_EFFECT: Final = {
     601: "exact stop fine",
     602: "exact stop coarse",
     603: "exact stop at interpolation end",
-    62: "corner override",
-    621: "corner override",
     64: "continuous path",
     641: "continuous path with rounding",
     642: "continuous path, axis tolerance",
@@ -64,32 +62,23 @@ G_WITHOUT_PATH_EFFECT: Final = {
     460: "collision monitoring",
     461: "collision monitoring",
     462: "collision monitoring",
-    810: RESERVED,
-    811: RESERVED,
-    812: RESERVED,
-    813: RESERVED,
-    814: RESERVED,
-    820: RESERVED,
-    821: RESERVED,
-    822: RESERVED,
-    823: RESERVED,
-    824: RESERVED,
 }
 
 #: G words that are not simulated: the message, and whether the path is wrong without them.
 G_NOT_SIMULATED: Final = {
-    33: ("thread cutting is taken as a straight line", False),
+    33: ("thread cutting is taken as a straight line", True),
     41: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
     42: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
-    63: ("tapping is taken as a straight line", False),
-    331: ("tapping is taken as a straight line", False),
-    332: ("tapping is taken as a straight line", False),
+    63: ("tapping is taken as a straight line", True),
+    331: ("tapping is taken as a straight line", True),
+    332: ("tapping is taken as a straight line", True),
     74: ("goes to a reference point that only the machine knows", True),
     75: ("goes to a fixed point that only the machine knows", True),
-    25: ("a limit; its words are not positions", False),
-    26: ("a limit; its words are not positions", False),
+    25: ("limits the speed of the spindle or the working area: not simulated", True),
+    26: ("limits the speed of the spindle or the working area: not simulated", True),
     58: ("adds to the work offset: not simulated", True),
     59: ("adds to the work offset: not simulated", True),
+    621: ("another feed at corners is not simulated", True),
     110: ("polar positions are not simulated", True),
     111: ("polar positions are not simulated", True),
     112: ("polar positions are not simulated", True),
@@ -108,9 +97,24 @@ G_NO_MOTION: Final = frozenset({25, 26, 58, 59, 74, 75, 110, 111, 112})
 #: G words that set limits, also of the spindle speed.
 G_LIMITS: Final = frozenset({25, 26})
 
+#: Words that count within radius compensation only: their group, and what they change there; empty: nothing.
+WITHIN_COMPENSATION: Final = {
+    "CFC": ("feed", ""),
+    "CFTCP": ("feed", "F counts at the tool centre"),
+    "CFIN": ("feed", "F counts at the contour on inside corners only"),
+    "CFCIN": ("feed", "F counts at the contour on inside corners only"),
+    "NORM": ("approach", ""),
+    "KONT": ("approach", ""),
+    "KONTC": ("approach", "it is approached along a curve"),
+    "KONTT": ("approach", "it is approached along a curve"),
+    "CUTCONON": ("constant", "it is held"),
+    "CUTCONOF": ("constant", ""),
+    "G62": ("corners", "the feed is lowered at inside corners"),
+    "FENDNORM": ("corners", ""),
+}
 #: Words without a value that the path does not depend on.
 WITHOUT_PATH_EFFECT: Final = _words("""
-    NORM KONT KONTC KONTT FNORM FLIN FCUB FPO
+    NORM KONT KONTC KONTT FNORM FENDNORM
     CFC CFTCP CFIN CFCIN
     CUT2D CUT2DF CUT3DC CUT3DF CUT3DFS CUT3DFF CUTCONON CUTCONOF
     COMPOF COMPON COMPCURV COMPCAD COMPSURF
@@ -119,17 +123,17 @@ WITHOUT_PATH_EFFECT: Final = _words("""
     UPATH SPATH
     ORISON ORISOF
     STOPRE STARTFIFO STOPFIFO WALIMON WALIMOF
-    SBLON SBLOF DISPLOF DISPLON SAVE ACTBLOCNO
+    SBLON SBLOF DISPLOF DISPLON ACTBLOCNO
     PAROTOF TCOFR TCABS
-    RTLION RTLIOF CPRECON CPRECOF
-    DIAMOF DIAM90 DIAMON DIAMCYCOF
+    RTLION CPRECON CPRECOF
+    DIAMOF DIAMCYCOF
     IPOBRKA IPOENDA FINEA COARSEA
     """)
 
 #: Words with ``=value`` or ``[axis]=value`` that the path does not depend on.
 WITHOUT_PATH_EFFECT_VALUES: Final = _words("""
-    ADIS ADISPOS CTOL OTOL ATOL STOL OTOLG CTOLG FGREF FL OVR OVRA OVRRAP ACC VELOLIM JERKLIM ACCLIM SCC LIMS
-    TOFFL TOFFR TOFF TOFFLR DISC DISCL DISR DISRP FB FRC FRCM FD FDA FA SPCON DITS DITE FZ SVC
+    ADIS ADISPOS CTOL OTOL ATOL STOL OTOLG CTOLG FGREF OVR OVRA OVRRAP ACC VELOLIM JERKLIM ACCLIM SCC
+    TOFFL TOFFR TOFF TOFFLR DISC DISCL DISR DISRP FB FRC FRCM FD FDA FA SPCON DITS DITE FZ
     """)
 
 #: Those within which the control may round off the path, mm.
@@ -139,7 +143,15 @@ TOLERANCES: Final = frozenset({"ADIS", "CTOL", "ATOL"})
 TOOL_DELTAS: Final = frozenset({"TOFFL", "TOFFR", "TOFF", "TOFFLR"})
 
 #: Those that put another feed in place of F, or a share of it: their value where they change nothing, percent.
-OTHER_FEEDS: Final = {"OVR": 100.0, "FB": None, "FD": None, "FDA": None, "FZ": None}
+OTHER_FEEDS: Final = {"OVR": 100.0, "VELOLIM": 100.0, "FB": None, "FD": None, "FDA": None, "FZ": None}
+
+#: The radius at which F counts for rotary axes, and the one at which a degree is a millimetre, mm.
+FEED_RADIUS: Final = "FGREF"
+DEGREE_AS_MILLIMETRE: Final = 57.296
+
+#: Those within which the control may leave rapids, mm, or the tool axis, degrees: the greatest value that the checks
+#: allow for. STOL is a factor.
+GREATEST: Final = {"ADISPOS": 1.0, "CTOLG": 1.0, "STOL": 10.0, "OTOL": 1.0, "OTOLG": 1.0}
 
 #: Mode of CYCLE832: the machining type, in tens whether the second tolerance is that of the orientation, in millions
 #: the smoothing of surfaces. The digits in between are those of older software.
@@ -161,9 +173,12 @@ CYCLE_VALUES: Final[dict[str, dict[int, Values]]] = {
 
 #: Words with arguments that the path does not depend on.
 WITHOUT_PATH_EFFECT_CALLS: Final = _words("""
-    FGROUP WORKPIECE EXTERN SOFTA BRISKA DRIVEA FIFOCTRL SPCOF GETD GET RELEASE WAITM SETM CLEARM WAITP WAITS
+    WORKPIECE EXTERN SOFTA BRISKA DRIVEA FIFOCTRL SPCOF GETD GET RELEASE WAITM SETM CLEARM WAITP WAITS
     ORISOF ORISON GROUP_BEGIN GROUP_END GROUP_ADDEND TOFFOF
     """)
+
+#: Chooses the axes that F counts for.
+FEED_GROUP: Final = "FGROUP"
 
 #: Words that are not simulated, and without which the path is wrong.
 NOT_SIMULATED: Final = _words("""
@@ -173,6 +188,7 @@ NOT_SIMULATED: Final = _words("""
     ORIPATH ORIPATHS ORICURVE ORICONCW ORICONCCW ORICONIO ORICONTO ORIVIRT1 ORIVIRT2 ORIRESET
     TCARR CPON MEAS MEAW POS POSA SPOSA FXS COUPON COUPONC COUPOF DRFOF
     REPEATB TOFFON
+    FLIN FCUB FPO FL SVC LIMS RTLIOF DIAMON DIAM90 SAVE
     """)
 
 #: Words that control the orientation.
@@ -220,6 +236,9 @@ CONSTANTS: Final = {
     "_TOP_SURFACE_SMOOTH_OFF": 1000000,
     "_TOP_SURFACE_SMOOTH_ON": 2000000,
 }
+
+#: Gears of the spindle; M40 lets the control choose.
+M_GEARS: Final = range(41, 46)
 
 #: The spindle becomes an axis.
 M_AXIS_MODE: Final = 70
