@@ -4,7 +4,7 @@ import pytest
 
 from tests.support.apt_heads import HEADS
 from tests.support.cl_reading import Body, Fail, Read
-from trunnion.model.toolpath import CutterComp
+from trunnion.model.toolpath import CutterComp, CycleOn
 
 CUT = ["RAPID", "GOTO/0,0,50", "FEDRAT/200,MMPM", "GOTO/0,0,-2"]
 
@@ -49,6 +49,49 @@ def test_words_of_a_cycle_that_contradict_are_refused(fails: Fail, dialect: str,
 def test_heights_of_a_cycle_that_contradict_are_refused(body_fails: Fail, words: str, what: str) -> None:
     (problem,) = body_fails("GOTO/0,0,50", f"CYCLE/DRILL,{words},MMPM,100", "GOTO/1,0,0")
     assert (problem.line, what in problem.what) == (4, True)
+
+
+@pytest.mark.parametrize(
+    ("dialect", "words", "what"),
+    [
+        ("clsf", "DRILL,RAPTO,2,FEDTO,-30,5", "2 numbers behind FEDTO, -30,5"),
+        ("clsf", "DRILL,RAPTO,0,5,FEDTO,-30", "2 numbers behind RAPTO, 0,5"),
+        ("clsf", "DRILL,RAPTO,2,FEDTO,-30,RTRCTO,2,5", "2 numbers behind RTRCTO, 2,5"),
+        ("clsf", "DRILL,RAPTO,2,FEDTO,-12,20,MMPM,100", "2 numbers behind FEDTO, -12,20"),
+        ("clsf", "DRILL,RAPTO,2,FEDTO,-30,DWELL,0,5", "2 numbers behind DWELL, 0,5"),
+        ("clsf", "DRILL,RAPTO,2,FEDTO,-30,DWELL,REV,3,5", "2 numbers behind DWELL,REV, 3,5"),
+        ("clsf", "DRILL,RAPTO,2,FEDTO,-30,RTRCTO,AUTO,50", "50 behind RTRCTO,AUTO"),
+        ("clsf", "DRILL,5,RAPTO,2,FEDTO,-30", "DRILL has numbers without words"),
+        ("clsf", "DRILL,CSINK,CSKDIA,12,5,TLANGL,90,RAPTO,2", "2 numbers behind CSKDIA, 12,5"),
+        ("clsf", "BORE,NODRAG,90,5,RAPTO,2,FEDTO,-9", "CYCLE NODRAG has 2 numbers"),
+        ("clsf", "DRILL,DEEP,STEP,3,3,1,.5,RAPTO,2,FEDTO,-9", "4 numbers behind STEP, 3,3,1,0.5"),
+        ("clsf", "DRILL,DEEP,STEP,2,5,RAPTO,2,FEDTO,-9", "pecks that cannot be: STEP,2,5"),
+        ("clsf", "DRILL,RAPTO,2,FEDTO,-10,AUTO,MMPM,100", "AUTO, which belongs behind RTRCTO"),
+        ("clsf", "DRILL,RAPTO,2,FEDTO,-10,MANUAL,MMPM,100", "MANUAL, which belongs behind RTRCTO"),
+        ("clsf", "DRILL,RAPTO,2,FEDTO,-10,REV,DWELL,3", "REV, which belongs behind DWELL"),
+        ("clsf", "DRILL,CSKDIA,12,RAPTO,2,FEDTO,-10", "CYCLE/DRILL has CSKDIA"),
+        ("clsf", "DRILL,OPTION,RAPTO,2,FEDTO,-10", "CYCLE/DRILL has OPTION"),
+        ("ncl", "DRILL,DEPTH,12,5,CLEAR,3", "2 numbers behind DEPTH, 12,5"),
+        ("ncl", "DRILL,DEPTH,12,CLEAR,3,RETURN,2,5", "2 numbers behind RETURN, 2,5"),
+        ("catia", "DRILL,DEPTH,12,CLEAR,0,5", "2 numbers behind CLEAR, 0,5"),
+        ("solidworks", "DRILL,FEDTO,12,RAPTO,0,5", "2 numbers behind RAPTO, 0,5"),
+        ("solidworks", "DEEP,FEDTO,12,RAPTO,3,1STPECK,3,5,SUBPECK,3", "2 numbers behind 1STPECK, 3,5"),
+        ("apt", "DRILL,DEPTH,12,CLEAR,3,DWELL,0,5", "2 numbers behind DWELL, 0,5"),
+    ],
+)
+def test_each_number_of_a_cycle_belongs_to_a_word(
+    fails: Fail, body_fails: Fail, dialect: str, words: str, what: str
+) -> None:
+    cycle = f"CYCLE/{words}"
+    (problem,) = body_fails("GOTO/0,0,50", cycle) if dialect == "clsf" else fails(text(dialect, *CUT, cycle))
+    assert what in problem.what
+
+
+def test_revolutions_of_a_dwell_stand_on_either_side(body: Body) -> None:
+    for dwell in ("DWELL,REV,3", "DWELL,3,REV"):
+        cycle = body("GOTO/0,0,50", f"CYCLE/DRILL,RAPTO,3,FEDTO,-5,{dwell}", "GOTO/1,0,0").events[0]
+        assert isinstance(cycle, CycleOn)
+        assert (dict(cycle.values)["DWELL"], dict(cycle.words)["DWELL"]) == ((3,), "REV")
 
 
 def test_the_end_of_a_cycle_that_never_began_is_told(read: Read) -> None:

@@ -1,5 +1,6 @@
 """CYCLE: mode words, then couplets of a word and its numbers, in any order."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from trunnion.cl.assemble import CYCLE_LENGTHS
@@ -10,12 +11,19 @@ from trunnion.cl.statement import Statement, numbers
 from trunnion.cl.statements.motion import refuse_in_circle
 from trunnion.model.toolpath import CycleOff, CycleOn
 
-#: Words that need a number.
-_NUMBER_WORDS = CYCLE_LENGTHS | {"DWELL", "TLANGL", "NODRAG"}
-#: Words that may stand without a number.
-_BARE_WORDS = frozenset({"AUTO", "MANUAL", "REV", "OPTION"})
-#: Modes of holes that are made in pecks.
-_PECKING = frozenset({"DEEP", "BRKCHP"})
+#: Words that need a number, and take no more than one; STEP takes up to three.
+_NUMBER_WORDS = CYCLE_LENGTHS | {"DWELL", "TLANGL"}
+_STEP_NUMBERS = 3
+#: The only mode that may have a number of its own, the angle of the spindle.
+_ANGLED = "NODRAG"
+#: Words that mean something with another one alone.
+_PARTS = {"AUTO": "RTRCTO", "MANUAL": "RTRCTO", "REV": "DWELL"}
+#: Words that only some modes use: any of these modes.
+_USED_BY = {
+    "CSKDIA": frozenset({"CSINK"}),
+    "OPTION": frozenset({"TAP"}),
+    "STEP": frozenset({"DEEP", "BRKCHP"}),
+}
 #: Controls and their cycles are for fewer pecks than this.
 _MOST_PECKS = 1000
 #: Stands for the unit of a feed until that follows.
@@ -45,45 +53,57 @@ def cycle(state: ReaderState, statement: Statement) -> None:
 
 
 def _parse(state: ReaderState, statement: Statement) -> CycleParts:
+    """Take a cycle apart: each word and each number belongs to exactly one couplet, or the statement is refused."""
     values = statement.values
     if not values or not isinstance(values[0], str):
         what = "CYCLE without a word for its kind"
         raise StatementError(what, "write CYCLE/DRILL, CYCLE/TAP, ..., or CYCLE/OFF")
     dialect = state.dialect.cycles
     found = CycleParts()
+    groups = _groups(values)
     at = 0
-    while at < len(values):
-        word = values[at]
-        if not isinstance(word, str):
-            what = f"CYCLE has the number {word:g} without a word before it"
-            raise StatementError(what, "name each number of the cycle")
-        stop = at + 1
-        while stop < len(values) and not isinstance(values[stop], str):
-            stop += 1
-        given = numbers("CYCLE", values[at + 1 : stop])
+    while at < len(groups):
+        word, given = groups[at]
+        at += 1
         if why := dialect.refused.get(word):
             raise StatementError(f"CYCLE with {word} cannot be read: {why}", "output the holes as motion")
-        if word in FEED_UNITS and given and len(given) > 1:
-            raise StatementError(f"CYCLE has {len(given)} numbers behind {word}", "name each number of the cycle")
-        if word in FEED_UNITS and not given and found.couplets and found.couplets[-1][0] == _BARE_FEED:
-            _feed(state, found, word, found.couplets.pop()[1])
-        elif word in FEED_UNITS:
-            _feed(state, found, word, given)
+        if word in FEED_UNITS:
+            bare = not given and bool(found.couplets) and found.couplets[-1][0] == _BARE_FEED
+            _feed(state, found, word, found.couplets.pop()[1] if bare else given)
         elif word in dialect.modes and not found.couplets and not found.words:
             found.mode += dialect.modes[word]
             _positions(state, found, word, given)
-        elif not given and (used := _word_pair(found, word, values[stop : stop + 2])):
-            stop += used
+        elif word in ("RTRCTO", "DWELL"):
+            at += _with_part(found, word, given, groups[at] if at < len(groups) else ("", ()))
         else:
-            _couplet(state, statement, found, dialect.words.get(word, word), given)
-        at = stop
+            _couplet(state, statement, found, word, given)
     if any(word == _BARE_FEED for word, _ in found.couplets):
         raise StatementError("CYCLE has a number too many, or a feed without a unit", "name each number of the cycle")
+    _refuse_unused(found)
     if dialect.settle is not None:
         dialect.settle(found)
     _refuse_repetitions(found)
     _refuse_impossible(found)
     return found
+
+
+def _groups(values: Sequence[str | float]) -> list[tuple[str, tuple[float, ...]]]:
+    """Each word with the numbers behind it; the first value is a word."""
+    groups: list[tuple[str, tuple[float, ...]]] = []
+    for value in values:
+        if isinstance(value, str):
+            groups.append((value, ()))
+        else:
+            groups[-1] = (groups[-1][0], (*groups[-1][1], *numbers("CYCLE", (value,))))
+    return groups
+
+
+def _refuse_unused(found: CycleParts) -> None:
+    """Refuse a word that the mode does not use: one of the two is wrong."""
+    for word, _ in (*found.couplets, *found.words):
+        if word in _USED_BY and _USED_BY[word].isdisjoint(found.mode):
+            what = f"CYCLE/{','.join(found.mode)} has {word}, which only {' and '.join(sorted(_USED_BY[word]))} uses"
+            raise StatementError(what, f"write another mode, or leave {word} out")
 
 
 def _refuse_repetitions(found: CycleParts) -> None:
@@ -96,9 +116,6 @@ def _refuse_repetitions(found: CycleParts) -> None:
         raise StatementError(f"CYCLE has RTRCTO with a height and {words['RTRCTO']}", "write the one that is meant")
     if couplets.get("CLEAR", couplets.get("RAPTO")) != couplets.get("RAPTO", couplets.get("CLEAR")):
         raise StatementError("CYCLE has RAPTO and CLEAR of different heights", "write the one that is meant")
-    if "STEP" in couplets and _PECKING.isdisjoint(found.mode):
-        what = f"CYCLE/{','.join(found.mode)} has STEP, and only DEEP and BRKCHP are made in pecks"
-        raise StatementError(what, "write DEEP or BRKCHP, or leave STEP out")
 
 
 def _refuse_impossible(found: CycleParts) -> None:
@@ -106,8 +123,11 @@ def _refuse_impossible(found: CycleParts) -> None:
     couplets = dict(found.couplets)
     if any(value < 0.0 for value in couplets.get("DWELL", ())):
         raise StatementError(f"CYCLE has the dwell {couplets['DWELL'][0]:g}, below 0", "write DWELL,seconds, or none")
-    first, *others = couplets.get("STEP", ()) or (0.0,)
-    shortest = first if not others or not others[0] else others[1] if len(others) > 1 else 0.0
+    first, less, least = (*couplets.get("STEP", ()), 0.0, 0.0, 0.0)[:3]
+    if "STEP" in couplets and (not first > 0.0 or not 0.0 <= less < first or not 0.0 <= least <= first):
+        what = f"CYCLE has pecks that cannot be: STEP,{','.join(f'{number:g}' for number in couplets['STEP'])}"
+        raise StatementError(what, "write STEP,first peck[,how much shorter each next one is[,shortest one]]")
+    shortest = least if less else first
     depth = abs(couplets.get("FEDTO", (0.0,))[0])
     if shortest > 0.0 and depth > _MOST_PECKS * shortest:
         what = f"CYCLE would peck more than {_MOST_PECKS} times: STEP {shortest:g} for a depth of {depth:g}"
@@ -119,8 +139,8 @@ def _positions(state: ReaderState, found: CycleParts, word: str, given: tuple[fl
     positions = state.dialect.cycles.positions
     if not given:
         return
-    if not positions and state.dialect.in_sections:
-        found.couplets.append((word, given))  # such as NODRAG,angle
+    if word == _ANGLED:
+        found.couplets.append((word, numbers(f"CYCLE {word}", given, 1)))
         return
     if not len(positions) <= len(given) <= len(positions) + 1 or not positions:
         what = f"CYCLE/{word} has numbers without words, which mean something else in each system"
@@ -137,29 +157,42 @@ def _feed(state: ReaderState, found: CycleParts, word: str, given: tuple[float, 
     found.couplets.append(("MMPR" if per_rev else "MMPM", (feed * factor,)))
 
 
-def _word_pair(found: CycleParts, word: str, following: tuple[str | float, ...]) -> int:
-    """Take RTRCTO,AUTO, RTRCTO,MANUAL or DWELL,REV,n; return how many of the following values belong to it."""
-    after = following[0] if following else ""
-    if word == "RTRCTO" and after in ("AUTO", "MANUAL"):
-        found.words.append((word, str(after)))
-        return 1
-    if word == "DWELL" and after == "REV":
-        found.words.append((word, "REV"))
-        given = tuple(value for value in following[1:] if not isinstance(value, str))
-        found.couplets.append((word, numbers("CYCLE DWELL,REV", given, 1)))
-        return 2
-    return 0
+def _with_part(found: CycleParts, word: str, given: tuple[float, ...], following: tuple[str, tuple[float, ...]]) -> int:
+    """Take RTRCTO,c, RTRCTO,AUTO, DWELL,t, DWELL,n,REV or DWELL,REV,n; return how many following words belong to it."""
+    part, behind = following
+    if _PARTS.get(part) != word or (given and part != "REV"):
+        found.couplets.append((word, _one_number(word, given)))
+        return 0
+    found.words.append((word, part))
+    if part == "REV":
+        found.couplets.append((word, _one_number(f"{word},REV", given + behind)))
+    elif behind:
+        raise StatementError(f"CYCLE has {behind[0]:g} behind {word},{part}", "write the one that is meant")
+    return 1
+
+
+def _one_number(word: str, given: tuple[float, ...], most: int = 1) -> tuple[float, ...]:
+    """The numbers behind a word: one, or up to ``most``."""
+    if not given:
+        raise StatementError(f"CYCLE has {word} without a number", f"write {word},value")
+    if len(given) > most:
+        what = f"CYCLE has {len(given)} numbers behind {word}, {','.join(f'{number:g}' for number in given)}"
+        raise StatementError(what, "write one number, with a decimal point, and a word before each other one")
+    return given
 
 
 def _couplet(state: ReaderState, statement: Statement, found: CycleParts, word: str, given: tuple[float, ...]) -> None:
     """Take a word with the numbers behind it, or without any."""
-    if given:
-        if word not in _NUMBER_WORDS | state.dialect.cycles.numbers:
-            state.note_unknown(statement, f"CYCLE with {word} is not known", word)
-        found.couplets.append((word, given))
+    if word in _PARTS:
+        what = f"CYCLE has {word}, which belongs behind {_PARTS[word]}"
+        raise StatementError(what, f"write {_PARTS[word]},{word}, or leave it out")
+    meant = state.dialect.cycles.words.get(word, word)
+    if meant in _NUMBER_WORDS | state.dialect.cycles.numbers:
+        found.couplets.append((meant, _one_number(word, given, _STEP_NUMBERS if meant == "STEP" else 1)))
         return
-    if word in _NUMBER_WORDS:
-        raise StatementError(f"CYCLE has {word} without a number", f"write {word},value")
-    if word not in _BARE_WORDS:
+    if given or word != "OPTION":
         state.note_unknown(statement, f"CYCLE with {word or 'nothing between two commas'} is not known", word)
-    found.words.append((word, ""))
+    if given:
+        found.couplets.append((word, given))
+    else:
+        found.words.append((word, ""))
