@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion import simulation
+from trunnion import readers, simulation
 from trunnion.api.arguments import check_choice, check_whole
 from trunnion.api.observer import Observer
 from trunnion.api.settings import check_tolerance
@@ -21,6 +21,7 @@ from trunnion.api.simulation_setups import (
     told_with_places,
 )
 from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.jit import compile_ahead
 from trunnion.model.run import Run
 from trunnion.simulation.collisions import Collision, check_collisions, fixture_body, machine_bodies, part_body
 from trunnion.simulation.meshes import TriangleMesh
@@ -46,6 +47,7 @@ def simulate_setups(given: SimulationInput, observer: Observer) -> SimulationRes
 
 
 def _simulate_setups(given: SimulationInput, observer: Observer) -> SimulationResult:
+    compile_ahead((*readers.KERNELS, *simulation.KERNELS))
     check_choice("stop_at", given.stop_at or "none", ("none", "first"))
     for name, value in (("cell", given.cell), ("accuracy", given.accuracy), ("near", given.near)):
         check_tolerance(name, value, optional=True)
