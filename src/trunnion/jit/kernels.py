@@ -34,18 +34,21 @@ def inlined(function: Function) -> Function:
     return cast(Function, numba.njit(inline="always")(function))
 
 
-def kernel(*, writes: str = "") -> Callable[[Function], Function]:
+def kernel(*, writes: str = "", checks_division: bool = True) -> Callable[[Function], Function]:
     """Compile a function that Python calls, for the types that its signature declares.
 
     Arrays have one dimension, unless their annotation says more (``trunnion.arrays.Floats2``). Those that ``writes``
     names are written to and must be C-contiguous; the others may be read-only, and of any layout. The function gives up
     the interpreter's lock while it runs.
+
+    A division by zero raises, but for a kernel without ``checks_division``: there it gives an infinity or NaN, and
+    loops that divide can do several steps at a time.
     """
 
     def compiled(function: Function) -> Function:
         if _config.DISABLE_JIT:
             return function
-        return cast(Function, Kernel(function, frozenset(writes.split())))
+        return cast(Function, Kernel(function, frozenset(writes.split()), checks_division))
 
     return compiled
 
@@ -53,12 +56,13 @@ def kernel(*, writes: str = "") -> Callable[[Function], Function]:
 class Kernel:
     """A function that is compiled when it is first called, or loaded if its machine code is kept."""
 
-    def __init__(self, function: Callable[..., Any], writes: frozenset[str]) -> None:
+    def __init__(self, function: Callable[..., Any], writes: frozenset[str], checks_division: bool = True) -> None:
         update_wrapper(self, function)
         self.py_func = function
         self.name = f"{function.__module__}.{function.__qualname__}"
         self._writes = writes
-        self._dispatcher: Any = numba.njit(nogil=True)(function)
+        options: dict[str, Any] = {} if checks_division else {"error_model": "numpy"}
+        self._dispatcher: Any = numba.njit(nogil=True, **options)(function)
         self._ready = False
         self._whole = False
         #: Whether the log has said that it is compiled.

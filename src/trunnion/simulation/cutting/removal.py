@@ -20,19 +20,10 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
-from trunnion.simulation.cutting.cut_kernel import (
-    GOUGED,
-    MET,
-    MET_IDLE,
-    REMOVED,
-    CutterTable,
-    Rays,
-    Sweeps,
-    bin_sweeps,
-    cut_tile,
-)
-from trunnion.simulation.cutting.ray_kernel import element_table, piece_list
+from trunnion.simulation.cutting.cut_kernel import CutterTable, Sweeps, bin_sweeps, cut_tile
+from trunnion.simulation.cutting.stretch_kernel import GOUGED, MET, MET_IDLE, REMOVED, Rays
 from trunnion.simulation.cutting.sweeps import RowSweeps, SweepSizes, row_sweeps, tool_ranges
+from trunnion.simulation.cutting.tool_table import element_table, piece_list
 from trunnion.simulation.stock.lattice import BUNDLE_AXES
 from trunnion.simulation.stock.material import Stock, Tile
 from trunnion.simulation.stock.spans import Spans, no_spans

@@ -57,7 +57,7 @@ class RowSweeps:
     end_axis: Floats
 
     def poses(self, axes: tuple[int, int, int]) -> Floats:
-        """Columns of ``ray_kernel.Motion`` in the coordinates of a bundle, (m, 12)."""
+        """Columns of ``tool_table.Motion`` in the coordinates of a bundle, (m, 12)."""
         columns = list(axes)
         return np.concatenate(
             (
