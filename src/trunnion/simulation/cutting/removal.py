@@ -15,6 +15,7 @@ import os
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -105,6 +106,14 @@ def cut(
                 progress(last, end)
 
 
+class _Task(NamedTuple):
+    """A tile by its number, the sweeps of some rows in its bundle, and those that may reach it."""
+
+    tile: int
+    sweeps: Sweeps
+    wanted: Ints
+
+
 class Cutter:
     """Cuts stock with sweeps; ``design`` and ``tolerance`` as for ``cut``."""
 
@@ -139,6 +148,7 @@ class Cutter:
         total = _Totals(sweeps, columns)
         table = element_table(pieces)
         tool = CutterTable(piece_list(pieces, table), table, pieces.cuts, pieces.section)
+        tasks: list[_Task] = []
         for bundle in range(3):
             axes = BUNDLE_AXES[bundle]
             own = Sweeps(sweeps.poses(axes), sweeps.row + offset, at_rest)
@@ -147,16 +157,20 @@ class Cutter:
                 boxes[:, [2 * axes[0], 2 * axes[0] + 1, 2 * axes[1], 2 * axes[1] + 1, 2 * axes[2], 2 * axes[2] + 1]],
                 np.array([self._boxes[k] for k in which]),
             )
-            work = [(k, wanted) for k, wanted in zip(which, lists, strict=True) if len(wanted)]
-
-            def one(job: tuple[int, Ints], own: Sweeps = own) -> tuple[Floats, Floats]:
-                return self._cut_tile(job[0], own, job[1], tool, columns)
-
-            for (_, wanted), (measured, places) in zip(work, executor.map(one, work), strict=True):
-                total.add(bundle, sweeps.row[wanted], measured, places)
+            tasks += [_Task(k, own, wanted) for k, wanted in zip(which, lists, strict=True) if len(wanted)]
+        # Longest first: no processor waits at the end for one that has begun a long task last.
+        longest = sorted(tasks, key=lambda task: -len(task.wanted))
+        running = {task.tile: executor.submit(self._cut_tile, task, tool, columns) for task in longest}
+        try:
+            for task in tasks:
+                total.add(self._stock.tiles[task.tile].bundle, sweeps.row[task.wanted], *running[task.tile].result())
+        finally:
+            for future in running.values():
+                future.cancel()
         return total.result(pieces)
 
-    def _cut_tile(self, k: int, sweeps: Sweeps, wanted: Ints, tool: CutterTable, columns: int) -> tuple[Floats, Floats]:
+    def _cut_tile(self, task: _Task, tool: CutterTable, columns: int) -> tuple[Floats, Floats]:
+        k, sweeps, wanted = task
         tile = self._stock.tiles[k]
         measured, places = np.zeros((len(wanted), columns)), np.zeros((len(wanted), columns, 3))
         done = 0
