@@ -12,9 +12,9 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
-from trunnion.simulation.cutting.removal import cut
+from trunnion.simulation.cutting.removal import RowsCut, cut
 from trunnion.simulation.findings import Finding, air_cuts, gouge_findings, idle_rows, row_findings, spindle_turns
 from trunnion.simulation.stock.deviation import Excess, Gouges, left_on, missing_from
 from trunnion.simulation.stock.material import Stock
@@ -152,11 +152,49 @@ def _simulate(
     if design is not None:
         left = left_on(stock, design, setup.limit)
         gouge, gouges = missing_from(stock, start, design, setup.limit)
+        gouges = _with_whole(gouges, setup, jobs, stock, threads)
         apart = _APART * float(stock.lattice.cell.max())
         for one in operations:
             _add_gouges(one, jobs, gouges, apart)
     seconds = time.perf_counter() - begin
     return Simulation(setup, tuple(operations), stock, start_volume, error, left, gouge, leaks, stopped, seconds)
+
+
+def _with_whole(gouges: Gouges, setup: Setup, jobs: Sequence[Job], stock: Stock, threads: int | None) -> Gouges:
+    """Gouges, and the rows that took what is missing altogether: it alone is cut again."""
+    if gouges.whole is None:
+        return gouges
+    parts = [gouges]
+    took = [
+        rows.first + np.flatnonzero(rows.removed > 0.0) + offset
+        for offset, rows in _cut_again(gouges.whole, setup, jobs, stock, threads, None)
+    ]
+    idle = np.zeros(sum(len(job.run) for job in jobs), np.bool_)
+    idle[np.concatenate(took)] = True
+    for offset, rows in _cut_again(gouges.whole, setup, jobs, stock, threads, idle):
+        deep = np.flatnonzero(rows.idle.depth > setup.limit)
+        parts.append(Gouges(rows.first + deep + offset, rows.idle.depth[deep], rows.idle.place[deep]))
+    row, thickness, place = (
+        np.concatenate([getattr(part, name) for part in parts]) for name in ("row", "thickness", "place")
+    )
+    return Gouges(row, thickness, place)
+
+
+def _cut_again(
+    spans: tuple[Spans, Spans, Spans],
+    setup: Setup,
+    jobs: Sequence[Job],
+    stock: Stock,
+    threads: int | None,
+    idle: Flags | None,
+) -> Iterator[tuple[int, RowsCut]]:
+    """Cut some stretches of material with all programs; what is added to rows of each, and what they did."""
+    again = Stock.of_spans(stock.lattice, spans)
+    for number, job in enumerate(jobs):
+        offset, pieces = _offset(jobs, number), _pieces(job, _FACETS * setup.tolerance)[0]
+        own = None if idle is None else idle[offset : offset + len(job.run)]
+        for rows in cut(again, job.run, pieces, setup.tolerance, idle=own, end=job.end, threads=threads):
+            yield offset, rows
 
 
 def _add_gouges(one: OperationCut, jobs: Sequence[Job], gouges: Gouges, apart: float) -> None:
