@@ -1,5 +1,6 @@
 """``trunnion.post`` with ``simulation``: collisions, gouges and rapids through stock refuse like other checks."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -60,7 +61,16 @@ def test_what_is_missing_of_the_part_fails(tmp_path: Path) -> None:
         f'[simulation]\nstock = "{STOCK}"\npart = "part.stl"\ncell_mm = 1\nprograms = ["hub.mpf"]\nmachine = "yl569"\n'
     )
     with pytest.raises(trunnion.ProofFailedError) as raised:
-        trunnion.post(CL, machine="yl569", output=tmp_path / "hub.mpf", simulation=tmp_path / "hub.toml")
+        trunnion.post(
+            CL, machine="yl569", output=tmp_path / "hub.mpf", simulation=tmp_path / "hub.toml",
+            report=tmp_path / "hub.html",
+        )  # fmt: skip
+    page = (tmp_path / "hub.html").read_text()
+    assert "<h2>Simulation: findings</h2>" in page
+    assert page.count("data:image/png;base64,") == 2
+    assert "img-src data:" in page
+    raised.value.result.write_report(tmp_path / "hub.json")
+    assert json.loads((tmp_path / "hub.json").read_text())["simulation"]["gouge"]["largest_mm"] > 1.0
     failed = [check for check in raised.value.result.checks if not check.passed]
     assert [check.key for check in failed] == ["gouge"]
     assert failed[0].worst is not None

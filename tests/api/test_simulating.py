@@ -101,6 +101,21 @@ def test_the_part_that_comes_out_is_compared_with_the_design(tmp_path: Path) -> 
     assert left.passed  # a roughing program leaves material
 
 
+def test_what_is_gone_altogether_names_the_block_that_took_it(tmp_path: Path) -> None:
+    pin = cuboid((30, -2, -10), (32, 2, 0))
+    rest = cuboid((0, 12, -10), (50, 20, 0))
+    part = TriangleMesh(np.concatenate((pin.vertices, rest.vertices)), np.concatenate((CUBE_FACES, CUBE_FACES + 8)))
+    program = SLOT.replace("N50 G0 Z-5", "N50 G0 Z-11").replace("N60 G1 X70 F500", "N55 G1 X12 F500\nN60 G1 X70")
+    tool = "1=flat:20,length=60,flutes=20,holder=40x50"
+    found = simulate(tmp_path, program, part=part, tools=[tool], cell=1.0)
+    assert [(one.kind, one.block) for one in found.findings] == [("gouge", 60)]
+    x, y, z = found.findings[0].place
+    assert 30.0 < x < 32.0
+    assert -2.0 < y < 2.0
+    assert -10.0 < z < 0.0
+    assert found.findings[0].depth == pytest.approx(2.0, abs=0.1)
+
+
 def test_a_fixture_is_hit_and_come_near_to(tmp_path: Path) -> None:
     clamp = cuboid((55, -5, -20), (65, 5, -6))
     beside = simulate(tmp_path, SLOT, fixtures=[clamp], near=2.0)

@@ -94,6 +94,17 @@ def test_the_stock_of_one_set_up_is_that_of_the_next(folder: Path, capsys: pytes
     assert [(one["name"], one["passed"]) for one in data["setups"]] == [("top", True), ("bottom", False)]
     assert [(one["kind"], one["setup"], one["block"]) for one in data["collisions"]] == [("gouge", "bottom", 60)]
     assert data["collisions"][0]["depth_mm"] == pytest.approx(1.0, abs=0.01)
+    assert main(["simulate", str(deeper), "--report", str(folder / "out.html")]) == 1
+    page = (folder / "out.html").read_text()
+    assert page.count("data:image/png;base64,iVBORw0KGgo") == 4  # two of each set-up
+    assert "<h3>bottom</h3>" in page
+    assert "bottom: deep.ngc:7 N60" in page
+    found.write_report(folder / "out.json")
+    assert json.loads((folder / "out.json").read_text())["passed"]
+    for name in ("plate.toml", "nc/slot.ngc"):
+        before = (folder / name).read_bytes()
+        assert main(["simulate", str(plate), "--report", str(folder / name)]) == 2
+        assert (folder / name).read_bytes() == before
 
 
 def test_a_turn_that_is_no_quarter_says_what_it_costs(folder: Path) -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trunnion.api.reading import FilePath
-from trunnion.api.reports import write_report
+from trunnion.api.reports import write_post_report
 from trunnion.api.targets import written_text
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.model.motion import Decision, Motion, Plan
@@ -89,7 +89,7 @@ class PostResult:
         """
         if self.verification is None:
             raise InputError(Problem(str(file), 0, "nothing was proven", "post for a control that has a reader"))
-        write_report(self.verification, file, decisions=self.decisions)
+        write_post_report(self.verification, file, self.decisions, self.simulation)
 
 
 class ProofFailedError(RefusedError):

@@ -208,7 +208,8 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
     if program.has_time_tokens:
         write_times(target.files, program, times)
     if target.report is not None and verification is not None:
-        add_report(verification, target.files.add_report(target.report), target.report.name, result.decisions)
+        sink = target.files.add_report(target.report)
+        add_report(verification, sink, target.report.name, result.decisions, simulated)
     return replace(result, output=target.path, subprograms=target.subprograms, _memory=target.memory)
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import BinaryIO, Final
+from typing import TYPE_CHECKING, BinaryIO, Final
 
 from trunnion import reporting
 from trunnion.api.arguments import check_path, wrong_argument
@@ -12,6 +12,9 @@ from trunnion.errors import InputError, Problem
 from trunnion.files import OutputPlace, atomic_file, check_outputs, resolve_output
 from trunnion.model.motion import Decision
 from trunnion.verification import Verification
+
+if TYPE_CHECKING:  # imported where a program is simulated
+    from trunnion.api.simulation_result import SimulationResult
 
 _SUFFIXES: Final = (".html", ".json")
 
@@ -37,6 +40,15 @@ def check_report(file: FilePath, inputs: Iterable[FilePath]) -> None:
     check_outputs([file], inputs)
 
 
+def write_post_report(
+    verification: Verification, file: FilePath, decisions: Sequence[Decision], simulation: "SimulationResult | None"
+) -> None:
+    """Write the report of a post as ``write_report`` does, with what its simulation found."""
+    place = check_report_name(file)
+    with atomic_file(place, inputs=verified_files(verification)) as sink:
+        add_report(verification, sink, place.name, decisions, simulation)
+
+
 def write_report(verification: Verification, file: FilePath, *, decisions: Sequence[Decision] = ()) -> None:
     """Write a report of a verification: a page that works offline (``.html``), or data (``.json``).
 
@@ -57,13 +69,17 @@ def write_report(verification: Verification, file: FilePath, *, decisions: Seque
     """
     if not isinstance(verification, Verification):
         raise wrong_argument("verification", verification, "give the result of trunnion.verify or trunnion.post")
-    place = check_report_name(file)
-    with atomic_file(place, inputs=verified_files(verification)) as sink:
-        add_report(verification, sink, place.name, decisions)
+    write_post_report(verification, file, decisions, None)
 
 
-def add_report(verification: Verification, sink: BinaryIO, name: str, decisions: Sequence[Decision]) -> None:
-    """Write a report into a file that appears later.
+def add_report(
+    verification: Verification,
+    sink: BinaryIO,
+    name: str,
+    decisions: Sequence[Decision],
+    simulation: "SimulationResult | None" = None,
+) -> None:
+    """Write a report into a file that appears later; with what a simulation found, if there was one.
 
     Raises
     ------
@@ -72,4 +88,9 @@ def add_report(verification: Verification, sink: BinaryIO, name: str, decisions:
     """
     if len(verification.seconds) != len(verification.run):
         raise InputError(Problem(name, 0, "the verification has no columns", "ask for it with columns=True"))
-    sink.writelines(reporting.render_report(verification, Path(name), decisions=decisions))
+    content = None
+    if simulation is not None:
+        from trunnion.api.simulation_report import simulation_content
+
+        content = simulation_content(simulation)
+    sink.writelines(reporting.render_report(verification, Path(name), decisions=decisions, simulation=content))

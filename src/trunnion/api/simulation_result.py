@@ -6,6 +6,7 @@ from typing import Any, Final, TypeVar
 
 import numpy as np
 
+from trunnion.api.reading import FilePath
 from trunnion.errors import Problem, Severity
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
@@ -155,6 +156,18 @@ class SimulationResult:
         broken = any(remark.severity is Severity.ERROR for remark in self.remarks)
         gouged = self.gouge is not None and self.gouge.largest > self.limit
         return not self.findings and not gouged and not broken
+
+    def write_report(self, file: FilePath) -> None:
+        """Write a report: a page that works offline (``.html``), or data (``.json``).
+
+        Raises
+        ------
+        InputError
+            When the name ends otherwise, the file cannot be written, or it is one of the programs.
+        """
+        from trunnion.api.simulation_report import write_simulation_report
+
+        write_simulation_report(self, file)
 
 
 def make_result(

@@ -295,6 +295,9 @@ def _add_simulate(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--until", metavar="BLOCK", help="N number of the block before which the last program ends")
     parser.add_argument("--json", metavar="FILE", help="all results as data; - is stdout")
     parser.add_argument(
+        "--report", metavar="FILE", help="findings, tables and pictures as a page (.html), or data (.json)"
+    )
+    parser.add_argument(
         "--save-stock", metavar="FILE", help="the finished stock: .stl, .ply, .3mf or .glb; .png: a picture of it"
     )
     parser.set_defaults(run=_lazy_command("simulate", "run"))

@@ -2,12 +2,14 @@
 
 import argparse
 from collections.abc import Iterator
-from dataclasses import asdict
 from typing import Final
 
+from trunnion.api.reports import check_report
 from trunnion.api.simulating import simulate
+from trunnion.api.simulation_data import simulation_data
 from trunnion.api.simulation_project import project_files
-from trunnion.api.simulation_result import AirCut, NearMiss, SimulationFinding, SimulationResult
+from trunnion.api.simulation_report import write_simulation_report
+from trunnion.api.simulation_result import NearMiss, SimulationFinding, SimulationResult
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result
 from trunnion.cli.terminal import Terminal
@@ -21,8 +23,6 @@ from trunnion.wording import counted, one_line
 #: Findings that the text shows of each kind; the data has all.
 _MOST: Final = 20
 
-_DECIMALS: Final = 6
-
 
 def run(arguments: argparse.Namespace) -> int:
     """Simulate programs; 0 if nothing was found, else 1."""
@@ -31,6 +31,8 @@ def run(arguments: argparse.Namespace) -> int:
     read += project_files(arguments.files)
     if arguments.save_stock is not None:
         check_mesh_name(arguments.save_stock)
+    if arguments.report is not None:
+        check_report(arguments.report, read)
     found = simulate(
         arguments.files,
         machine=arguments.machine,
@@ -53,6 +55,8 @@ def run(arguments: argparse.Namespace) -> int:
     )
     if arguments.save_stock is not None:
         save_mesh(stock_surface(found.simulation.stock), arguments.save_stock, inputs=read)
+    if arguments.report is not None:
+        write_simulation_report(found, arguments.report, read)
     if arguments.json == "-":
         print_result(as_json(simulation_data(found)))
     else:
@@ -120,91 +124,3 @@ def _excess_line(what: str, excess: Excess) -> str:
     at = excess.places[0].at if excess.places else None
     where = f" at X{at[0]:.3f} Y{at[1]:.3f} Z{at[2]:.3f}" if at else ""
     return f"{what}: {excess.largest:.3f} mm at most{where}, {excess.volume:.2f} mm³"
-
-
-def simulation_data(found: SimulationResult) -> dict[str, object]:
-    """A simulation as data; the schema is in ``docs/simulation.md``."""
-    return {
-        "schema": 1,
-        "passed": found.passed,
-        "programs": list(found.programs),
-        "machine": found.machine,
-        "cell_mm": _number(max(found.cell)),
-        "cells_mm": _numbers(found.cell),
-        "accuracy_mm": _number(found.accuracy),
-        "limit_mm": _number(found.limit),
-        "removed_mm3": _number(found.removed),
-        "left": _excess(found.left),
-        "gouge": _excess(found.gouge),
-        "setups": [_setup(each) for each in found.setups],
-        "collisions": [_finding(each) for each in found.findings],
-        "near": [_near(each) for each in found.near],
-        "air": [_air(each) for each in found.air],
-        "operations": [
-            {
-                "file": each.file, "tool": each.tool, "line": each.line, "last_line": each.last_line,
-                "removed_mm3": _number(each.removed), "gouged_mm3": _number(each.gouged),
-                "seconds": _number(each.seconds), "air_mm": _number(each.air), "findings": each.findings,
-                "setup": each.setup or None,
-            }
-            for each in found.operations
-        ],
-        "remarks": [{key: str(value) if key == "severity" else value for key, value in asdict(each).items()}
-                    for each in found.remarks],
-        "seconds": _number(found.seconds),
-    }  # fmt: skip
-
-
-def _setup(found: SimulationResult) -> dict[str, object]:
-    return {
-        "name": found.setup, "machine": found.machine, "programs": list(found.programs), "passed": found.passed,
-        "cells_mm": _numbers(found.cell), "removed_mm3": _number(found.removed), "left": _excess(found.left),
-        "gouge": _excess(found.gouge),
-    }  # fmt: skip
-
-
-def _finding(finding: SimulationFinding) -> dict[str, object]:
-    return {
-        "kind": finding.kind, "between": list(finding.between), "file": finding.file, "line": finding.line,
-        "block": _block(finding.block), "last_line": finding.last_line, "last_block": _block(finding.last_block),
-        "cl_line": finding.cl_line or None, "cl_file": finding.cl_file or None,
-        "seconds": _number(finding.seconds), "depth_mm": _number(finding.depth),
-        "place": _numbers(finding.place), "setup": finding.setup or None,
-    }  # fmt: skip
-
-
-def _near(each: NearMiss) -> dict[str, object]:
-    return {
-        "between": list(each.between), "file": each.file, "line": each.line, "block": _block(each.block),
-        "last_line": each.last_line, "last_block": _block(each.last_block), "seconds": _number(each.seconds),
-        "distance_mm": _number(each.distance), "place": _numbers(each.place),
-        "setup": each.setup or None,
-    }  # fmt: skip
-
-
-def _air(each: AirCut) -> dict[str, object]:
-    return {
-        "file": each.file, "line": each.line, "block": _block(each.block), "last_line": each.last_line,
-        "last_block": _block(each.last_block), "length_mm": _number(each.length),
-        "setup": each.setup or None,
-    }  # fmt: skip
-
-
-def _block(number: int) -> int | None:
-    """An N number; a block without one has none."""
-    return number if number >= 0 else None
-
-
-def _excess(excess: Excess | None) -> dict[str, object] | None:
-    if excess is None:
-        return None
-    places = [{"place": _numbers(each.at), "depth_mm": _number(each.thickness)} for each in excess.places]
-    return {"largest_mm": _number(excess.largest), "volume_mm3": _number(excess.volume), "places": places}
-
-
-def _numbers(values: tuple[float, ...]) -> list[float]:
-    return [_number(value) for value in values]
-
-
-def _number(value: float) -> float:
-    return round(float(value), _DECIMALS) + 0.0

@@ -19,6 +19,7 @@ from trunnion.machines import Machine
 from trunnion.model.motion import Decision
 from trunnion.model.toolpath import Kind
 from trunnion.reporting.extents import AxisExtent, TipExtent, axis_extent, tip_extent
+from trunnion.reporting.simulation_content import SimulationContent
 from trunnion.reporting.text import clean
 from trunnion.reporting.usage import OperationUsage, ToolUsage, durations, operation_usage, tool_usages
 from trunnion.verification.results import Check, Place, Verification
@@ -53,10 +54,15 @@ class ReportContent:
     tip: tuple[TipExtent, ...]
     axes: tuple[AxisExtent, ...]
     units: tuple[str, ...] = ()
+    simulation: SimulationContent | None = None
 
 
 def collect_content(
-    verification: Verification, control: str = "", made: str = "", decisions: Sequence[Decision] = ()
+    verification: Verification,
+    control: str = "",
+    made: str = "",
+    decisions: Sequence[Decision] = (),
+    simulation: SimulationContent | None = None,
 ) -> ReportContent:
     """Collect the content of a report; the arguments are those of ``trunnion.reporting.write_report``."""
     run, machine = verification.run, verification.machine
@@ -81,6 +87,7 @@ def collect_content(
         tip=tuple(tip_extent(run, k, cutting) for k in range(3)),
         axes=tuple(axis_extent(run, k, axis) for k, axis in enumerate(machine.axes)),
         units=tuple(_UNITS[inches] for inches in dict.fromkeys(run.state.inches.values.tolist())),
+        simulation=simulation,
     )
 
 

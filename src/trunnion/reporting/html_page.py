@@ -8,8 +8,6 @@ read it as JSON from an element of its own, and the page's content security poli
 hash.
 """
 
-import base64
-import hashlib
 from collections.abc import Iterator, Sequence
 from importlib.resources import files
 
@@ -19,7 +17,7 @@ from trunnion.reporting.content import ReportContent
 from trunnion.reporting.detail_levels import detail_levels, select_rows
 from trunnion.reporting.html_plots import column_element, column_elements, plot_section
 from trunnion.reporting.html_tables import page_body
-from trunnion.reporting.html_text import escape
+from trunnion.reporting.html_text import escape, source_hash
 from trunnion.reporting.plot_series import PlotSeries
 
 _ASSETS = files("trunnion.reporting")
@@ -57,8 +55,10 @@ def _read_vendored(name: str) -> str:
 def _head(content: ReportContent, scripts: Sequence[str]) -> str:
     """Return the head of the page, with its style and a policy that allows only ``scripts``."""
     style = _read_vendored("uPlot.min.css") + _read_asset("page.css")
-    sources = " ".join(_hash(script) for script in scripts)
-    policy = f"default-src 'none'; script-src {sources}; style-src {_hash(style)}; base-uri 'none'; form-action 'none'"
+    sources = " ".join(source_hash(script) for script in scripts)
+    pictures = "img-src data:; " if content.simulation else ""
+    allowed = f"script-src {sources}; style-src {source_hash(style)}; {pictures}"
+    policy = f"default-src 'none'; {allowed}base-uri 'none'; form-action 'none'"
     verdict = "passed" if content.passed else "FAILED"
     return f"""<!DOCTYPE html>
 <html lang="en">
@@ -71,8 +71,3 @@ def _head(content: ReportContent, scripts: Sequence[str]) -> str:
 <style>{style}</style>
 </head>
 """
-
-
-def _hash(source: str) -> str:
-    """Return the source expression by which a policy allows a script or style."""
-    return "'sha256-" + base64.b64encode(hashlib.sha256(source.encode()).digest()).decode() + "'"

@@ -18,6 +18,7 @@ from trunnion.reporting.html_text import (
     format_range,
     with_unit,
 )
+from trunnion.reporting.simulation_page import simulation_section
 from trunnion.reporting.usage import OperationUsage, ToolUsage
 from trunnion.verification.results import Check, Place
 from trunnion.wording import counted
@@ -29,7 +30,8 @@ MAX_PLACES = 12
 def page_body(content: ReportContent) -> str:
     """Return the page from its body tag up to the plots."""
     tables = (_operation_table(content), _tool_table(content), _decisions(content), _extents(content))
-    parts = (_title(content), _checks(content.checks), _worst_places(content.checks), *tables)
+    simulated = "" if content.simulation is None else simulation_section(content.simulation)
+    parts = (_title(content), _checks(content.checks), _worst_places(content.checks), simulated, *tables)
     return "<body>\n<main>\n" + "".join(parts)
 
 

@@ -1,5 +1,7 @@
 """Text and numbers as HTML."""
 
+import base64
+import hashlib
 import html
 import math
 
@@ -56,3 +58,8 @@ def format_range(values: tuple[float, float] | None) -> str:
         return ""
     low, high = map(format_number, values)
     return low if low == high else f"{low} … {high}"
+
+
+def source_hash(source: str) -> str:
+    """Return the source expression by which a policy allows a script or style."""
+    return "'sha256-" + base64.b64encode(hashlib.sha256(source.encode()).digest()).decode() + "'"

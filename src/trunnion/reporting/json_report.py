@@ -62,6 +62,7 @@ def _head(content: ReportContent) -> dict[str, object]:
         },
         "tools": [_tool(tool) for tool in content.tools],
         "operations": [_operation(operation) for operation in content.operations],
+        **({} if content.simulation is None else {"simulation": dict(content.simulation.data)}),
         "decisions": [_decision(decision) for decision in content.decisions],
         "extents": {
             "tip": [_tip(extent) for extent in content.tip],

@@ -6,14 +6,12 @@ Out:    UTF-8 HTML, piece by piece. path_page.js draws it.
 Text from outside is JSON in an element of its own, never part of a script (``reporting.html_page``).
 """
 
-import base64
-import hashlib
 from collections.abc import Iterator, Sequence
 from importlib.resources import files
 from typing import Final
 
 from trunnion.reporting.html_plots import column_element, script_json
-from trunnion.reporting.html_text import escape
+from trunnion.reporting.html_text import escape, source_hash
 from trunnion.reporting.path_series import PathSeries
 
 _ASSETS: Final = files("trunnion.reporting")
@@ -26,9 +24,8 @@ def render_path_page(title: str, paths: Sequence[PathSeries], tolerance: float) 
     tolerance  how far points that are left out lie off the lines, mm; 0 if none is
     """
     style, script = _asset("path_page.css"), _asset("unpack.js") + _asset("path_page.js")
-    policy = (
-        f"default-src 'none'; script-src {_hash(script)}; style-src {_hash(style)}; base-uri 'none'; form-action 'none'"
-    )
+    allowed = f"script-src {source_hash(script)}; style-src {source_hash(style)}"
+    policy = f"default-src 'none'; {allowed}; base-uri 'none'; form-action 'none'"
     data = {
         "title": title,
         "tolerance": tolerance,
@@ -70,8 +67,3 @@ def render_path_page(title: str, paths: Sequence[PathSeries], tolerance: float) 
 
 def _asset(name: str) -> str:
     return "\n" + _ASSETS.joinpath(name).read_text(encoding="utf-8")
-
-
-def _hash(source: str) -> str:
-    """The source expression by which a policy allows a script or style."""
-    return "'sha256-" + base64.b64encode(hashlib.sha256(source.encode()).digest()).decode() + "'"

@@ -15,6 +15,7 @@ from trunnion.reporting.content import ReportContent, collect_content, refused_c
 from trunnion.reporting.html_page import render_page
 from trunnion.reporting.json_report import render_json
 from trunnion.reporting.plot_series import PlotSeries, collect_series, no_series
+from trunnion.reporting.simulation_content import SimulationContent
 from trunnion.verification.results import Verification
 
 
@@ -47,10 +48,21 @@ def write_report(
 
 
 def render_report(
-    verification: Verification, path: Path, *, control: str = "", made: str = "", decisions: Sequence[Decision] = ()
+    verification: Verification,
+    path: Path,
+    *,
+    control: str = "",
+    made: str = "",
+    decisions: Sequence[Decision] = (),
+    simulation: SimulationContent | None = None,
 ) -> Iterator[bytes]:
-    """The bytes of a report, piece by piece; arguments and errors as ``write_report`` has them, but writes nothing."""
-    return _renderer(path)(collect_content(verification, control, made, decisions), collect_series(verification))
+    """The bytes of a report, piece by piece; the arguments are those of ``write_report``, and what a simulation found.
+
+    Raises as ``write_report`` does, but writes nothing.
+    """
+    return _renderer(path)(
+        collect_content(verification, control, made, decisions, simulation), collect_series(verification)
+    )
 
 
 def write_refusal(problems: Sequence[Problem], machine: Machine, program: str, path: Path) -> None:

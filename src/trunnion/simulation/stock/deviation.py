@@ -4,8 +4,8 @@ In:     stock as it is, and the stretches of the design and of the stock at the 
 Out:    volumes, the greatest thickness, and the places where it is.
 Units:  mm, workpiece frame.
 
-The thickness at a ray is that of ``stretch_kernel``. At a place the smallest of the three bundles counts: a sliver that is
-thin across a wall is long for the rays along the wall. What is missing is not thicker than twice the way from its
+The thickness at a ray is that of ``stretch_kernel``. At a place the smallest of the three bundles counts: a sliver that
+is thin across a wall is long for the rays along the wall. What is missing is not thicker than twice the way from its
 middle to the surface that is gone.
 """
 

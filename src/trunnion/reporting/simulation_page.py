@@ -1,0 +1,155 @@
+"""The report of a simulation: a page of its own, or a section of the report of a proof.
+
+In:     ``SimulationContent``.
+Out:    HTML, with all text from outside escaped. It needs no script, and nothing outside itself: pictures are in it.
+"""
+
+import base64
+from collections.abc import Iterator, Sequence
+from importlib.resources import files
+from typing import Final
+
+from trunnion.machines.motion_time import format_duration
+from trunnion.reporting.html_text import escape, format_number, source_hash
+from trunnion.reporting.simulation_content import DeviationBin, FindingRow, OperationRow, SimulationContent, StockState
+from trunnion.wording import counted
+
+#: Findings that the page shows; the data has all.
+_MOST: Final = 200
+
+#: Width and height of a bar, pixels.
+_BAR: Final = (240, 12)
+
+_ASSETS: Final = files("trunnion.reporting")
+
+
+def render_simulation_page(content: SimulationContent) -> Iterator[bytes]:
+    """Yield the page, piece by piece."""
+    style = "\n" + _ASSETS.joinpath("page.css").read_text(encoding="utf-8")
+    policy = f"default-src 'none'; img-src data:; style-src {source_hash(style)}; base-uri 'none'; form-action 'none'"
+    state, mark, word = ("good", "✓", "Passed") if content.passed else ("bad", "✗", "Failed")
+    facts = "".join(
+        f"<div><dt>{escape(name)}</dt><dd><bdi>{escape(value)}</bdi></dd></div>" for name, value in content.facts
+    )
+    yield f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<title>{escape(content.title)}: simulation {"passed" if content.passed else "FAILED"}</title>
+<style>{style}</style>
+</head>
+<body>
+<main>
+<header>
+<div class="verdict {state}"><span class="mark" aria-hidden="true">{mark}</span><div><strong>{word}</strong>
+<span>{_verdict(content)}</span></div></div>
+<h1><bdi>{escape(content.title)}</bdi></h1>
+<dl>{facts}</dl>
+</header>
+""".encode()
+    yield simulation_section(content).encode()
+    yield b"</main>\n</body>\n</html>\n"
+
+
+def simulation_section(content: SimulationContent) -> str:
+    """What a simulation found, in tables and pictures."""
+    near = _findings(content.near, "#Apart mm") if content.near else ""
+    parts = (
+        ("Simulation: findings", _findings(content.findings, "#Deep mm") or '<p class="note">Nothing was found.</p>'),
+        ("Near misses", near),
+        ("Finished stock", "".join(map(_state, content.states))),
+        ("Material removed", _operations(content.operations)),
+        ("What the simulation took for granted", "".join(f"<p>{escape(each)}</p>" for each in content.remarks)),
+    )
+    return "".join(f"<section>\n<h2>{title}</h2>\n{body}\n</section>\n" for title, body in parts if body)
+
+
+def _verdict(content: SimulationContent) -> str:
+    if content.passed:
+        return "nothing found"
+    found = counted(len(content.findings), "finding") if content.findings else "see below"
+    return f"{found}; the program must not run as it is"
+
+
+def _findings(found: Sequence[FindingRow], size: str) -> str:
+    if not found:
+        return ""
+    rows = [
+        f"<tr><td class=n>{each.size:.3f}</td><th scope=row>{escape(each.what)}</th><td>{escape(each.between)}</td>"
+        f"<td>{escape(each.place_in_program)}</td><td>{escape(each.cl_place)}</td>"
+        f"<td class=n>{format_duration(each.seconds)}</td>"
+        f"<td class=n>{' '.join(f'{axis}{value:.3f}' for axis, value in zip('XYZ', each.place, strict=True))}</td></tr>"
+        for each in found[:_MOST]
+    ]
+    more = len(found) - _MOST
+    note = f'<p class="note">and {more} more, in the data</p>' if more > 0 else ""
+    return _table((size, "What", "Between", "Program", "CL file", "#After", "#Place mm"), rows) + note
+
+
+def _operations(operations: Sequence[OperationRow]) -> str:
+    rows = [
+        f"<tr><th scope=row>{escape(each.where)}</th><td>{escape(each.tool)}</td><td class=n>{each.removed:.1f}</td>"
+        f"<td class=n>{each.gouged:.2f}</td><td class=n>{format_duration(each.seconds)}</td>"
+        f"<td class=n>{_rate(each)}</td><td class=n>{each.air:.0f}</td><td class=n>{each.findings or ''}</td></tr>"
+        for each in operations
+    ]
+    heads = ("From", "Tool", "#Removed mm³", "#Of the part mm³", "#Time", "#mm³/min", "#In air mm", "#Findings")
+    return _table(heads, rows) if rows else ""
+
+
+def _rate(each: OperationRow) -> str:
+    return format_number(60.0 * each.removed / each.seconds) if each.seconds > 0.0 else ""
+
+
+def _state(state: StockState) -> str:
+    title = f"<h3>{escape(state.name)}</h3>\n" if state.name else ""
+    lines = [f"{state.removed:.1f} mm³ removed."]
+    for name, excess in (("Left on the part", state.left), ("Missing from the part", state.gouge)):
+        if excess is not None:
+            lines.append(f"{name}: {excess[0]:.3f} mm at most, {excess[1]:.2f} mm³.")
+    if state.deviation:
+        lines.append("In the pictures blue is material that is left, red what is missing.")
+    words = "".join(f"<p>{line}</p>\n" for line in lines)
+    pictures = "".join(
+        f'<figure><img alt="the stock {escape(view)}" src="data:image/png;base64,{base64.b64encode(png).decode()}">'
+        f"<figcaption>{escape(view)}</figcaption></figure>"
+        for view, png in state.pictures
+    )
+    return title + words + f'<div class="pair">{pictures}</div>\n' + _histogram(state.deviation)
+
+
+def _histogram(bins: Sequence[DeviationBin]) -> str:
+    """The surface by its deviation; bars are to the scale of what deviates."""
+    if not bins:
+        return ""
+    width, height = _BAR
+    most = max((each.area for each in bins if not each.low <= 0.0 <= each.high), default=0.0)
+    total = sum(each.area for each in bins)
+    rows = []
+    for each in bins:
+        within = each.low <= 0.0 <= each.high
+        long = width * each.area / most if most and not within else 0.0
+        colour = "#c03030" if each.high < 0.0 else "#2864c8"
+        bar = f'<rect width="{long:.1f}" height="{height}" fill="{colour}"/>' if long else ""
+        picture = f'<svg width="{width}" height="{height}" aria-hidden="true">{bar}</svg>'
+        rows.append(
+            f"<tr><td class=n>{format_number(each.low)} … {format_number(each.high)}</td>"
+            f"<td class=n>{each.area:.1f}</td><td class=n>{100.0 * each.area / max(total, 1e-12):.2f}</td>"
+            f"<td>{'as the design wants it' if within else picture}</td></tr>"
+        )
+    return "<h3>Deviation from the part</h3>\n" + _table(("#From mm to mm", "#Surface mm²", "#%", "-"), rows, "tight")
+
+
+def _table(headings: Sequence[str], rows: Sequence[str], kind: str = "") -> str:
+    """A table; a heading with ``#`` is that of a column of numbers, ``-`` an empty one."""
+    cells = "".join(
+        f"<th scope=col class=n>{head[1:]}</th>" if head[0] == "#" else f"<th scope=col>{head.strip('-')}</th>"
+        for head in headings
+    )
+    body = "\n".join(rows)
+    return (
+        f'<div class="wide {kind}"><table>\n<thead><tr>{cells}</tr></thead>\n<tbody>\n{body}\n</tbody></table></div>\n'
+    )
