@@ -98,6 +98,8 @@ PIECES = st.sampled_from(
         ),
         *(
             "GOTO/1,2,3 $$ 4,5,6",
+            "GOTO/1,2,3 $$ 4,5,6GOTO/7,8,9",
+            "GOTO/1,2,3 $$ 4\f5",
             "GOTO/1,2,3 $",
             "GOTO/1,$",
             "GOTO/1,$ $$ X",
@@ -289,7 +291,7 @@ def test_a_point_may_go_on_in_the_next_line() -> None:
 
 
 def test_comments_are_spans_and_those_with_an_arrow_statements_in_apt() -> None:
-    data = b"$$-> CSYS / 1, $\n 2\n $$ TEXT $\nGOTO/1,2,3 $$ here\nTLON, GOFWD/(CIRCLE)\nRETRCT\nRETRCTS\nGO FWD/1\n"
+    data = b"$$-> CSYS / 1, $\n 2\n $$ TEXT $\nGOTO/1,2,3 $$ 7\nTLON, GOFWD/(CIRCLE)\nRETRCT\nRETRCTS\nGO FWD/1\n"
     *_, found = scan_all(data, apt=True)
     assert found == [
         ("-> CSYS / 1, $\n 2", 1, 0, 0),

@@ -11,8 +11,9 @@ from trunnion.cl.diagnostics import Diagnostics, StatementError
 from trunnion.cl.dialect import Dialect, Handler
 from trunnion.cl.scan import COMMENT, MAKES_ROW
 from trunnion.cl.state import COORDINATE_SYSTEM, MM_PER_INCH, ReaderState
-from trunnion.cl.statement import Statement, parse
+from trunnion.cl.statement import Statement, comments_of, parse
 from trunnion.cl.statements.operations import LENGTH_UNITS
+from trunnion.cl.swallowed import SwallowedStatements
 from trunnion.cl.word_classes import acts_on_machine, drives_tool, words_that_count
 from trunnion.model.toolpath import Frame
 
@@ -59,6 +60,7 @@ class ClInterpreter:
         self._diagnostics = diagnostics
         self._encoding = encoding
         self._words = words_that_count(dialect)
+        self._swallowed = SwallowedStatements(dialect)
         self._known_statements = 0
         self._unknown_statements = 0
         self._parse_cache: dict[bytes, tuple[Handler | None, Statement]] = {}
@@ -91,8 +93,10 @@ class ClInterpreter:
         self._state.has_row = mark & MAKES_ROW != 0
         try:
             if mark & COMMENT:
+                comment = raw[2:].decode(self._encoding, "replace").rstrip()
+                self._swallowed.refuse_in_comment(comment)
                 if self._dialect.comment is not None:
-                    self._dialect.comment(self._state, raw[2:].decode(self._encoding, "replace").rstrip())
+                    self._dialect.comment(self._state, comment)
                 return
             handler, statement = self._parse_cache.get(raw) or self._look_up(raw)
             if handler is None:
@@ -194,6 +198,8 @@ class ClInterpreter:
 
     def _look_up(self, raw: bytes) -> tuple[Handler | None, Statement]:
         statement = parse(raw, self._encoding)
+        in_comments = () if statement.text or b"$$" not in raw else comments_of(raw.decode(self._encoding, "replace"))
+        self._swallowed.refuse(statement, in_comments)
         entry = self._dialect.handlers.get(statement.major), statement
         if len(raw) <= _CACHED_STATEMENT_BYTES and len(self._parse_cache) < _CACHE_SIZE:
             self._parse_cache[raw] = entry

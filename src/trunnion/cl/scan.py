@@ -33,7 +33,7 @@ COMMENT = 8
 
 
 _TAB, _NEWLINE, _RETURN, _BLANK = 9, 10, 13, 32
-_DOLLAR, _PLUS, _COMMA, _MINUS, _POINT, _SLASH, _ZERO, _NINE, _ARROW = 36, 43, 44, 45, 46, 47, 48, 57, 62
+_DOLLAR, _PLUS, _COMMA, _MINUS, _POINT, _SLASH, _ZERO, _NINE, _ARROW, _LETTER_A = 36, 43, 44, 45, 46, 47, 48, 57, 62, 65
 
 _GOTO = np.frombuffer(b"GOTO", np.uint8)
 _GODLTA = np.frombuffer(b"GODLTA", np.uint8)
@@ -197,13 +197,19 @@ def _continued_line(data: Bytes, at: int, stop: int) -> int:
 
 @inlined
 def _next_line_after_comment(data: Bytes, at: int) -> int:
-    """Start of the next line if nothing but a ``$$`` comment stands between ``at`` (uint64) and the newline, else 0."""
+    """Start of the next line if there are but numbers in a ``$$`` comment between ``at`` (uint64) and it; else 0."""
     if data[at] == _DOLLAR and data[at + ONE] == _DOLLAR:
-        while data[at] != _NEWLINE:
+        while not _may_end_comment(data[at]):
             at += ONE
     if data[at] == _RETURN:
         at += ONE
     return signed(at + ONE) if data[at] == _NEWLINE else 0
+
+
+@inlined
+def _may_end_comment(byte: int) -> bool:
+    """Whether a byte of a comment may belong to a statement in it: a letter, or a control character."""
+    return byte >= _LETTER_A or (byte < _BLANK and byte != _TAB)
 
 
 @inner
@@ -230,7 +236,19 @@ def _find_statement(data: Bytes, at: int, stop: int, apt: bool) -> tuple[int, in
             return begin, content, lines, UNFINISHED
         lines += 1
         content, end = _find_content_end(data, at, False)
-    return begin, max(content, begin), lines, 0
+    return begin, max(content, begin, _end_of_full_comment(data, end)), lines, 0
+
+
+@inner
+def _end_of_full_comment(data: Bytes, at: int) -> int:
+    """End of the comment at ``at`` if a statement may stand in it, for the interpreter to see; else 0."""
+    if data[at] == _NEWLINE:
+        return 0
+    content, _ = _find_content_end(data, at, True)
+    for place in range(at, content):
+        if _may_end_comment(data[place]):
+            return content
+    return 0
 
 
 @inner

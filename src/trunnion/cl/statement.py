@@ -128,9 +128,10 @@ def parse(raw: bytes, encoding: str) -> Statement:
         )
     if raw[:1] and raw[0] in _TEXT_FIRST_BYTES and (text := _TEXT_STATEMENT.match(raw)):
         return _text_statement(text, raw, encoding)
-    source = plain = raw.decode(encoding, "replace")
-    if "$" in plain:
-        plain = _CONTINUATION.sub("", plain).partition("$$")[0]
+    source = raw.decode(encoding, "replace")
+    if "$$" in source:
+        source = _without_comment(source)
+    plain = joined_lines(source) if "$" in source else source
     if "\r" in plain:
         raise StatementError("a carriage return without a line feed", "save the file with LF or CRLF line ends")
     major, slash, rest = plain.partition("/")
@@ -139,6 +140,22 @@ def parse(raw: bytes, encoding: str) -> Statement:
         cure = "a dollar sign continues a line only at its end"
         raise StatementError(f"{name} has a dollar sign within the line", cure)
     return Statement(name, _values(rest) if slash else (), "", source)
+
+
+def joined_lines(source: str) -> str:
+    """Return a statement on one line, without continuation signs and the comments behind them."""
+    return _CONTINUATION.sub("", source)
+
+
+def comments_of(source: str) -> list[str]:
+    """Return the comments of a statement that carries no text, one behind each line that has one."""
+    return [line.partition("$$")[2] for line in source.split("\n") if "$$" in line]
+
+
+def _without_comment(source: str) -> str:
+    """A statement without the comment behind its last line; those of other lines stand behind a continuation sign."""
+    before, newline, last = source.rpartition("\n")
+    return before + newline + last.partition("$$")[0].rstrip()
 
 
 def _text_statement(match: re.Match[bytes], raw: bytes, encoding: str) -> Statement:

@@ -36,6 +36,19 @@ _SAY_NOTHING: Final = frozenset({
 #: Words of motion: a statement that begins or ends with one has lost its slash or its line end.
 _MOTION_WORDS: Final = ("GOTO", "GODLTA", "GOHOME", "RAPID", "CIRCLE", "FEDRAT", "SPINDL", "LOADTL", "CYCLE")
 
+#: Statements that may stand without a slash: one behind which the line end is lost begins with it.
+_BARE_WORDS: Final = (
+    "END-OF-PATH", "RAPID", "STOP", "OPSTOP", "COOLNT", "AUTOPS", "MULTAX", "FINI", "GOHOME", "RETRCT", "TLON", "NURBS",
+    "REWIND",
+)  # fmt: skip
+
+#: Words that stand behind the slash of a statement: one that has lost it begins with its word and one of these.
+_VALUE_WORDS: Final = frozenset({
+    "ABSOL", "AIR", "AUTO", "BARREL", "CCLW", "CLW", "DRILL", "FLOOD", "IN", "INCH", "INCHES", "INCR", "INVERS", "IPM",
+    "IPR", "LEFT", "MILL", "MIST", "MM", "MMPM", "MMPR", "MODE", "OFF", "ON", "PERMIN", "PERREV", "RIGHT", "RPM", "SFM",
+    "SMM", "TAP", "TCUTTER", "THRU", "TOOL", "TURN", "WORLD", "XYPLAN",
+})  # fmt: skip
+
 #: Words that a damaged one is compared with in all dialects: those that most files have.
 _COMMON_WORDS: Final = (
     *_MOTION_WORDS, "AUXFUN", "CLRSRF", "COOLNT", "CUTCOM", "CUTTER", "DELAY", "END-OF-PATH", "FROM", "GOFWD", "INDIRV",
@@ -93,7 +106,21 @@ def acts_on_machine(major: str, words: Collection[str]) -> str:
         return f"may be a damaged {letters[0]}"
     if meant := next((word for word in sorted(words) if _is_one_letter_off(major, word)), ""):
         return f"may be a damaged {meant.removeprefix('->')}"
+    if glued := next(
+        (word for word in _BARE_WORDS if major.startswith(word) and _is_known(major[len(word) :], words)), ""
+    ):
+        return f"may be a damaged {glued}"
+    first = major.partition(",")[0]
+    if meant := next(
+        (word for word in sorted(words) if first.startswith(word) and first[len(word) :] in _VALUE_WORDS), ""
+    ):
+        return f"may be a damaged {meant}"
     return ""
+
+
+def _is_known(major: str, words: Collection[str]) -> bool:
+    """Whether a word is that of some statement."""
+    return major in ACTING_WORDS or major in _SAY_NOTHING or major in words
 
 
 def _is_one_letter_off(one: str, other: str) -> bool:

@@ -5,6 +5,7 @@ import re
 from collections.abc import Iterator, Sequence
 
 MAJOR = re.compile(r"GOTO/|GODLTA/|CNTRL/|GOHOME/[-+.0-9]")
+SEEN = re.compile(r"[A-Za-z\x7f-\xff\x00-\x08\x0b-\x1f]")
 TEXT = re.compile(r"PPRINT|INSERT|DISPL|PARTNO|TPRINT|TOOLPATH|STOP|OPSTOP|REMARK")
 
 
@@ -33,7 +34,9 @@ def statements(data: bytes) -> Iterator[tuple[str, int, bool]]:
             content = raw.partition("$$")[0].rstrip(" \t\r")
             at += 1
             if not content.endswith("$"):
-                whole += content
+                # A comment in which a statement may stand is left to the interpreter.
+                seen = (whole or content) and SEEN.search(raw.partition("$$")[2].rstrip(" \t\r"))
+                whole += raw if seen else content
                 break
             if at == len(lines):
                 whole += content

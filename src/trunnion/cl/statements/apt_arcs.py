@@ -7,12 +7,11 @@ from typing import Final
 
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import ArcDirection, ReaderState
-from trunnion.cl.statement import Statement, numbers
+from trunnion.cl.statement import Statement, joined_lines, numbers
 from trunnion.cl.statements import apt_refused, motion
 
 _Vector = tuple[float, float, float]
 
-_CONTINUATION: Final = re.compile(r"\$[ \t\r]*(?:\$\$[^\n]*)?\n")
 _NUMBERS: Final = r"([^()/]*)"
 _ON: Final = r",ON,(?:([12]),INTOF,)?"
 _CIRCLE: Final = re.compile(rf"(?:TLON,)?GOFWD/\(CIRCLE/{_NUMBERS}\){_ON}\(LINE/{_NUMBERS}\)")
@@ -48,7 +47,7 @@ def tlon(state: ReaderState, statement: Statement) -> None:
 
 def gofwd(state: ReaderState, statement: Statement) -> None:
     """Write an arc up to the point where its circle meets the line or plane that ends it."""
-    text = "".join(_CONTINUATION.sub("", statement.source).partition("$$")[0].split()).upper()
+    text = "".join(joined_lines(statement.source).split()).upper()
     direction, state.direction = state.direction, None
     if direction is not None and direction.row != state.row:
         direction.report_lost_arc(state.diagnostics)

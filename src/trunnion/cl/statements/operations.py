@@ -22,7 +22,7 @@ _FRAME_TOLERANCE = 1e-3
 _WIDEST_TOLERANCE = 1.0
 
 #: Stands between the names of operation and tool.
-_TOOL_WORD = re.compile(r",\s*TOOL\s*,")
+_TOOL_WORD = re.compile(r",\s*TOOL\s*,", re.IGNORECASE)
 
 _MILL = ("diameter", "corner_radius", "length", "taper_angle", "tip_angle")
 _DRILL = ("diameter", "corner_radius", "length", "tip_angle", "flute_length")
