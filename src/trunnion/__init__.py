@@ -21,6 +21,8 @@ Functions
     simulate       NC programs and stock -> SimulationResult: what is cut, and what is hit
     read_points    table of measured points -> PointTable of each curve
     fit_curve      points -> CurveFit: a B-spline curve, and how far it is off
+    load_impeller  definition and measured points -> Impeller: blades, hub and shroud as surfaces
+    model_impeller Impeller -> ImpellerModel: a closed mesh
     write_report   Verification -> page or data
     write_plot     ClDescription -> page with the path in space
 
@@ -44,6 +46,8 @@ if TYPE_CHECKING:
     from trunnion.api.describing_cl import describe_cl as describe_cl
     from trunnion.api.describing_machine import MachineDescription as MachineDescription
     from trunnion.api.describing_machine import describe_machine as describe_machine
+    from trunnion.api.impellers import load_impeller as load_impeller
+    from trunnion.api.impellers import model_impeller as model_impeller
     from trunnion.api.observer import Observer as Observer
     from trunnion.api.planning import plan as plan
     from trunnion.api.plotting import write_plot as write_plot
@@ -66,6 +70,8 @@ if TYPE_CHECKING:
     from trunnion.geometry.fitting import CurveFit as CurveFit
     from trunnion.geometry.point_tables import PointTable as PointTable
     from trunnion.geometry.spans import Span as Span
+    from trunnion.impeller.impeller import Impeller as Impeller
+    from trunnion.impeller.model import ImpellerModel as ImpellerModel
     from trunnion.machines.machine import Axis as Axis
     from trunnion.machines.machine import Machine as Machine
     from trunnion.model.motion import Decision as Decision
@@ -92,6 +98,8 @@ _MODULES: Final = {
     "ConvertResult": "api.converting",
     "CurveFit": "geometry.fitting",
     "Decision": "model.motion",
+    "Impeller": "impeller.impeller",
+    "ImpellerModel": "impeller.model",
     "InputError": "errors",
     "Machine": "machines.machine",
     "MachineDescription": "api.describing_machine",
@@ -119,7 +127,9 @@ _MODULES: Final = {
     "describe_machine": "api.describing_machine",
     "diff": "api.comparing",
     "fit_curve": "api.curves",
+    "load_impeller": "api.impellers",
     "load_machine": "api.reading",
+    "model_impeller": "api.impellers",
     "plan": "api.planning",
     "post": "api.posting",
     "read_cl": "api.reading",
@@ -142,6 +152,8 @@ __all__ = [
     "ConvertResult",
     "CurveFit",
     "Decision",
+    "Impeller",
+    "ImpellerModel",
     "InputError",
     "Machine",
     "MachineDescription",
@@ -170,7 +182,9 @@ __all__ = [
     "describe_machine",
     "diff",
     "fit_curve",
+    "load_impeller",
     "load_machine",
+    "model_impeller",
     "plan",
     "post",
     "read_cl",

@@ -28,7 +28,8 @@ def test_every_public_name_is_there_and_documented() -> None:
         assert inspect.getdoc(getattr(trunnion, name)) or name == "__version__", name
     assert FUNCTIONS == [
         "convert", "describe_cl", "describe_control", "describe_controls", "describe_machine",
-        "diff", "fit_curve", "load_machine", "plan", "post", "read_cl", "read_points", "read_program",
+        "diff", "fit_curve", "load_impeller", "load_machine", "model_impeller",
+        "plan", "post", "read_cl", "read_points", "read_program",
         "simulate", "verify", "write_curve_picture", "write_plot", "write_report",
     ]  # fmt: skip
 

@@ -7,7 +7,7 @@ import pytest
 
 from trunnion.cli import main
 
-BLADE = str(Path(__file__).resolve().parents[2] / "examples" / "blade_points.csv")
+BLADE = str(Path(__file__).resolve().parents[2] / "examples" / "impeller" / "blade_points.csv")
 
 Capture = pytest.CaptureFixture[str]
 

@@ -20,7 +20,7 @@ from trunnion.geometry.parameters import parameters_of
 from trunnion.geometry.point_tables import PointTable, read_point_table
 from trunnion.geometry.spans import spans_between
 
-BLADE = Path(__file__).resolve().parents[2] / "examples" / "blade_points.csv"
+BLADE = Path(__file__).resolve().parents[2] / "examples" / "impeller" / "blade_points.csv"
 PUBLISHED = Path(__file__).with_name("blade_control_points.csv")
 
 PUBLISHED_ENDS = Ends(Tangent((0.0, 0.0, 1.0), is_derivative=True), Tangent((-1.0, 0.0, 0.0), is_derivative=True))

@@ -14,9 +14,9 @@ from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem
 from trunnion.files import OutputPlace, atomic_file, check_outputs, resolve_output
 from trunnion.geometry.ends import Ends, Natural, Tangent, parse_end
-from trunnion.geometry.fitting import CurveFit, Wanted, fit, scaled
+from trunnion.geometry.fitting import CurveFit, Wanted, fit
 from trunnion.geometry.parameters import PARAMETERIZATIONS
-from trunnion.geometry.point_tables import PointTable, read_point_table
+from trunnion.geometry.point_tables import PointTable, read_point_table, scaled
 from trunnion.reporting.curve_picture import curve_picture
 
 EndLike: TypeAlias = str | Natural | Tangent
@@ -47,7 +47,7 @@ def read_points(points: FilePath, *, scale: float = 1.0) -> tuple[PointTable, ..
     Examples
     --------
     >>> import trunnion
-    >>> tip, hub = trunnion.read_points("examples/blade_points.csv", scale=0.75)
+    >>> tip, hub = trunnion.read_points("examples/impeller/blade_points.csv", scale=0.75)
     >>> tip.name, tip.points.shape
     ('tip', (20, 3))
     """
@@ -101,7 +101,7 @@ def fit_curve(
     Examples
     --------
     >>> import trunnion
-    >>> tip, hub = trunnion.read_points("examples/blade_points.csv")
+    >>> tip, hub = trunnion.read_points("examples/impeller/blade_points.csv")
     >>> fitted = trunnion.fit_curve(tip)
     >>> fitted.curve.control_points.shape, bool(fitted.offsets.max() < 1e-9)
     ((22, 3), True)

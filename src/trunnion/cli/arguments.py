@@ -141,6 +141,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     _add_simulate(commands.add_parser("simulate", help="cut stock with NC programs: what is left, and what is hit"))
     _add_info(commands.add_parser("info", help="show what CL files hold; no machine is needed"))
     _add_curve(commands.add_parser("curve", help="fit curves to measured points; no machine is needed"))
+    _add_impeller(commands.add_parser("impeller", help="make an impeller from measured points"))
     _add_machines(commands.add_parser("machines", help="list the machines, or print one definition"))
     _add_controls(commands.add_parser("controls", help="list the controls, or explain one with all its settings"))
     _add_check(commands.add_parser("check", help="validate the definition of a machine or a control"))
@@ -330,6 +331,17 @@ def _add_curve(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="data in place of text")
     parser.add_argument("--picture", metavar="FILE", help="curves with their curvature combs (.svg)")
     parser.set_defaults(run=_lazy_command("curve", "run"))
+
+
+def _add_impeller(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("step", choices=("model",), help="model: a closed mesh of the impeller")
+    parser.add_argument("file", metavar="IMPELLER", help="definition of the impeller (.toml)")
+    parser.add_argument("--output", metavar="FILE", help="the mesh (.stl, .ply, .3mf or .glb)")
+    parser.add_argument(
+        "--tolerance", type=_tolerance, default=0.01, metavar="MM", help="how far facets may be off the surfaces; 0.01"
+    )
+    parser.add_argument("--json", action="store_true", help="data in place of text")
+    parser.set_defaults(run=_lazy_command("impeller", "model"))
 
 
 def _add_machines(parser: argparse.ArgumentParser) -> None:

@@ -15,7 +15,7 @@ _SAMPLES: Final = 12
 #: Newton's method doubles the digits in a step; where it does not help, halving ends as near.
 _STEPS: Final = 60
 
-_CLOSE: Final = 1e-14
+_CLOSE: Final = 1e-12
 
 
 def closest_parameters(curve: BSplineCurve, points: Floats) -> Floats:

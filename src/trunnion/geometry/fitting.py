@@ -1,7 +1,7 @@
 """A curve for points: through them, or near them with few control points; and how good it is."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -88,11 +88,6 @@ def fit(table: PointTable, wanted: Wanted, weights: Floats | None = None) -> Cur
     spans = tuple(spans_between(curve, rising, natural))
     remarks = (*faults, *_runs_back(table, spans))
     return CurveFit(table.name, table.points, parameters, offsets, curve, spans, remarks)
-
-
-def scaled(table: PointTable, scale: float) -> PointTable:
-    """The points of a table times a number."""
-    return replace(table, points=table.points * scale)
 
 
 def _contradictions(wanted: Wanted, weights: Floats | None, count: int) -> Iterator[Problem]:

@@ -12,7 +12,7 @@ three columns, or four of which the first numbers the points.
 import math
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
@@ -60,6 +60,11 @@ class PointTable:
     def called(self) -> str:
         """What messages call the curve."""
         return f"the curve {self.name}" if self.name else "the curve"
+
+
+def scaled(table: PointTable, scale: float) -> PointTable:
+    """The points of a table times a number."""
+    return replace(table, points=table.points * scale)
 
 
 @dataclass(frozen=True, slots=True)

@@ -65,12 +65,14 @@ def as_readable(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return np.ascontiguousarray(value)
     # Numba takes an array that may be written to for a read-only one, but not within a tuple.
-    return type(value)(*(_read_only(part) if isinstance(part, np.ndarray) else part for part in value))
+    return type(value)(*map(_read_only, value))
 
 
-def _read_only(array: Any) -> Any:
-    if array.flags.c_contiguous and not array.flags.writeable:
-        return array
-    view = np.ascontiguousarray(array).view()
+def _read_only(value: Any) -> Any:
+    if isinstance(value, tuple):
+        return as_readable(value) if hasattr(value, "_fields") else tuple(map(_read_only, value))
+    if not isinstance(value, np.ndarray) or (value.flags.c_contiguous and not value.flags.writeable):
+        return value
+    view = np.ascontiguousarray(value).view()
     view.flags.writeable = False
     return view

@@ -1,0 +1,133 @@
+"""``impeller.toml``: an impeller as data.
+
+In:     the path of a definition; tables of points beside it.
+Out:    ``ImpellerDefinition``, every value checked by itself.
+"""
+
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Final
+
+from trunnion.definitions import Table, load_table
+from trunnion.errors import InputError
+from trunnion.geometry.parameters import PARAMETERIZATIONS
+from trunnion.geometry.point_tables import PointTable, read_point_table, scaled
+
+EDGES: Final = ("round", "cut")
+
+_GREATEST: Final = 10_000.0
+
+_MOST_BLADES: Final = 60
+
+
+@dataclass(frozen=True, slots=True)
+class StockSize:
+    """A cylinder about Z, mm: its lowest height is ``bottom``; ``bore`` 0: it has none."""
+
+    diameter: float
+    height: float
+    bottom: float
+    bore: float
+
+    @property
+    def top(self) -> float:
+        """Its highest height."""
+        return self.bottom + self.height
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ImpellerDefinition:
+    """What ``impeller.toml`` says.
+
+    sections          the blade's curves from hub to shroud, as measured points, mm
+    parameterization  of the curves
+    number            of blades
+    hub_thickness, tip_thickness   of the blade, mm
+    trailing_edge     ``cut`` by the stock, or ``round``
+    splitter          share of the blade's length at which its splitters begin; None: it has none
+    fillet            radius between blade and hub, mm
+    """
+
+    file: str
+    name: str
+    sections: tuple[PointTable, ...]
+    parameterization: str
+    number: int
+    hub_thickness: float
+    tip_thickness: float
+    trailing_edge: str
+    splitter: float | None
+    fillet: float
+    stock: StockSize
+
+
+def read_impeller(path: Path) -> ImpellerDefinition:
+    """Read a definition of an impeller and its tables of points.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, with every mistake and its line.
+    """
+    root = load_table(path, files(__package__), kind="impeller")
+    name = root.text("name", path.stem)
+    blade, hub, stock = (root.table(key, required=True) for key in ("blade", "hub", "stock"))
+    sections = _sections(blade, path)
+    found = ImpellerDefinition(
+        file=str(path),
+        name=name,
+        sections=sections,
+        parameterization=blade.text("parameterization", PARAMETERIZATIONS[0], one_of=PARAMETERIZATIONS),
+        number=blade.integer("number", at_least=2, at_most=_MOST_BLADES),
+        hub_thickness=blade.number("hub_thickness_mm", above=0.0, at_most=_GREATEST),
+        tip_thickness=blade.number("tip_thickness_mm", above=0.0, at_most=_GREATEST),
+        trailing_edge=_edges(blade),
+        splitter=blade.number("splitter_start", None, at_least=0.05, at_most=0.95),
+        fillet=hub.number("fillet_mm", above=0.0, at_most=_GREATEST),
+        stock=_stock(stock),
+    )
+    for table in (root, blade, hub, stock):
+        table.report_unread_keys()
+    root.raise_problems()
+    return found
+
+
+def _edges(blade: Table) -> str:
+    """The trailing edge; a leading edge is round."""
+    blade.text("leading_edge", "round", one_of=("round",))
+    return blade.text("trailing_edge", "cut", one_of=EDGES)
+
+
+def _stock(table: Table) -> StockSize:
+    diameter = table.number("diameter_mm", above=0.0, at_most=_GREATEST)
+    height = table.number("height_mm", above=0.0, at_most=_GREATEST)
+    bore = table.number("bore_mm", 0.0, at_least=0.0, at_most=_GREATEST)
+    if diameter and bore >= diameter:
+        table.add_problem("bore_mm", f"is {bore:g}, not less than the diameter", "make it smaller")
+    return StockSize(diameter, height, table.number("bottom_mm", 0.0, at_least=-_GREATEST, at_most=_GREATEST), bore)
+
+
+def _sections(blade: Table, path: Path) -> tuple[PointTable, ...]:
+    """The blade's curves; mistakes in the table of points are added to those of the definition."""
+    file = blade.text("points")
+    scale = blade.number("scale", 1.0, above=0.0, at_most=1000.0)
+    names = blade.texts("curves")
+    if not file:
+        return ()
+    place = Path(file)
+    if place.is_absolute() or ".." in place.parts:
+        blade.add_problem("points", f"is {file!r}", "name a file in the folder of the definition or below it")
+        return ()
+    try:
+        tables = {table.name: table for table in read_point_table(path.parent / place)}
+    except InputError as error:
+        blade.problems.extend(error.problems)
+        return ()
+    for name in names:
+        if name not in tables:
+            known = ", ".join(map(repr, tables))
+            blade.add_problem("curves", f"names {name!r}, which {file} has not", f"it has {known}")
+    if len(names) < 2 or len(set(names)) < len(names):
+        blade.add_problem("curves", "are not at least two different curves", "name them from hub to shroud")
+    return tuple(scaled(tables[name], scale) for name in names if name in tables)

@@ -1,0 +1,98 @@
+"""What makes no impeller: sections that cross themselves, a hub above the shroud, blades that overlap."""
+
+from collections.abc import Iterator, Sequence
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.errors import Problem
+from trunnion.extras import import_extra
+from trunnion.geometry.curves import BSplineCurve
+from trunnion.geometry.point_tables import PointTable
+from trunnion.impeller.blade import Blade
+from trunnion.impeller.definition import ImpellerDefinition
+from trunnion.impeller.profiles import Profile
+
+_SAMPLES: Final = 400
+
+#: Two places of a section are apart along it if the way is so many times the straight line.
+_WAY: Final = 5.0
+
+
+def section_faults(definition: ImpellerDefinition, curves: Sequence[BSplineCurve], hub: Profile) -> Iterator[Problem]:
+    """What is wrong with the sections of a blade."""
+    thickness = max(definition.hub_thickness, definition.tip_thickness)
+    for table, curve in zip(definition.sections, curves, strict=True):
+        yield from _crossings(table, curve, thickness)
+    for table in definition.sections[1:]:
+        height = hub.distances(table.points)[0]
+        for k in np.flatnonzero(height <= 0.0)[:1].tolist():
+            what = f"{table.called} is {-height[k]:.3f} mm inside the hub here"
+            yield Problem(table.file, table.lines[k], what, "name the curves from hub to shroud")
+
+
+def _crossings(table: PointTable, curve: BSplineCurve, thickness: float) -> Iterator[Problem]:
+    """The first place where a section comes so near to itself that the blade would meet itself."""
+    at = np.linspace(0.0, 1.0, _SAMPLES + 1)
+    points = curve.points(at)
+    lengths = np.r_[0.0, np.cumsum(curve.lengths(at))]
+    near = import_extra("scipy.spatial", "impeller").cKDTree(points).query_pairs(thickness, output_type="ndarray")
+    way = np.abs(lengths[near[:, 0]] - lengths[near[:, 1]])
+    straight = np.linalg.norm(points[near[:, 0]] - points[near[:, 1]], axis=1)
+    found = near[(way > _WAY * straight) & (way > _WAY * thickness)]
+    if len(found):
+        one, other = (_line(table, points[k]) for k in found[0])
+        what = f"{table.called} crosses itself, or nearly: here and near line {other}"
+        yield Problem(table.file, one, what, "are its points in their order?")
+
+
+def _line(table: PointTable, place: Floats) -> int:
+    """The line of the point that is nearest to a place."""
+    return table.lines[int(np.linalg.norm(table.points - place, axis=1).argmin())]
+
+
+def blade_faults(
+    definition: ImpellerDefinition, blades: Sequence[tuple[Blade, float]], hub: Profile, shroud: Profile
+) -> Iterator[Problem]:
+    """What is wrong between the blades, and between them, hub and shroud."""
+    first, _ = blades[0]
+    w, v = (grid.ravel() for grid in np.meshgrid(np.linspace(0.0, 1.0, 41), np.linspace(0.0, 1.0, 13)))
+    centre, half = first.frames(w, v)[0], first.halves(w, v)
+    radius = definition.stock.diameter / 2.0
+    inside = np.hypot(centre[:, 0], centre[:, 1]) <= radius
+    for other, angle in blades[1:2]:
+        turned = centre @ _turn(angle)
+        gap = other.distances(turned)[0] - half
+        k = int(np.where(inside, gap, np.inf).argmin())
+        if gap[k] <= 0.0:
+            table = definition.sections[0 if v[k] < 0.5 else -1]
+            what = f"blades overlap by {-gap[k]:.3f} mm near this point"
+            yield Problem(table.file, _line(table, centre[k]), what, "let them be thinner, or fewer")
+    foot, top = (first.frames(np.linspace(0.0, 1.0, 41), np.full(41, at)) for at in (first.low, first.high))
+    if (hub.distances(foot[0])[0] >= 0.0).any():
+        yield Problem(definition.file, 0, "the blade does not reach into the hub everywhere", "check curves and scale")
+    if (shroud.distances(top[0])[0] <= 0.0).any():
+        yield Problem(definition.file, 0, "the blade does not reach the shroud everywhere", "check curves and scale")
+
+
+def fillet_faults(
+    definition: ImpellerDefinition, centres: Floats, radius: float, blades: Sequence[tuple[Blade, float]]
+) -> Iterator[Problem]:
+    """A fillet that has no room between two blades; ``centres`` (k, 3) are those of its ball."""
+    limit = definition.stock.diameter / 2.0
+    inside = centres[np.hypot(centres[:, 0], centres[:, 1]) <= limit]
+    for other, angle in (blades[1], blades[-1]):
+        gap = other.distances(inside @ _turn(angle))[0]
+        k = int(gap.argmin())
+        if gap[k] < radius:
+            table = definition.sections[0]
+            what = f"a fillet of {radius:g} mm has no room between two blades near this point; {gap[k]:.3f} mm has"
+            yield Problem(table.file, _line(table, inside[k]), what, "make it smaller")
+            return
+
+
+def _turn(angle: float) -> Floats:
+    """The matrix that multiplies rows of points to turn them about Z by minus an angle in radians."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])

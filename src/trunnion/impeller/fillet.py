@@ -1,0 +1,113 @@
+"""The fillet between blade and hub: what a ball that touches both does not reach.
+
+In:     blade, hub and the radius of the fillet.
+Out:    the path of the ball's centre, and where it touches blade and hub.
+Units:  mm.
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats, Ints
+from trunnion.errors import InputError, Problem
+from trunnion.impeller.blade import Blade
+from trunnion.impeller.profiles import Profile
+
+#: A ball this near to the hub touches it, mm; that takes about ten steps.
+_TOUCH: Final = 1e-11
+_STEPS: Final = 60
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Fillet:
+    """Stations along the root, (k,): from the trailing edge along one side, round the leading edge, and back.
+
+    centre    (k, 3) of the ball
+    to_blade  (k, 3) unit vectors from the centre to where the ball touches the blade
+    to_hub    (k, 3) and the hub
+    v         (k,) of the blade
+    is_closed whether it goes round the trailing edge too
+    """
+
+    centre: Floats
+    to_blade: Floats
+    to_hub: Floats
+    v: Floats
+    is_closed: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Stations:
+    """Places along the root of a blade: on its sides at w, or on a round edge at a turn.
+
+    part  (k,) 0: side −1, 1: leading edge, 2: side +1, 3: trailing edge
+    at    (k,) w or turn
+    """
+
+    part: Ints
+    at: Floats
+
+    def balls(self, blade: Blade, v: Floats) -> tuple[Floats, Floats]:
+        """Centres of the blade's balls (k, 3) and its normals (k, 3) at these stations and v (k,)."""
+        centre, normal = np.empty((len(v), 3)), np.empty((len(v), 3))
+        for part in range(4):
+            rows = np.flatnonzero(self.part == part)
+            if not len(rows):
+                continue
+            if part in (0, 2):
+                found = blade.sides(self.at[rows], v[rows], -1.0 if part == 0 else 1.0)
+            else:
+                found = blade.edge(0.0 if part == 1 else 1.0, self.at[rows], v[rows])
+            centre[rows], normal[rows] = found
+        return centre, normal
+
+
+def root_stations(along: int, around: int, *, round_trailing: bool) -> Stations:
+    """Stations along the root: ``along`` on each side, denser towards its ends, and ``around`` on each round edge."""
+    w = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, along))
+    turn = np.linspace(0.0, 1.0, around + 2)[1:-1]
+    parts = [(0, w[::-1]), (1, turn), (2, w)]
+    if round_trailing:
+        parts.append((3, turn))
+    number = np.concatenate([np.full(len(at), part) for part, at in parts])
+    return Stations(number, np.concatenate([at for _, at in parts]))
+
+
+def root_fillet(blade: Blade, hub: Profile, radius: float, stations: Stations) -> Fillet:
+    """Roll a ball along the root of a blade.
+
+    Raises
+    ------
+    InputError
+        If the ball does not touch blade and hub at each station.
+    """
+    count = len(stations.part)
+    low, high = np.full(count, blade.low), np.full(count, blade.high)
+
+    def gap(v: Floats) -> Floats:
+        centre, normal = stations.balls(blade, v)
+        half = blade.halves(_w(stations), v)
+        return hub.distances(centre + (half + radius)[:, None] * normal)[0] - radius
+
+    at_low, at_high = gap(low), gap(high)
+    if (at_low > 0.0).any() or (at_high < 0.0).any():
+        what = f"a fillet of {radius:g} mm finds no place between blade and hub"
+        raise InputError(Problem("fillet", 0, what, "make it smaller, or let the blade's sections reach the hub"))
+    for _ in range(_STEPS):  # the Illinois method: the secant, whose idle end counts half
+        v = low - at_low * (high - low) / np.where(at_high > at_low, at_high - at_low, 1.0)
+        at_v = gap(v)
+        if np.abs(at_v).max() < _TOUCH:
+            break
+        below = at_v < 0.0
+        at_high, at_low = np.where(below, at_high / 2.0, at_v), np.where(below, at_v, at_low / 2.0)
+        low, high = np.where(below, v, low), np.where(below, high, v)
+    centre, normal = stations.balls(blade, v)
+    centre = centre + (blade.halves(_w(stations), v) + radius)[:, None] * normal
+    return Fillet(centre, -normal, -hub.distances(centre)[1], v, bool((stations.part == 3).any()))
+
+
+def _w(stations: Stations) -> Floats:
+    """w of stations; those of an edge have the edge's."""
+    return np.asarray(np.where(stations.part == 1, 0.0, np.where(stations.part == 3, 1.0, stations.at)))

@@ -1,0 +1,183 @@
+"""The impeller as a closed mesh.
+
+In:     ``Impeller``.
+Out:    ``ImpellerModel``: the mesh, and how far it is off the exact surfaces.
+Units:  mm.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.errors import InputError, Problem
+from trunnion.extras import import_extra
+from trunnion.impeller.blade import Blade
+from trunnion.impeller.faults import fillet_faults
+from trunnion.impeller.fillet import Fillet, root_fillet, root_stations
+from trunnion.impeller.impeller import Impeller, rotated
+from trunnion.impeller.meshing import blade_mesh, fillet_mesh, solid, turned_mesh, union
+from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
+
+#: Part of the tolerance that each kind of facet takes.
+_SHARE: Final = 0.4
+
+#: The deviation is measured at so many vertices and middles of facets, or a few more.
+_SAMPLES: Final = 20_000
+
+#: A point so near to a surface is on it, mm.
+_CLOSE: Final = 1e-6
+
+#: Rings of points round a blade, from below the hub to above the shroud.
+_RINGS: Final = 33
+
+#: Facets that change the surface by less than this part of the tolerance are joined.
+_SIMPLER: Final = 0.1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ImpellerModel:
+    """A closed mesh of an impeller.
+
+    volume     mm³
+    deviation  how far vertices and middles of facets are from the exact surfaces at most, mm
+    """
+
+    mesh: TriangleMesh
+    volume: float
+    deviation: float
+
+
+def impeller_model(impeller: Impeller, tolerance: float) -> ImpellerModel:
+    """Make a closed mesh of an impeller.
+
+    Parameters
+    ----------
+    impeller
+        Its surfaces.
+    tolerance
+        mm: how far facets may be off the surfaces.
+
+    Raises
+    ------
+    InputError
+        If the fillet finds no place, or the bodies make no closed solid.
+    """
+    definition, share = impeller.definition, _SHARE * tolerance
+    stock = definition.stock
+    segments = _segments(stock.diameter / 2.0, share)
+    fillets = _fillets(impeller, share)
+    far, bottom = stock.height + stock.diameter, stock.bottom - stock.height
+    hub, shroud = (_below(one.outline(share, far), bottom) for one in (impeller.hub, impeller.shroud))
+    bodies = [turned_mesh(hub, segments), *_blade_bodies(impeller, fillets, share)]
+    blank = turned_mesh(_cylinder(stock.diameter / 2.0, stock.top, stock.bottom), segments)
+    found = union(bodies) ^ solid(turned_mesh(shroud, segments)) ^ solid(blank)
+    if stock.bore:
+        found -= solid(turned_mesh(_cylinder(stock.bore / 2.0, stock.top + 1.0, stock.bottom - 1.0), segments))
+    data = found.simplify(_SIMPLER * tolerance).to_mesh64()
+    vertices, faces = np.asarray(data.vert_properties)[:, :3], np.asarray(data.tri_verts).astype(np.int64)
+    if not len(faces) or found.status() != import_extra("manifold3d", "impeller").Error.NoError:
+        what = "its bodies make no closed solid"
+        raise InputError(Problem(definition.file, 0, what, "check curves, thicknesses and stock"))
+    mesh = TriangleMesh(vertices, faces, definition.name)
+    return ImpellerModel(mesh, mesh.volume, _deviation(impeller, mesh, fillets))
+
+
+def _fillets(impeller: Impeller, tolerance: float) -> list[tuple[Blade, Fillet]]:
+    """The fillet of the blade, and of the splitter if there is one.
+
+    Raises
+    ------
+    InputError
+        If one finds no place.
+    """
+    definition, blades = impeller.definition, list(impeller.blades())
+    stations = root_stations(2 * _count(impeller, tolerance), 24, round_trailing=definition.trailing_edge == "round")
+    found = []
+    for blade in [impeller.blade] if impeller.splitter is None else [impeller.blade, impeller.splitter]:
+        fillet = root_fillet(blade, impeller.hub, definition.fillet, stations)
+        found.append((blade, fillet))
+    problems = list(fillet_faults(definition, found[0][1].centre, definition.fillet, blades))
+    if problems:
+        raise InputError(problems)
+    return found
+
+
+def _blade_bodies(impeller: Impeller, fillets: list[tuple[Blade, Fillet]], tolerance: float) -> Iterator[TriangleMesh]:
+    """All blades, splitters and their fillets."""
+    definition = impeller.definition
+    around = max(_segments(definition.hub_thickness / 2.0, tolerance) // 2, 6)
+    steps = max(_segments(definition.fillet, tolerance) // 3, 6)
+    for own, fillet in fillets:
+        meshes = (
+            blade_mesh(own, _count(impeller, tolerance), around, _RINGS),
+            fillet_mesh(fillet, definition.fillet, steps),
+        )
+        for blade, angle in impeller.blades():
+            if blade is own:
+                yield from (TriangleMesh(rotated(mesh.vertices, angle), mesh.faces) for mesh in meshes)
+
+
+def _segments(radius: float, tolerance: float) -> int:
+    """So many chords make a full circle within a tolerance."""
+    return max(24, math.ceil(math.pi / math.acos(max(1.0 - tolerance / radius, -1.0))))
+
+
+def _count(impeller: Impeller, tolerance: float) -> int:
+    """Places along a blade, so that chords are within a tolerance: their sag goes with the square of their length."""
+    curve = impeller.curves[-1]
+    at = np.linspace(0.0, 1.0, 201)
+    bend = np.linalg.norm(curve.curvatures(at), axis=1).max()
+    length = float(curve.lengths(np.array([0.0, 1.0]))[0])
+    return max(41, math.ceil(1.6 * length / math.sqrt(8.0 * tolerance / max(float(bend), 1e-6))))
+
+
+def _cylinder(radius: float, top: float, bottom: float) -> Floats:
+    """The outline of a cylinder about Z."""
+    return np.array([[0.0, top], [radius, top], [radius, bottom], [0.0, bottom]])
+
+
+def _below(outline: Floats, bottom: float) -> Floats:
+    """The outline of the body below a profile: from the axis along the profile, down, and back to the axis."""
+    first, last = outline[0], outline[-1]
+    start = outline if first[0] <= 1e-9 else np.vstack(([[0.0, first[1]]], outline))
+    return np.vstack((start, [[last[0], bottom], [0.0, bottom]]))
+
+
+def _deviation(impeller: Impeller, mesh: TriangleMesh, fillets: list[tuple[Blade, Fillet]]) -> float:
+    """How far vertices and middles of facets are from the nearest exact surface, mm."""
+    points = np.vstack((mesh.vertices, mesh.vertices[mesh.faces].mean(axis=1)))
+    points = points[:: max(1, len(points) // _SAMPLES)]
+    stock = impeller.definition.stock
+    radius = np.hypot(points[:, 0], points[:, 1])
+    turned = [radius - stock.diameter / 2.0, points[:, 2] - stock.top, points[:, 2] - stock.bottom]
+    if stock.bore:
+        turned.append(radius - stock.bore / 2.0)
+    turned += [impeller.hub.distances(points)[0], impeller.shroud.distances(points)[0]]
+    off = np.abs(np.stack(turned)).min(axis=0)
+    for blade, angle in impeller.blades():
+        rows = np.flatnonzero(off > _CLOSE)
+        back = rotated(points[rows], -angle)
+        fillet = next(found for own, found in fillets if own is blade)
+        found = np.minimum(
+            np.abs(_from_path(fillet, back) - impeller.definition.fillet), np.abs(blade.distances(back)[0])
+        )
+        off[rows] = np.minimum(off[rows], found)
+    return float(off.max())
+
+
+def _from_path(fillet: Fillet, points: Floats) -> Floats:
+    """Distance (k,) of points to the path of a fillet's ball, mm: chords between its stations."""
+    centre = np.vstack((fillet.centre, fillet.centre[:1])) if fillet.is_closed else fillet.centre
+    _, nearest = import_extra("scipy.spatial", "impeller").cKDTree(centre).query(points)
+    best = np.full(len(points), np.inf)
+    for first in (nearest - 1, nearest):
+        k = np.clip(first, 0, len(centre) - 2)
+        along = centre[k + 1] - centre[k]
+        square = np.maximum(np.einsum("ij,ij->i", along, along), 1e-24)
+        share = np.clip(np.einsum("ij,ij->i", points - centre[k], along) / square, 0.0, 1.0)
+        best = np.minimum(best, np.linalg.norm(points - centre[k] - share[:, None] * along, axis=1))
+    return best

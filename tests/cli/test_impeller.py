@@ -1,0 +1,35 @@
+"""``trunnion impeller``."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from trunnion.cli import main
+
+IMPELLER = str(Path(__file__).resolve().parents[2] / "examples" / "impeller" / "impeller.toml")
+
+Capture = pytest.CaptureFixture[str]
+
+
+def test_a_model_is_written_and_described(tmp_path: Path, capfd: Capture) -> None:
+    mesh = tmp_path / "part.stl"
+    assert main(["impeller", "model", IMPELLER, "--output", str(mesh), "--tolerance", "0.2", "--json"]) == 0
+    data = json.loads(capfd.readouterr().out)
+    assert (data["name"], data["blades"], data["splitters"]) == ("IMPELLER", 6, 0)
+    assert mesh.stat().st_size == 84 + 50 * data["facets"]
+    assert data["deviation_mm"] <= 0.2
+
+
+@pytest.mark.parametrize(
+    ("arguments", "what"),
+    [
+        ([IMPELLER, "--output", "part.step"], 'ends in ".step"; end it in one of .stl, .ply, .3mf, .glb'),
+        ([IMPELLER, "--tolerance", "5"], "--tolerance: error: is 5.0; give a number from 0.0001 to 1"),
+        (["none.toml"], "none.toml: error: file not found"),
+    ],
+)
+def test_what_cannot_be_used_is_told(arguments: list[str], what: str, capfd: Capture) -> None:
+    assert main(["impeller", "model", *arguments]) == 2
+    out, err = capfd.readouterr()
+    assert (out, what in err) == ("", True), err

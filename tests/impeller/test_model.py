@@ -1,0 +1,93 @@
+"""The impeller as a closed mesh, and what makes none."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from trunnion.errors import InputError
+from trunnion.impeller.definition import read_impeller
+from trunnion.impeller.impeller import build_impeller
+from trunnion.impeller.meshing import solid
+from trunnion.impeller.model import ImpellerModel, impeller_model
+
+FOLDER = Path(__file__).resolve().parents[2] / "examples" / "impeller"
+TEXT = (FOLDER / "impeller.toml").read_text("utf-8")
+POINTS = (FOLDER / "blade_points.csv").read_text("utf-8")
+
+
+def written(folder: Path, *changes: tuple[str, str], points: str = POINTS) -> Path:
+    text = TEXT
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    (folder / "blade_points.csv").write_text(points, "utf-8")
+    (folder / "part.toml").write_text(text, "utf-8")
+    return folder / "part.toml"
+
+
+def modelled(path: Path, tolerance: float = 0.05) -> ImpellerModel:
+    return impeller_model(build_impeller(read_impeller(path)), tolerance)
+
+
+def test_the_published_impeller_is_a_closed_solid_within_its_tolerance_and_stock() -> None:
+    found = modelled(FOLDER / "impeller.toml")
+    assert found.deviation <= 0.05
+    assert found.volume == pytest.approx(83742.0, rel=2e-3)
+    low, high = found.mesh.bounds
+    np.testing.assert_allclose([*low, *high], [-45, -45, 0, 45, 45, 35], atol=0.06)
+    mesh = trimesh.Trimesh(found.mesh.vertices.astype("f4"), found.mesh.faces)
+    assert mesh.is_watertight
+    assert mesh.euler_number == 2  # no channel is closed, and nothing floats
+    body = solid(found.mesh)
+    assert (body - body.rotate([0.0, 0.0, 60.0])).volume() < 1e-3 * found.volume
+
+
+def test_splitters_round_trailing_edges_and_a_bore(tmp_path: Path) -> None:
+    changes = (
+        ('trailing_edge = "cut"', 'trailing_edge = "round"\nsplitter_start = 0.5'),
+        ("fillet_mm = 2.0", "fillet_mm = 0.8"),
+        ("height_mm = 35.0", "height_mm = 35.0\nbore_mm = 10.0"),
+        ("hub_thickness_mm = 2.0", "hub_thickness_mm = 1.4"),
+    )
+    found = modelled(written(tmp_path, *changes), 0.2)
+    assert found.deviation <= 0.2
+    assert found.volume == pytest.approx(81580.0, rel=5e-2)
+
+
+def mistakes(path: Path) -> list[tuple[int, str]]:
+    with pytest.raises(InputError) as raised:
+        modelled(path)
+    return [(problem.line, problem.what) for problem in raised.value.problems]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "what"),
+    [
+        ("fillet_mm = 2.0", "fillet_mm = 9.0", "has no room between two blades near this point|finds no place"),
+        ("number = 6", "number = 40", "blades overlap by"),
+        ('["hub", "tip"]', '["tip", "hub"]', "is .* mm inside the hub here"),
+        ('["hub", "tip"]', '["hub", "shroud"]', "names 'shroud', which blade_points.csv has not"),
+        ('["hub", "tip"]', '["hub"]', "are not at least two different curves"),
+        ('"blade_points.csv"', '"../blade_points.csv"', "is '../blade_points.csv'"),
+        ('"blade_points.csv"', '"none.csv"', "file not found"),
+        ("number = 6", "number = 1", "blade.number is 1"),
+        ("scale = 0.75", "scale = 0.75\nscael = 2", "blade.scael is not a key that is known here"),
+        ("diameter_mm = 90.0", "diameter_mm = -90.0", "stock.diameter_mm is -90"),
+        ("height_mm = 35.0", "height_mm = 35.0\nbore_mm = 90.0", "not less than the diameter"),
+    ],
+)
+def test_what_makes_no_impeller_is_named(tmp_path: Path, old: str, new: str, what: str) -> None:
+    found = mistakes(written(tmp_path, (old, new)))
+    assert any(re.search(what, text) for _, text in found), found
+
+
+def test_rows_of_the_points_are_named(tmp_path: Path) -> None:
+    lines = POINTS.splitlines()
+    doubled = "\n".join([*lines[:5], lines[4], *lines[5:]]) + "\n"
+    assert (6, "the curve hub has the same point here as in line 5") in mistakes(written(tmp_path, points=doubled))
+    swapped = "\n".join([*lines[:5], lines[8], *lines[6:8], lines[5], *lines[9:]]) + "\n"
+    found = mistakes(written(tmp_path, points=swapped))
+    assert {line for line, what in found if "turns back here" in what} >= {6, 9}
