@@ -25,7 +25,7 @@ from trunnion.errors import ArgumentName, InputError, Problem, argument_problem
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
-from trunnion.simulation.meshes import TriangleMesh, load_mesh
+from trunnion.simulation.meshes import DEVIATION, TriangleMesh, load_mesh
 from trunnion.simulation.stock.turning import Pose
 from trunnion.simulation.tools.choice import choose_tools, tools_of_toolpaths
 from trunnion.simulation.tools.library import ToolLibrary, read_tools
@@ -97,8 +97,10 @@ class PreparedSetup:
     toolpaths: list[Toolpath]
 
 
-def prepare_setup(given: SetupInput, remarks: list[Problem], observer: Observer) -> PreparedSetup:
-    """Read all that a set-up needs.
+def prepare_setup(
+    given: SetupInput, remarks: list[Problem], observer: Observer, deviation: float = DEVIATION
+) -> PreparedSetup:
+    """Read all that a set-up needs; facets of exact surfaces are off them by ``deviation`` at most, mm.
 
     Raises
     ------
@@ -108,9 +110,9 @@ def prepare_setup(given: SetupInput, remarks: list[Problem], observer: Observer)
     machine = as_machine(given.machine)
     readers.reader_of(machine)
     machine = set_up_machine(machine, given.zero, given.tool_length)
-    part = None if given.part is None else _mesh(given.part, "part", remarks)
+    part = None if given.part is None else _mesh(given.part, "part", remarks, deviation)
     around = listed("fixtures", given.fixtures, TriangleMesh)
-    fixtures = tuple(_mesh(fixture, f"fixture {k}", remarks) for k, fixture in enumerate(around, 1))
+    fixtures = tuple(_mesh(fixture, f"fixture {k}", remarks, deviation) for k, fixture in enumerate(around, 1))
     programs: list[FilePath | Run] = listed("nc", given.programs, Run)
     if not programs:
         raise wrong_argument("nc", given.programs, "give an NC program")
@@ -160,11 +162,11 @@ def cutting_width(tool: ToolShape) -> float:
     return 2.0 * max((radius for radius, _ in points), default=float("inf"))
 
 
-def _mesh(mesh: str | Path | TriangleMesh, name: str, remarks: list[Problem]) -> TriangleMesh:
+def _mesh(mesh: str | Path | TriangleMesh, name: str, remarks: list[Problem], deviation: float) -> TriangleMesh:
     if isinstance(mesh, TriangleMesh):
         return mesh.named(name)
     check_path(name, mesh)
-    return load_mesh(mesh, name=name, closed=True, warn=remarks.append)
+    return load_mesh(mesh, name=name, closed=True, deviation=deviation, warn=remarks.append)
 
 
 def _libraries(libraries: Sequence[FilePath], unit: str | None) -> list[ToolLibrary]:

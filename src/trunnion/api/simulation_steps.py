@@ -24,7 +24,7 @@ from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.jit import compile_ahead
 from trunnion.model.run import Run
 from trunnion.simulation.collisions import Collision, check_collisions, fixture_body, machine_bodies, part_body
-from trunnion.simulation.meshes import TriangleMesh
+from trunnion.simulation.meshes import DEVIATION, TriangleMesh
 from trunnion.simulation.simulator import Job, Setup, Simulation
 from trunnion.simulation.stock.solids import StockShape, check_narrow_tools, default_cell, stock_shape
 from trunnion.simulation.stock.turning import Pose, turned_stock
@@ -32,6 +32,9 @@ from trunnion.simulation.tools.profile import ToolShape
 
 #: Part of a cell within which motions are simulated by default.
 _TOLERANCE: Final = 0.1
+
+#: Part of the tolerance of motions within which exact surfaces of CAD files become facets.
+_FACETS: Final = 0.25
 
 
 def simulate_setups(given: SimulationInput, observer: Observer) -> SimulationResult:
@@ -53,11 +56,12 @@ def _simulate_setups(given: SimulationInput, observer: Observer) -> SimulationRe
         check_tolerance(name, value, optional=True)
     threads = None if given.threads is None else check_whole("threads", given.threads, 1)
     remarks: list[list[Problem]] = [[] for _ in given.setups]
-    shape = stock_shape(given.stock, remarks[0].append)
+    deviation = _deviation(given)
+    shape = stock_shape(given.stock, remarks[0].append, deviation)
     setups = []
     for each, told in zip(given.setups, remarks, strict=True):
         with told_with_places(each.places):
-            setups.append(prepare_setup(each, told, observer))
+            setups.append(prepare_setup(each, told, observer, deviation))
     widths = {name: cutting_width(tool) for each in setups for name, tool in each.tools.items()}
     cell = given.cell or default_cell(shape, min(widths.values(), default=math.inf))
     check_narrow_tools(widths, cell)
@@ -70,6 +74,13 @@ def _simulate_setups(given: SimulationInput, observer: Observer) -> SimulationRe
         if given.stop_at == "first" and result.findings:
             break
     return join_results(results)
+
+
+def _deviation(given: SimulationInput) -> float:
+    """How far facets of exact surfaces may be off them, mm: a part of the accuracy that is asked for."""
+    if given.accuracy is not None:
+        return _FACETS * given.accuracy
+    return DEVIATION if given.cell is None else _FACETS * _TOLERANCE * given.cell
 
 
 class _Steps:

@@ -142,7 +142,7 @@ def binary_stl(promised: int, facets: int, number: float = 1.0) -> bytes:
         ("bad.ply", b"ply\nformat ascii 1.0\nelement vertex 3\n", "is damaged"),
         ("bad.glb", b"glTF\2\0\0\0", "is damaged"),
         ("bad.3mf", b"PK\3\4", "is damaged"),
-        ("part.step", b"ISO-10303-21;", "is not read; export it as STL"),
+        ("part.iges", b"S      1", "is not read; export it as STEP"),
         ("part.x", b"", 'ends in ".x"'),
     ],
 )  # fmt: skip

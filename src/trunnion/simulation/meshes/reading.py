@@ -1,4 +1,4 @@
-"""Meshes from files: STL, OBJ, PLY, 3MF and GLB.
+"""Meshes from files: STL, OBJ, PLY, 3MF and GLB, and facets of the exact surfaces of STEP.
 
 In:     a path, and the unit of its numbers.
 Out:    a ``TriangleMesh`` in mm whose facets share their vertices and are seen from outside.
@@ -7,21 +7,21 @@ A file is untrusted: it is refused if it is too large, damaged or holds numbers 
 other files read.
 """
 
-import io
 from collections.abc import Callable
 from enum import StrEnum
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem, Severity, unusable_file
-from trunnion.extras import import_extra
 from trunnion.simulation.meshes.findings import LARGEST_EXTENT, SMALLEST_EXTENT, MeshFindings, judge_mesh
+from trunnion.simulation.meshes.step import STEP_ENDINGS, read_step
 from trunnion.simulation.meshes.stl import read_stl
 from trunnion.simulation.meshes.three_mf import read_three_mf
 from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
+from trunnion.simulation.meshes.trimesh_formats import read_by_trimesh
 
 #: Larger files are refused unread, bytes.
 MAX_BYTES: Final = 1_000_000_000
@@ -33,9 +33,12 @@ MAX_FACETS: Final = 8_000_000
 MAX_COORDINATE: Final = 1e6
 
 #: Endings of the files that are read.
-MESH_FORMATS: Final = (".stl", ".obj", ".ply", ".3mf", ".glb")
+MESH_FORMATS: Final = (".stl", ".obj", ".ply", ".3mf", ".glb", *STEP_ENDINGS)
 
-_CAD_FORMATS: Final = (".step", ".stp", ".iges", ".igs", ".brep")
+_CAD_FORMATS: Final = (".iges", ".igs", ".brep", ".x_t", ".x_b", ".sat", ".prt", ".sldprt", ".catpart", ".ipt")
+
+#: How far the facets of exact surfaces are off them where nobody says, mm.
+DEVIATION: Final = 0.005
 
 #: glTF counts in metres with Y upwards; a machine has Z there.
 _Y_UP_TO_Z_UP: Final = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
@@ -60,6 +63,7 @@ def load_mesh(
     *,
     name: str = "",
     closed: bool = False,
+    deviation: float = DEVIATION,
     warn: Callable[[Problem], None] | None = None,
 ) -> TriangleMesh:
     """Read a mesh.
@@ -69,11 +73,13 @@ def load_mesh(
     path
         A file whose name ends in one of ``MESH_FORMATS``.
     unit
-        Of its numbers; None: what the format says (3MF states one, GLB counts in m), else mm.
+        Of its numbers; None: what the format says (3MF states one, GLB counts in m), else mm. STEP states its own.
     name
         What messages call it; empty: the name of the file.
     closed
         Refuse a mesh with open edges: it has no inside, so that it can be neither stock nor part.
+    deviation
+        How far facets may be off the surfaces of a STEP file, mm.
     warn
         Takes what is odd and does not stop the work.
 
@@ -93,7 +99,11 @@ def load_mesh(
     _check_file(file, label, ending)
     stated = None if unit is None else MeshUnit(unit)
     data = _bytes(file, label)
-    vertices, faces, own_unit = _READERS[ending](data, label)
+    vertices, faces, own_unit = _read(data, label, ending, deviation)
+    if len(faces) > MAX_FACETS:
+        raise InputError(too_many_facets(label, len(faces)))
+    if stated is not None and ending in STEP_ENDINGS:
+        raise InputError(Problem(label, 0, "is a STEP file, which states its unit", "state none"))
     scale = own_unit if stated is None else stated.in_mm
     mesh = _shared_vertices(vertices * scale, faces, name or file.name, label)
     findings = judge_mesh(mesh)
@@ -109,8 +119,8 @@ def load_mesh(
 
 def _check_file(file: Path, label: str, ending: str) -> None:
     if ending in _CAD_FORMATS:
-        what = "is a CAD file of exact surfaces, which is not read"
-        raise InputError(Problem(label, 0, what, "export it as STL, 3MF, PLY, OBJ or GLB"))
+        what = "is a CAD file of a format that is not read"
+        raise InputError(Problem(label, 0, what, "export it as STEP, or as a mesh: STL, 3MF, PLY, OBJ or GLB"))
     if ending not in MESH_FORMATS:
         what = f'ends in "{file.suffix}"' if ending else "has no ending that names its format"
         raise InputError(Problem(label, 0, what, f"give a mesh that ends in one of {', '.join(MESH_FORMATS)}"))
@@ -131,6 +141,12 @@ def _bytes(file: Path, label: str) -> bytes:
     return data
 
 
+def _read(data: bytes, label: str, ending: str, deviation: float) -> tuple[Floats, Ints, float]:
+    if ending in STEP_ENDINGS:
+        return *read_step(data, label, deviation), MeshUnit.MM.in_mm
+    return _READERS[ending](data, label)
+
+
 def _read_stl(data: bytes, label: str) -> tuple[Floats, Ints, float]:
     corners = read_stl(data, label, MAX_FACETS)
     return corners, np.arange(len(corners)).reshape(-1, 3), MeshUnit.MM.in_mm
@@ -140,31 +156,17 @@ def _read_three_mf(data: bytes, label: str) -> tuple[Floats, Ints, float]:
     return read_three_mf(data, label, MAX_BYTES // 2, MAX_FACETS)
 
 
-def _read_by_trimesh(ending: str) -> Callable[[bytes, str], tuple[Floats, Ints, float]]:
-    def read(data: bytes, label: str) -> tuple[Floats, Ints, float]:
-        trimesh = import_extra("trimesh", "simulate")
-        try:
-            # Without a resolver no other file is opened, whatever this one names.
-            scene: Any = trimesh.load_scene(io.BytesIO(data), file_type=ending, process=False, maintain_order=True)
-            mesh = scene.to_mesh()
-            vertices = np.array(mesh.vertices, np.float64).reshape(-1, 3)
-            faces = np.array(mesh.faces, np.int64).reshape(-1, 3)
-        except (MemoryError, ImportError):
-            raise
-        except Exception as error:  # whatever a parser raises for a damaged file
-            reason = str(error).strip().split("\n")[0][:100] or type(error).__name__
-            raise InputError(Problem(label, 0, f"is damaged: {reason}", "export it again")) from None
-        if len(faces) and not (faces.min() >= 0 and faces.max() < len(vertices)):
-            raise InputError(
-                Problem(label, 0, "is damaged: a facet names a vertex that is not there", "export it again")
-            )
-        if len(faces) > MAX_FACETS:
-            raise InputError(too_many_facets(label, len(faces)))
-        if ending == "glb":
-            return vertices @ _Y_UP_TO_Z_UP.T, faces, MeshUnit.M.in_mm
-        return vertices, faces, MeshUnit.MM.in_mm
+def _read_obj(data: bytes, label: str) -> tuple[Floats, Ints, float]:
+    return *read_by_trimesh(data, "obj", label), MeshUnit.MM.in_mm
 
-    return read
+
+def _read_ply(data: bytes, label: str) -> tuple[Floats, Ints, float]:
+    return *read_by_trimesh(data, "ply", label), MeshUnit.MM.in_mm
+
+
+def _read_glb(data: bytes, label: str) -> tuple[Floats, Ints, float]:
+    vertices, faces = read_by_trimesh(data, "glb", label)
+    return vertices @ _Y_UP_TO_Z_UP.T, faces, MeshUnit.M.in_mm
 
 
 def too_many_facets(label: str, facets: int) -> Problem:
@@ -175,9 +177,9 @@ def too_many_facets(label: str, facets: int) -> Problem:
 _READERS: Final[dict[str, Callable[[bytes, str], tuple[Floats, Ints, float]]]] = {
     ".stl": _read_stl,
     ".3mf": _read_three_mf,
-    ".obj": _read_by_trimesh("obj"),
-    ".ply": _read_by_trimesh("ply"),
-    ".glb": _read_by_trimesh("glb"),
+    ".obj": _read_obj,
+    ".ply": _read_ply,
+    ".glb": _read_glb,
 }
 
 

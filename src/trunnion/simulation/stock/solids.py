@@ -17,7 +17,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, argument_problem
-from trunnion.simulation.meshes import TriangleMesh, load_mesh
+from trunnion.simulation.meshes import DEVIATION, TriangleMesh, load_mesh
 from trunnion.simulation.stock.lattice import Lattice
 from trunnion.simulation.stock.material import Stock
 from trunnion.simulation.stock.spans import Spans, box_spans, cylinder_spans, mesh_spans
@@ -63,8 +63,12 @@ class StockShape:
         return cylinder_spans(lattice, bundle) if self.is_cylinder else box_spans(lattice, bundle)
 
 
-def stock_shape(text: str | Path | TriangleMesh, warn: Callable[[Problem], None] | None = None) -> StockShape:
-    """Return the solid that a text states; ``warn`` takes what is odd about a mesh.
+def stock_shape(
+    text: str | Path | TriangleMesh, warn: Callable[[Problem], None] | None = None, deviation: float = DEVIATION
+) -> StockShape:
+    """Return the solid that a text states.
+
+    ``warn`` takes what is odd about a mesh; facets of exact surfaces are off them by ``deviation`` at most, mm.
 
     Raises
     ------
@@ -76,7 +80,7 @@ def stock_shape(text: str | Path | TriangleMesh, warn: Callable[[Problem], None]
         return StockShape(low, high, mesh=text)
     kind, colon, sizes = str(text).partition(":")
     if not colon or kind not in ("box", "cylinder"):
-        mesh = load_mesh(text, name="stock", closed=True, warn=warn)
+        mesh = load_mesh(text, name="stock", closed=True, deviation=deviation, warn=warn)
         return StockShape(mesh.bounds[0], mesh.bounds[1], mesh=mesh)
     words = [word.strip() for word in sizes.split(",")]
     if not all(_NUMBER.fullmatch(word) for word in words):

@@ -1,0 +1,39 @@
+"""OBJ, PLY and GLB, by trimesh.
+
+In:     the bytes of a file.
+Out:    vertices and faces in its own unit and frame.
+"""
+
+import io
+from typing import Any
+
+import numpy as np
+
+from trunnion.arrays import Floats, Ints
+from trunnion.errors import InputError, Problem
+from trunnion.extras import import_extra
+
+
+def read_by_trimesh(data: bytes, ending: str, label: str, extra: str = "simulate") -> tuple[Floats, Ints]:
+    """Read a file.
+
+    Raises
+    ------
+    InputError
+        If it is damaged, or trimesh is not installed, which comes with ``extra``.
+    """
+    trimesh = import_extra("trimesh", extra)
+    try:
+        # Without a resolver no other file is opened, whatever this one names.
+        scene: Any = trimesh.load_scene(io.BytesIO(data), file_type=ending, process=False, maintain_order=True)
+        mesh = scene.to_mesh()
+        vertices = np.array(mesh.vertices, np.float64).reshape(-1, 3)
+        faces = np.array(mesh.faces, np.int64).reshape(-1, 3)
+    except (MemoryError, ImportError):
+        raise
+    except Exception as error:  # whatever a parser raises for a damaged file
+        reason = str(error).strip().split("\n")[0][:100] or type(error).__name__
+        raise InputError(Problem(label, 0, f"is damaged: {reason}", "export it again")) from None
+    if len(faces) and not (faces.min() >= 0 and faces.max() < len(vertices)):
+        raise InputError(Problem(label, 0, "is damaged: a facet names a vertex that is not there", "export it again"))
+    return vertices, faces
