@@ -11,6 +11,7 @@ import trunnion
 from tests.support.sweeps import CUBE, CUBE_FACES
 from trunnion.cli import main
 from trunnion.simulation.meshes import TriangleMesh, load_mesh, save_mesh
+from trunnion.simulation.tool_deltas import as_the_tool_goes
 
 HEAD = "G21 G90 G17 G40 G49 G80\nT1 M6\nG43 H1\nS1000 M3\nG0 X-20 Y0 Z20\n"
 SLOT = HEAD + "N50 G0 Z-5\nN60 G1 X70 F500\nN70 G0 Z20\nM5\nM30\n"
@@ -114,6 +115,76 @@ def test_what_is_gone_altogether_names_the_block_that_took_it(tmp_path: Path) ->
     assert -2.0 < y < 2.0
     assert -10.0 < z < 0.0
     assert found.findings[0].depth == pytest.approx(2.0, abs=0.1)
+
+
+KLARTEXT = (
+    "0 BEGIN PGM PART MM\n1 TOOL CALL 1 Z S3000 DL+0.5\n2 L X-20 Y+0 R0 FMAX M3\n3 L Z+20 FMAX\n4 L Z-5 FMAX\n"
+    "5 L X+70 F500\n6 L Z+20 FMAX\n7 M30\n8 END PGM PART MM\n"
+)
+SINUMERIK = "T1 D1\nM6\nG54 G17 G90\nS3000 M3\nG0 X-20 Y0 Z20\nTOFFL=0.5\nG0 Z-5\nG1 X70 F500\nG0 Z20\nM30\n"
+
+
+@pytest.mark.parametrize(
+    ("program", "machine", "removed", "told"),
+    [
+        (KLARTEXT, "dmu65", 2250.0, ""),
+        (KLARTEXT.replace("DL+0.5", "DL-0.5 DR+0.1"), "dmu65", 2750.0, ""),
+        (
+            KLARTEXT.replace("DL+0.5", "DR+0.5").replace("X+70", "X+70 RL"),
+            "dmu65",
+            None,
+            "DR adds 0.5 mm to the radius",
+        ),
+        (SINUMERIK, "yl569", 2250.0, ""),
+        (SINUMERIK.replace("TOFFL", "TOFF[3]"), "yl569", None, "TOFF moves the tool by 0.5 mm"),
+        (SLOT.replace("N50", "G43.2 Z0.5\nN50"), "xyzac_trt", None, "G43.2 Z moves the tool by 0.5 mm"),
+        (SLOT.replace("G43 H1", "G43 H5"), "xyzac_trt", 2500.0, "is taken for its own length"),
+    ],
+    ids=["DL", "DL and DR", "DR compensated", "TOFFL", "TOFF", "G43.2", "H5"],
+)
+def test_what_a_program_adds_to_its_tool_is_simulated_or_refused(
+    tmp_path: Path, program: str, machine: str, removed: float | None, told: str
+) -> None:
+    found = simulate(tmp_path, program, machine=machine)
+    assert found.passed is (removed is not None)
+    assert not [one for one in found.remarks if "path is that without it" in one.what and removed and "DL" in one.what]
+    if removed is not None:
+        assert found.removed == pytest.approx(removed, rel=1e-3)
+    assert [told in one.what for one in found.remarks if told and told in one.what] == ([True] if told else [])
+
+
+def test_the_length_of_another_tool_is_an_error(tmp_path: Path) -> None:
+    tools = [TOOL, TOOL.replace("1=", "5=", 1)]
+    two = SLOT.replace("G43 H1", "G43 H5").replace("M5\nM30", "T5 M6\nG49\nM30")
+    found = simulate(tmp_path, two, tools=tools, cell=1.0)
+    assert [one.line for one in found.remarks if "cuts with the length of tool 5" in one.what] == [7]
+    assert not found.passed
+
+
+def test_a_length_goes_along_the_tool_and_not_into_machine_positions(tmp_path: Path) -> None:
+    program = "T1 D1\nM6\nG54 G90\nS3000 M3\nSUPA G0 Z0\nTRAORI\nG0 X0 Y0 Z50 B30 C0\nTOFFL=2\nG1 Z10 F500\nM30\n"
+    nc = tmp_path / "part.mpf"
+    nc.write_text(program)
+    run = trunnion.read_program(nc, machine="yl569")
+    longer, problems = as_the_tool_goes(run)
+    assert not problems
+    moved = longer.tip - run.tip
+    assert moved[-1] == pytest.approx(2.0 * run.axis[-1])
+    assert abs(run.axis[-1][2]) < 0.9
+    assert not moved[:-1].any()
+
+
+def test_the_time_of_a_finding_is_that_of_its_place(tmp_path: Path) -> None:
+    (standing,) = simulate(tmp_path, SLOT.replace("S1000 M3", "S1000")).findings
+    whole = simulate(tmp_path, SLOT).operations[0].seconds
+    x, y, _ = standing.place
+    there = (x - math.sqrt(25.0 - y * y) + 20.0) / 90.0  # of the block, when the tool of 10 mm first covers the place
+    begin = standing.seconds - there * 90.0 / 500.0 * 60.0
+    assert 0.0 < begin < whole - 90.0 / 500.0 * 60.0  # there are rapids before and after
+    assert there < 0.8
+    clamp = cuboid((55, -5, -20), (65, 5, -3))
+    hit = next(one for one in simulate(tmp_path, SLOT, fixtures=clamp).findings if one.kind == "collision")
+    assert begin + 0.7 * 10.8 < hit.seconds < begin + 10.8
 
 
 def test_a_fixture_is_hit_and_come_near_to(tmp_path: Path) -> None:

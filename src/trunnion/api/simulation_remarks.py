@@ -1,6 +1,6 @@
 """What a simulation cannot know of its programs, and what it takes for granted."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -11,17 +11,31 @@ from trunnion.model.toolpath import Kind
 from trunnion.simulation.cutting.sweeps import sideways_exits, unknown_swivels
 from trunnion.simulation.simulator import Setup
 from trunnion.simulation.stock.solids import StockShape
+from trunnion.simulation.tool_deltas import is_told_of_length
 from trunnion.simulation.tools.profile import ToolShape
 
 
 def simulation_remarks(setup: Setup, runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]:
     """Return all remarks: errors where a crash may be hidden, else warnings."""
-    return [*_remarks(runs, shapes), *_unknown_ways(runs, setup.stock), *_lengths(runs), *_outside(setup)]
+    return [*_remarks(runs, shapes), *_unknown_ways(runs, setup.stock), *_lengths(runs, shapes), *_outside(setup)]
 
 
-def _lengths(runs: Sequence[Run]) -> list[Problem]:
+def _foreign_length(run: Run, row: int, number: int, names: Sequence[str]) -> list[Problem]:
+    """A tool that cuts with a length number which is not its own: an error where that is another tool's."""
+    name = run.tools[int(run.tool[row])]
+    if not name.isdecimal() or int(name) == number:
+        return []
+    file, line = file_of_row(run, row), int(run.line[row])
+    if str(number) in names:
+        return [Problem(file, line, f"tool {name} cuts with the length of tool {number}", "select its own length")]
+    what = f"tool {name} cuts with length number {number}, which is taken for its own length"
+    return [Problem(file, line, what, severity=Severity.WARNING)]
+
+
+def _lengths(runs: Sequence[Run], shapes: Mapping[str, ToolShape]) -> list[Problem]:
     """Cuts without a tool length, or with that of another tool, in programs that select lengths."""
-    found = []
+    found: list[Problem] = []
+    names = [*shapes, *(name for run in runs for name in run.tools)]
     for run in runs:
         rows = np.flatnonzero(run.kind != Kind.RAPID)
         edge, tool = run.edge[rows], run.tool[rows]
@@ -38,6 +52,8 @@ def _lengths(runs: Sequence[Run]) -> list[Problem]:
                     row = int(rows[others[0]])
                     what = f"cuts with the length of tool {run.tools[int(tool[own[0]])]}, number {number}"
                     found.append(Problem(file_of_row(run, row), int(run.line[row]), what, "select its own length"))
+                else:
+                    found += _foreign_length(run, int(rows[own[0]]), number, names)
     return found
 
 
@@ -68,7 +84,7 @@ def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]
         found += merge_repeated(
             Problem(each.file, each.line, each.text, severity=Severity.WARNING)
             for each in run.diagnostics
-            if each.severity is Severity.WARNING
+            if each.severity is Severity.WARNING and not is_told_of_length(run, each.line, each.text)
         )
         compensated = run.state.compensation.rows_with(1), run.state.compensation.rows_with(-1)
         rows = np.concatenate(compensated)

@@ -1,5 +1,6 @@
 """What a simulation found, as records for scripts and data."""
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final, TypeVar
@@ -7,13 +8,16 @@ from typing import Any, Final, TypeVar
 import numpy as np
 
 from trunnion.api.reading import FilePath
+from trunnion.arrays import Floats
 from trunnion.errors import Problem, Severity
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.simulation.collisions import Collision
 from trunnion.simulation.findings import Finding, What
+from trunnion.simulation.moments import reached
 from trunnion.simulation.simulator import Job, OperationCut, Simulation, row_runs, tip_lengths
 from trunnion.simulation.stock.deviation import Excess
+from trunnion.simulation.tools.profile import Role
 from trunnion.verification import Verification
 from trunnion.verification import verify as verify_run
 
@@ -110,6 +114,9 @@ class SimulatedOperation:
     setup: str = ""
 
 
+#: The part of the tool that does what is wrong; all others are the cutter's.
+_ROLES: Final = {What.SHANK: Role.SHANK, What.HOLDER: Role.HOLDER}
+
 _Named = TypeVar("_Named", SimulationFinding, NearMiss, AirCut, SimulatedOperation)
 
 
@@ -178,16 +185,23 @@ def make_result(
     remarks: tuple[Problem, ...],
     toolpaths: Any,
     *,
+    runs: Sequence[Run] = (),
     setup: str = "",
 ) -> SimulationResult:
-    """Put together what programs have cut, hit and come near to in a set-up."""
-    verified = [verify_run(job.run, toolpaths if len(jobs) == 1 else ()) for job in jobs]
+    """Put together what programs have cut, hit and come near to in a set-up.
+
+    ``runs`` are those of the jobs as they were read; rows are the same.
+    """
+    read = runs or [job.run for job in jobs]
+    verified = [verify_run(run, toolpaths if len(jobs) == 1 else ()) for run in read[: len(jobs)]]
+    slack = 0.5 * float(found.stock.lattice.cell.max())
     seconds = [np.cumsum(each.seconds) for each in verified]
     lengths = [tip_lengths(job.run) for job in jobs]
     findings, operations, air = list[SimulationFinding](), list[SimulatedOperation](), list[AirCut]()
     for one in found.operations:
         run, at = jobs[one.job].run, seconds[one.job]
-        findings += (_finding(verified[one.job], finding, at) for finding in one.findings)
+        for finding in one.findings:
+            findings.append(_finding(verified[one.job], finding, _moment(jobs[one.job], finding, at, slack)))
         idle = list(_air(run, one, lengths[one.job]))
         air += idle
         seconds_taken = float(at[one.end - 1]) - (float(at[one.first - 1]) if one.first else 0.0)
@@ -198,7 +212,9 @@ def make_result(
     for number, collisions in enumerate(touched):
         run, at = jobs[number].run, seconds[number]
         hits = [each for each in collisions if not each.is_near]
-        findings += (_finding(verified[number], _of_collision(each), at) for each in hits)
+        for each in hits:
+            finding = _of_collision(each)
+            findings.append(_finding(verified[number], finding, _moment(jobs[number], finding, at, slack)))
         misses += (_near_miss(run, each, at) for each in collisions if each.is_near)
     x, y, z = found.stock.lattice.cell.tolist()
     return SimulationResult(
@@ -248,28 +264,43 @@ def _operation(run: Run, one: OperationCut, seconds: float, lines: tuple[int, in
     return SimulatedOperation(run.files[0], tool, *lines, one.removed, one.gouged, seconds, air, count)
 
 
-def _finding(verified: Verification, finding: Finding, seconds: Any) -> SimulationFinding:
+def _moment(job: Job, finding: Finding, seconds: Floats, slack: float) -> float:
+    """When something is found, seconds from the start of the program; ``seconds`` are those at the ends of rows."""
+    row, fraction = finding.worst, finding.fraction
+    if math.isnan(fraction):
+        shape = job.tools.get(job.run.tools[int(job.run.state.tool[row])])
+        role = _ROLES.get(finding.what, Role.CUTTER)
+        fraction = 1.0 if shape is None else reached(job.run, row, shape, (role,), finding.place, slack)
+    return _at_fraction(seconds, row, fraction)
+
+
+def _at_fraction(seconds: Floats, row: int, fraction: float) -> float:
+    begin = float(seconds[row - 1]) if row else 0.0
+    return begin + fraction * (float(seconds[row]) - begin)
+
+
+def _finding(verified: Verification, finding: Finding, seconds: float) -> SimulationFinding:
     run, row, last = verified.run, finding.worst, finding.rows[1]
     x, y, z = finding.place
     cl_line = int(verified.cl_line[row]) if len(verified.cl_line) else 0
     cl_file = next((each.cl_file for each in verified.operations if each.first <= row < each.end), "")
     return SimulationFinding(
         str(finding.what), finding.between, file_of_row(run, row), int(run.line[row]), int(run.block_number[row]),
-        int(run.line[last]), int(run.block_number[last]), cl_line, float(seconds[row]), finding.depth, (x, y, z),
+        int(run.line[last]), int(run.block_number[last]), cl_line, seconds, finding.depth, (x, y, z),
         cl_file if cl_line else "",
     )  # fmt: skip
 
 
 def _of_collision(each: Collision) -> Finding:
     rows = each.row, each.last_row
-    return Finding(What.BODY, each.between, rows, each.worst_row, each.depth_mm, each.place)
+    return Finding(What.BODY, each.between, rows, each.worst_row, each.depth_mm, each.place, each.worst_fraction)
 
 
 def _near_miss(run: Run, each: Collision, seconds: Any) -> NearMiss:
     row, last = each.worst_row, each.last_row
     return NearMiss(
         each.between, file_of_row(run, row), int(run.line[row]), int(run.block_number[row]), int(run.line[last]),
-        int(run.block_number[last]), float(seconds[row]), each.distance_mm, each.place,
+        int(run.block_number[last]), _at_fraction(seconds, row, each.worst_fraction), each.distance_mm, each.place,
     )  # fmt: skip
 
 

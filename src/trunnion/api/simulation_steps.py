@@ -28,6 +28,7 @@ from trunnion.simulation.meshes import DEVIATION, TriangleMesh
 from trunnion.simulation.simulator import Job, Setup, Simulation
 from trunnion.simulation.stock.solids import StockShape, check_narrow_tools, default_cell, stock_shape
 from trunnion.simulation.stock.turning import Pose, turned_stock
+from trunnion.simulation.tool_deltas import as_the_tool_goes
 from trunnion.simulation.tools.profile import ToolShape
 
 #: Part of a cell within which motions are simulated by default.
@@ -115,8 +116,9 @@ class _Steps:
     def _simulated(
         self, own: PreparedSetup, setup: Setup, part: TriangleMesh | None, remarks: list[Problem]
     ) -> SimulationResult:
-        given, runs = self._given, own.runs
+        given, runs = self._given, [as_the_tool_goes(run)[0] for run in own.runs]
         remarks += simulation_remarks(setup, runs, own.tools)
+        remarks += [problem for run in own.runs for problem in as_the_tool_goes(run)[1]]
         jobs = [_job(run, own.tools, own.given.until if run is runs[-1] else None) for run in runs]
         remarks += [Problem(job.run.files[0], 0, job.broken_off) for job in jobs if job.broken_off]
         self._observer.problems(remarks)
@@ -135,7 +137,7 @@ class _Steps:
         self._observer.problems(remarks[told:])
         collisions = _until_stop(jobs, touched, found)
         return make_result(
-            own.machine.key, found, jobs, collisions, tuple(remarks), own.toolpaths, setup=own.given.name
+            own.machine.key, found, jobs, collisions, tuple(remarks), own.toolpaths, runs=own.runs, setup=own.given.name
         )
 
 

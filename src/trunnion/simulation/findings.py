@@ -5,6 +5,7 @@ Out:    ``Finding`` records, in the order of the program.
 Units:  mm, workpiece frame.
 """
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
@@ -43,6 +44,7 @@ class Finding:
     worst     the row in which it is deepest
     depth     there, mm
     place     there, mm
+    fraction  part of the worst row that is done then; NaN: as the tool first covers the place
     """
 
     what: What
@@ -51,6 +53,7 @@ class Finding:
     worst: int
     depth: float
     place: tuple[float, float, float]
+    fraction: float = math.nan
 
 
 def row_findings(run: Run, rows: RowsCut, shape: ToolShape, limit: float, turning: Flags) -> Iterator[Finding]:
