@@ -51,7 +51,8 @@ def simulate_setups(given: SimulationInput, observer: Observer) -> SimulationRes
 
 
 def _simulate_setups(given: SimulationInput, observer: Observer) -> SimulationResult:
-    compile_ahead((*readers.KERNELS, *simulation.KERNELS))
+    design = simulation.DESIGN_KERNELS if any(each.part is not None for each in given.setups) else ()
+    compile_ahead((*readers.KERNELS, *design, *simulation.KERNELS))
     check_choice("stop_at", given.stop_at or "none", ("none", "first"))
     for name, value in (("cell", given.cell), ("accuracy", given.accuracy), ("near", given.near)):
         check_tolerance(name, value, optional=True)

@@ -2,9 +2,14 @@
 
 from trunnion.simulation.cutting.cut_kernel import bin_sweeps, cut_tile
 from trunnion.simulation.simulator import simulate
+from trunnion.simulation.stock.deviation import common_stretches, difference_stretches, thinner_here
 from trunnion.simulation.stock.solids import check_cell
+from trunnion.simulation.stock.spans import mesh_crossings, pair_crossings
 
-#: The kernels that every simulation needs, in the order in which it needs them.
+#: The kernels that every simulation needs, in the order in which it needs them; the last one is by far the largest.
 KERNELS = (bin_sweeps, cut_tile)
 
-__all__ = ["KERNELS", "check_cell", "simulate"]
+#: Those that a design needs besides.
+DESIGN_KERNELS = (mesh_crossings, pair_crossings, common_stretches, difference_stretches, thinner_here)
+
+__all__ = ["DESIGN_KERNELS", "KERNELS", "check_cell", "simulate"]

@@ -185,7 +185,7 @@ def _pass(
             kept = _reached(side, listed[side], motion, piece, table, count, ends, desk)
             if kept == 0:
                 continue
-            at_pose(work, kept, motion, 0.0, piece, table)
+            at_pose(work, 0, kept, motion, 0.0, piece, table)
             way = passage(motion, piece, table)
             for n in range(kept):
                 ray, before, after = desk.listed[side, n], found_at(work, n), found_at(work, n + KEPT)
@@ -193,7 +193,7 @@ def _pass(
                     continue
                 u, v, last = work[U + n], work[V + n], 2 * count[ray] - 1
                 found = swept_ends(
-                    u, v, motion, way, piece, table, tolerance, ends[ray, 0], ends[ray, last], before, after
+                    u, v, work, motion, way, piece, table, tolerance, ends[ray, 0], ends[ray, last], before, after
                 )
                 if not found.hit or is_clear(ray, (found.low, found.high), count, ends, gaps):
                     continue
@@ -276,7 +276,7 @@ def _reached(
     """Keep the listed rays whose material a piece may reach, by where it is at the end of a motion; their number."""
     if listed == 0:
         return 0
-    at_pose(desk.work, listed, motion, 1.0, piece, table)
+    at_pose(desk.work, 0, listed, motion, 1.0, piece, table)
     kept = 0
     for n in range(listed):
         ray, found = desk.listed[side, n], found_at(desk.work, n)

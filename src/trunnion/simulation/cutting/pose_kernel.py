@@ -41,6 +41,9 @@ ROW: Final = MOST + 72
 #: Where the tool touches a ray from the side, its end moves infinitely fast, but for this.
 STEEPEST: Final = 1e-12
 
+#: A ray of the work that is no ray of the tile.
+_SPARE: Final = MOST
+
 #: Rows of the work: where rays are, and what is found of them; FIRST and LAST are counted along w from its zero.
 U, V, FIRST, LAST, ON_FIRST, ON_LAST, DOWN, UP = (k * ROW for k in range(8))
 
@@ -98,24 +101,32 @@ def keep(work: Work, k: int, at: int) -> None:
 
 
 @inner
-def at_pose(work: Work, count: int, motion: Motion, s: float, piece: Piece, table: Floats2) -> None:
-    """Find the intervals of the first ``count`` rays within a piece at a part of a motion."""
+def at_part(u: float, v: float, work: Work, motion: Motion, s: float, piece: Piece, table: Floats2) -> AtPose:
+    """One more ray at a part of a motion; what is in the work of others stays."""
+    work[U + _SPARE], work[V + _SPARE] = u, v
+    at_pose(work, _SPARE, _SPARE + 1, motion, s, piece, table)
+    return found_at(work, _SPARE)
+
+
+@inner
+def at_pose(work: Work, begin: int, end: int, motion: Motion, s: float, piece: Piece, table: Floats2) -> None:
+    """Find the intervals of the rays ``begin`` to ``end`` (exclusive) within a piece at a part of a motion."""
     pose = _pose(motion, s)
-    for k in range(count):
+    for k in range(begin, end):
         work[FIRST + k] = math.inf
         work[LAST + k] = -math.inf
         work[ON_FIRST + k] = work[ON_LAST + k] = 0.0
         work[DOWN + k] = work[UP + k] = 0.0
     for e in range(piece.first, piece.end):
         if table[e, ROUND] == 0.0:
-            _cone(work, count, pose, table, e)
+            _cone(work, begin, end, pose, table, e)
         else:
-            _sphere(work, count, pose, table, e)
+            _sphere(work, begin, end, pose, table, e)
     if abs(pose.aw) > 1e-12:
         if piece.low_radius > 0.0:
-            _disc(work, count, pose, len(table) - LOW_DISC, piece.low, piece.low_radius)
+            _disc(work, begin, end, pose, len(table) - LOW_DISC, piece.low, piece.low_radius)
         if piece.high_radius > 0.0:
-            _disc(work, count, pose, len(table) - HIGH_DISC, piece.high, piece.high_radius)
+            _disc(work, begin, end, pose, len(table) - HIGH_DISC, piece.high, piece.high_radius)
 
 
 class Pose(NamedTuple):
@@ -146,7 +157,7 @@ def _pose(motion: Motion, s: float) -> Pose:
 
 
 @inner
-def _cone(work: Work, count: int, pose: Pose, table: Floats2, e: int) -> None:
+def _cone(work: Work, begin: int, end: int, pose: Pose, table: Floats2, e: int) -> None:
     """Where the rays pass a cone.
 
     The surface is where F = p² - z² - (r + m z)² = 0 for the point p, counted from the tip, at the height z = p . axis;
@@ -156,10 +167,10 @@ def _cone(work: Work, count: int, pose: Pose, table: Floats2, e: int) -> None:
     tu, tv, tw, au, av, aw, du, dv, dw, cu, cv, cw, rising = pose
     a = 1.0 - aw * aw - slope * slope * aw * aw
     if abs(a) < 1e-14:
-        _parallel_cone(work, count, pose, table, e)
+        _parallel_cone(work, begin, end, pose, table, e)
         return
     inverse = 1.0 / a
-    for k in range(count):
+    for k in range(begin, end):
         pu, pv = work[U + k] - tu, work[V + k] - tv
         z0 = pu * au + pv * av
         base = radius + slope * z0
@@ -180,11 +191,11 @@ def _cone(work: Work, count: int, pose: Pose, table: Floats2, e: int) -> None:
 
 
 @inner
-def _parallel_cone(work: Work, count: int, pose: Pose, table: Floats2, e: int) -> None:
+def _parallel_cone(work: Work, begin: int, end: int, pose: Pose, table: Floats2, e: int) -> None:
     """Where rays that are parallel to the side of a cone pass it: once, or, along a cylinder, nowhere."""
     radius, slope, low, high, number = table[e, RADIUS], table[e, SLOPE], table[e, LOW], table[e, HIGH], float(e)
     tu, tv, tw, au, av, aw, du, dv, dw, cu, cv, cw, rising = pose
-    for k in range(count):
+    for k in range(begin, end):
         pu, pv = work[U + k] - tu, work[V + k] - tv
         z0 = pu * au + pv * av
         base = radius + slope * z0
@@ -198,12 +209,12 @@ def _parallel_cone(work: Work, count: int, pose: Pose, table: Floats2, e: int) -
 
 
 @inner
-def _sphere(work: Work, count: int, pose: Pose, table: Floats2, e: int) -> None:
+def _sphere(work: Work, begin: int, end: int, pose: Pose, table: Floats2, e: int) -> None:
     """Where the rays pass a sphere."""
     radius, centre, low, high, number = table[e, RADIUS], table[e, CENTRE], table[e, LOW], table[e, HIGH], float(e)
     tu, tv, tw, au, av, aw, du, dv, dw, cu, cv, cw, rising = pose
     middle = centre * aw
-    for k in range(count):
+    for k in range(begin, end):
         pu, pv = work[U + k] - tu, work[V + k] - tv
         z0 = pu * au + pv * av
         qu, qv = pu - centre * au, pv - centre * av
@@ -222,12 +233,12 @@ def _sphere(work: Work, count: int, pose: Pose, table: Floats2, e: int) -> None:
 
 
 @inner
-def _disc(work: Work, count: int, pose: Pose, e: int, height: float, radius: float) -> None:
+def _disc(work: Work, begin: int, end: int, pose: Pose, e: int, height: float, radius: float) -> None:
     """Where the rays pass a disc that closes the piece."""
     tu, tv, tw, au, av, aw, _, _, _, cu, cv, cw, rising = pose
     number, inverse = float(e), 1.0 / aw
     across = 1.0 - aw * aw
-    for k in range(count):
+    for k in range(begin, end):
         pu, pv = work[U + k] - tu, work[V + k] - tv
         z0 = pu * au + pv * av
         t = (height - z0) * inverse

@@ -19,35 +19,18 @@ from typing import NamedTuple
 from trunnion.arrays import Floats2
 from trunnion.jit import inner
 from trunnion.simulation.cutting.motion_bounds import Passage
-from trunnion.simulation.cutting.pose_kernel import AtPose
+from trunnion.simulation.cutting.pose_kernel import AtPose, Work, at_part
 from trunnion.simulation.cutting.tool_table import (
     BASE,
     CENTRE,
-    HIGH,
-    HIGH_DISC,
     INVERSE,
-    LOW,
-    LOW_DISC,
-    RADIUS,
     RAISED,
-    ROUND,
     SLOPE,
     UPRIGHT,
     Motion,
     Piece,
     axis_between,
-    axis_speed,
 )
-
-
-class Hit(NamedTuple):
-    """The interval of a ray within a piece: whether there is one, both ends, and the rows of the table they are on."""
-
-    hit: bool
-    first: float
-    last: float
-    on_first: int
-    on_last: int
 
 
 class Ends(NamedTuple):
@@ -65,86 +48,6 @@ class Ends(NamedTuple):
 
 
 @inner
-def hits(pu: float, pv: float, au: float, av: float, aw: float, piece: Piece, table: Floats2) -> Hit:
-    """The interval of a ray within a piece that does not move, counted from the tip along w.
-
-    pu, pv      the ray, counted from the tip
-    au, av, aw  the tool axis
-    """
-    z0 = pu * au + pv * av
-    across = 1.0 - aw * aw
-    half = -z0 * aw
-    start = pu * pu + pv * pv - z0 * z0
-    # The cylinder around the piece.
-    if across < 1e-14:
-        if start > piece.widest * piece.widest:
-            return Hit(False, 0.0, 0.0, 0, 0)
-    elif half * half - across * (start - piece.widest * piece.widest) < 0.0:
-        return Hit(False, 0.0, 0.0, 0, 0)
-    first, last = math.inf, -math.inf
-    on_first, on_last = 0, 0
-    for e in range(piece.first, piece.end):
-        radius = table[e, RADIUS]
-        if table[e, ROUND] == 0.0:
-            slope = table[e, SLOPE]
-            base = radius + slope * z0
-            a = across - slope * slope * aw * aw
-            b = half - slope * aw * base
-            c = start - base * base
-        else:
-            above = z0 - table[e, CENTRE]
-            a = 1.0
-            b = half + aw * above
-            c = start + above * above - radius * radius
-        if abs(a) < 1e-14:
-            if abs(b) < 1e-14:
-                continue
-            one = -0.5 * c / b
-            two = one
-        else:
-            root = b * b - a * c
-            if root < 0.0:
-                continue
-            root, inverse = math.sqrt(root), 1.0 / a
-            one, two = (-b - root) * inverse, (-b + root) * inverse
-        z = z0 + one * aw
-        if table[e, LOW] <= z <= table[e, HIGH]:
-            if one < first:
-                first, on_first = one, e
-            if one > last:
-                last, on_last = one, e
-        z = z0 + two * aw
-        if table[e, LOW] <= z <= table[e, HIGH]:
-            if two < first:
-                first, on_first = two, e
-            if two > last:
-                last, on_last = two, e
-    if abs(aw) > 1e-12:
-        t = (piece.low - z0) / aw
-        if start + (2.0 * half + across * t) * t <= piece.low_radius * piece.low_radius:
-            if t < first:
-                first, on_first = t, len(table) - LOW_DISC
-            if t > last:
-                last, on_last = t, len(table) - LOW_DISC
-        t = (piece.high - z0) / aw
-        if start + (2.0 * half + across * t) * t <= piece.high_radius * piece.high_radius:
-            if t < first:
-                first, on_first = t, len(table) - HIGH_DISC
-            if t > last:
-                last, on_last = t, len(table) - HIGH_DISC
-    return Hit(first < last, first, last, on_first, on_last)
-
-
-@inner
-def hits_between(u: float, v: float, motion: Motion, s: float, piece: Piece, table: Floats2) -> Hit:
-    """As ``hits`` at a part of a motion, counted along w from its zero."""
-    au, av, aw = axis_between(motion, s)
-    tw = motion.tw + s * motion.dw
-    found = hits(u - motion.tu - s * motion.du, v - motion.tv - s * motion.dv, au, av, aw, piece, table)
-    return Hit(found.hit, found.first + tw, found.last + tw, found.on_first, found.on_last)
-
-
-@inner
 def normal_at(
     u: float, v: float, w: float, motion: Motion, s: float, on: int, table: Floats2
 ) -> tuple[float, float, float]:
@@ -155,25 +58,6 @@ def normal_at(
     a = table[on, INVERSE] / max(table[on, BASE] + table[on, SLOPE] * z, 1e-12)
     b = table[on, RAISED] - a * (table[on, UPRIGHT] * z + table[on, CENTRE])
     return a * pu + b * au, a * pv + b * av, a * pw + b * aw
-
-
-@inner
-def slope_at(u: float, v: float, w: float, motion: Motion, s: float, on: int, table: Floats2) -> float:
-    """How fast an end of the interval moves along the ray, per part of the motion."""
-    au, av, aw = axis_between(motion, s)
-    cu, cv, cw = axis_speed(motion, au, av, aw)
-    pu, pv, pw = u - motion.tu - s * motion.du, v - motion.tv - s * motion.dv, w - motion.tw - s * motion.dw
-    nu, nv, nw = normal_at(u, v, w, motion, s, on, table)
-    z = pu * au + pv * av + pw * aw
-    turned = pu * cu + pv * cv + pw * cw
-    # The point moves with the tip, and turns with the axis.
-    speed = (
-        nu * (motion.du + z * cu - turned * au)
-        + nv * (motion.dv + z * cv - turned * av)
-        + nw * (motion.dw + z * cw - turned * aw)
-    )
-    # Where the tool touches the ray from the side, the end moves infinitely fast.
-    return speed / (nw if abs(nw) >= 1e-12 else math.copysign(1e-12, nw))
 
 
 @inner
@@ -195,6 +79,7 @@ def _least(start: float, start_slope: float, end: float, end_slope: float) -> fl
 def swept_ends(
     u: float,
     v: float,
+    work: Work,
     motion: Motion,
     way: Passage,
     piece: Piece,
@@ -213,7 +98,7 @@ def swept_ends(
     nothing = Ends(False, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     begin = 0.5
     if not (before.hit or after.hit):
-        begin = passing(u, v, motion, way, piece, table)
+        begin = passing(u, v, work, motion, way, piece, table)
         if begin < 0.0:
             return nothing
     low, low_s, low_on, high, high_s, high_on = math.inf, 0.0, 0, -math.inf, 0.0, 0
@@ -225,14 +110,14 @@ def swept_ends(
         high, high_s, high_on = before.last, 0.0, before.on_last
     if low > bottom:
         known = Tangents(before.hit, before.first, before.down, after.hit, after.first, after.down)
-        value, s, on = lowest(u, v, motion, piece, table, tolerance, known, begin, 1.0, top)
+        value, s, on = lowest(u, v, work, motion, piece, table, tolerance, known, begin, 1.0, top)
         if value < low:
             low, low_s, low_on = value, s, on
     if low >= top:
         return nothing
     if high < top:
         known = Tangents(before.hit, -before.last, -before.up, after.hit, -after.last, -after.up)
-        value, s, on = lowest(u, v, motion, piece, table, tolerance, known, begin, -1.0, -bottom)
+        value, s, on = lowest(u, v, work, motion, piece, table, tolerance, known, begin, -1.0, -bottom)
         if -value > high:
             high, high_s, high_on = -value, s, on
     if high <= bottom:
@@ -257,6 +142,7 @@ class Tangents(NamedTuple):
 def lowest(
     u: float,
     v: float,
+    work: Work,
     motion: Motion,
     piece: Piece,
     table: Floats2,
@@ -299,16 +185,16 @@ def lowest(
             if right_value - right_slope * (right - left) > best - tolerance:
                 break
             s = 0.5 * (left + right)
-        found = hits_between(u, v, motion, s, piece, table)
+        found = at_part(u, v, work, motion, s, piece, table)
         if not found.hit:
             if left_known:
                 right = s
             else:
                 left = s
             continue
-        value, on = (found.first, found.on_first) if sign > 0.0 else (found.last, found.on_last)
-        slope = sign * slope_at(u, v, value, motion, s, on, table)
-        value = sign * value
+        value, slope, on = found.first, found.down, found.on_first
+        if sign < 0.0:
+            value, slope, on = -found.last, -found.up, found.on_last
         if value < best:
             best, found_value, found_s, found_on = value, value, s, on
         if slope < 0.0:
@@ -323,7 +209,7 @@ def lowest(
 
 
 @inner
-def passing(u: float, v: float, motion: Motion, way: Passage, piece: Piece, table: Floats2) -> float:
+def passing(u: float, v: float, work: Work, motion: Motion, way: Passage, piece: Piece, table: Floats2) -> float:
     """A part of a motion in which a piece hits a ray that it hits neither at the start nor at the end; -1 for none."""
     qu, qv = u - motion.tu, v - motion.tv
     aside = qu * way.across_u + qv * way.across_v
@@ -331,4 +217,4 @@ def passing(u: float, v: float, motion: Motion, way: Passage, piece: Piece, tabl
         return -1.0
     share = (aside - way.low) / (way.high - way.low)
     s = qu * way.u + qv * way.v - way.low_s - share * (way.high_s - way.low_s)
-    return s if 0.0 < s < 1.0 and hits_between(u, v, motion, s, piece, table).hit else -1.0
+    return s if 0.0 < s < 1.0 and at_part(u, v, work, motion, s, piece, table).hit else -1.0
