@@ -2,7 +2,7 @@
 
 from trunnion.simulation.cutting.cut_kernel import bin_sweeps, cut_tile
 from trunnion.simulation.simulator import simulate
-from trunnion.simulation.stock.deviation import common_stretches, difference_stretches, thinner_here
+from trunnion.simulation.stock.differences import common_stretches, difference_stretches, thinner_here
 from trunnion.simulation.stock.solids import check_cell
 from trunnion.simulation.stock.spans import mesh_crossings, pair_crossings
 
