@@ -29,6 +29,10 @@ Votes2: TypeAlias = Annotated[NDArray[np.int8], 2]
 #: Directions in which the planes of a cube differ by less than this do not place its vertex.
 _FLAT: Final = 0.02
 
+#: Decimals of vertices, mm, and part of the way to the middle of its cube by which one that is not alone is moved.
+_DECIMALS: Final = 6
+_ASIDE: Final = 2e-3
+
 #: How often centres are filled so that no edge has four facets; every round leaves fewer such places.
 _ROUNDS: Final = 50
 
@@ -52,7 +56,9 @@ def stock_surface(stock: Stock) -> TriangleMesh:
         leaves.append(leaving)
     around, point, normal = np.concatenate(cubes), np.concatenate(points), np.concatenate(normals)
     used, vertex = np.unique(around, return_inverse=True)
-    vertices = _vertices(stock, inside.shape, used, vertex.reshape(-1, 4), point, normal)
+    lows = _cubes(stock, inside.shape, used)
+    vertices = _vertices(stock, lows, vertex.reshape(-1, 4), point, normal)
+    vertices = _apart(vertices, lows + 0.5 * stock.lattice.cell)
     quads = vertex.reshape(-1, 4)
     leaving = np.concatenate(leaves)
     quads = np.where(leaving[:, None], quads, quads[:, ::-1])
@@ -131,9 +137,16 @@ def _ends(stock: Stock, spans: Spans, inside: NDArray[np.bool_], bundle: int) ->
     return cubes, point, normal, np.asarray(leaving)
 
 
-def _vertices(stock: Stock, shape: tuple[int, ...], used: Ints, vertex: Ints, point: Floats, normal: Floats) -> Floats:
+def _cubes(stock: Stock, shape: tuple[int, ...], used: Ints) -> Floats:
+    """The lowest corners of cubes, (n, 3), mm."""
+    sizes = np.array(shape) - 1
+    grid = np.column_stack((used // (sizes[1] * sizes[2]), used // sizes[2] % sizes[1], used % sizes[2]))
+    return np.asarray(stock.lattice.low + (grid - 0.5) * stock.lattice.cell)
+
+
+def _vertices(stock: Stock, lows: Floats, vertex: Ints, point: Floats, normal: Floats) -> Floats:
     """The point of each cube that is nearest to the planes of its ends, and to their mean."""
-    count = len(used)
+    count = len(lows)
     flat, four = vertex.ravel(), np.repeat(np.arange(len(point)), 4)
     ends = np.bincount(flat, minlength=count).astype(np.float64)
 
@@ -154,11 +167,26 @@ def _vertices(stock: Stock, shape: tuple[int, ...], used: Ints, vertex: Ints, po
     inverse = np.where(kept, 1.0 / np.where(kept, values, 1.0), 0.0)
     along = np.einsum("nji,nj->ni", vectors, right) * inverse
     place = middle + np.einsum("nij,nj->ni", vectors, along)
-    cell = stock.lattice.cell
-    sizes = np.array(shape) - 1
-    grid = np.column_stack((used // (sizes[1] * sizes[2]), used // sizes[2] % sizes[1], used % sizes[2]))
-    low = stock.lattice.low + (grid - 0.5) * cell
-    return np.asarray(np.clip(place, low, low + cell))
+    return np.asarray(np.clip(place, lows, lows + stock.lattice.cell))
+
+
+def _apart(vertices: Floats, middles: Floats) -> Floats:
+    """The vertices, with those that would be one in a file moved towards the middles of their cubes.
+
+    Files have single precision, and their readers make equal corners one: where two cubes have the same vertex, edges
+    of four facets would come of it.
+    """
+    vertices = np.round(vertices, _DECIMALS)
+    for attempt in range(1, _ROUNDS):
+        order = np.lexsort(vertices.astype(np.float32).T)
+        ordered = vertices[order].astype(np.float32)
+        equal = (ordered[1:] == ordered[:-1]).all(axis=1)
+        if not equal.any():
+            break
+        again = order[np.concatenate((equal, [False])) | np.concatenate(([False], equal))]
+        moved = vertices[again] + attempt * _ASIDE * (middles[again] - vertices[again])
+        vertices[again] = np.round(moved, _DECIMALS)
+    return vertices
 
 
 def _triangles(vertices: Floats, quads: Ints) -> Ints:
