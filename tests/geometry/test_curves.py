@@ -201,3 +201,16 @@ def test_weights_that_vary_too_much_are_refused() -> None:
 def test_contradictions_are_refused(wanted: Wanted, weights: Floats | None, what: str) -> None:
     with pytest.raises(InputError, match=what):
         fit(PointTable("points", "", circle(4), range(1, 5)), wanted, weights)
+
+
+def test_spans_of_many_points_are_those_of_each_pair() -> None:
+    points = circle(1500)
+    parameters = parameters_of(points)
+    curve = interpolate(points, parameters, Ends(Tangent((1.0, 1.0, 0.0)), Natural()))
+    natural = interpolate(points, parameters)
+    spans = spans_between(curve, parameters, natural)
+    assert len(spans) == 1499
+    for k in (0, 1, 1022, 1023, 1024, 1025, 1498):
+        (alone,) = spans_between(curve, parameters[k : k + 2], natural)
+        for field in ("length", "sag", "radius", "turn", "bend"):
+            assert getattr(alone, field) == pytest.approx(getattr(spans[k], field), rel=1e-6, abs=1e-9)

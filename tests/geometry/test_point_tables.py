@@ -51,6 +51,7 @@ def test_several_curves_in_mm_and_inches_each_with_its_length() -> None:
         ("x,y,z\n1,2,3\n1,two,3\n", "points.csv:3: error: 'two' is not a number"),
         ("x,y,z\n1,2,3\n1,nan,3\n", "points.csv:3: error: 'nan' is not a number"),
         ("x,y,z\n1,2,3\n1,1_0,3\n", "points.csv:3: error: '1_0' is not a number"),
+        ("x;y;z\n1.234,5;2;3\n", "points.csv:2: error: '1.234,5' is not a number"),
         ("x,y,z\n1,2,3\n1,,3\n", "points.csv:3: error: '' is not a number"),
         ("x,y,z\n1,2,3\n1,2,1e9\n", "points.csv:3: error: is 1e[+]09 mm away"),
         ("x,y,z\n1,2,3\n,,\n4,5,6\n", "points.csv:4: error: the curve  ?goes on after it ended in line 3"),

@@ -130,8 +130,8 @@ def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
     comma_is_decimal = separator == ";" or (separator == "\t" and any("," in line for _, line in lines))
     for number, line in lines:
         cells = [cell.strip().strip('"') for cell in line.split(separator)]
-        if comma_is_decimal:
-            cells = [cell.replace(",", ".") for cell in cells]
+        if comma_is_decimal:  # a comma beside a point is no decimal sign, and no number either
+            cells = [cell if "." in cell else cell.replace(",", ".") for cell in cells]
         yield number, cells
 
 

@@ -1,7 +1,7 @@
 """What a curve does between the points that it passes."""
 
+import math
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -9,6 +9,9 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.geometry.closest import closest_parameters
 from trunnion.geometry.curves import BSplineCurve
+
+#: Spans that are measured at once: memory does not grow with the number of points.
+_CHUNK: Final = 1024
 
 #: Samples of a span.
 _SAMPLES: Final = 65
@@ -39,24 +42,33 @@ class Span:
 
 def spans_between(curve: BSplineCurve, parameters: Floats, natural: BSplineCurve) -> list[Span]:
     """The spans of a curve between parameters (n,) that rise; ``natural`` is the curve that ``bend`` is told from."""
-    return [_span(curve, start, end, natural) for start, end in pairwise(parameters)]
+    lengths = curve.lengths(parameters)
+    found: list[Span] = []
+    for first in range(0, len(parameters) - 1, _CHUNK):
+        part = slice(first, first + _CHUNK)
+        found += _spans(curve, parameters[first : first + _CHUNK + 1], lengths[part], natural)
+    return found
 
 
-def _span(curve: BSplineCurve, start: float, end: float, natural: BSplineCurve) -> Span:
-    at = np.linspace(start, end, _SAMPLES)
-    points, first = curve.derivatives(at, 1)
-    chord = points[-1] - points[0]
-    along = chord / np.linalg.norm(chord)
-    off = points - points[0]
-    sag = np.linalg.norm(off - np.outer(off @ along, along), axis=1).max()
-    speeds = np.linalg.norm(first, axis=1)
-    cosine = np.where(speeds > 0.0, first @ along / np.maximum(speeds, 1e-300), 1.0)
-    beside = natural.points(closest_parameters(natural, points))
-    curvature = np.linalg.norm(curve.curvatures(at), axis=1).max()
-    return Span(
-        length=float(curve.lengths(np.array([start, end]))[0]),
-        sag=float(sag),
-        radius=float(1.0 / curvature) if curvature > 0.0 else float("inf"),
-        turn=float(np.degrees(np.arccos(np.clip(cosine.min(), -1.0, 1.0)))),
-        bend=float(np.linalg.norm(points - beside, axis=1).max()),
-    )
+def _spans(curve: BSplineCurve, parameters: Floats, lengths: Floats, natural: BSplineCurve) -> list[Span]:
+    share = np.linspace(0.0, 1.0, _SAMPLES)
+    at = (parameters[:-1, None] * (1.0 - share) + parameters[1:, None] * share).ravel()
+    shape = (len(parameters) - 1, _SAMPLES, 3)
+    points, first = (array.reshape(shape) for array in curve.derivatives(at, 1))
+    chords = points[:, -1] - points[:, 0]
+    along = chords / np.maximum(np.linalg.norm(chords, axis=1), 1e-300)[:, None]
+    off = points - points[:, :1]
+    off = off - np.einsum("ijk,ik->ij", off, along)[:, :, None] * along[:, None]
+    speeds = np.linalg.norm(first, axis=2)
+    cosine = np.where(speeds > 0.0, np.einsum("ijk,ik->ij", first, along) / np.maximum(speeds, 1e-300), 1.0)
+    turns = np.degrees(np.arccos(np.clip(cosine.min(axis=1), -1.0, 1.0)))
+    curvatures = np.linalg.norm(curve.curvatures(at), axis=1).reshape(shape[:2]).max(axis=1)
+    bends = np.zeros(len(lengths))
+    if natural is not curve:
+        beside = natural.points(closest_parameters(natural, points.reshape(-1, 3))).reshape(shape)
+        bends = np.linalg.norm(points - beside, axis=2).max(axis=1)
+    columns = lengths, np.linalg.norm(off, axis=2).max(axis=1), curvatures, turns, bends
+    return [
+        Span(length, sag, 1.0 / bent if bent > 0.0 else math.inf, turn, bend)
+        for length, sag, bent, turn, bend in zip(*(column.tolist() for column in columns), strict=True)
+    ]
