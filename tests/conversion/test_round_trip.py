@@ -23,7 +23,7 @@ from trunnion.output.program_writer import write_program
 from trunnion.output.validation import check_program
 from trunnion.planning import PlanOptions, plan
 from trunnion.readers import run_program
-from trunnion.verification import compare
+from trunnion.verification.comparison import compare
 
 MACHINE = load_machine("yl569")
 CONTROL = load_control(MACHINE.control)

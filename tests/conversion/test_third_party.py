@@ -12,7 +12,7 @@ from trunnion.machines import load_machine
 from trunnion.readers import run_program
 from trunnion.simulation.stock.deviation import left_on
 from trunnion.simulation.stock.material import Stock
-from trunnion.verification import compare
+from trunnion.verification.comparison import compare
 
 FOLDER = SHARED / "data" / "linuxcnc"
 IMPELLER = FOLDER / "impeller-7bl-xyzac.ngc"

@@ -47,7 +47,7 @@ from trunnion.output.subprograms import END_RESERVE_BYTES, MIN_SUBPROGRAM_BYTES,
 from trunnion.output.validation import check_program
 from trunnion.planning import plan
 from trunnion.readers import run_program
-from trunnion.verification import compare
+from trunnion.verification.comparison import compare
 
 
 class Language(NamedTuple):

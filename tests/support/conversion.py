@@ -32,7 +32,8 @@ from trunnion.model.toolpath import (
 )
 from trunnion.output.program_writer import write_program
 from trunnion.readers import run_program
-from trunnion.verification import compare, failures, restore_rapids, verify
+from trunnion.verification import failures, restore_rapids, verify
+from trunnion.verification.comparison import compare
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,8 @@ from trunnion.api.verifying import rapid_feed_of
 from trunnion.jit import compile_ahead
 from trunnion.machines import Machine
 from trunnion.model.run import Run
-from trunnion.verification import Comparison, compare, restore_rapids
+from trunnion.verification import restore_rapids
+from trunnion.verification.comparison import Comparison, compare
 
 #: How far tips may be apart, mm: the last digit of most programs; and that of programs in inches.
 _DEFAULT_TOLERANCE: Final = 0.001

@@ -12,8 +12,7 @@ from trunnion.files import OutputFiles
 from trunnion.machines.motion_time import format_duration
 from trunnion.output.program import Program
 from trunnion.output.template_values import TIME_TOKEN, TIME_TOKEN_LENGTH, estimated_seconds, prints_times
-from trunnion.reporting.usage import durations
-from trunnion.verification import Verification
+from trunnion.verification import Verification, durations
 
 __all__ = ["operation_times", "prints_times", "write_times"]
 

@@ -20,7 +20,7 @@ from trunnion.api.observer import SILENT, Observer
 from trunnion.api.planning import load_toolpaths, plan_program
 from trunnion.api.post_result import PostResult, ProofFailedError
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
-from trunnion.api.reports import add_report, check_report_name
+from trunnion.api.reports import add_report, check_report_name, write_refusal
 from trunnion.api.settings import Settings
 from trunnion.api.targets import OutputLike, Target, open_target
 from trunnion.api.writing import read_back_while_writing, write
@@ -30,7 +30,6 @@ from trunnion.files import file_on_disk
 from trunnion.jit import compile_ahead
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
-from trunnion.reporting import write_refusal
 from trunnion.verification import Verification, verify, without_columns
 
 if TYPE_CHECKING:  # imported where a program is simulated: others start sooner

@@ -4,12 +4,12 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final
 
-from trunnion import reporting
 from trunnion.api.arguments import check_path, wrong_argument
 from trunnion.api.input_files import verified_files
 from trunnion.api.reading import FilePath
 from trunnion.errors import InputError, Problem
 from trunnion.files import OutputPlace, atomic_file, check_outputs, resolve_output
+from trunnion.machines import Machine
 from trunnion.model.motion import Decision
 from trunnion.verification import Verification
 
@@ -88,9 +88,18 @@ def add_report(
     """
     if len(verification.seconds) != len(verification.run):
         raise InputError(Problem(name, 0, "the verification has no columns", "ask for it with columns=True"))
+    from trunnion.reporting import render_report  # most runs write no report
+
     content = None
     if simulation is not None:
         from trunnion.api.simulation_report import simulation_content
 
         content = simulation_content(simulation)
-    sink.writelines(reporting.render_report(verification, Path(name), decisions=decisions, simulation=content))
+    sink.writelines(render_report(verification, Path(name), decisions=decisions, simulation=content))
+
+
+def write_refusal(problems: Sequence[Problem], machine: Machine, program: str, place: Path) -> None:
+    """Write the report of a program that was refused before it was run; arguments as ``reporting.write_refusal``."""
+    from trunnion import reporting
+
+    reporting.write_refusal(problems, machine, program, place)

@@ -20,7 +20,7 @@ _PLANNED: Final = PlanOptions()
 _UNLIMITED: Final = 1e12
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class RunSetting:
     """A setting of a post.
 

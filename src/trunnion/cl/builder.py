@@ -17,7 +17,7 @@ from trunnion.model.splines import SplineRows
 from trunnion.model.toolpath import Event, Frame, Sense, Tool
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class MoveColumns:
     """The columns of ``trunnion.model.toolpath.Moves`` for the whole file; operations are slices of them.
 
@@ -134,7 +134,7 @@ class AxisStatement(NamedTuple):
     vectors: bool = True
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class OperationBuilder:
     """An operation while it is read. Rows count from ``first``, the row of the columns at which it begins.
 

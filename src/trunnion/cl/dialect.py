@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 Handler = Callable[["ReaderState", "Statement"], None]
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class CycleParts:
     """The fields of a ``CycleOn`` while they are collected: modes, couplets with numbers, words without."""
 
@@ -36,7 +36,7 @@ class CycleParts:
         return found[0][1] if found else None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class CycleWords:
     """How a dialect writes CYCLE; all becomes the words of NX's CLSF, which the toolpath has.
 
@@ -56,7 +56,7 @@ class CycleWords:
     settle: Callable[[CycleParts], None] | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Dialect:
     """One way of writing CL files.
 

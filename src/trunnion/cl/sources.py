@@ -78,7 +78,7 @@ _DAMAGE: Final = (
 )  # fmt: skip
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class ClSource:
     """The text of one CL file.
 

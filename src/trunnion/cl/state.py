@@ -47,7 +47,7 @@ class ArcDirection(NamedTuple):
         diagnostics.error(self.line, what, "look for a line that is missing, or remove the INDIRV")
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class ReaderState:
     """What the handlers of statements (``trunnion.cl.statements``) read and change.
 

@@ -43,7 +43,7 @@ MM_PER_INCH: Final = 25.4
 _NO_NUMBER = NumberFormat(0)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class SubprogramNaming:
     """How a control names subprograms.
 
@@ -63,7 +63,7 @@ class SubprogramNaming:
     prefix: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class FormatPair:
     """A number format for five-axis and for three-axis operations; ``inch`` for lengths in programs in inches."""
 
@@ -72,7 +72,7 @@ class FormatPair:
     inch: "FormatPair | None" = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class WordDefinition:
     """A word of a motion block.
 
@@ -92,7 +92,7 @@ class WordDefinition:
     bare: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class ArcRules:
     """Which arcs a control accepts; others become lines.
 
@@ -110,7 +110,7 @@ class ArcRules:
     multi_turn: bool
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Control:
     """A control's language, read and checked.
 

@@ -17,23 +17,24 @@ from trunnion.model.toolpath import Message
 
 _NUMBER: Final = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 
+# Patterns are compiled when they are first used: few programs are in inches.
 #: Words whose numbers are lengths or feeds. ``Q`` of a program parameter (``Q200=``) is not such a word.
-_ADDRESS: Final = re.compile(
+_ADDRESS: Final = (
     r"(?<![A-Za-z0-9_$#.])(?:I?[XYZUVW]\d?|[IJKREF]|Q(?!\d+\s*=)|F[UZ]|MB|DIST|D[LR]2?|CR|RP|CTOL|TOFF[LR]?)"
     rf"\s*=?\s*(?:[AI]C\(\s*)?({_NUMBER})"
 )
 
 #: The tolerance of ``G64``, and of cycle 32; cycles of old controls, whose heights have no letters.
-_TOLERANCE: Final = re.compile(rf"(?<![A-Za-z0-9.])(?:G64\b.*?P|CYCL DEF 32\.1\s+T)\s*({_NUMBER})")
-_OLD_CYCLE: Final = re.compile(rf"CYCL DEF (?:[1-6]|1[4-8]|2\d)\.\d+\b.*?({_NUMBER})\s*$")
+_TOLERANCE: Final = rf"(?<![A-Za-z0-9.])(?:G64\b.*?P|CYCL DEF 32\.1\s+T)\s*({_NUMBER})"
+_OLD_CYCLE: Final = rf"CYCL DEF (?:[1-6]|1[4-8]|2\d)\.\d+\b.*?({_NUMBER})\s*$"
 
 #: A value that is given to a variable, whatever it means there; words of tools, speeds and angles are none.
-_ASSIGNMENT: Final = re.compile(
+_ASSIGNMENT: Final = (
     rf"(?<![A-Za-z0-9_])(?!(?:[TDSHMABC]\d?|TURN)\s*=)[A-Za-z_$#][A-Za-z0-9_$]*(?:\[[^\]]*\])?\s*=\s*({_NUMBER})"
 )
 
 #: A call with its arguments, and the places of lengths among those of calls that are known; None: all places.
-_CALL: Final = re.compile(r"(?<![A-Za-z0-9_])([A-Za-z_][A-Za-z0-9_]*)\s*\(([^()]*)\)")
+_CALL: Final = r"(?<![A-Za-z0-9_])([A-Za-z_][A-Za-z0-9_]*)\s*\(([^()]*)\)"
 _LENGTH_ARGUMENTS: Final[dict[str, frozenset[int]]] = {
     "CYCLE800": frozenset({4, 5, 6, 10, 11, 12, 14}),
     "CYCLE832": frozenset({0}),
@@ -74,10 +75,10 @@ def literal_length(control: Control, text: str) -> str:
     """
     bare = _without_comments(control, re.sub(r'"[^"]*"', '""', text))
     for pattern in (_ADDRESS, _TOLERANCE, _OLD_CYCLE, _ASSIGNMENT):
-        for match in pattern.finditer(bare):
+        for match in re.finditer(pattern, bare):
             if float(match[1]):
                 return match[0].strip()
-    for match in _CALL.finditer(bare):
+    for match in re.finditer(_CALL, bare):
         places = _LENGTH_ARGUMENTS.get(match[1])
         for k, argument in enumerate(match[2].split(",")):
             is_number = re.fullmatch(rf"\s*{_NUMBER}\s*", argument)

@@ -22,7 +22,7 @@ _NUMBER_FIELD = re.compile(r"\{([-+]?(?:\d+\.?\d*|\.\d+)):([A-Za-z_][A-Za-z0-9_]
 _LEFT = re.compile(r"[{}]|\[\[|\]\]")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Template:
     """The lines of a template, with the file and line of its definition."""
 

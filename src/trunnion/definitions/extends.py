@@ -30,7 +30,7 @@ _MAX_NAME: Final = 1000
 Library: TypeAlias = Traversable | Path
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _DefinitionFile:
     """A definition file: its location, its name in messages, and the folder that its ``extends`` may reach."""
 

@@ -2,7 +2,7 @@
 
 import inspect
 from collections.abc import Callable
-from typing import Annotated, Any, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, get_args, get_origin
 
 import numba
 import numpy as np
@@ -22,8 +22,8 @@ def numba_types(function: Callable[..., Any], writes: frozenset[str]) -> tuple[A
     writes
         Names of arguments whose arrays are written to; the others' are read-only.
     """
-    hints = get_type_hints(function, include_extras=True)
-    return tuple(_numba_type(hints[name], name in writes) for name in inspect.signature(function).parameters)
+    hints = inspect.get_annotations(function, eval_str=True)
+    return tuple(_numba_type(hint, name in writes) for name, hint in hints.items() if name != "return")
 
 
 def _numba_type(annotation: Any, written: bool) -> Any:
@@ -41,7 +41,7 @@ def _numba_type(annotation: Any, written: bool) -> Any:
         parts = parts[:1] * size if parts[1:] == (...,) else parts
         return _tuple_of([_numba_type(part, written) for part in parts])
     if hasattr(annotation, "_fields"):
-        fields = get_type_hints(annotation, include_extras=True)
+        fields = inspect.get_annotations(annotation, eval_str=True)
         return _tuple_of([_numba_type(fields[name], written) for name in annotation._fields], annotation)
     raise TypeError(f"no Numba type for {annotation}")
 

@@ -61,8 +61,7 @@ class Kernel:
         self.py_func = function
         self.name = f"{function.__module__}.{function.__qualname__}"
         self._writes = writes
-        options: dict[str, Any] = {} if checks_division else {"error_model": "numpy"}
-        self._dispatcher: Any = numba.njit(nogil=True, **options)(function)
+        self._options: dict[str, Any] = {} if checks_division else {"error_model": "numpy"}
         self._ready = False
         self._whole = False
         #: Whether the log has said that it is compiled.
@@ -77,6 +76,11 @@ class Kernel:
         for k in self._read:
             given[k] = as_readable(given[k])
         return self._dispatcher(*given)
+
+    @cached_property
+    def _dispatcher(self) -> Any:
+        """What compiles it: made when it is needed, as most runs need few kernels."""
+        return numba.njit(nogil=True, **self._options)(self.py_func)
 
     @cached_property
     def types(self) -> tuple[Any, ...]:

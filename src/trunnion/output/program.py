@@ -25,7 +25,7 @@ class RotaryWord(NamedTuple):
     column: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Program:
     """All that a program is made from.
 

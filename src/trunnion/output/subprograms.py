@@ -83,7 +83,7 @@ class SubprogramNames:
         return name
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class SubprogramOutput:
     """How to write a main program with one subprogram an operation.
 

@@ -23,7 +23,7 @@ AXIS_TOLERANCE_WITHOUT_TCP: Final = 0.05
 CycleObjection: TypeAlias = Callable[[Cycle, SpindleState | None], str]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class PlanOptions:
     """What the user asks of a plan.
 
@@ -87,7 +87,7 @@ def _takes_every_spline(spline: Spline) -> bool:
     return True
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class ControlCapabilities:
     """What the control can be told; by default everything.
 

@@ -14,7 +14,7 @@ from trunnion.planning.machining_mode import machine_x_direction, tilted_plane
 from trunnion.planning.options import ControlCapabilities, PlanOptions
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class PlanRequest:
     """Everything but the toolpaths.
 

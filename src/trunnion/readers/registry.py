@@ -13,8 +13,7 @@ from trunnion.model.run import Run
 from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.known_words import check_known_words, plain_code
 from trunnion.readers.program.options import DEFAULT_STEP_LIMIT, RunOptions
-from trunnion.readers.program.settings import family_of, reading_of
-from trunnion.readers.rs274.word_meanings import UNKNOWN
+from trunnion.readers.program.settings import UNKNOWN, family_of, reading_of
 
 
 def run_program(

@@ -21,8 +21,8 @@ from trunnion.model.toolpath import Kind
 from trunnion.reporting.extents import AxisExtent, TipExtent, axis_extent, tip_extent
 from trunnion.reporting.simulation_content import SimulationContent
 from trunnion.reporting.text import clean
-from trunnion.reporting.usage import OperationUsage, ToolUsage, durations, operation_usage, tool_usages
-from trunnion.verification.results import Check, Place, Verification
+from trunnion.reporting.usage import OperationUsage, ToolUsage, operation_usage, tool_usages
+from trunnion.verification.results import Check, Place, Verification, durations
 
 #: Units of a program by whether they are inches.
 _UNITS: Final = {False: "mm", True: "inch"}

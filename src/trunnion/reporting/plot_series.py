@@ -17,8 +17,7 @@ from trunnion.arrays import Floats, Lines
 from trunnion.machines import Axis
 from trunnion.reporting.extents import is_zero_known, travel_rows
 from trunnion.reporting.text import clean
-from trunnion.reporting.usage import durations
-from trunnion.verification.results import Verification
+from trunnion.verification.results import Verification, durations
 
 SingleFloats = NDArray[np.float32]
 

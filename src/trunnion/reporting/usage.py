@@ -13,7 +13,7 @@ from trunnion.arrays import Flags, Floats
 from trunnion.model.run import Run
 from trunnion.reporting.extents import BlockReference, block_reference
 from trunnion.reporting.text import clean
-from trunnion.verification.results import OperationRows, Verification
+from trunnion.verification.results import OperationRows
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,12 +42,6 @@ class OperationUsage:
     cutting_seconds: float
     rapid_seconds: float
     first: BlockReference | None
-
-
-def durations(verification: Verification) -> tuple[Floats, Flags]:
-    """Seconds of each row, (n,) float64, 0 where not known; and whether they are known, (n,) bool."""
-    known = np.isfinite(verification.seconds) & (verification.seconds >= 0.0)
-    return np.where(known, verification.seconds, 0.0), known
 
 
 def tool_usages(run: Run, seconds: Floats, cutting: Flags) -> Iterator[ToolUsage]:

@@ -1,8 +1,6 @@
 """Verification: a program that was read back and run, against the CL files that it was made from."""
 
 from trunnion.machines.forward import tool_axis_rows
-from trunnion.verification.comparison.comparison import compare
-from trunnion.verification.comparison.result import Comparison, Difference
 from trunnion.verification.context import ExpectedValues
 from trunnion.verification.deviations.point_deviations import compare_rows
 from trunnion.verification.expected.path import OperationSettings
@@ -10,7 +8,7 @@ from trunnion.verification.expected.printed_planes import PrintedDigits, toleran
 from trunnion.verification.expected.tolerances import Tolerances
 from trunnion.verification.kinematics.axis_motion_kernel import axis_motion_rows
 from trunnion.verification.kinematics.rapid_feeds import restore_rapids
-from trunnion.verification.results import Check, OperationRows, Place, Verification, without_columns
+from trunnion.verification.results import Check, OperationRows, Place, Verification, durations, without_columns
 from trunnion.verification.text import check_lines, failures, place_line, place_lines, time_lines
 from trunnion.verification.verifier import verify
 
@@ -20,8 +18,6 @@ KERNELS = (tool_axis_rows, axis_motion_rows, compare_rows)
 __all__ = [
     "KERNELS",
     "Check",
-    "Comparison",
-    "Difference",
     "ExpectedValues",
     "OperationRows",
     "OperationSettings",
@@ -30,7 +26,7 @@ __all__ = [
     "Tolerances",
     "Verification",
     "check_lines",
-    "compare",
+    "durations",
     "failures",
     "place_line",
     "place_lines",

@@ -5,7 +5,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Floats, Lines
+from trunnion.arrays import Flags, Floats, Lines
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 
@@ -110,6 +110,12 @@ class Verification:
         failed = ", ".join(check.key for check in self.checks if not check.passed)
         result = f"failed: {failed}" if failed else f"{len(self.checks)} checks"
         return f"Verification(passed={self.passed}, {result}, {len(self.run)} motions)"
+
+
+def durations(verification: Verification) -> tuple[Floats, Flags]:
+    """Seconds of each row, (n,) float64, 0 where not known; and whether they are known, (n,) bool."""
+    known = np.isfinite(verification.seconds) & (verification.seconds >= 0.0)
+    return np.where(known, verification.seconds, 0.0), known
 
 
 def without_columns(verification: Verification) -> Verification:

@@ -13,7 +13,7 @@ _COMPARED: Final = 48
 _NO_MARKS: Final = (b"PPRINT", b"INSERT", b"DISPLY", b"DISPLAY", b"TPRINT", b"GOTO")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Recognition:
     """The dialect of a file, and why it is taken for that; ``marked``: by a mark, and not for want of any."""
 

@@ -32,7 +32,7 @@ _CHUNK: Final = 16384
 _PARALLEL_SINE: Final = 1e-12
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class PlannedPoses:
     """The poses of an operation, row by row.
 

@@ -14,8 +14,6 @@ from trunnion.machines import kinematic_parameters
 from trunnion.model.deviations import Deviations
 from trunnion.model.motion import Decision, DecisionTopic, PoleStrategy
 from trunnion.model.toolpath import Operation
-from trunnion.planning.pole.handling import sufficient_setting
-from trunnion.planning.pole.lean_limits import degrees_off_pole
 from trunnion.planning.poses.selection import PlannedPoses
 from trunnion.planning.request import PreparedOperation
 from trunnion.planning.retracts.rewind import Rewind
@@ -88,6 +86,10 @@ def _speed_decisions(prepared: PreparedOperation, poses: PlannedPoses, off_part:
     machine, operation, options = prepared.request.machine, prepared.operation, prepared.request.options
     if not (options.explain or options.lower_feed or options.pole_strategy is not PoleStrategy.OFF):
         return
+    # Few posts ask for either.
+    from trunnion.planning.pole.handling import sufficient_setting
+    from trunnion.planning.pole.lean_limits import degrees_off_pole
+
     worst = find_fastest_row(machine, operation, poses.rotary, off_part)
     if not worst.count:
         return

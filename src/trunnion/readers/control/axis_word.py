@@ -24,7 +24,7 @@ class PositionMode(StrEnum):
 AxisWord = tuple[float, PositionMode]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class RotaryTarget:
     """What a block programs for the rotary axes.
 

@@ -15,7 +15,7 @@ class CycleExecutionError(Exception):
     """The reason why a cycle cannot be executed; the message continues "the cycle"."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class HoleMotion:
     """One motion at a hole; lengths in the units of the program.
 

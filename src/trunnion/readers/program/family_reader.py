@@ -16,7 +16,7 @@ from trunnion.readers.program.work_offsets import WorkOffsetWords
 RS274_COMMENTS = rb"\([^)\n]*\)|;[^\n]*"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class FamilyReader:
     """The reader of one family of controls.
 

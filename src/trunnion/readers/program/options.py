@@ -8,7 +8,7 @@ from typing import Final
 DEFAULT_STEP_LIMIT: Final = 50_000
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class RunOptions:
     """The options of ``trunnion.readers.run_program``, which documents them."""
 

@@ -21,15 +21,16 @@ RS274_VALUE: Final = rf"(?:{NUMBER}|[-+]?#[0-9]+|\[[^\[\]]*\])"
 _SHORT: Final = 40
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class RawWords:
     """The words of one family.
 
-    word     one word or comment that may stand in raw text; a group ``m`` is the number of an M code
+    word     pattern of one word or comment that may stand in raw text; a group ``m`` is the number of an M code. It is
+             compiled when it is first used: few programs have raw text
     other_m  M codes of the family that the reader does not follow: they may not; codes of the machine's builder may
     """
 
-    word: re.Pattern[str]
+    word: str
     other_m: frozenset[int] = frozenset()
 
     def not_known(self, text: str, machine: Machine) -> str:
@@ -38,12 +39,13 @@ class RawWords:
         if begins_with(declared, text):
             return ""
         codes = {word.code for word in declared}
+        word = re.compile(self.word, re.IGNORECASE)
         at, end = 0, len(text)
         while at < end:
             if text[at] in " \t":
                 at += 1
                 continue
-            match = self.word.match(text, at)
+            match = word.match(text, at)
             code = match and match.groupdict().get("m")
             refused = code is not None and int(code) in self.other_m and int(code) not in codes
             if match is None or match.end() == at or refused:
@@ -55,8 +57,8 @@ class RawWords:
 def raw_words(comments: Iterable[str], words: Iterable[str], other_m: Iterable[int] = ()) -> RawWords:
     """Return the words of a family from regular expressions; no rest of a number or value follows one."""
     pattern = rf"{'|'.join(comments)}|(?:{'|'.join(words)})(?![0-9.=])"
-    return RawWords(re.compile(pattern, re.IGNORECASE), frozenset(other_m))
+    return RawWords(pattern, frozenset(other_m))
 
 
 #: No word at all.
-NO_RAW_WORDS: Final = RawWords(re.compile(r"(?!)"))
+NO_RAW_WORDS: Final = RawWords(r"(?!)")

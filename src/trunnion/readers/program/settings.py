@@ -2,10 +2,14 @@
 
 from functools import lru_cache
 from importlib.resources import files
+from typing import Final
 
 from trunnion.definitions import Table, resolve_extends
 from trunnion.families import DEFAULT_FAMILY
 from trunnion.machines import Machine
+
+#: In ``[control.reading.words]``: the control does not have the word, or has it with another meaning.
+UNKNOWN: Final = "unknown"
 
 
 @lru_cache(maxsize=8)

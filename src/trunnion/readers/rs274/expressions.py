@@ -39,7 +39,7 @@ class Parameters(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Arithmetic:
     """The operations of a language.
 

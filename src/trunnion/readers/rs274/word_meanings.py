@@ -12,10 +12,8 @@ from typing import Final
 from trunnion.definitions import Table
 from trunnion.definitions.twin_keys import report_twins
 from trunnion.readers.program.known_words import plain_code
+from trunnion.readers.program.settings import UNKNOWN
 from trunnion.readers.rs274.block import Block, g_code_text
-
-#: The control does not have the word.
-UNKNOWN: Final = "unknown"
 
 _WORD: Final = re.compile(r"G0*([0-9]{1,4})(?:\.([0-9]))?|M0*([0-9]{1,9})")
 
@@ -23,7 +21,7 @@ _WORD: Final = re.compile(r"G0*([0-9]{1,4})(?:\.([0-9]))?|M0*([0-9]{1,9})")
 _PLAIN: Final = frozenset({0, 10, 20, 30})
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class WordMeanings:
     """What words of a control mean.
 

@@ -106,7 +106,7 @@ def check_coolant(context: ComparedContext) -> Check:
     return check_from_places("coolant", "coolant as the CL file says", places, good)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Fault:
     """A row with wrong coolant; ``at_point``: it belongs to the CL point from which on the state is expected."""
 

@@ -10,7 +10,7 @@ import numpy as np
 from trunnion.arrays import Codes, Floats, Ints
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class HoleFault:
     """A row of the run, the value found there, and what is wrong."""
 

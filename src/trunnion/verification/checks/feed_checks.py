@@ -57,7 +57,7 @@ def _range_text(item: tuple[str, tuple[float, float]]) -> str:
     return f"{low:g} {unit}" if low == high else f"{low:g} to {high:g} {unit}"
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class _ComparedFeeds:
     """Places of wrong feeds and how many there are, and the lowest and highest feed of the CL files by unit."""
 

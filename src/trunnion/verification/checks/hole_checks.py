@@ -17,7 +17,7 @@ from trunnion.verification.results import Check, Place
 from trunnion.wording import counted
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Drilled:
     """A hole of the CL file, and the rows that drill it."""
 

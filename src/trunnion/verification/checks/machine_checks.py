@@ -14,7 +14,7 @@ from trunnion.wording import counted
 _ROUNDING = 1e-5
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Margin:
     """Travel that an axis has left, mm or degrees, negative where it goes too far; and how and where it uses it."""
 

@@ -18,7 +18,7 @@ from trunnion.verification.checks.coolant_checks import is_builder_coolant
 _ON = frozenset({"clockwise", "counter-clockwise", "flood", "mist"})
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class _Words:
     """Words that switch one thing, in order: their places among the events, the rows they stand before, on or off."""
 

@@ -19,7 +19,7 @@ from trunnion.verification.results import Place
 _COEFFICIENTS: Final = 2e-5
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class SplineFaults:
     """What is wrong with the splines of a program, and how far one leaves that of the CL file at most, mm, before the
     end of which row; 0 and -1 for none.

@@ -23,7 +23,7 @@ _NAMES: Final = {"dwell": "dwells", "stop": "stops", "optional_stop": "optional 
 _TOLERANCE: Final = 5.1e-4
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _FoundStop:
     """A dwell or stop of the program, and its place among the events of the run."""
 

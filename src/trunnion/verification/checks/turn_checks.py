@@ -21,7 +21,7 @@ from trunnion.verification.kinematics.positioning_moves import (
 from trunnion.verification.results import Check, Place
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _PlaneChange:
     """An event after which a tilted plane is on or off; ``shifted``: frames shift the zero without rotating it.
 

@@ -31,7 +31,7 @@ from trunnion.verification.row_ranges import chunk_bounds
 STILL: Final = 1e-3
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class TurnsAtThePart:
     """What was found: the faults, and how the other turns are safe.
 

@@ -7,7 +7,7 @@ import numpy as np
 from trunnion.arrays import Floats
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class WorstRows:
     """The largest value of many rows, and the rows beyond a limit.
 

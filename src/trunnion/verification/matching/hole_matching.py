@@ -30,7 +30,7 @@ _FEW, _MANY = 64, 8192
 _MAX_MISSES = 8
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class MatchedHole:
     """Rows ``first`` to ``end`` (exclusive) that drill one hole; the first row goes to it.
 

@@ -30,7 +30,7 @@ _CHIP_BREAK: Final = 1.0
 CycleArguments = tuple[str, list[str]]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Input:
     """What the arguments of a cycle are made from.
 

@@ -49,7 +49,7 @@ _PARAMS: Final = frozenset({"CR", "TURN", "AR", "RPL"})
 _Word = tuple[Value, PositionMode]
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Call:
     """A call of a cycle, message or subprogram: the values of its arguments, and their texts."""
 
@@ -59,7 +59,7 @@ class Call:
     repeats: int = 1
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class Block:
     """The words of a block.
 

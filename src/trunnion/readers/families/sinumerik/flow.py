@@ -19,7 +19,7 @@ from trunnion.readers.program import interpreter
 from trunnion.readers.program.interpreter import ProgramEnd
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class ActiveProgram(interpreter.ActiveProgram):
     """A program or subprogram that is being executed, and its modal cycle or subprogram (MCALL)."""
 

@@ -30,7 +30,7 @@ MAX_NESTING: Final = 64
 SUFFIXES: Final = (".SPF", "_SPF", ".MPF", "_MPF", "")
 
 
-@dataclass(slots=True)
+@dataclass(slots=True, eq=False)
 class _JumpTargets:
     """Lines of labels and block numbers, and the counterparts of keywords; each found on first use."""
 
