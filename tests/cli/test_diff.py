@@ -228,8 +228,43 @@ def test_what_moves_the_tool_off_its_positions_is_compared(
     for program, its in zip(programs, (text, text.replace(old, new, 1)), strict=True):
         program.write_text(its, encoding="utf-8")
     assert main(["diff", str(programs[0]), str(programs[0]), "--machine", machine]) == 0, capfd.readouterr().out
+    capfd.readouterr()
     assert main(["diff", *map(str, programs), "--machine", machine]) == 1
-    assert says in capfd.readouterr().out
+    out = capfd.readouterr().out
+    assert says in out
+    assert out.startswith("different: 1 place; on the same path: ")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("F250.", "F251.", "feed 250 against 251 mm/min"),
+        ("S2500 D1 M3", "S2400 D1 M3", "spindle S2500 clockwise against S2400 clockwise"),
+        ("T=2", "T=3", "tool 2 against 3"),
+        ("S2500 D1 M3", "S2500 D1 M3 M8", "coolant differs"),
+        ("G54", "", "work offset G54 against none"),
+    ],
+)
+def test_what_stays_different_counts_once_and_hides_no_difference_of_the_path(
+    old: str, new: str, says: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    code, out = diff(capfd, tmp_path, TEXT.replace(old, new).replace("X45.92544 ", "X49.92544 "))
+    count, first, worst = out.splitlines()
+    assert (code, count.partition(" points")[0]) == (1, "different: 2 places; on the same path: 149")
+    assert says in first
+    assert re.search(r", up to \d+ \(N\d+\) against \d+ \(N\d+\)$", first)
+    assert worst.startswith("worst: first:54 (N540) against second:54 (N540): tips are 4.000000 mm apart")
+
+
+def test_each_way_in_which_a_feed_differs_counts_once(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """F251, F252 and, after the feed of both for a while, F251 again."""
+    text = TEXT.replace("F250.", "F251.")
+    for number, feed in (("N500 ", 252), ("N540 ", 250), ("N600 ", 251)):
+        assert text.count(number) == 1
+        text = text.replace(number, f"{number}F{feed} ")
+    code, out = diff(capfd, tmp_path, text)
+    assert (code, out.splitlines()[0].split(";")[0]) == (1, "different: 3 places")
+    assert "feed 250 against 251 mm/min" in out
 
 
 def test_between_languages_work_offsets_are_compared_by_their_order(

@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO
 
+import numpy as np
+
 from trunnion import conversion, readers
 from trunnion.api import kernels
 from trunnion.api.arguments import check_choice, check_observer, check_path, check_paths, is_stream
@@ -27,7 +29,7 @@ from trunnion.errors import InputError, Problem, RefusedError, Severity, argumen
 from trunnion.jit import compile_ahead
 from trunnion.machines import Machine
 from trunnion.model.run import Run
-from trunnion.model.toolpath import Toolpath
+from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.wording import counted
 
 #: Places that are not understood which an error names one by one.
@@ -172,7 +174,10 @@ def convert(
             converter.report(write_and_prove(converted.toolpath, target, dialect, comments=comments))
             posted = None
         else:
+            given = "work_offset" in job.printed or any("work_offset" in own for own in job.own_settings.values())
             job = _with_settings(job, carried)
+            if not given:
+                converter.warn_of_new_offset(run, job)
             posted = post_toolpaths([converted.toolpath], job, target, observer)
     problems = (*converter.problems, *(posted.problems if posted else ()))
     return ConvertResult(converted.toolpath, carried, problems, posted, target.path, target.memory)
@@ -283,6 +288,17 @@ class _ProgramConverter:
         """Warn that a program with subprograms becomes one without."""
         cure = "setting programs=operations writes several"
         self.report([Problem(self._file, 0, f"{files} files become one program", cure, Severity.WARNING)])
+
+    def warn_of_new_offset(self, run: Run, job: PostJob) -> None:
+        """Warn where the old program cuts without a work offset of its own, and the new one selects one."""
+        offset = {**job.control.settings, **job.settings}.get("work_offset", "")
+        rows = np.flatnonzero((run.work_offset == 0) & ~run.machine_frame & (run.kind != Kind.RAPID))
+        if not offset or not len(rows):
+            return
+        what = f"selects no work offset before it cuts; the new program selects work_offset={offset}"
+        cure = "put the zero that held before into it, or give the setting work_offset"
+        row = int(rows[0])
+        self.report([Problem(run.files[int(run.file[row])], int(run.line[row]), what, cure, Severity.WARNING)])
 
     def carry(self, stated: Mapping[str, str], control: Control, job: PostJob, source: Machine) -> dict[str, str]:
         """The settings of the new program: those that the old one states, as far as they mean the same, and the job's.

@@ -61,7 +61,7 @@ class Kernel:
         self.py_func = function
         self.name = f"{function.__module__}.{function.__qualname__}"
         self._writes = writes
-        self._options: dict[str, Any] = {} if checks_division else {"error_model": "numpy"}
+        self._options: dict[str, Any] = {"nogil": True} if checks_division else {"nogil": True, "error_model": "numpy"}
         self._ready = False
         self._whole = False
         #: Whether the log has said that it is compiled.
@@ -79,8 +79,8 @@ class Kernel:
 
     @cached_property
     def _dispatcher(self) -> Any:
-        """What compiles it: made when it is needed, as most runs need few kernels."""
-        return numba.njit(nogil=True, **self._options)(self.py_func)
+        """What compiles it: made when it is prepared, as most runs need few kernels."""
+        return numba.njit(**self._options)(self.py_func)
 
     @cached_property
     def types(self) -> tuple[Any, ...]:
@@ -95,7 +95,8 @@ class Kernel:
     @cached_property
     def digest(self) -> str:
         """A short name for everything that is compiled into the kernel."""
-        digest = hashlib.sha256(repr((self.types, self._dispatcher.targetoptions)).encode())
+        options = {**self._options, "nopython": True, "boundscheck": None}  # as Numba keeps them
+        digest = hashlib.sha256(repr((self.types, options)).encode())
         for part in ingredients(self.py_func):
             digest.update(b"%d:" % len(part) + part)  # 1.5 and 23.0 are not 1.52 and 3.0
         return digest.hexdigest()[:16]

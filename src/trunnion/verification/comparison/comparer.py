@@ -1,16 +1,18 @@
 """Follows two programs together and notes where they differ."""
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Ints
+from trunnion.arrays import Flags
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.comparison.moving_rows import MovingRows
 from trunnion.verification.comparison.on_path import PointTolerances, ends_on_path
-from trunnion.verification.comparison.registers import Registers
 from trunnion.verification.comparison.result import Comparison, Difference
+from trunnion.verification.comparison.row_states import compared_states
+from trunnion.verification.comparison.states import DifferentStretch, StateComparison
 from trunnion.verification.matching.resync import find_resync
 from trunnion.verification.row_ranges import CHUNK
 from trunnion.wording import counted
@@ -21,12 +23,8 @@ _FEW: Final = 64
 #: How far ahead both programs are searched for a place at which they are the same again.
 _WINDOWS: Final = (8, 64, 512)
 
-#: Differences that are looked into; after them the programs simply count as different.
+#: Differences between paths that are looked into; after them the programs simply count as different.
 _MAX_DIFFERENCES: Final = 1000
-
-#: Feeds and speeds are the same within this, mm/min and rev/min: programs print no more digits.
-_FEED: Final = 0.005
-_RPM: Final = 0.5
 
 #: What most diagnostics of unknown words begin with.
 _UNKNOWN: Final = "not understood: "
@@ -43,36 +41,38 @@ class Comparer:
         same_machine = one.machine is two.machine or one.machine.key == two.machine.key
         self._one = MovingRows(one, same_machine, coolants, tools)
         self._two = MovingRows(two, same_machine, coolants, tools)
-        self._path_only = path
-        self._registers = Registers(one, two, path=path)
+        self._states = StateComparison(compared_states(self._one, self._two, path=path))
         self._tolerances = PointTolerances(tolerance, float(np.radians(axis_tolerance)))
         self._largest_tip = self._largest_axis = 0.0
         self._points = 0
-        self._found: list[Difference] = []
-        self._worst: Difference | None = None
+        self._count = self._path_count = 0
+        self._first: _Place | DifferentStretch | None = None
+        self._worst: _Place | None = None
 
     def compare(self) -> Comparison:
         """Compare both programs to their ends."""
         one, two = self._one, self._two
         i = j = 0
         size = _FEW
-        while i < len(one) and j < len(two) and len(self._found) < _MAX_DIFFERENCES:
+        while i < len(one) and j < len(two) and self._path_count < _MAX_DIFFERENCES:
             count = min(size, len(one) - i, len(two) - j)
             same = self._same(i, j, count)
             length = count if same.all() else int(np.argmin(same))
-            self._points += length
+            self._go_together(i, j, length)
             i, j = i + length, j + length
             if length == count:
                 size = min(2 * size, CHUNK)
                 continue
             size = _FEW
             if self._is_on_path(one, i, two, j):
+                self._compare_states(i, j, 1)
                 i += 1
             elif self._is_on_path(two, j, one, i):
+                self._compare_states(i, j, 1)
                 j += 1
             else:
                 i, j = self._differ(i, j)
-        if (i < len(one) or j < len(two)) and len(self._found) < _MAX_DIFFERENCES:
+        if (i < len(one) or j < len(two)) and self._path_count < _MAX_DIFFERENCES:
             which = "first" if i < len(one) else "second"
             self._note(i, j, float("inf"), f"only the {which} program goes on")
         return Comparison(
@@ -80,20 +80,19 @@ class Comparer:
             points=self._points,
             tip=self._largest_tip,
             axis=float(np.degrees(self._largest_axis)),
-            count=len(self._found),
-            first=self._found[0] if self._found else None,
-            worst=self._worst,
+            count=self._count,
+            first=self._difference(self._first),
+            worst=self._difference(self._worst or self._first),
             unknown_words=_unknown_words(one.run, two.run),
         )
 
     def _same(self, i: int, j: int, count: int) -> Flags:
-        """Which of ``count`` motions are the same, (count,) bool."""
+        """Which of ``count`` motions go the same way to the same point, (count,) bool."""
         one, two = self._one, self._two
         a, b = one.rows[i : i + count], two.rows[j : j + count]
         tip = np.abs(one.run.tip[a] - two.run.tip[b]).max(axis=1, initial=0.0)
         axis = np.sqrt(((one.run.axis[a] - two.run.axis[b]) ** 2).sum(axis=1))
         same = (tip <= self._tolerances.tip) & (axis <= self._tolerances.axis) & (one.run.kind[a] == two.run.kind[b])
-        same &= self._same_state(a, b) & (one.in_machine(a) == two.in_machine(b))
         arcs = np.flatnonzero(same & (one.run.kind[a] == Kind.ARC))
         for k in arcs.tolist():
             same[k] = self._same_circle(i + k, j + k)
@@ -102,19 +101,18 @@ class Comparer:
             self._largest_axis = max(self._largest_axis, float(axis[same].max()))
         return np.asarray(same)
 
-    def _same_state(self, a: Ints, b: Ints) -> Flags:
-        """In which rows ``a`` and ``b`` all that is compared besides positions is the same, (k,) bool."""
-        same = self._registers.same(a, b)
-        if self._path_only:
-            return same
+    def _go_together(self, i: int, j: int, count: int) -> None:
+        """Take ``count`` motions that go to the same points, and compare what holds there."""
         one, two = self._one, self._two
-        feeds = one.feeds(a)
-        same &= np.abs(feeds - two.feeds(b)) <= np.maximum(_FEED, 1e-4 * feeds)
-        same &= one.run.spindle[a] == two.run.spindle[b]
-        same &= (np.abs(one.run.rpm[a] - two.run.rpm[b]) <= _RPM) | (one.run.spindle[a] == 0)
-        same &= one.tool[a] == two.tool[b]
-        same &= one.coolant[a] == two.coolant[b]
-        return np.asarray(same)
+        a, b = one.rows[i : i + count], two.rows[j : j + count]
+        self._points += int(np.count_nonzero(one.in_machine(a) == two.in_machine(b)))
+        self._compare_states(i, j, count)
+
+    def _compare_states(self, i: int, j: int, count: int) -> None:
+        a, b = self._one.rows[i : i + count], self._two.rows[j : j + count]
+        for stretch in self._states.follow(i, j, a, b):
+            self._count += 1
+            self._note_first(stretch)
 
     def _same_circle(self, i: int, j: int) -> bool:
         one, two = self._one.circle(i), self._two.circle(j)
@@ -125,12 +123,10 @@ class Comparer:
         return bool(np.abs(apart).max() <= 2.0 * self._tolerances.tip and one[1] @ two[1] > 1.0 - 1e-6)
 
     def _is_on_path(self, more: MovingRows, i: int, less: MovingRows, j: int) -> bool:
-        """Whether motion ``i`` is an additional point on the path of the other's motion ``j``, in the same state."""
-        a, b = more.rows[i], less.rows[j]
-        if more.run.kind[a] != less.run.kind[b]:
+        """Whether motion ``i`` is an additional point on the path of the other's motion ``j``."""
+        if more.run.kind[more.rows[i]] != less.run.kind[less.rows[j]]:
             return False
-        rows = (np.array([a]), np.array([b])) if more is self._one else (np.array([b]), np.array([a]))
-        return bool(self._same_state(*rows)[0]) and ends_on_path(more, i, less, j, self._tolerances)
+        return ends_on_path(more, i, less, j, self._tolerances)
 
     def _differ(self, i: int, j: int) -> tuple[int, int]:
         """Note a difference, and find where the programs are the same again: the next motions of both."""
@@ -142,7 +138,7 @@ class Comparer:
                 fits &= np.abs(one.run.tip[a, c][:, None] - two.run.tip[b, c]) <= self._tolerances.tip
                 fits &= np.abs(one.run.axis[a, c][:, None] - two.run.axis[b, c]) <= self._tolerances.axis
             if fits[0, 0]:
-                self._note(i, j, 0.0, self._difference_in_state(int(a[0]), int(b[0])))
+                self._note(i, j, 0.0, self._difference_in_way(int(a[0]), int(b[0])))
                 return i + 1, j + 1
             found = find_resync(fits, (len(a) < window, len(b) < window))
             if found is not None:
@@ -159,7 +155,7 @@ class Comparer:
             if i + k >= len(one) or j + k >= len(two):
                 break
             if a == b and self._same(i + k, j + k, 1)[0]:
-                self._points += 1
+                self._go_together(i + k, j + k, 1)
                 continue
             p, q = int(one.rows[i + k]), int(two.rows[j + k])
             apart = float(np.linalg.norm(one.run.tip[p] - two.run.tip[q]))
@@ -171,32 +167,46 @@ class Comparer:
             if a != b:
                 break
 
-    def _difference_in_state(self, a: int, b: int) -> str:
-        """What differs between row ``a`` and row ``b``, which go to the same point."""
-        one, two = self._one, self._two
-        x, y = one.run, two.run
-        if x.kind[a] != y.kind[b]:
-            return f"{_KINDS[Kind(int(x.kind[a]))]} against {_KINDS[Kind(int(y.kind[b]))]}"
-        if one.in_machine(np.array([a]))[0] != two.in_machine(np.array([b]))[0]:
-            return "machine coordinates against coordinates of the workpiece, whose zero is not known"
-        if other := self._registers.difference(a, b):
-            return other
-        feeds = float(one.feeds(np.array([a]))[0]), float(two.feeds(np.array([b]))[0])
-        if abs(feeds[0] - feeds[1]) > max(_FEED, 1e-4 * feeds[0]):
-            return f"feed {feeds[0]:g} against {feeds[1]:g} mm/min"
-        if x.spindle[a] != y.spindle[b] or abs(x.rpm[a] - y.rpm[b]) > _RPM:
-            return f"spindle {one.spindle_words(a)} against {two.spindle_words(b)}"
-        if one.tool[a] != two.tool[b]:
-            return f"tool {one.tool_name(a)} against {two.tool_name(b)}"
-        if one.coolant[a] != two.coolant[b]:
-            return "coolant differs"
+    def _difference_in_way(self, a: int, b: int) -> str:
+        """What differs between row ``a`` and row ``b``, which go to the same point another way."""
+        kinds = [Kind(int(run.kind[row])) for run, row in ((self._one.run, a), (self._two.run, b))]
+        if kinds[0] != kinds[1]:
+            return f"{_KINDS[kinds[0]]} against {_KINDS[kinds[1]]}"
         return "circles about other centres, or the other way round"
 
     def _note(self, i: int, j: int, value: float, text: str) -> None:
-        found = Difference(self._one.block_name(i), self._two.block_name(j), value, text)
-        self._found.append(found)
+        """Note a difference between the paths."""
+        self._count += 1
+        self._path_count += 1
+        place = _Place(i, j, value, text)
+        self._note_first(place)
         if self._worst is None or value > self._worst.value:
-            self._worst = found
+            self._worst = place
+
+    def _note_first(self, found: "_Place | DifferentStretch") -> None:
+        if self._first is None or (found.i, found.j) < (self._first.i, self._first.j):
+            self._first = found
+
+    def _difference(self, found: "_Place | DifferentStretch | None") -> Difference | None:
+        if found is None:
+            return None
+        blocks = self._one.block_name(found.i), self._two.block_name(found.j)
+        if isinstance(found, _Place):
+            return Difference(*blocks, found.value, found.text)
+        text = found.text
+        if found.last != (found.i, found.j):
+            text += f", up to {self._one.block_name(found.last[0])} against {self._two.block_name(found.last[1])}"
+        return Difference(*blocks, 0.0, text)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Place:
+    """A difference between the paths, at motion ``i`` of the first program and ``j`` of the second."""
+
+    i: int
+    j: int
+    value: float
+    text: str
 
 
 def _unknown_words(one: Run, two: Run) -> tuple[str, ...]:

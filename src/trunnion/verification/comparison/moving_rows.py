@@ -79,6 +79,12 @@ class MovingRows:
             feed[free] *= length[free] / counted[free]
         return np.asarray(np.where(run.kind[rows] == Kind.RAPID, 0.0, np.nan_to_num(feed)))
 
+    def programmed_feeds(self, rows: Ints) -> Floats:
+        """The number after F in rows, (k,); 0 where it is a time or counts axes, and another one for each motion."""
+        run = self.run
+        of_path = (run.feed_mode[rows] != 93) & np.isnan(row_feed_path_lengths(run, rows))
+        return np.asarray(np.where(of_path, np.nan_to_num(run.feed[rows]), 0.0))
+
     def circle(self, k: int) -> tuple[Floats, Floats] | None:
         """Centre and normal of the circle that motion ``k`` is, if it is one."""
         row = self.rows[k]

@@ -18,6 +18,7 @@ from trunnion.arrays import Flags, Ints
 from trunnion.model.columns import StepColumn
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
+from trunnion.verification.comparison.states import ComparedState, Values
 
 #: Tolerances and what is added to tools are the same within this, mm: programs print no more digits; those in inches.
 _LAST_DIGIT: Final = 1e-4
@@ -49,36 +50,31 @@ class Register:
     within: float = 0.0
 
 
-class Registers:
-    """The registers of two runs."""
+def compared_registers(one: Run, two: Run, *, path: bool) -> list[ComparedState]:
+    """The registers of two runs; ``path``: only those that move the tool."""
+    same_words = one.language == two.language
+    return [_state(one, two, each) for each in _registers(one, two, same_words) if each.of_path or not path]
 
-    def __init__(self, one: Run, two: Run, *, path: bool) -> None:
-        self._runs = one, two
-        same_words = one.language == two.language
-        self._registers = [each for each in _registers(one, two, same_words) if each.of_path or not path]
 
-    def same(self, a: Ints, b: Ints) -> Flags:
-        """In which rows ``a`` of the first run and ``b`` of the second all of them are the same, (k,) bool."""
-        same = np.ones(len(a), np.bool_)
-        for register in self._registers:
-            same &= self._same(register, a, b)
-        return same
+def _state(one: Run, two: Run, register: Register) -> ComparedState:
+    first, second = register.columns
 
-    def difference(self, a: int, b: int) -> str:
-        """What differs between row ``a`` of the first run and row ``b`` of the second; empty if nothing does."""
-        rows = np.array([a]), np.array([b])
-        other = next((each for each in self._registers if not self._same(each, *rows)[0]), None)
-        return "" if other is None else f"{other.name} {other.words[0](a)} against {other.words[1](b)}"
+    def values(a: Ints, b: Ints) -> Values:
+        return first.at(a), second.at(b)
 
-    def _same(self, register: Register, a: Ints, b: Ints) -> Flags:
-        (one, two), (first, second) = self._runs, register.columns
-        values = first.at(a), second.at(b)
-        same = values[0] == values[1]
-        if register.within:
-            with np.errstate(invalid="ignore"):  # inf: no limit
-                same |= np.abs(values[0] - values[1]) <= register.within
-        same |= ~(register.counts(one, a) & register.counts(two, b))
-        return np.asarray(same)
+    def same(a: Ints, b: Ints) -> Flags:
+        x, y = values(a, b)
+        if not register.within:
+            return np.asarray(x == y)
+        with np.errstate(invalid="ignore"):  # inf: no limit
+            return np.asarray((x == y) | (np.abs(x - y) <= register.within))
+
+    return ComparedState(
+        lambda a, b: register.counts(one, a) & register.counts(two, b),
+        same,
+        values,
+        lambda a, b: f"{register.name} {register.words[0](a)} against {register.words[1](b)}",
+    )
 
 
 def _registers(one: Run, two: Run, same_words: bool) -> Iterator[Register]:

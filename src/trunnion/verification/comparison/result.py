@@ -30,9 +30,10 @@ class Difference:
 class Comparison:
     """How two programs compare.
 
-    points         how many points are the same
+    points         how many points are on the same path
     tip, axis      the largest distances at these points, mm and degrees
-    count          how many differences there are, up to a limit
+    count          how many differences there are, those between the paths up to a limit; a feed, tool, offset or the
+                   like that differs from one motion on to another is one
     unknown_words  words of either program that are not understood: then they cannot be called the same
     """
 
@@ -52,16 +53,17 @@ class Comparison:
 
     def lines(self) -> Iterator[str]:
         """The result for a terminal."""
+        points = counted(self.points, "point")
+        within = f"tips within {self.tip:.6f} mm, tool axes within {self.axis:.6f} degrees"
         if self.same:
-            points = counted(self.points, "point")
-            yield f"same: {points}, tips within {self.tip:.6f} mm, tool axes within {self.axis:.6f} degrees"
+            yield f"same: {points}, {within}"
             return
         yield from self.unknown_words[:_MOST_NAMED]
         if len(self.unknown_words) > _MOST_NAMED:
             yield f"and {counted(len(self.unknown_words) - _MOST_NAMED, 'word')} more that are not understood"
-        points = counted(self.points, "point")
         if self.count:
-            yield f"different: {counted(self.count, 'place')}; the same: {points}"
+            reached = f"{points}, {within}" if self.points else points
+            yield f"different: {counted(self.count, 'place')}; on the same path: {reached}"
         elif self.unknown_words:
             words = counted(len(self.unknown_words), "word")
             yield f"not compared: {words} not understood; otherwise the same: {points}"

@@ -1,0 +1,83 @@
+"""The states of two programs that are compared besides their paths."""
+
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats, Ints
+from trunnion.model.toolpath import Kind
+from trunnion.verification.comparison.moving_rows import MovingRows
+from trunnion.verification.comparison.registers import compared_registers
+from trunnion.verification.comparison.states import ComparedState
+
+#: Feeds and speeds are the same within this, mm/min and rev/min: programs print no more digits.
+_FEED: Final = 0.005
+_RPM: Final = 0.5
+
+
+def compared_states(one: MovingRows, two: MovingRows, *, path: bool) -> list[ComparedState]:
+    """What is compared in the rows of two programs; ``path``: only what says where the tool is."""
+    states = [_frames(one, two), *compared_registers(one.run, two.run, path=path)]
+    if path:
+        return states
+    tools = ComparedState(
+        _everywhere,
+        lambda a, b: np.asarray(one.tool[a] == two.tool[b]),
+        lambda a, b: (one.tool[a], two.tool[b]),
+        lambda a, b: f"tool {one.tool_name(a)} against {two.tool_name(b)}",
+    )
+    coolants = ComparedState(
+        _everywhere,
+        lambda a, b: np.asarray(one.coolant[a] == two.coolant[b]),
+        lambda a, b: (one.coolant[a], two.coolant[b]),
+        lambda _a, _b: "coolant differs",
+    )
+    return [*states, _feeds(one, two), _spindles(one, two), tools, coolants]
+
+
+def _everywhere(a: Ints, _b: Ints) -> Flags:
+    return np.ones(len(a), np.bool_)
+
+
+def _frames(one: MovingRows, two: MovingRows) -> ComparedState:
+    """Whether rows are in machine coordinates that nothing relates to the workpiece."""
+    return ComparedState(
+        _everywhere,
+        lambda a, b: np.asarray(one.in_machine(a) == two.in_machine(b)),
+        lambda a, b: (one.in_machine(a), two.in_machine(b)),
+        lambda _a, _b: "machine coordinates against coordinates of the workpiece, whose zero is not known",
+    )
+
+
+def _feeds(one: MovingRows, two: MovingRows) -> ComparedState:
+    def same(a: Ints, b: Ints) -> Flags:
+        feeds = one.feeds(a)
+        return np.asarray(np.abs(feeds - two.feeds(b)) <= np.maximum(_FEED, 1e-4 * feeds))
+
+    def words(a: int, b: int) -> str:
+        feeds = one.feeds(np.array([a]))[0], two.feeds(np.array([b]))[0]
+        return f"feed {feeds[0]:g} against {feeds[1]:g} mm/min"
+
+    return ComparedState(
+        lambda a, b: np.asarray((one.run.kind[a] != Kind.RAPID) & (two.run.kind[b] != Kind.RAPID)),
+        same,
+        lambda a, b: (one.programmed_feeds(a), two.programmed_feeds(b)),
+        words,
+    )
+
+
+def _spindles(one: MovingRows, two: MovingRows) -> ComparedState:
+    def speeds(rows: MovingRows, at: Ints) -> Floats:
+        """Speeds with the sign of the sense, (k,); 0 where it stands."""
+        return np.asarray(np.nan_to_num(rows.run.rpm[at]) * rows.run.spindle[at])
+
+    def same(a: Ints, b: Ints) -> Flags:
+        senses = one.run.spindle[a] == two.run.spindle[b]
+        return np.asarray(senses & (np.abs(speeds(one, a) - speeds(two, b)) <= _RPM))
+
+    return ComparedState(
+        _everywhere,
+        same,
+        lambda a, b: (speeds(one, a), speeds(two, b)),
+        lambda a, b: f"spindle {one.spindle_words(a)} against {two.spindle_words(b)}",
+    )

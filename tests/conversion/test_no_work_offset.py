@@ -1,0 +1,63 @@
+"""A program that selects no work offset: the converted one selects one, which is told once, and hides nothing."""
+
+from pathlib import Path
+
+import pytest
+
+import trunnion
+
+#: A table-table machine under TCP, in the zero that holds when the program starts.
+LINES = """T1 M6
+M428
+G94
+S600 M3
+G0 X16 Y-25 Z33 A-71 C-35
+G1 X6 Y-11 Z27 A-71 C-35 F300
+G1 X6 Y-12 Z26 A-70.5 C-32
+G1 X5 Y-13 Z26 A-70 C-31
+G0 Z60
+M429
+M2
+"""
+
+
+@pytest.fixture(scope="module")
+def converted(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path, trunnion.ConvertResult]:
+    """The program, the one for another machine, and what its conversion said."""
+    program = tmp_path_factory.mktemp("no_offset") / "part.ngc"
+    program.write_text(LINES, encoding="utf-8")
+    target = program.with_name("part.mpf")
+    return program, target, trunnion.convert(program, machine="xyzac_trt", to_machine="yl569", output=target)
+
+
+def test_the_conversion_tells_which_work_offset_the_new_program_selects(
+    converted: tuple[Path, Path, trunnion.ConvertResult],
+) -> None:
+    program, _, result = converted
+    told = [problem for problem in result.problems if "work offset" in problem.what]
+    assert [(problem.file, problem.line, problem.what) for problem in told] == [
+        (str(program), 6, "selects no work offset before it cuts; the new program selects work_offset=G54")
+    ]
+
+
+def test_a_work_offset_that_is_given_needs_no_warning(tmp_path: Path) -> None:
+    program = tmp_path / "part.ngc"
+    for text, settings in ((LINES, {"work_offset": "G55"}), (f"G54\n{LINES}", {})):
+        program.write_text(text, encoding="utf-8")
+        result = trunnion.convert(program, machine="xyzac_trt", to_machine="yl569", settings=settings)
+        assert not [problem for problem in result.problems if "work offset" in problem.what]
+
+
+def test_the_comparison_tells_it_once_and_compares_the_path(
+    converted: tuple[Path, Path, trunnion.ConvertResult],
+) -> None:
+    program, target, _ = converted
+    found = trunnion.diff(program, target, machine="xyzac_trt", to_machine="yl569")
+    assert (found.count, found.points) == (1, 5)
+    assert found.first is not None
+    assert found.first.text.startswith("work offset none against G54, up to 9")
+    changed = program.with_name("changed.ngc")
+    changed.write_text(LINES.replace("Y-13 ", "Y-13.5 "), encoding="utf-8")
+    found = trunnion.diff(changed, target, machine="xyzac_trt", to_machine="yl569")
+    assert found.worst is not None
+    assert found.worst.text.startswith("tips are 0.500000 mm apart")
