@@ -161,6 +161,11 @@ def machine_seconds() -> float:
     return min(times)
 
 
+def needless_packages() -> list[str]:
+    """Packages that Trunnion does not need, and that Numba imports at each start where they are installed."""
+    return [name for name in ("scipy", "yaml") if importlib.util.find_spec(name) is not None]
+
+
 def make_cls(points: int, file: Path) -> None:
     """Make a CL file. In a process of its own: what a parent holds in memory counts in its children's peak."""
     subprocess.run([sys.executable, str(HERE / "make_cls.py"), str(points), str(file)], check=True)
@@ -434,6 +439,8 @@ def main() -> int:
     arguments = parser.parse_args()
     if arguments.points < 1 or arguments.runs < 1:
         parser.error("--points and --runs must be at least 1")
+    if needless := needless_packages():
+        print(f"{' and '.join(needless)} installed here: Numba imports them at each start, which takes 0.1 s or more")
     with tempfile.TemporaryDirectory(prefix="trunnion-throughput-") as folder:
         figures = measure(arguments.points, arguments.runs, Path(folder))
     verdict = {True: "met", False: "NOT MET", None: "not judged"}
