@@ -33,6 +33,8 @@ def test_points_keep_the_last_tool_axis_after_multax_off(axes: Callable[..., lis
         ["TLAXIS/0,0,1", "GOTO/1,2,3", "GOTO/1,2,3,0.6,0.8,0"],
         ["GOTO/1,2,3", "GOTO/1,2,3,1,0,0"],
         ["MULTAX", "MULTAX/OFF", "GOTO/1,2,3,1,0,0"],
+        ["MULTAX", "GOTO/1,2,3,0,0,1", "TLAXIS/0,0,1", "GOTO/1,2,3,1,0,0"],
+        ["MULTAX", "GOTO/1,2,3,0,0,1", "$$ OPERATION NAME : B", "TLAXIS/0,0,1", "GOTO/1,2,9", "GOTO/1,2,3,1,0,0"],
         ["MULTAX/OFF", "GOTO/1,2,3", "$$ OPERATION NAME : B", "GOTO/1,2,3,1,0,0"],
     ],
 )

@@ -124,3 +124,35 @@ def test_a_table_of_words_may_leave_the_matrix_out(read: Read) -> None:
 def test_a_system_behind_points_needs_its_matrix(read: Read, before: list[str]) -> None:
     with pytest.raises(TrunnionError, match="without its matrix"):
         read(written(*before, *TABLE, *PATH))
+
+
+@pytest.mark.parametrize("lost", [2, 3, 4])
+@pytest.mark.parametrize("following", ["MULTAX", "$$ OPERATION NAME : B", "GOTO/1,2,3", "$$ NOTE"])
+def test_a_system_that_has_lost_a_line_is_refused(read: Read, lost: int, following: str) -> None:
+    for before in ([*system(FIRST), *PATH], []):
+        lines = system(FIRST)
+        del lines[lost]
+        with pytest.raises(TrunnionError, match="not followed by an identifier and three lines of four numbers"):
+            read(written(*before, *lines, following, *PATH))
+
+
+def test_a_system_without_its_identifier_or_at_the_end_is_refused(read: Read) -> None:
+    for lines in (
+        ["$$*CATIA0", *system(FIRST)[2:], *PATH],
+        [*PATH, "GOTO/1,2,3", "FINI", "$$*CATIA0", "$$ A", "$$ 1 0 0 0"],
+    ):
+        with pytest.raises(TrunnionError, match="not followed by an identifier and three lines of four numbers"):
+            read(written(*lines))
+    with pytest.raises(TrunnionError, match=r"only \$\$\*CATIA0 is known"):
+        read(written("$$*CATIA1", *system(FIRST)[1:], *PATH))
+
+
+def test_a_system_behind_points_without_one_is_refused(read: Read) -> None:
+    for before in (PATH, [*TABLE, *PATH]):
+        with pytest.raises(TrunnionError, match="behind points whose machining axis system nothing states"):
+            read(written(*before, *system(FIRST), *PATH))
+
+
+def test_a_row_of_a_system_has_four_numbers(read: Read) -> None:
+    with pytest.raises(TrunnionError, match="three lines of four numbers"):
+        read(written(*system(["1 0 0", "0 0 1 0", "0 0 0 1 0"]), *PATH))

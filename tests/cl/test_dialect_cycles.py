@@ -93,8 +93,23 @@ def test_cycles_in_doubt_are_refused(refused: Callable[..., str], dialect: str, 
     assert what in refused(dialect, statement)
 
 
-def test_feed_and_cycle_go_on_in_the_next_operation(apt: Callable[..., Operation]) -> None:
-    lines = ["FEDRAT/100,MMPM", "CYCLE/DRILL,3,5", "GOTO/1,2,3", "$$ OPERATION NAME : B", "GOTO/4,5,6", "CYCLE/OFF"]
-    operation = apt("catia", *lines)
-    assert operation.moves.feed.tolist() == [100]
-    assert cycle(operation).row == 0
+@pytest.mark.parametrize(
+    ("dialect", "begin"),
+    [
+        ("catia", "$$ OPERATION NAME : B"),
+        ("ncl", "$$-> FEATNO / 2"),
+        ("solidworks", "INSERT/B"),
+        ("solidworks", "LOAD/TOOL,7"),
+        ("fusion", "LOADTL/7, 0, 60., 7"),
+        ("apt", "LOADTL/7"),
+        ("apt", "GOHOME"),
+    ],
+)
+def test_a_cycle_that_nothing_ends_is_refused(
+    refused: Callable[..., str], apt: Callable[..., Operation], dialect: str, begin: str
+) -> None:
+    word = "CLEAR" if dialect in ("ncl", "catia") else "RAPTO"
+    lines = ["FEDRAT/100,MMPM", f"CYCLE/DRILL,{'FEDTO' if word == 'RAPTO' else 'DEPTH'},3,{word},5", "GOTO/1,2,3"]
+    assert "is still on where another operation begins" in refused(dialect, *lines, begin, "GOTO/4,5,6")
+    operation = apt(dialect, *lines, "CYCLE/OFF", begin, "RAPID", "GOTO/4,5,6", "GOTO/4,5,5")
+    assert operation.moves.feed.tolist() == [100, 100]

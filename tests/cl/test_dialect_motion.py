@@ -129,13 +129,16 @@ def test_an_arc_goes_on_with_its_events_and_the_smaller_tolerance(apt: Callable[
     assert not any(isinstance(event, From) for event in operation.events)
 
 
+HOLE = "CYCLE/DRILL,DEPTH,5,CLEAR,2"
+
+
 @pytest.mark.parametrize(
     ("lines", "count"),
     [
         (["$$-> FEATNO / 2", "RAPID", "GOTO/0,60,50"], 2),
         (["LOADTL/6", "GOTO/0,60,50"], 2),
         (["GOHOME", "GOTO/0,60,50"], 2),
-        (["CYCLE/DRILL,DEPTH,5,CLEAR,2", "GOTO/0,0,0", "$$-> FEATNO / 2", "GOTO/0,60,0"], 2),
+        ([HOLE, "GOTO/0,0,0", "CYCLE/OFF", "$$-> FEATNO / 2", HOLE, "GOTO/0,60,0"], 2),
         (["$$-> FEATNO / 2", "FROM/0,60,50", "GOTO/0,60,0"], 2),
         (["$$-> FEATNO / 2", "GOTO/0,60,0", "$$-> FEATNO / 3", "GOTO/0,70,0"], 1),
     ],

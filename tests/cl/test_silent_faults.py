@@ -169,3 +169,15 @@ def test_an_operation_whose_coolant_ended_is_told(read: Read) -> None:
     assert (problem.line, "operation B has no COOLNT" in problem.what) == (11, True)
     assert read(text("catia", *lines, "COOLNT/MIST")).remarks == ()
     assert read(text("catia", *lines[:-5], "COOLNT/OFF", *lines[-5:])).remarks == ()
+
+
+def test_a_tool_that_cuts_with_the_feed_of_another_is_told(read: Read) -> None:
+    for dialect in ("catia", "ncl", "apt"):
+        begin, cut = ["LOADTL/6"], ["RAPID", "GOTO/9,0,50", "GOTO/9,0,-2"]
+        (problem,) = (p for p in read(text(dialect, *CUT, *begin, *cut)).remarks if "feed" in p.what)
+        line = len(HEADS[dialect]) + len(CUT) + 1
+        assert (problem.line, problem.what.partition("loads ")[2]) == (line, "tool 6, and cuts with the feed of tool 5")
+        own = [*CUT, *begin, *cut[:2], "FEDRAT/90,MMPM", cut[2]]
+        drilled = [*CUT, *begin, *cut[:2], "CYCLE/DRILL,DEPTH,5,MMPM,90,CLEAR,2", cut[2], "CYCLE/OFF"]
+        for lines in (own, drilled):
+            assert not [p for p in read(text(dialect, *lines)).remarks if "feed" in p.what]

@@ -370,6 +370,11 @@ def test_cycle_is_read_by_couplets_in_any_order(
     assert off == CycleOff(1, 6)
 
 
+def test_a_cycle_on_where_another_tool_is_loaded_is_refused(body_fails: Fail) -> None:
+    (problem,) = body_fails("LOAD/TOOL,1", "CYCLE/DRILL,RAPTO,3,FEDTO,-5", GO, "LOAD/TOOL,2", GO)
+    assert (problem.line, problem.what) == (6, "the cycle of line 4 is still on where tool 2 is loaded")
+
+
 def test_cycle_on_repeats_the_last_cycle(body: Body) -> None:
     first, _, again = body("CYCLE/DRILL,RAPTO,3", GO, "CYCLE/OFF", "CYCLE/ON", GO).events
     assert isinstance(first, CycleOn)

@@ -3,6 +3,7 @@
 import pytest
 
 from tests.support.cl_reading import Fail, Read
+from trunnion.cl import other_system
 from trunnion.model.toolpath import UnknownStatement
 
 HEAD = ["PARTNO/1", "UNITS/MM", "CUTTER/10,1", "LOADTL/3"]
@@ -45,3 +46,25 @@ def test_another_system_under_an_alias_is_refused(fails: Fail) -> None:
     head = ["$$* Pro/CLfile Version 8.0", "UNITS / MM", "LOADTL / 5", "CAMERA/1,0,0,0,0,1,0,0,0,0,1,0", "GOTO / 1,2,3"]
     (problem,) = fails("\n".join([*head, "CAMERA/0,1,0,0,1,0,0,0,0,0,-1,0", "GOTO / 4,2,3", "FINI"]) + "\n")
     assert (problem.line, "changes within the file" in problem.what) == (6, True)
+
+
+PLAIN = {
+    "clsf": "TOOL PATH/B,TOOL,T\nGOTO/0,0,5\nEND-OF-PATH\n",
+    "apt": "\n".join([*HEAD, *FOOT]) + "\n",
+    "ncl": "$$* Pro/CLfile Version 8.0\nLOADTL / 5\n$$-> CSYS / 1,0,0,0,0,1,0,0,0,0,1,0\nGOTO / 1,2,3\nFINI\n",
+    "catia": "$$*CATIA0\n$$ A\n$$ 1 0 0 0\n$$ 0 1 0 0\n$$ 0 0 1 0\nTLAXIS/0,0,1\nGOTO/1,2,3\nFINI\n",
+}
+
+
+@pytest.mark.parametrize("dialect", PLAIN)
+def test_a_file_that_states_no_system_is_no_job_with_an_msys_off_the_absolute_one(read: Read, dialect: str) -> None:
+    """The MSYS would move its points by as much as it says."""
+    stated = "TOOL PATH/A,TOOL,T\nMSYS/{},0,0,1,0,0,0,1,0\nGOTO/0,0,5\nEND-OF-PATH\n"
+    absolute, off, plain = read(stated.format(0)), read(stated.format(100)), read(PLAIN[dialect])
+    for job in ([off, plain], [plain, off], [absolute, off, plain]):
+        problem = other_system(job)
+        assert problem is not None
+        assert "does not state where its points are" in problem.what
+    assert other_system([absolute, plain]) is None
+    assert other_system([absolute, off]) is None
+    assert other_system([plain, plain]) is None

@@ -69,13 +69,17 @@ class SurfaceSpeed(Event):
 
 
 class FeedChange(NamedTuple):
-    """A FEDRAT: ``value`` in mm/min or mm/rev, in units of the file if it names no unit, or 1/min if ``inverse``."""
+    """A FEDRAT: ``value`` in mm/min or mm/rev, in units of the file if it names no unit, or 1/min if ``inverse``.
+
+    ``is_kept``: the operation has it from the one before.
+    """
 
     row: int
     value: float
     per_rev: bool
     in_file_units: bool
     inverse: bool = False
+    is_kept: bool = False
 
 
 class CircleStatement(NamedTuple):

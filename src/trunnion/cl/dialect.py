@@ -66,6 +66,7 @@ class Dialect:
     handlers     what its statements mean, by their major words
     cycles       how it writes CYCLE
     comment      takes the text of a ``$$`` line that carries a statement
+    after_comment  judges lines of comment that belong together, where other lines follow
     in_sections  operations stand between TOOL PATH and END-OF-PATH; else they begin with a tool, a name, a system
     no_axis      the tool axis of a point that gives none, before any statement about it
     multax_off   the same after MULTAX/OFF
@@ -80,6 +81,7 @@ class Dialect:
     handlers: Mapping[str, Handler]
     cycles: CycleWords
     comment: Callable[[ReaderState, str], None] | None = None
+    after_comment: Callable[[ReaderState], None] | None = None
     alias: Handler | None = None
     in_sections: bool = False
     no_axis: NoAxis = NoAxis.MODAL

@@ -80,6 +80,12 @@ class ClInterpreter:
         """The coordinate system of the points in that of the model as the file has it; empty if it has none."""
         return self._state.system
 
+    @property
+    def states_system(self) -> bool:
+        """Whether each operation with motion states by an MSYS where its points are in the absolute system."""
+        moving = [builder for builder in self.builders if builder.stop > builder.first]
+        return self._dialect.in_sections and all(COORDINATE_SYSTEM in builder.stated for builder in moving)
+
     def interpret(self, raw: bytes, line: int, row: int, mark: int) -> None:
         """Interpret one statement.
 
@@ -98,6 +104,8 @@ class ClInterpreter:
                 if self._dialect.comment is not None:
                     self._dialect.comment(self._state, comment)
                 return
+            if self._dialect.after_comment is not None:
+                self._dialect.after_comment(self._state)
             handler, statement = self._parse_cache.get(raw) or self._look_up(raw)
             if handler is None:
                 self._unknown_statement(statement)
@@ -116,6 +124,8 @@ class ClInterpreter:
         """
         state = self._state
         state.row = row
+        if self._dialect.after_comment is not None:
+            self._dialect.after_comment(state)
         if state.direction is not None:
             state.direction.report_lost_arc(self._diagnostics)
         if not self._dialect.in_sections:

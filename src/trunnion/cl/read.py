@@ -18,6 +18,7 @@ from trunnion.cl.diagnostics import Diagnostics
 from trunnion.cl.dialects import DIALECTS, Recognition, recognize_dialect
 from trunnion.cl.interpreter import ClInterpreter
 from trunnion.cl.joining import join_cuts, join_first_tool
+from trunnion.cl.kept_feeds import report_kept_feeds
 from trunnion.cl.scan import MAX_STATEMENT_BYTES, SPAN_COLUMNS, TOO_LONG, UNFINISHED, scan
 from trunnion.cl.sources import ClSource, cl_sources, not_one_file
 from trunnion.cl.splines import with_spline_points
@@ -161,6 +162,7 @@ def read_source(
     if unit != 1.0:
         columns.tip[: scanner.rows] *= unit
     builders = join_first_tool(interpreter.builders, diagnostics)
+    report_kept_feeds(builders, diagnostics)
     builders = join_cuts(builders, diagnostics, in_sections=recognized.dialect.in_sections)
     columns = with_spline_points(builders, columns, scanner.rows, unit, spline_tolerance, diagnostics)
     modal_axis = np.array([0.0, 0.0, 1.0])
@@ -170,6 +172,7 @@ def read_source(
         source.name, operations, interpreter.part, unit=unit, states_unit=interpreter.knows_unit(units),
         dialect=recognized.dialect.name,
         recognized=f"{recognized.dialect.title}: {recognized.why}",
+        states_system=interpreter.states_system,
         reopen=source.open if source.packed else None,
         system=tuple(number * (unit if k % 4 == 3 else 1.0) for k, number in enumerate(interpreter.system)),
     )  # fmt: skip

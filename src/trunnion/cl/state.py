@@ -7,7 +7,7 @@ from trunnion.cl.builder import AxisStatement, MoveColumns, NoAxis, OperationBui
 from trunnion.cl.diagnostics import Diagnostics, StatementError
 from trunnion.cl.dialect import Dialect
 from trunnion.cl.statement import Statement
-from trunnion.model.toolpath import CycleOff, CycleOn, Event, LoadTool, SpindleOn, UnknownStatement
+from trunnion.model.toolpath import CycleOn, Event, LoadTool, SpindleOn, UnknownStatement
 
 MM_PER_INCH = 25.4
 MM_PER_FOOT = 304.8
@@ -81,6 +81,7 @@ class ReaderState:
     clearance        height of the clearance plane
     system           the coordinate system of the points as the file gives it, empty if it gives none
     matrix           lines of a coordinate system in comments, while they are collected
+    matrix_line      line of the comment that announces them
     note             line and text of the last note
     setup_axis       where the Z of a setup points in the model, empty if it is not known
     turned           angles by which an operation turns its setup, as far as they are read
@@ -120,6 +121,7 @@ class ReaderState:
     clearance: float | None = None
     system: tuple[float, ...] = ()
     matrix: list[str] | None = None
+    matrix_line: int = 0
     note: tuple[int, str] | None = None
     setup_axis: tuple[float, ...] = ()
     turned: tuple[float, ...] = ()
@@ -143,26 +145,31 @@ class ReaderState:
     def split_operation(self) -> None:
         """Begin another operation here, where the dialect has no sections; feed, tool and tool axis go on.
 
-        An operation without rows goes on itself.
+        A cycle that is on is refused. An operation without rows goes on itself.
         """
         before = self.builder
         if self.dialect.in_sections or self.row == before.first:
             return
+        if self.cycle_line:
+            self._refuse_cycle("another operation begins")
         at = self.operation_row
         self.builder = OperationBuilder(
             f"OPERATION {len(self.builders) + 2}", self.line, self.row, continues=True, tool=before.tool,
             frame=before.frame, intol=before.intol, outtol=before.outtol,
-            feeds=[feed._replace(row=0) for feed in before.feeds[-1:]],
+            feeds=[feed._replace(row=0, is_kept=True) for feed in before.feeds[-1:]],
             rapids=[0] if at in before.rapids else [],
             starts=[start._replace(row=0) for start in before.starts if start.row == at],
             axes=[AxisStatement(0, self.line, None, self.no_axis, self.vectors)], tilted=before.tilted,
         )  # fmt: skip
-        cycles = [event for event in before.events if isinstance(event, CycleOn | CycleOff)]
-        if cycles and isinstance(cycles[-1], CycleOn):
-            self.add(replace(cycles[-1], row=0))
         before.stop = self.row
         self._check_tool(before)
         self.builders.append(before)
+
+    def _refuse_cycle(self, where: str) -> None:
+        """Report a cycle that nothing has ended: each point behind it would be a hole."""
+        what = f"the cycle of line {self.cycle_line} is still on where {where}"
+        self.diagnostics.error(self.line, what, "write CYCLE/OFF behind its last hole")
+        self.cycle_line = 0
 
     def name_operation(self, name: str) -> None:
         """Begin an operation with a name; what was stated of one without motion counts no more."""
@@ -191,6 +198,8 @@ class ReaderState:
             if is_loaded and self.operation_row:
                 return
             self.split_operation()
+        if self.cycle_line and self.tool is not None and self.tool.number != number:
+            self._refuse_cycle(f"tool {number} is loaded")
         if self.operation_row == 0:
             self.state_once(TOOL_NUMBER, number)
             if adjust:

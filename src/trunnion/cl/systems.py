@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from trunnion.errors import Problem
-from trunnion.model.toolpath import Toolpath
+from trunnion.model.toolpath import Frame, Toolpath
 
 #: Numbers of a coordinate system are printed with five decimals or more.
 _SAME: Final = 2e-5
@@ -16,8 +16,11 @@ def other_system(toolpaths: Sequence[Toolpath]) -> Problem | None:
     """The first toolpath whose coordinate system differs from that of the first one, as a problem.
 
     Files of different systems may be different setups, and of most dialects it is not settled whether rows or columns
-    are the axes: points are not turned into the system of another file.
+    are the axes: points are not turned into the system of another file. Beside an MSYS off the absolute system a file
+    that states none would be moved by it.
     """
+    if problem := _unstated_system(toolpaths):
+        return problem
     for toolpath in toolpaths[1:]:
         pair = zip(toolpath.system or _IDENTITY, toolpaths[0].system or _IDENTITY, strict=True)
         if any(abs(a - b) > _SAME for a, b in pair):
@@ -26,3 +29,15 @@ def other_system(toolpaths: Sequence[Toolpath]) -> Problem | None:
                 toolpath.file, 0, what, "output all files in one coordinate system, or post them one at a time"
             )
     return None
+
+
+def _unstated_system(toolpaths: Sequence[Toolpath]) -> Problem | None:
+    """The first toolpath that does not state where its points are, beside one that is off the absolute system."""
+    stating = [toolpath for toolpath in toolpaths if toolpath.states_system]
+    off = next((each for each in stating if any(operation.frame != Frame() for operation in each.operations)), None)
+    if off is None or len(stating) == len(toolpaths):
+        return None
+    other = next(toolpath for toolpath in toolpaths if not toolpath.states_system)
+    what = f"it does not state where its points are, and {off.file} has an MSYS off the absolute system"
+    cure = "write its MSYS, that of the absolute system is MSYS/0,0,0,1,0,0,0,1,0; or post the files one at a time"
+    return Problem(other.file, 0, what, cure)

@@ -348,6 +348,7 @@ class Toolpath:
     recognized  the title of the dialect, and by what it was recognized
     system      the coordinate system of the points in that of the model where the file gives it and its meaning is not
                 settled: 3 rows of 4 numbers, mm
+    states_system  each operation states where its coordinate system lies in the absolute one of the CAM system
     reopen      opens the text of a file that is packed or a stream once more; None: it is the file of that path
     """
 
@@ -360,6 +361,7 @@ class Toolpath:
     dialect: str = "clsf"
     recognized: str = ""
     system: tuple[float, ...] = ()
+    states_system: bool = True
     reopen: Callable[[], BinaryIO] | None = None
 
     def __repr__(self) -> str:

@@ -1,6 +1,7 @@
 """CATIA V5 and 3DEXPERIENCE APTSOURCE."""
 
 import re
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -11,12 +12,14 @@ from trunnion.cl.dialect import CycleWords, Dialect, marks
 from trunnion.cl.dialects.apt import APT_HANDLERS, CYCLES
 from trunnion.cl.state import TOOL_NUMBER, ReaderState
 from trunnion.cl.statement import Statement, whole_number
-from trunnion.cl.statements import apt_refused, events, motion
+from trunnion.cl.statements import apt_motion, apt_refused, events, motion
 from trunnion.model.frames import frame_from_vectors, relative_frame
 from trunnion.model.toolpath import Frame
 
 _NAME: Final = re.compile(r"\s*OPERATION NAME\s*:\s*(.*)", re.IGNORECASE)
-_MATRIX: Final = re.compile(r"\*CATIA0\s*", re.IGNORECASE)
+_MATRIX: Final = re.compile(r"\*CATIA(\d)\s*", re.IGNORECASE)
+#: A line of the matrix, or what is left of it.
+_ROW: Final = re.compile(r"[-+.\deEdD\s]*\d[-+.\deEdD\s]*")
 #: Greatest error of a product of two axes, which are printed with five decimals.
 _SQUARE: Final = 1e-4
 #: Greatest number of a matrix, in units of the file: no part is as large.
@@ -25,30 +28,61 @@ _FARTHEST: Final = 1e7
 _AXIS_AS_COMMENT: Final = "SYN/'TLAXIS','"
 _NUMBER: Final = re.compile(r"[-+.]?\d")
 _TIP: Final = "output tips and tool axes, with the compensation of the radius off or in the plane"
+_WITH_MATRIX: Final = "let the table of words (PPTable) write NC_MACHINING_AXIS with its twelve numbers"
 _MILLING: Final = "output the milling operations alone"
 
 
 def _comment(state: ReaderState, text: str) -> None:
     """Lines of comment that name an operation, or give the machining axis system."""
+    if state.matrix is not None and state.line != state.matrix_line + 1 + len(state.matrix):
+        _end_matrix(state)
     if name := _NAME.fullmatch(text):
+        _end_matrix(state)
         state.name_operation(name[1].strip())
-    elif _MATRIX.fullmatch(text):
-        state.matrix = []
+    elif matrix := _MATRIX.fullmatch(text):
+        _end_matrix(state)
+        if matrix[1] != "0":
+            what = f"$${text}: only $$*CATIA0 is known to announce a machining axis system"
+            raise StatementError(what, "output the file with NC_MACHINING_AXIS as $$*CATIA0")
+        state.matrix, state.matrix_line = [], state.line
     elif state.matrix is not None:
         state.matrix.append(text)
         if len(state.matrix) == 2 and not _NUMBER.search(text):
             _miss_system(state)
         elif len(state.matrix) == 4:  # an identifier, and three lines of four numbers
-            rows = [row.split() for row in state.matrix[1:]]
+            numbers = _numbers_of(state.matrix[1:])
             state.matrix = None
-            try:
-                numbers = tuple(float(number) for row in rows for number in row)
-            except ValueError:
-                numbers = ()
-            if len(numbers) != 12:
-                what = "$$*CATIA0 is not followed by an identifier and three lines of four numbers"
-                raise StatementError(what, "output the file again")
             _set_system(state, numbers)
+
+
+def _numbers_of(lines: Sequence[str]) -> tuple[float, ...]:
+    """The twelve numbers of a machining axis system."""
+    rows = [row.split() for row in lines]
+    try:
+        numbers = tuple(float(number) for row in rows for number in row)
+    except ValueError:
+        numbers = ()
+    if [len(row) for row in rows] != [4, 4, 4] or len(numbers) != 12:
+        raise _damaged_matrix()
+    return numbers
+
+
+def _damaged_matrix() -> StatementError:
+    what = "$$*CATIA0 is not followed by an identifier and three lines of four numbers"
+    return StatementError(what, "output the file again")
+
+
+def _end_matrix(state: ReaderState) -> None:
+    """Judge the lines behind ``$$*CATIA0`` where other lines follow: they are whole, or there is none of the matrix."""
+    if state.matrix is None:
+        return
+    lines, state.matrix = state.matrix, None
+    try:
+        if any(_ROW.fullmatch(line) for line in lines) or len(lines) > 1:
+            raise _damaged_matrix()
+        _miss_system(state)
+    except StatementError as error:
+        state.diagnostics.error(state.matrix_line, error.what, error.cure)
 
 
 def _miss_system(state: ReaderState) -> None:
@@ -56,7 +90,7 @@ def _miss_system(state: ReaderState) -> None:
     state.matrix = None
     if state.system or state.row:
         what = "$$*CATIA0 without its matrix: the machining axis system may be another one than before"
-        raise StatementError(what, "let the table of words (PPTable) write NC_MACHINING_AXIS with its twelve numbers")
+        raise StatementError(what, _WITH_MATRIX)
 
 
 def _set_system(state: ReaderState, numbers: tuple[float, ...]) -> None:
@@ -65,10 +99,11 @@ def _set_system(state: ReaderState, numbers: tuple[float, ...]) -> None:
     Columns are axes and origin in the model. Operations of a later system have their frame in the first one, and
     nothing that was said in the coordinates before holds on: last point, tool axis, clearance plane.
     """
-    if not state.system or numbers == state.system:
-        own = Frame()
-    else:
-        own = relative_frame(_frame(numbers), _frame(state.system))
+    if not state.system and state.row:
+        what = "$$*CATIA0 behind points whose machining axis system nothing states"
+        raise StatementError(what, _WITH_MATRIX)
+    frame = _frame(numbers)
+    own = Frame() if not state.system or numbers == state.system else relative_frame(frame, _frame(state.system))
     if not state.system:
         state.set_system(numbers)
     if own == state.builder.frame:
@@ -102,6 +137,12 @@ def _goto(state: ReaderState, statement: Statement) -> None:
         what = f"GOTO has {len(statement.values)} numbers: a compensation vector, or a contact point with its normal"
         raise StatementError(what, _TIP)
     motion.goto(state, statement)
+
+
+def _tlaxis(state: ReaderState, statement: Statement) -> None:
+    """The tool axis of the points behind it, which then have none of their own until the next MULTAX."""
+    state.vectors = False
+    apt_motion.tlaxis(state, statement)
 
 
 def _toolno(state: ReaderState, statement: Statement) -> None:
@@ -146,7 +187,15 @@ CATIA: Final = Dialect(
         rb"\$\$[ \t]*CATIA APT VERSION\b", rb"\$\$\*CATIA\d", rb"\$\$[ \t]*OPERATION NAME[ \t]*:",
         rb"\$\$[ \t]*TOOLCHANGE(?:BEGINNING|END)\b",
     ),
-    handlers={**APT_HANDLERS, "GOTO": _goto, "MODE": _mode, "PPFUN": _ppfun, "SYN": _syn, "TOOLNO": _toolno},
+    handlers={
+        **APT_HANDLERS,
+        "GOTO": _goto,
+        "MODE": _mode,
+        "PPFUN": _ppfun,
+        "SYN": _syn,
+        "TLAXIS": _tlaxis,
+        "TOOLNO": _toolno,
+    },
     cycles=CycleWords(
         modes=CYCLES.modes,
         words=CYCLES.words,
@@ -154,6 +203,7 @@ CATIA: Final = Dialect(
         refused=CYCLES.refused,
     ),
     comment=_comment,
+    after_comment=_end_matrix,
     # After MULTAX/OFF points have no axis, and the last one stays; points have vectors after MULTAX only.
     multax_off=NoAxis.MODAL,
     vectors=False,
