@@ -53,7 +53,7 @@ def test_its_first_point_needs_no_rapid(read: Read) -> None:
         [*WAY, "GOTO/0,0,90"],
         [*WAY, "PPRINT HERE"],
         [*WAY, "GOHOME"],
-        ["CYCLE/DRILL,5,1,100,MMPM", *WAY],
+        ["CYCLE/DRILL,5,1,100,MMPM", *WAY, "CYCLE/OFF"],
     ],
 )
 def test_a_cut_or_an_event_before_the_first_tool_is_not(read: Read, before: list[str]) -> None:

@@ -4,7 +4,7 @@ import pytest
 
 from tests.support.apt_heads import HEADS
 from tests.support.cl_reading import Body, Fail, Read
-from trunnion.model.toolpath import CutterComp, CycleOn
+from trunnion.model.toolpath import CutterComp, CycleOn, SpindleOff, SpindleOn, UnknownStatement
 
 CUT = ["RAPID", "GOTO/0,0,50", "FEDRAT/200,MMPM", "GOTO/0,0,-2"]
 
@@ -181,3 +181,65 @@ def test_a_tool_that_cuts_with_the_feed_of_another_is_told(read: Read) -> None:
         drilled = [*CUT, *begin, *cut[:2], "CYCLE/DRILL,DEPTH,5,MMPM,90,CLEAR,2", cut[2], "CYCLE/OFF"]
         for lines in (own, drilled):
             assert not [p for p in read(text(dialect, *lines)).remarks if "feed" in p.what]
+
+
+@pytest.mark.parametrize(
+    ("dialect", "line", "what"),
+    [
+        ("catia", "INDIRV/1,0,0\nTLON,GOFWD/(CIRCLE/0,10,-2,10),ON,(LINE/0,10,-2,0,20,-3)", "ends off the plane"),
+        ("apt", "CUTTER/12,5,1,1,0,0,80", "would reach below its tip"),
+        ("apt", "CUTTER/12,1,5,0,1,0,80", "would reach below its tip"),
+        ("apt", "LOADTL/6,LENGTH,90.5,LENGTH,80", "LENGTH twice"),
+        ("apt", "LOADTL/6,OSETNO,3,OFFSET,4", "contradict each other"),
+        ("apt", "SELCTL/5,7", "2 numbers"),
+        ("apt", "UNITS/MM,INCHES", "UNITS/MM,INCHES is not a known unit"),
+        ("apt", "COOLNT/", "COOLNT/ without a word"),
+        ("apt", "SPINDL/", "SPINDL without a speed or a word"),
+        ("apt", "IF(1)L1,L2,L3", "IF is a statement of an APT part program"),
+        ("catia", "INCLUD/OTHER", "INCLUD is a statement of an APT part program"),
+        ("apt", "UNDEF", "UNDEF is a statement of an APT part program"),
+        ("ncl", "$$ -> CSYS / 1,0,0,0,0,0,-1,0,0,1,0,0", "changes within the file"),
+        ("apt", "CYCLE/DRILL" + "," * 900_000, "900001 values"),
+        ("clsf", "CYCLE/DRILL" + ",A" * 100, "101 values"),
+    ],
+    ids=lambda value: str(value)[:30],
+)
+def test_more_that_was_lost_or_taken_wrong_is_refused(
+    fails: Fail, body_fails: Fail, dialect: str, line: str, what: str
+) -> None:
+    if dialect == "clsf":
+        problems = body_fails("GOTO/0,0,50", line)
+    else:
+        start = ["$$-> CSYS / 1,0,0,0,0,1,0,0,0,0,1,0"] * (dialect == "ncl")
+        problems = fails(text(dialect, *start, *CUT, *line.split("\n"), "RAPID", "GOTO/0,0,50"))
+    assert any(what in problem.what for problem in problems)
+
+
+def test_creo_s_commands_may_have_blanks_before_their_arrow(read: Read) -> None:
+    (operation,) = read(
+        text("ncl", "$$  -> CUTTER / 8", "$$ -> FEATNO / 7", *CUT).replace("$$-> CUTTER / 10.0\n", "")
+    ).operations
+    assert (operation.name, operation.tool.diameter) == ("FEATNO 7", 8)
+
+
+def test_a_number_goes_with_the_unknown_word_before_it(body: Body) -> None:
+    for line, kept in (
+        ("SPINDL/MAXRPM,3000", []),
+        ("SPINDL/ORIENT,90", []),
+        ("SPINDL/RPM,800,CLW,MAXRPM,3000", [800]),
+        ("SPINDL/800,CLW,ORIENT,90", [800]),
+    ):
+        events = body(line, "GOTO/0,0,0").events
+        assert [event.rpm for event in events if isinstance(event, SpindleOn)] == kept
+        assert any(isinstance(event, UnknownStatement) for event in events)
+
+
+def test_what_stands_beside_off_is_not_lost(body: Body) -> None:
+    events = body("SPINDL/OFF,3000", "GOTO/0,0,0").events
+    assert [type(event) for event in events] == [UnknownStatement, SpindleOff]
+
+
+def test_zeros_for_letters_are_a_damaged_word(body: Body) -> None:
+    (event,) = body("GOTO/0,0,0", "G0T0/5,5,5").events
+    assert isinstance(event, UnknownStatement)
+    assert (event.acts, event.what) == (True, "G0T0 may be a damaged GOTO")

@@ -76,6 +76,11 @@ def test_an_archive_is_one_job_in_the_order_of_its_names(tmp_path: Path) -> None
     assert [toolpath.unit for toolpath in found] == [1.0, 25.4, 1.0]
     left_out = [remark.file.removeprefix(f"{file}/") for remark in found[0].remarks if "left out" in remark.what]
     assert left_out == ["__MACOSX/2/._side.ncl", "notes.txt"]
+    for damaged, what in ((b"", "the file is empty"), (bytes(100), "NUL byte")):
+        file.write_bytes(zipped(names | {"3.cls": damaged}))
+        with pytest.raises(trunnion.InputError, match=what):
+            read_cl_files(file)
+    file.write_bytes(zipped(names))
     with pytest.raises(trunnion.InputError, match="one of 3 CL files in an archive"):
         trunnion.read_cl(file)
     assert len(trunnion.describe_cl(file).files) == 3

@@ -335,7 +335,7 @@ def test_a_feed_without_any_unit_is_in_units_of_the_file(body: Body) -> None:
         (
             "DRILL,DEEP,STEP,1.0,CLEAR,3.0,FEDTO,-2.0,RTRCTO,18.0,MMPM,70.0",
             ("DRILL", "DEEP"),
-            {"STEP": (1.0,), "CLEAR": (3.0,), "FEDTO": (-2.0,), "RTRCTO": (18.0,), "MMPM": (70.0,)},
+            {"STEP": (1.0,), "RAPTO": (3.0,), "FEDTO": (-2.0,), "RTRCTO": (18.0,), "MMPM": (70.0,)},
             {},
         ),
         (

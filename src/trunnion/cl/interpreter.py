@@ -252,6 +252,9 @@ def _refuse_no_word(statement: Statement) -> None:
     if "=" in name:
         what = f"{name.partition('=')[0]} is defined here: this is an APT part program and not CL data"
         raise StatementError(what, "run it through the APT system, and give its CL data")
+    if name.startswith("IF("):
+        what = "IF is a statement of an APT part program, and not of CL data"
+        raise StatementError(what, "run the part program through the APT system, and give its CL data")
     if name.isdigit() and "/" in statement.source:
         what = f"the word is the number {name}, and numbers of words differ from system to system"
         raise StatementError(what, "output the CL data as text with words")

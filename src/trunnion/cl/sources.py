@@ -268,7 +268,12 @@ def _why_no_cl_file(inside: str, info: zipfile.ZipInfo, opened: Callable[[], Bin
     with opened() as text:
         head = text.read(_PIECE)
     _refuse_archive(inside, head, "an archive in an archive")
-    if head.startswith(_UTF16) or _MOTION.search(head) or recognize_dialect(head[:_HEAD]).marked:
+    if (
+        not head.strip(b"\0")
+        or head.startswith(_UTF16)
+        or _MOTION.search(head)
+        or recognize_dialect(head[:_HEAD]).marked
+    ):
         return ""  # damaged ones too: the reader says what is wrong
     return "is no CL file, and is left out"
 

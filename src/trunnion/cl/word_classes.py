@@ -106,6 +106,9 @@ def acts_on_machine(major: str, words: Collection[str]) -> str:
         return f"may be a damaged {letters[0]}"
     if meant := next((word for word in sorted(words) if _is_one_letter_off(major, word)), ""):
         return f"may be a damaged {meant.removeprefix('->')}"
+    lettered = major.replace("0", "O").replace("1", "I")
+    if lettered != major and _is_known(lettered, words):
+        return f"may be a damaged {lettered}"
     if glued := next(
         (word for word in _BARE_WORDS if major.startswith(word) and _is_known(major[len(word) :], words)), ""
     ):

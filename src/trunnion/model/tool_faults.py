@@ -60,6 +60,12 @@ def _sizes(tool: Tool) -> Iterator[ToolFault]:
 def _corners(tool: Tool) -> Iterator[ToolFault]:
     """A corner that its tool has no room for; one whose centre the file says may be that of a barrel."""
     d, r = tool.diameter, tool.corner_radius
+    e, f = tool.corner_centre or (-1.0, r)
+    if d and e >= 0.0 and r - f > _ROUNDING * d:
+        what = (
+            f"the corner of the tool would reach below its tip: its radius is {r:g}, and its centre {f:g} above the tip"
+        )
+        yield ToolFault(what, "write the seven numbers of CUTTER in their order")
     if d and tool.kind != "BARREL" and tool.corner_centre is None and r > 0.5 * d + _ROUNDING * d:
         what = f"the tool has a corner radius of {r:g}, more than half its diameter {d:g}"
         yield ToolFault(what, "write the radius of the corner, and half the diameter for a ball")

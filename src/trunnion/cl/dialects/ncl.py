@@ -40,11 +40,20 @@ def _geometry_type(state: ReaderState, statement: Statement) -> None:
         state.diagnostics.remark(state.line, what, "the control must have the radius of the tool, and CUTCOM be active")
 
 
+def _comment(state: ReaderState, text: str) -> None:
+    """A comment, which is a command also where blanks stand in front of its arrow."""
+    _command(state, text.strip())
+
+
 def _remark(state: ReaderState, statement: Statement) -> None:
     """A comment, in which an alias may put what otherwise stands behind ``$$->``."""
-    if not statement.text.startswith("->"):
+    _command(state, statement.text)
+
+
+def _command(state: ReaderState, text: str) -> None:
+    if not text.startswith("->"):
         return
-    found = parse(statement.text.encode(), "utf-8")
+    found = parse(text.encode(), "utf-8")
     handler = NCL.handlers.get(found.major)
     if handler is not None:
         handler(state, found)
@@ -78,7 +87,7 @@ _UNCONFIRMED: Final = "no real file of this dialect confirms its meaning"
 NCL: Final = Dialect(
     name="ncl",
     title="Creo NCL",
-    marks=marks(rb"\$\$\*?[ \t]*Pro/CLfile\b", rb"\$\$->", rb"REMARK[ \t]*(?:->|\*[ \t]*Pro/CLfile\b)"),
+    marks=marks(rb"\$\$\*?[ \t]*Pro/CLfile\b", rb"\$\$[ \t]*->", rb"REMARK[ \t]*(?:->|\*[ \t]*Pro/CLfile\b)"),
     handlers={
         **APT_HANDLERS,
         **{f"->{word}": apt_refused.refuse for word in apt_refused.REFUSED_WORDS},
@@ -109,6 +118,7 @@ NCL: Final = Dialect(
         settle=_settle_cycle,
     ),
     alias=_alias,
+    comment=_comment,
     # The tool axis is written only where it is not parallel to Z.
     no_axis=NoAxis.Z,
 )

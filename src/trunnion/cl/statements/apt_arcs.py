@@ -22,6 +22,8 @@ _CYLINDER: Final = re.compile(
 
 #: How far the end point may be off the radius, as a part of it, and at least, in units of the file.
 _OFF_RADIUS: Final = 1e-3
+#: How far the end point may be off the plane of the start, in units of the file: points have three decimals or more.
+_OFF_PLANE: Final = 2e-3
 #: How far the direction may be off the tangent, as the cosine of the angle between direction and radius.
 _OFF_TANGENT: Final = 0.02
 #: A normal no farther off an axis of coordinates than this is taken for it: directions have five decimals.
@@ -71,6 +73,8 @@ def gofwd(state: ReaderState, statement: Statement) -> None:
         raise StatementError("GOFWD along other geometry than a circle", _CURE)
     i, j, k = direction.vector
     normal = _normal(_minus(start, centre), (i, j, k), given)
+    if abs(_dot(_minus(end, start), normal)) > _OFF_PLANE:
+        raise StatementError("GOFWD ends off the plane in which it begins: along a circle no tool goes there", _CURE)
     end = _on_circle(centre, normal, radius, end)
     _check_intersection(_minus(start, centre), _minus(end, centre), normal, found[2])
     motion.begin_circle(state, (*centre, *normal, radius), 1)

@@ -11,6 +11,7 @@ PART_PROGRAM_WORDS: Final = (
     "MACRO", "TERMAC", "CALL", "LOOPST", "LOOPND", "JUMPTO", "RESERV", "IF", "DO", "ZSURF", "GO", "GOLFT",
     "GORGT", "GOUP", "GODOWN", "GOBACK", "TLLFT", "TLRGT", "TLONPS", "TLOFPS", "THICK", "INDIRP", "CUT",
     "DNTCUT", "POCKET", "SCURV", "POINT", "LINE", "PLANE", "VECTOR",
+    "INCLUD", "INCLUDE", "*INCLUD", "*INCLUDE", "WHILE", "UNTIL", "UNDEF",
 )  # fmt: skip
 
 _ROTARY: Final = (

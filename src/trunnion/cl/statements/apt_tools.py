@@ -109,6 +109,9 @@ def loadtl(state: ReaderState, statement: Statement) -> None:
             raise StatementError(f"LOADTL/{statement.listed()} is not known", "write LOADTL/number,ADJUST,register")
         adjust, at = whole_number("LOADTL", tuple(plain[-1:])), len(values)
         length = plain[1] if len(plain) == 3 else 0.0
+    statement.refuse_contradictions(_REGISTERS)
+    if twice := next((word for word in (*_REGISTERS, "LENGTH") if values.count(word) > 1), ""):
+        raise StatementError(f"LOADTL has {twice} twice", "write the one that is meant")
     while at < len(values):
         word = values[at]
         if word in _REGISTERS:
@@ -140,7 +143,7 @@ def select(state: ReaderState, statement: Statement) -> None:
     if statement.values[:1] == ("TOOL",):
         events.load(state, statement._replace(major="SELECT"))
     else:
-        number = whole_number(statement.major, statement.values[:1])
+        number = whole_number(statement.major, statement.values)
         state.add(SelectTool(state.operation_row, state.line, number))
 
 

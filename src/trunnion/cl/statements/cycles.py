@@ -26,6 +26,8 @@ _USED_BY = {
 }
 #: Controls and their cycles are for fewer pecks than this.
 _MOST_PECKS = 1000
+#: No cycle has more words and numbers.
+_MOST_VALUES = 60
 #: Stands for the unit of a feed until that follows.
 _BARE_FEED = "FEED"
 
@@ -55,6 +57,9 @@ def cycle(state: ReaderState, statement: Statement) -> None:
 def _parse(state: ReaderState, statement: Statement) -> CycleParts:
     """Take a cycle apart: each word and each number belongs to exactly one couplet, or the statement is refused."""
     values = statement.values
+    if len(values) > _MOST_VALUES:
+        what = f"CYCLE has {len(values)} values, and none has more than {_MOST_VALUES}"
+        raise StatementError(what, "look for a lost line end, or commas too many")
     if not values or not isinstance(values[0], str):
         what = "CYCLE without a word for its kind"
         raise StatementError(what, "write CYCLE/DRILL, CYCLE/TAP, ..., or CYCLE/OFF")
@@ -84,6 +89,9 @@ def _parse(state: ReaderState, statement: Statement) -> CycleParts:
         dialect.settle(found)
     _refuse_repetitions(found)
     _refuse_impossible(found)
+    # The same height under its other name.
+    heights = [("RAPTO" if word == "CLEAR" else word, given) for word, given in found.couplets]
+    found.couplets = list(dict.fromkeys(heights))
     return found
 
 

@@ -74,7 +74,12 @@ def spindl(state: ReaderState, statement: Statement) -> None:
     """Turn the spindle on or off."""
     statement.refuse_contradictions(("OFF", "ON"), ("OFF", "CLW", "CCLW"), ("OFF", "RPM", *_SURFACE_SPEEDS))
     words = set(statement.words())
+    if not statement.values:
+        raise StatementError("SPINDL without a speed or a word", "write SPINDL/RPM,n,CLW, SPINDL/ON or SPINDL/OFF")
     if "OFF" in words:
+        if statement.values != ("OFF",):
+            rest = [word for word in statement.words() if word != "OFF"]
+            state.note_unknown(statement, f"SPINDL/{statement.listed()} is not known", *rest)
         state.add(SpindleOff(state.operation_row, state.line))
         return
     if unknown := sorted(words - _SPINDLE_WORDS):
@@ -103,7 +108,10 @@ def spindl(state: ReaderState, statement: Statement) -> None:
 
 
 def _speed_and_diameter(statement: Statement) -> tuple[float | None, float | None]:
-    """Speed, and the number behind DIAMTR; None where there is none. A number behind RANGE is neither."""
+    """Speed, and the number behind DIAMTR; None where there is none.
+
+    A number behind RANGE is neither, nor is one behind a word that is not known: it goes with that word.
+    """
     speed: float | None = None
     diameter: float | None = None
     last: str | float = ""
@@ -112,10 +120,12 @@ def _speed_and_diameter(statement: Statement) -> tuple[float | None, float | Non
             (value,) = numbers("SPINDL", (value,))
             if last == "DIAMTR":
                 diameter = value
-            elif last != "RANGE" and speed is not None:
+            elif last == "RANGE" or (isinstance(last, str) and last and last not in _SPINDLE_WORDS):
+                continue
+            elif speed is not None:
                 what = f"SPINDL has two speeds, {speed:g} and {value:g}"
                 raise StatementError(what, "write the one that is meant")
-            elif last != "RANGE":
+            else:
                 speed = value
         last = value
     return speed, diameter
@@ -156,7 +166,9 @@ def loadtl(state: ReaderState, statement: Statement) -> None:
 
 
 def coolnt(state: ReaderState, statement: Statement) -> None:
-    """Switch the coolant."""
+    """Switch the coolant; COOLNT alone is ON."""
+    if not statement.values and "/" in statement.source:
+        raise StatementError("COOLNT/ without a word", "write COOLNT/FLOOD, MIST, THRU, AIR, ON or OFF")
     kind, *rest = statement.values or ("ON",)
     known = isinstance(kind, str) and kind in _COOLANTS
     if rest or not known:

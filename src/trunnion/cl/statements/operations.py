@@ -136,8 +136,8 @@ def partno(state: ReaderState, statement: Statement) -> None:
 def units(state: ReaderState, statement: Statement) -> None:
     """Set the length unit of the file."""
     word = statement.values[0] if statement.values else ""
-    if not isinstance(word, str) or word not in LENGTH_UNITS:
-        raise StatementError(f"UNITS/{word} is not a known unit", "write UNITS/MM or UNITS/INCHES")
+    if not isinstance(word, str) or word not in LENGTH_UNITS or len(statement.values) > 1:
+        raise StatementError(f"UNITS/{statement.listed()} is not a known unit", "write UNITS/MM or UNITS/INCHES")
     if state.length_unit is not None and state.length_unit[0] != LENGTH_UNITS[word]:
         what = f"UNITS/{word} after another unit in line {state.length_unit[1]}"
         raise StatementError(what, "keep to one unit in a file")
