@@ -94,6 +94,12 @@ def test_more_statements_without_a_line_of_their_own_are_refused(body_fails: Fai
     assert (problem.line, "without a line of its own" in problem.what) == (4, True)
 
 
+@pytest.mark.parametrize("end", ["", "$\n", " "])
+def test_a_command_of_creo_stands_on_a_line_of_its_own(fails: Fail, end: str) -> None:
+    (problem,) = fails(written("ncl", f"FEDRAT / 200, MMPM{end}$$-> CUTTER / 12"))
+    assert "has $$-> behind it" in problem.what
+
+
 @pytest.mark.parametrize(
     "text",
     [

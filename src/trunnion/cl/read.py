@@ -18,7 +18,7 @@ from trunnion.cl.diagnostics import Diagnostics
 from trunnion.cl.dialects import DIALECTS, Recognition, recognize_dialect
 from trunnion.cl.interpreter import ClInterpreter
 from trunnion.cl.joining import join_cuts, join_first_tool
-from trunnion.cl.kept_feeds import report_kept_feeds
+from trunnion.cl.kept_states import report_kept_states
 from trunnion.cl.scan import MAX_STATEMENT_BYTES, SPAN_COLUMNS, TOO_LONG, UNFINISHED, scan
 from trunnion.cl.sources import ClSource, cl_sources, not_one_file
 from trunnion.cl.splines import with_spline_points
@@ -162,7 +162,7 @@ def read_source(
     if unit != 1.0:
         columns.tip[: scanner.rows] *= unit
     builders = join_first_tool(interpreter.builders, diagnostics)
-    report_kept_feeds(builders, diagnostics)
+    report_kept_states(builders, diagnostics)
     builders = join_cuts(builders, diagnostics, in_sections=recognized.dialect.in_sections)
     columns = with_spline_points(builders, columns, scanner.rows, unit, spline_tolerance, diagnostics)
     modal_axis = np.array([0.0, 0.0, 1.0])

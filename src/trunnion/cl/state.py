@@ -151,7 +151,9 @@ class ReaderState:
         if self.dialect.in_sections or self.row == before.first:
             return
         if self.cycle_line:
-            self._refuse_cycle("another operation begins")
+            what = f"the cycle of line {self.cycle_line} is still on where another operation begins"
+            self.diagnostics.error(self.line, what, "write CYCLE/OFF behind its last hole")
+            self.cycle_line = 0
         at = self.operation_row
         self.builder = OperationBuilder(
             f"OPERATION {len(self.builders) + 2}", self.line, self.row, continues=True, tool=before.tool,
@@ -164,12 +166,6 @@ class ReaderState:
         before.stop = self.row
         self._check_tool(before)
         self.builders.append(before)
-
-    def _refuse_cycle(self, where: str) -> None:
-        """Report a cycle that nothing has ended: each point behind it would be a hole."""
-        what = f"the cycle of line {self.cycle_line} is still on where {where}"
-        self.diagnostics.error(self.line, what, "write CYCLE/OFF behind its last hole")
-        self.cycle_line = 0
 
     def name_operation(self, name: str) -> None:
         """Begin an operation with a name; what was stated of one without motion counts no more."""
@@ -198,8 +194,6 @@ class ReaderState:
             if is_loaded and self.operation_row:
                 return
             self.split_operation()
-        if self.cycle_line and self.tool is not None and self.tool.number != number:
-            self._refuse_cycle(f"tool {number} is loaded")
         if self.operation_row == 0:
             self.state_once(TOOL_NUMBER, number)
             if adjust:

@@ -43,6 +43,7 @@ class SwallowedStatements:
         counting = {word.removeprefix("->") for word in words_that_count(dialect)}
         self._words = frozenset(word for word in counting | ACTING_WORDS | _SAYING_NOTHING if len(word) >= _SHORTEST)
         listed = "|".join(r"\s*".join(map(re.escape, word)) for word in sorted(counting | {"TOOLPATH", "INSERT"}))
+        self._has_commands = any(word.startswith("->") for word in dialect.handlers)
         self._in_text = re.compile(rf"(?<=[^\s_/-])({listed})\s*/\s*{_BEGINS_VALUES}", re.IGNORECASE)
 
     def refuse(self, statement: Statement, comments: Iterable[str]) -> None:
@@ -54,6 +55,8 @@ class SwallowedStatements:
             If one does, or if a comment has a control character.
         """
         for comment in comments:
+            if self._has_commands and comment.lstrip().startswith("->"):
+                raise StatementError(f"{statement.major[:40]} has $$-> behind it, which begins a line", _LOST_END)
             self.refuse_in_comment(comment)
         if not statement.text:
             found = self._in_values(statement)

@@ -1,4 +1,4 @@
-"""Warnings of tools that cut with the feed of the tool before, as where the line with their own is lost."""
+"""What a tool keeps of the one before, as where a line is lost: its feed, and a cycle that nothing has ended."""
 
 from collections.abc import Sequence
 
@@ -7,15 +7,32 @@ from trunnion.cl.diagnostics import Diagnostics
 from trunnion.model.toolpath import CycleOff, CycleOn, LoadTool
 
 
-def report_kept_feeds(builders: Sequence[OperationBuilder], diagnostics: Diagnostics) -> None:
-    """Warn of each operation that loads another tool, and cuts before any FEDRAT of its own."""
+def report_kept_states(builders: Sequence[OperationBuilder], diagnostics: Diagnostics) -> None:
+    """Warn of another tool that cuts before any FEDRAT of its own; refuse one that drills on in the cycle before it."""
     tool = 0
     for builder in builders:
+        _refuse_kept_cycle(builder, tool, diagnostics)
         loads = [event for event in builder.events if isinstance(event, LoadTool)]
         if loads and tool not in (0, loads[0].number) and _keeps_feed(builder, loads[0]):
             what = f"operation {builder.name} loads tool {loads[0].number}, and cuts with the feed of tool {tool}"
             diagnostics.remark(loads[0].line, what, "put FEDRAT behind the tool")
         tool = loads[-1].number if loads else tool
+
+
+def _refuse_kept_cycle(builder: OperationBuilder, tool: int, diagnostics: Diagnostics) -> None:
+    """Refuse holes of a cycle that was on when the operation loaded another tool than ``tool``."""
+    cycle: CycleOn | None = None
+    rapids = set(builder.rapids)
+    for at, event in enumerate(builder.events):
+        if isinstance(event, CycleOn | CycleOff):
+            cycle = event if isinstance(event, CycleOn) else None
+        elif isinstance(event, LoadTool):
+            following = (e.row for e in builder.events[at:] if isinstance(e, CycleOn | CycleOff))
+            rows = range(event.row, next(following, builder.stop - builder.first))
+            if cycle and tool not in (0, event.number) and not rapids.issuperset(rows):
+                what = f"the cycle of line {cycle.line} is still on where tool {event.number} is loaded"
+                diagnostics.error(event.line, what, "write CYCLE/OFF behind its last hole")
+            tool = event.number
 
 
 def _keeps_feed(builder: OperationBuilder, load: LoadTool) -> bool:
