@@ -187,6 +187,32 @@ def test_the_time_of_a_finding_is_that_of_its_place(tmp_path: Path) -> None:
     assert begin + 0.7 * 10.8 < hit.seconds < begin + 10.8
 
 
+def near_stock(found: trunnion.SimulationResult) -> list[tuple[str, int, float]]:
+    return [(one.between[0], one.block, one.distance) for one in found.near if one.between[1] == "stock"]
+
+
+def test_shank_and_holder_near_the_stock_are_told(tmp_path: Path) -> None:
+    over = "1=flat:10,length=6.5,flutes=6.5,holder=40x50"  # 1.5 mm above the top
+    found = simulate(tmp_path, SLOT, tools=[over], near=2.0)
+    ((body, block, distance),) = near_stock(found)
+    assert (body, block) == ("holder of tool 1", 60)
+    assert distance == pytest.approx(1.5, abs=0.06)
+    assert found.passed
+    (one,) = [each for each in found.near if each.between[1] == "stock"]
+    assert one.place[2] == pytest.approx(0.0, abs=0.6)
+    assert not near_stock(simulate(tmp_path, SLOT, tools=[over], near=1.4))
+    again = SLOT.replace("Z-5", "Z-2.5").replace("N70", "G0 Z20\nG0 X-20\nG0 Z-5\nN65 G1 X70\nN70")
+    thick = "1=flat:10,length=60,flutes=3,shank=8"  # in the slot, 1 mm from its walls
+    beside = simulate(tmp_path, again, tools=[thick], near=2.0)
+    assert beside.passed
+    *_, (body, block, distance) = near_stock(beside)
+    assert (body, block) == ("shank of tool 1", 65)
+    assert distance == pytest.approx(1.0, abs=0.06)
+    touching = simulate(tmp_path, SLOT, tools=["1=flat:10,length=4,flutes=4,holder=40x50"], near=2.0)
+    assert {one.kind for one in touching.findings} == {"holder into stock"}
+    assert not [one for one in near_stock(touching) if one[1] == 60]
+
+
 def test_a_fixture_is_hit_and_come_near_to(tmp_path: Path) -> None:
     clamp = cuboid((55, -5, -20), (65, 5, -6))
     beside = simulate(tmp_path, SLOT, fixtures=[clamp], near=2.0)

@@ -115,7 +115,7 @@ class SimulatedOperation:
 
 
 #: The part of the tool that does what is wrong; all others are the cutter's.
-_ROLES: Final = {What.SHANK: Role.SHANK, What.HOLDER: Role.HOLDER}
+_ROLES: Final = {What.SHANK: (Role.SHANK,), What.HOLDER: (Role.HOLDER,), What.NEAR: (Role.SHANK, Role.HOLDER)}
 
 _Named = TypeVar("_Named", SimulationFinding, NearMiss, AirCut, SimulatedOperation)
 
@@ -198,17 +198,19 @@ def make_result(
     seconds = [np.cumsum(each.seconds) for each in verified]
     lengths = [tip_lengths(job.run) for job in jobs]
     findings, operations, air = list[SimulationFinding](), list[SimulatedOperation](), list[AirCut]()
+    misses = list[NearMiss]()
     for one in found.operations:
         run, at = jobs[one.job].run, seconds[one.job]
         for finding in one.findings:
             findings.append(_finding(verified[one.job], finding, _moment(jobs[one.job], finding, at, slack)))
+        for finding in one.near:
+            misses.append(_near_stock(run, finding, _moment(jobs[one.job], finding, at, slack + finding.depth)))
         idle = list(_air(run, one, lengths[one.job]))
         air += idle
         seconds_taken = float(at[one.end - 1]) - (float(at[one.first - 1]) if one.first else 0.0)
         lines = int(run.line[one.first]), int(run.line[one.end - 1])
         air_length = sum(each.length for each in idle)
         operations.append(_operation(run, one, seconds_taken, lines, air_length))
-    misses = list[NearMiss]()
     for number, collisions in enumerate(touched):
         run, at = jobs[number].run, seconds[number]
         hits = [each for each in collisions if not each.is_near]
@@ -269,8 +271,8 @@ def _moment(job: Job, finding: Finding, seconds: Floats, slack: float) -> float:
     row, fraction = finding.worst, finding.fraction
     if math.isnan(fraction):
         shape = job.tools.get(job.run.tools[int(job.run.state.tool[row])])
-        role = _ROLES.get(finding.what, Role.CUTTER)
-        fraction = 1.0 if shape is None else reached(job.run, row, shape, (role,), finding.place, slack)
+        roles = _ROLES.get(finding.what, (Role.CUTTER,))
+        fraction = 1.0 if shape is None else reached(job.run, row, shape, roles, finding.place, slack)
     return _at_fraction(seconds, row, fraction)
 
 
@@ -294,6 +296,14 @@ def _finding(verified: Verification, finding: Finding, seconds: float) -> Simula
 def _of_collision(each: Collision) -> Finding:
     rows = each.row, each.last_row
     return Finding(What.BODY, each.between, rows, each.worst_row, each.depth_mm, each.place, each.worst_fraction)
+
+
+def _near_stock(run: Run, each: Finding, seconds: float) -> NearMiss:
+    row, last = each.worst, each.rows[1]
+    return NearMiss(
+        each.between, file_of_row(run, row), int(run.line[row]), int(run.block_number[row]), int(run.line[last]),
+        int(run.block_number[last]), seconds, each.depth, each.place,
+    )  # fmt: skip
 
 
 def _near_miss(run: Run, each: Collision, seconds: Any) -> NearMiss:

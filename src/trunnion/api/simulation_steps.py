@@ -109,7 +109,7 @@ class _Steps:
         self._part = own.part or self._part
         part = self._part
         design = None if part is None else StockShape(part.bounds[0], part.bounds[1], mesh=part)
-        setup = Setup(shape, design, self._cell, self._tolerance)
+        setup = Setup(shape, design, self._cell, self._tolerance, self._given.near or 0.0)
         result = self._simulated(own, setup, part, remarks)
         self._left = result.simulation
         return result

@@ -33,6 +33,7 @@ class What(StrEnum):
     SHANK = "shank into stock"
     HOLDER = "holder into stock"
     BODY = "collision"
+    NEAR = "near"
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +70,8 @@ def row_findings(run: Run, rows: RowsCut, shape: ToolShape, limit: float, turnin
     standing = ~rapid & ~turning[first:end] & deep
     yield from _runs(What.STANDING, (name, "stock"), first, standing, rows.idle.depth, rows.idle.place)
     for section, met in rows.met.items():
+        if section >= len(shape.sections):  # it only stands around one of them (``near_stock``)
+            continue
         role = shape.sections[section].role
         what = What.HOLDER if role is Role.HOLDER else What.SHANK
         body = f"{what.name.lower()} of {name}"
@@ -136,14 +139,18 @@ def _runs(
     pause: int = _PAUSE,
 ) -> Iterator[Finding]:
     """Consecutive rows as one finding."""
-    found = np.flatnonzero(flags)
-    if not len(found):
-        return
-    for part in np.split(found, np.flatnonzero(np.diff(found) > 1 + pause) + 1):
+    for part in rows_together(flags, pause):
         worst = int(part[depth[part].argmax()])
         x, y, z = place[worst].tolist()
         rows = int(part[0]) + first, int(part[-1]) + first
         yield Finding(what, between, rows, worst + first, float(depth[worst]), (x, y, z))
+
+
+def rows_together(flags: Flags, pause: int = _PAUSE) -> Iterator[Ints]:
+    """The places of flags, in parts between which more than ``pause`` are off."""
+    found = np.flatnonzero(flags)
+    if len(found):
+        yield from np.split(found, np.flatnonzero(np.diff(found) > 1 + pause) + 1)
 
 
 def air_cuts(run: Run, rows: RowsCut) -> Ints:

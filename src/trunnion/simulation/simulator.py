@@ -16,11 +16,12 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
 from trunnion.simulation.cutting.removal import RowsCut, cut
 from trunnion.simulation.findings import Finding, air_cuts, gouge_findings, idle_rows, row_findings, spindle_turns
+from trunnion.simulation.near_stock import near_findings, pieces_with_near
 from trunnion.simulation.stock.deviation import Excess, Gouges, left_on, missing_from
 from trunnion.simulation.stock.material import Stock
 from trunnion.simulation.stock.solids import StockShape, make_stock
 from trunnion.simulation.stock.spans import Spans
-from trunnion.simulation.tools.pieces import RevolvedPieces, revolved_pieces
+from trunnion.simulation.tools.pieces import RevolvedPieces
 from trunnion.simulation.tools.profile import ToolShape
 
 #: Gouges that are nearer to each other along the path than so many cells are one.
@@ -32,12 +33,16 @@ _FACETS: Final = 0.25
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """What is simulated: the solids, the cell, how far motions may be off (``tolerance``), mm."""
+    """What is simulated: the solids, the cell, how far motions may be off (``tolerance``), mm.
+
+    near  distance from the stock from which on shank and holder are told, mm; 0: only where they meet it
+    """
 
     stock: StockShape
     part: StockShape | None
     cell: float
     tolerance: float
+    near: float = 0.0
 
     @property
     def limit(self) -> float:
@@ -67,6 +72,7 @@ class OperationCut:
     gouged: float = 0.0
     air: list[Ints] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
+    near: list[Finding] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -144,7 +150,7 @@ def _simulate(
     start_volume, operations = stock.volume, list[OperationCut]()
     total, done, error = sum(job.end for job in jobs), 0, 0.0
     for number, job in enumerate(jobs):
-        pieces, off = _pieces(job, _FACETS * setup.tolerance)
+        pieces, off = _pieces(job, _FACETS * setup.tolerance, setup.near)
         error = max(error, off)
         operations += _cut_job(setup, jobs, number, pieces, stock, design, threads, _shifted(progress, done, total))
         done += job.end
@@ -216,12 +222,12 @@ def _shifted(progress: Callable[[int, int], None] | None, before: int, total: in
     return lambda done, _: progress(before + done, total)
 
 
-def _pieces(job: Job, tolerance: float) -> tuple[dict[int, RevolvedPieces], float]:
+def _pieces(job: Job, tolerance: float, near: float = 0.0) -> tuple[dict[int, RevolvedPieces], float]:
     """The pieces of each tool by its index in the run, and how far they are off."""
     found, error = {}, 0.0
     for index, name in enumerate(job.run.tools):
         if name in job.tools:
-            found[index], off = revolved_pieces(job.tools[name], tolerance)
+            found[index], off = pieces_with_near(job.tools[name], near, tolerance)
             error = max(error, off)
     return found, error
 
@@ -254,6 +260,8 @@ def _cut_job(
         current.removed += float(rows.removed.sum())
         current.gouged += float(rows.gouged.sum())
         current.findings += row_findings(run, rows, job.tools[name], setup.limit, turning)
+        if setup.near > 0.0:
+            current.near += near_findings(run, rows, job.tools[name], setup.near, setup.tolerance)
         current.air.append(air_cuts(run, rows))
     if current is not None:
         yield current

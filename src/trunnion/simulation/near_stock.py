@@ -1,0 +1,110 @@
+"""Shank and holder near the stock, as it is then: bodies that stand out farther all around meet it.
+
+In:     the body of a tool and a distance; what its pieces have met in rows of a run.
+Out:    the pieces of the tool with thicker ones around shank and holder; near misses as ``Finding`` records.
+Units:  mm, frame of the tool.
+
+A section that stands out by d meets what is nearer than d. Several thicknesses, one in the other, say between which two
+of them the stock is, and how deep the thinner one that meets it is in it says how near it is.
+"""
+
+import math
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.model.run import Run
+from trunnion.simulation.cutting.removal import RowsCut
+from trunnion.simulation.findings import Finding, What, rows_together, tool_name
+from trunnion.simulation.tools.pieces import RevolvedPieces, revolved_pieces
+from trunnion.simulation.tools.profile import Point, ProfileArc, ProfileLine, Role, Section, ToolShape
+
+#: Thicknesses of a section.
+_LEVELS: Final = 4
+
+#: Chords of a round element, and of a quarter circle around a corner.
+_CHORDS: Final = 8
+_CORNER: Final = 3
+
+
+def pieces_with_near(shape: ToolShape, near: float, tolerance: float) -> tuple[RevolvedPieces, float]:
+    """Return what ``revolved_pieces`` does, with thicker sections around shank and holder.
+
+    Their number in ``RevolvedPieces.section`` is ``len(shape.sections) + _LEVELS * section + level``.
+    """
+    if near <= 0.0:
+        return revolved_pieces(shape, tolerance)
+    thicker, numbers = list[Section](), list[int]()
+    count = len(shape.sections)
+    for number, section in enumerate(shape.sections):
+        if section.role is Role.CUTTER:
+            continue
+        for level in range(_LEVELS):
+            for low, high in _lines(section):
+                thicker.append(Section(section.role, _around(low, high, near * (level + 1) / _LEVELS), section.name))
+                numbers.append(count + _LEVELS * number + level)
+    whole = ToolShape((*shape.sections, *thicker), shape.name)
+    pieces, error = revolved_pieces(whole, tolerance)
+    owners = np.array([*range(count), *numbers], np.int64)[pieces.section]
+    owners.setflags(write=False)
+    return pieces._replace(section=owners), error
+
+
+def _lines(section: Section) -> Iterator[tuple[Point, Point]]:
+    """The outline of a section as lines that go up."""
+    for element in section.outline:
+        points = [element.start, element.end]
+        if isinstance(element, ProfileArc):
+            heights = np.linspace(element.start[1], element.end[1], _CHORDS + 1).tolist()
+            points = [(element.radius_at(z), z) for z in heights]
+        yield from ((low, high) for low, high in pairwise(points) if high[1] - low[1] > 1e-9)
+
+
+def _around(low: Point, high: Point, distance: float) -> tuple[ProfileLine, ...]:
+    """The outline of what is no farther than a distance from a frustum."""
+    lean = math.atan2(low[0] - high[0], high[1] - low[1])  # of the normal, from level
+    angles = [
+        (low, np.linspace(-0.5 * math.pi, lean, _CORNER + 1)),
+        (high, np.linspace(lean, 0.5 * math.pi, _CORNER + 1)),
+    ]
+    points = [
+        (centre[0] + distance * max(math.cos(angle), 0.0), centre[1] + distance * math.sin(angle))
+        for centre, around in angles
+        for angle in around.tolist()
+    ]
+    return tuple(ProfileLine(one, other) for one, other in pairwise(points) if other[1] - one[1] > 1e-9)
+
+
+def near_findings(run: Run, rows: RowsCut, shape: ToolShape, near: float, limit: float) -> Iterator[Finding]:
+    """Yield where shank and holder come nearer to the stock than ``near`` mm, and do not meet it.
+
+    ``depth`` of these findings is how far they are apart; what is met no deeper than ``limit`` mm is not met.
+    """
+    count = len(shape.sections)
+    for number, section in enumerate(shape.sections):
+        if section.role is Role.CUTTER or number not in rows.met:
+            continue
+        apart, place = _distance(rows, count + _LEVELS * number, near, limit)
+        apart[rows.met[number].depth > limit] = np.inf
+        body = f"{section.role} of {tool_name(run, rows.tool)}"
+        for part in rows_together(np.isfinite(apart)):
+            worst = int(part[apart[part].argmin()])
+            x, y, z = place[worst].tolist()
+            first, last = int(part[0]) + rows.first, int(part[-1]) + rows.first
+            yield Finding(What.NEAR, (body, "stock"), (first, last), worst + rows.first, float(apart[worst]), (x, y, z))
+
+
+def _distance(rows: RowsCut, first: int, near: float, limit: float) -> tuple[Floats, Floats]:
+    """How far a section is from the stock in each row, and where; infinite where it is farther than ``near``."""
+    apart, place = np.full(len(rows.removed), np.inf), np.full((len(rows.removed), 3), np.nan)
+    for level in reversed(range(_LEVELS)):
+        if first + level not in rows.met:
+            continue
+        met, reach = rows.met[first + level], near * (level + 1) / _LEVELS
+        hit = met.depth > limit
+        apart[hit] = np.clip(reach - met.depth[hit], reach - near / _LEVELS, reach)
+        place[hit] = met.place[hit]
+    return apart, place
