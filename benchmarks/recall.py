@@ -1,8 +1,10 @@
-"""Which defects the simulation finds: ``python -m benchmarks.recall [IMPELLER.ngc]``, from the project's folder.
+"""Which defects the simulation finds: ``python -m benchmarks.recall [--ribs] [IMPELLER.ngc]``.
 
-Puts gouges of known depths and other defects into sound programs (``tests/support/recall.py``), one at a time,
-simulates each, and writes the table of ``docs/simulation.md``. Exit code 1 if a gouge from half a cell deep or another
-defect is not found in the right block, or if anything is told that was not put in.
+Is started from the project's folder. Puts gouges of known depths and other defects into sound programs
+(``tests/support/recall.py``), one at a time, simulates each, and writes the tables of ``docs/simulation.md``; with
+``--ribs`` only that of thin ribs, whose design is made of boxes (``tests/support/recall_ribs.py``). Exit code 1 if a
+gouge from half a cell deep or another defect is not found in the right block, or if anything is told that was not put
+in.
 """
 
 import argparse
@@ -14,6 +16,7 @@ from pathlib import Path
 
 import numpy as np
 from tests.support.recall import Defect, Outcome, Reference, Sound, cut_depths, gouges, outcome, plate, simulated
+from tests.support.recall_ribs import rib_gouges, ribs
 from tests.support.recall_setups import (
     golden_programs,
     impeller,
@@ -27,6 +30,7 @@ from tests.support.recall_setups import (
 
 PAGE = Path(__file__).parents[1] / "docs" / "simulation.md"
 BEGIN, END = "<!-- recall: made by benchmarks/recall.py -->", "<!-- end of recall -->"
+RIBS_BEGIN, RIBS_END = "<!-- recall of ribs: made by benchmarks/recall.py -->", "<!-- end of recall of ribs -->"
 HEAD = (
     "defect",
     "cells deep",
@@ -70,6 +74,26 @@ def table(outcomes: list[Outcome]) -> list[str]:
     return rows
 
 
+def recall_of_ribs() -> bool:
+    """Write the table of thin ribs; whether all of them are found."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        sound, reference = ribs(folder)
+        found = simulated(sound, folder, reference.mesh)
+        outcomes = [outcome(defect, reference, folder) for defect in rib_gouges(sound)]
+    told = f"Made by `python -m benchmarks.recall --ribs`. Findings in the sound program: {len(found.findings)}."
+    write_table([RIBS_BEGIN, "", told, "", *table(outcomes), "", RIBS_END])
+    return found.passed and not any(wrong(each) for each in outcomes)
+
+
+def write_table(lines: list[str]) -> None:
+    """Print a table, and put it into the page between its marks."""
+    text = "\n".join(lines)
+    print(text)
+    before, _, rest = PAGE.read_text(encoding="utf-8").partition(lines[0])
+    PAGE.write_text(before + text + rest.partition(lines[-1])[2], encoding="utf-8", newline="\n")
+
+
 def wrong(each: Outcome) -> bool:
     """Whether a defect that must be found is not, or is told wrongly."""
     shallow = each.defect.cells < 0.5
@@ -80,7 +104,11 @@ def main() -> int:
     """Run from the command line."""
     parser = argparse.ArgumentParser(description="Measure which defects the simulation finds.")
     parser.add_argument("impeller", nargs="?", type=Path, help="impeller-7bl-xyzac.ngc of LinuxCNC; else left out")
+    parser.add_argument("--ribs", action="store_true", help="only the thin ribs")
     arguments = parser.parse_args()
+    sound_ribs = recall_of_ribs()
+    if arguments.ribs:
+        return 0 if sound_ribs else 1
     begin, outcomes, alarms = time.perf_counter(), list[Outcome](), list[str]()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -110,12 +138,8 @@ def main() -> int:
     )
     print("\n".join(alarms))
     command = "python -m benchmarks.recall" + (" impeller-7bl-xyzac.ngc" if arguments.impeller else "")
-    text = "\n".join([BEGIN, "", f"Made by `{command}`. {told}", "", *table(outcomes), "", END])
-    print(text)
-    page = PAGE.read_text(encoding="utf-8")
-    before, _, rest = page.partition(BEGIN)
-    PAGE.write_text(before + text + rest.partition(END)[2], encoding="utf-8", newline="\n")
-    return 1 if alarms or any(wrong(each) for each in outcomes) else 0
+    write_table([BEGIN, "", f"Made by `{command}`. {told}", "", *table(outcomes), "", END])
+    return 1 if alarms or not sound_ribs or any(wrong(each) for each in outcomes) else 0
 
 
 if __name__ == "__main__":

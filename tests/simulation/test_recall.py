@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.recall import Defect, Reference, Sound, gouges, outcome, simulated
+from tests.support.recall_ribs import rib_gouges, ribs
 from tests.support.recall_setups import golden_programs, setups_of_contour, sound_contour_setups, standing, wrong_tools
 
 
@@ -38,6 +39,15 @@ def _some(contour: Sound, hub: Sound, reference: Reference) -> Iterator[Defect]:
     yield from islice(wrong_tools(hub), 2)
     yield from standing(hub, 2)
     yield from (each for k, each in enumerate(setups_of_contour(contour)) if k % 6 == 5)
+
+
+def test_gouges_into_thin_ribs_are_found_against_a_design_of_boxes(folder: Path) -> None:
+    sound, reference = ribs(folder)
+    assert simulated(sound, folder, reference.mesh).passed
+    for defect in list(rib_gouges(sound))[10::7]:
+        each = outcome(defect, reference, folder)
+        assert (each.found, each.right, each.invented) == (True, True, ()), (defect.kind, defect.cells)
+        assert 0.6 * defect.mm <= each.depth <= 1.01 * defect.mm
 
 
 def test_defects_are_found_in_the_right_block(sounds: list[Sound], references: list[Reference], folder: Path) -> None:
