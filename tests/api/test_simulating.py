@@ -328,8 +328,13 @@ def test_a_tool_length_that_is_left_out_is_an_error(tmp_path: Path) -> None:
 def test_meshes_that_are_odd_are_told(tmp_path: Path) -> None:
     small = cuboid((0, 0, 0), (0.05, 0.04, 0.01))
     save_mesh(small, tmp_path / "metres.stl")
-    found = simulate(tmp_path, SLOT, part=tmp_path / "metres.stl")
-    assert [one for one in found.remarks if "metres" in f"{one.what} {one.cure}"]
+    for which in ("stock", "part", "fixtures"):
+        with pytest.raises(trunnion.InputError, match="look like metres; export it in mm"):
+            simulate(tmp_path, SLOT, **{which: str(tmp_path / "metres.stl")})
+    save_mesh(cuboid((0, -20, -10), (50, 20, 0)).turned_out(), tmp_path / "inside.stl")
+    turned = simulate(tmp_path, SLOT, stock=tmp_path / "inside.stl")
+    assert [one for one in turned.remarks if "inside out" in one.what]
+    assert turned.removed == pytest.approx(2500.0, rel=1e-3)
 
 
 def test_a_tool_that_could_pass_between_the_rays_is_refused(tmp_path: Path) -> None:

@@ -114,7 +114,9 @@ def test_numbers_that_look_like_metres_are_told(tmp_path: Path) -> None:
     said: list[Problem] = []
     save_mesh(box_mesh(np.zeros(3), np.array([0.1, 0.2, 0.05])), tmp_path / "small.stl")
     load_mesh(tmp_path / "small.stl", warn=said.append)
-    assert str(said[0]).endswith("is 0.2 mm large: its numbers look like metres; give the unit m")
+    told = "is 0.2 mm large: its numbers look like metres; export it in mm"
+    assert told in str(said[0])
+    assert told in refusal(tmp_path / "small.stl", closed=True)
     said.clear()
     load_mesh(tmp_path / "small.stl", "m", warn=said.append)
     assert said == []

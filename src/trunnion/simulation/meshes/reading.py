@@ -35,6 +35,9 @@ MAX_COORDINATE: Final = 1e6
 #: Endings of the files that are read.
 MESH_FORMATS: Final = (".stl", ".obj", ".ply", ".3mf", ".glb", *STEP_ENDINGS)
 
+#: Formats whose numbers have no unit: they are taken for mm.
+_WITHOUT_UNIT: Final = (".stl", ".obj", ".ply")
+
 _CAD_FORMATS: Final = (".iges", ".igs", ".brep", ".x_t", ".x_b", ".sat", ".prt", ".sldprt", ".catpart", ".ipt")
 
 #: How far the facets of exact surfaces are off them where nobody says, mm.
@@ -77,7 +80,7 @@ def load_mesh(
     name
         What messages call it; empty: the name of the file.
     closed
-        Refuse a mesh with open edges: it has no inside, so that it can be neither stock nor part.
+        Refuse a mesh with open edges, which has no inside, and one that seems to be in metres.
     deviation
         How far facets may be off the surfaces of a STEP file, mm.
     warn
@@ -107,7 +110,8 @@ def load_mesh(
     scale = own_unit if stated is None else stated.in_mm
     mesh = _shared_vertices(vertices * scale, faces, name or file.name, label)
     findings = judge_mesh(mesh)
-    problems = list(_problems(mesh, findings, label, scale, refused=closed))
+    guessed = stated is None and ending in _WITHOUT_UNIT
+    problems = list(_problems(mesh, findings, label, guessed, refused=closed))
     refused = [problem for problem in problems if problem.severity is Severity.ERROR]
     if refused:
         raise InputError(refused)
@@ -211,7 +215,7 @@ def _shared_vertices(vertices: Floats, faces: Ints, name: str, label: str) -> Tr
     return TriangleMesh(ordered[new][used], (np.cumsum(used) - 1)[found], name)
 
 
-def _problems(mesh: TriangleMesh, findings: MeshFindings, label: str, scale: float, *, refused: bool) -> list[Problem]:
+def _problems(mesh: TriangleMesh, findings: MeshFindings, label: str, guessed: bool, *, refused: bool) -> list[Problem]:
     problems = []
     severity = Severity.ERROR if refused else Severity.WARNING
     if findings.open_edges:
@@ -227,9 +231,10 @@ def _problems(mesh: TriangleMesh, findings: MeshFindings, label: str, scale: flo
     low, high = mesh.bounds
     extent = float((high - low).max())
     if extent < SMALLEST_EXTENT:
-        cure = "give the unit m" if scale == 1.0 else "give the unit of its numbers"
-        what = f"is {extent:.3g} mm large: its numbers look like metres"
-        problems.append(Problem(label, 0, what, cure, Severity.WARNING))
+        # Stock of 0.1 mm is missed by every tool, and a part of 0.1 mm passes whatever is left.
+        what = f"is {extent:.3g} mm large" + (": its numbers look like metres" if guessed else "")
+        cure = "export it in mm, or as 3MF or STEP, which state their unit" if guessed else "check its unit"
+        problems.append(Problem(label, 0, what, cure, severity if guessed else Severity.WARNING))
     elif extent > LARGEST_EXTENT:
         what = f"is {extent / 1000.0:.3g} m large"
         problems.append(Problem(label, 0, what, "give the unit of its numbers", Severity.WARNING))
