@@ -1,6 +1,7 @@
 """From every control to every other and back: the tool follows the same path, as far as the programs' digits go."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -158,7 +159,10 @@ def test_arcs_holes_and_tilted_planes_are_on_every_other_control_what_the_cl_fil
         assert losses(found) == []
         carried = transfer_settings(found.settings, one.control, two.control)
         there, other = made(found.toolpath, two, carried, folder / f"two{two.control.extension}")
-        both = [added(*pair) for pair in zip(expected.tolerances, other.tolerances, strict=True)]
+        both = [
+            added(*pair, each)
+            for *pair, each in zip(expected.tolerances, other.tolerances, path.operations, strict=True)
+        ]
         milled = [(k, each) for k, each in enumerate(path.operations) if not drills(each)]
         if len(milled) == len(path.operations):
             checks = failures(verify(there, [path], tolerances=both, settings=other.settings))
@@ -180,9 +184,43 @@ def drilled(run: Run, operation: Operation, allowed: float) -> None:
             assert np.abs(tips - tip - height * axis).max(axis=1).min() <= 2.0 * allowed + 1e-6
 
 
-def added(one: Tolerances, other: Tolerances) -> Tolerances:
-    """The tolerances of a program that was posted from another one."""
-    return Tolerances(one.tip + other.tip, one.angle + other.angle, one.chord + other.chord, one.feed + other.feed)
+def added(one: Tolerances, other: Tolerances, operation: Operation) -> Tolerances:
+    """The tolerances of a program that was posted from another one.
+
+    Between its ends an arc of the first program is off by more than these: its start is rounded by half a digit in two
+    coordinates, e, and the centre from there by as much, d. A point at the angle a is off by e + d - d turned by a.
+    """
+    along = 3.0 * np.sqrt(2.0) - np.sqrt(3.0) if len(operation.arcs.row) else 0.0
+    tip = one.tip * (1.0 + along / np.sqrt(3.0)) + other.tip
+    return Tolerances(tip, one.angle + other.angle, one.chord + other.chord, one.feed + other.feed)
+
+
+@pytest.mark.parametrize("source", ["Haas NGC", "fanuc_30i"])
+def test_a_rounded_helix_is_as_near_as_its_digits_go_where_it_is_written_as_lines(source: str, tmp_path: Path) -> None:
+    """The start, and the centre from there, of this one are rounded to opposite sides."""
+    tips = [[-25.24725057, 9.25101732, 60.0], [-26.80076763, 15.36705854, 53.27815375]]
+    tips += [[-55.41282035, 22.62015342, 56.27815375], [-55.41282035, 22.62015342, 70.0]]
+    kind = np.array([Kind.RAPID, Kind.LINEAR, Kind.ARC, Kind.RAPID], np.uint8)
+    phase = np.where(kind == Kind.RAPID, np.uint8(Phase.RAPID), np.uint8(Phase.CUT))
+    feed = np.array([np.nan, 400.0, 400.0, 400.0])
+    axis, lines = np.tile([0.0, 0.0, 1.0], (4, 1)), np.arange(1, 5, dtype=np.int32)
+    moves = Moves(np.array(tips), axis, kind, phase, feed, np.zeros(4, bool), lines)
+    centre = np.array([[-37.15827446, 34.56974978, 53.27815375]])
+    arcs = Arcs(np.array([2]), centre, axis[:1], np.array([21.81791234]), np.zeros(1, np.int64))
+    events = LoadTool(0, 1, 3), SpindleOn(0, 1, 2000.0, Sense.CLW)
+    tool = Tool("MILL", "D10", 10.0, 5.0, 80.0)
+    operation = Operation("OP", tool, Frame(), moves, arcs, events, 1, 0.01, 0.01)
+    path = Toolpath("made.cls", (operation,))
+    one, two = SITES[source], SITES["heidenhain_itnc530"]
+    run, expected = made(path, one, {}, tmp_path / "one.nc")
+    found = convert(run, one.control)
+    carried = transfer_settings(found.settings, one.control, two.control)
+    there, other = made(found.toolpath, two, carried, tmp_path / "two.h")
+    allowed = added(expected.tolerances[0], other.tolerances[0], operation)
+    assert failures(verify(there, [path], tolerances=[allowed], settings=other.settings)) == []
+    tighter = replace(allowed, tip=expected.tolerances[0].tip + other.tolerances[0].tip)
+    checks = failures(verify(there, [path], tolerances=[tighter], settings=other.settings))
+    assert [check.key for check in checks] == ["tip"]
 
 
 @pytest.mark.parametrize("source", sorted(SITES))

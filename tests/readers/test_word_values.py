@@ -41,6 +41,7 @@ WORDS = [
     ("yl569", ["FGREF[C]=10 G1 X1 C9", "FGREF[C]=57.296 G1 C9"], ["FGREF[C]=10 G1 C9", "FGREF[C]=10\nG1 C9\nC5"]),
     ("yl569", ["CFTCP KONTT G62", "G41 X9 NORM"], ["G41 CFTCP", "CFIN\nG42 X9", "G41 G62", "G41 KONTT"]),
     ("matsuura_mx330", ["G61\nG64", "G22\nG23", f"{PLANE} P0"], ["G60 X5.", "G62", "G22 X9.", "G96 S99", "G5.3 P1"]),
+    ("matsuura_mx330", ["G43 H1 Z9.\nG69"], [f"{PLANE}\nG43 H1 Z9.\nG69", "G43 H1 Z9.\nG68.2 X0 Y0 Z0 I0 J0 K0"]),
     ("matsuura_mx330", ["M29 S99"], ["G33 Z-9. F1.", "G31 Z-9. F9.", f"{PLANE} P1"]),
     ("haas_umc750", ["G187", "G187 E.02", "M83"], ["G187 P", "M39", "M41", "M50", "M82", "M86", "M138", "G60 X5."]),
     ("xyzac_trt", ["M52 P0", "G92 X5\nG92.3", "M110"], ["M52", "M52 P1", "G92.3", "M129", "G38.2 Z0 F9", "G33 Z0 K1"]),
