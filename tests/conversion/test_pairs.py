@@ -159,10 +159,8 @@ def test_arcs_holes_and_tilted_planes_are_on_every_other_control_what_the_cl_fil
         assert losses(found) == []
         carried = transfer_settings(found.settings, one.control, two.control)
         there, other = made(found.toolpath, two, carried, folder / f"two{two.control.extension}")
-        both = [
-            added(*pair, each)
-            for *pair, each in zip(expected.tolerances, other.tolerances, path.operations, strict=True)
-        ]
+        each_operation = zip(expected.tolerances, other.tolerances, path.operations, strict=True)
+        both = [added(*each) for each in each_operation]
         milled = [(k, each) for k, each in enumerate(path.operations) if not drills(each)]
         if len(milled) == len(path.operations):
             checks = failures(verify(there, [path], tolerances=both, settings=other.settings))

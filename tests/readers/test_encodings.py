@@ -67,6 +67,6 @@ def test_a_byte_order_mark_before_a_jump(tmp_path: Path) -> None:
 
 def test_a_character_that_ends_in_a_tilde_continues_no_block(tmp_path: Path) -> None:
     comment = "轮廓粗加工".encode("gb18030") + b"\x81\x7e"
-    run = ran(b"0 BEGIN PGM A MM\n1 L X+1 FMAX ;" + comment + b"\n2 L X+2 FMAX\n", "dmu65", tmp_path)
+    run = ran(b"0 BEGIN PGM A MM\n1 L X+1 FMAX ;" + comment + b"\n2 L X+2 FMAX\nEND PGM A MM\n", "dmu65", tmp_path)
     assert run.diagnostics == ()
     assert len(run) == 2

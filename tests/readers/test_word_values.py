@@ -16,6 +16,8 @@ HEADS = {
 }
 
 PLANE = "G68.2 X0 Y0 Z0 I0 J0 K0\nG53.1"
+TAILS = {"dmu65": "END PGM A MM\n"}
+
 CYCLE_32 = "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1"
 
 #: A machine, blocks that its control knows, and blocks with values that it does not know.
@@ -66,7 +68,7 @@ def test_values_that_a_control_does_not_know_are_errors(
     program = tmp_path / "part.nc"
 
     def errors(block: str) -> list[str]:
-        program.write_text(f"{HEADS[machine]}{block}\n")
+        program.write_text(f"{HEADS[machine]}{block}\n{TAILS.get(machine, '')}")
         return [error.text for error in trunnion.read_program(program, machine=machine).errors]
 
     assert {block: found for block in known if (found := errors(block))} == {}

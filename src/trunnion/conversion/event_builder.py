@@ -164,6 +164,8 @@ class EventBuilder:
                     yield Insert(row, line, f"{event.kind.upper()}{value:g}")
             case "known":
                 yield Insert(row, line, str(value))
+            case "delta" if isinstance(value, tuple) and str(value[0]).startswith("TOOL DEF"):
+                self._warn(line, "length and radius of TOOL DEF are not carried over", "see the tool table", event.file)
             case "delta":
                 cure = "take it out, and give it by the settings delta_length and delta_radius"
                 self._warn.refuse(line, "DL or DR of TOOL CALL, which a toolpath does not hold", cure, event.file)

@@ -128,7 +128,8 @@ class Interpreter(ABC, Generic[A]):
             self._stack.append(self._main_program(main))
             self._execute()
         except ProgramEnd:
-            pass
+            if len(self._stack) <= 1:  # the end is in the main program
+                self._check_rest(main)
         finally:
             main.close()
             for source, _ in self._sources.values():
@@ -138,6 +139,19 @@ class Interpreter(ABC, Generic[A]):
         if self._unlisted:
             diagnostics.append(Diagnostic(0, f"and {self._unlisted} findings more", Severity.ERROR, self._files[0]))
         return self.control.finish(self._files, self._comments, diagnostics)
+
+    def _check_rest(self, main: SourceText) -> None:
+        """Report text behind the end of the main program that no jump and no call can reach."""
+        while not main.whole and main.fill():
+            self.control.line = main.line
+            if self._has_words(main.next_line()):
+                text = "stands behind the end of the program: it never runs; another program needs a file of its own"
+                self._note(text, Severity.ERROR)
+                return
+
+    @abstractmethod
+    def _has_words(self, raw: str) -> bool:
+        """Whether a line has anything but comments, marks of the transfer and its number."""
 
     def _note(self, text: str, severity: Severity) -> None:
         if len(self._diagnostics) >= MAX_DIAGNOSTICS:
@@ -267,9 +281,9 @@ class Interpreter(ABC, Generic[A]):
             self._counter.count_blocks(1)
             return
         self._stack.pop()
+        if not self._stack:
+            raise ProgramEnd  # ``run`` closes the main program
         if not active.source.whole:
             active.source.close()
-        if not self._stack:
-            raise ProgramEnd
         self.control.modal.file.set(self.control.row, self._stack[-1].file)
         self.control.line = self._stack[-1].source.line - 1

@@ -100,6 +100,13 @@ class Rs274Interpreter(Interpreter[A]):
                 self._record_comment(line, comment)
                 self._handle_comment(comment)
 
+    def _has_words(self, raw: str) -> bool:
+        try:
+            text = split_line(raw, semicolon=self.semicolon).text
+        except BlockError:
+            return True
+        return bool(text) and not text.startswith("%")
+
     def _report_block(self, error: BlockError) -> None:
         self._note(f"not understood: {error}: the block is not executed", Severity.ERROR)
 

@@ -37,6 +37,8 @@ class HeidenhainControl(PlaneControl):
         self.pole: Floats | None = None
         # A tool has been called: its length counts where positions are those of the slides.
         self._length_active = False
+        # Length L and radius R of TOOL DEF, mm, by the name of the tool.
+        self._tool_sizes: dict[str, dict[str, float]] = {}
         # The row before which the last tool was fetched.
         self._fetched_from = -1
         # The first row from which on ``columns.xyz`` has the present meaning.
@@ -133,6 +135,21 @@ class HeidenhainControl(PlaneControl):
             self.end_operation("changes the tool")
             self.change_tool()
             self._fetched_from = self.row
+            self._report_sizes(name)
+
+    def define_tool(self, name: str, sizes: Mapping[str, float]) -> None:
+        """TOOL DEF: length L and radius R of a tool, mm, which count when it is called, or at once in the spindle."""
+        self._tool_sizes[name] = dict(sizes)
+        if name == self.tool_in_spindle:
+            self._report_sizes(name)
+
+    def _report_sizes(self, name: str) -> None:
+        """Record the length and radius that the program gives the tool in the spindle: the path does not show them."""
+        for letter, value in self._tool_sizes.get(name, {}).items():
+            if value:
+                self.add_event("delta", (f"TOOL DEF {letter}", value))
+                text = f"TOOL DEF gives tool {name} {letter} {value:g} mm: the path is that without it"
+                self.note(text, Severity.WARNING)
 
     def fetch_tool(self) -> None:
         """M6: change to the tool that TOOL CALL has called, unless the tool has not moved since then."""

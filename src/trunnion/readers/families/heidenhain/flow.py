@@ -25,12 +25,18 @@ class ActiveProgram(interpreter.ActiveProgram):
 
     returns       lines after the calls of its labels
     repeats_left  repeats that are left, by the line of the call
+    name          of BEGIN PGM, None before it
+    has_blocks    whether a block came before it
+    ended         whether END PGM has come
     """
 
     source: KlartextText
     parameters: Parameters = field(default_factory=Parameters)
     returns: list[int] = field(default_factory=list)
     repeats_left: dict[int, int] = field(default_factory=dict)
+    name: str | None = None
+    has_blocks: bool = False
+    ended: bool = False
 
 
 class FlowInterpreter(Interpreter[ActiveProgram]):

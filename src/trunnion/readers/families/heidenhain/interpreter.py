@@ -11,6 +11,7 @@ from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.control.coordinates import INCH
 from trunnion.readers.control.hole_motion import CycleExecutionError
 from trunnion.readers.control.virtual_control import LINEAR, RAPID
+from trunnion.readers.families.heidenhain import program_frame
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.cycle_definitions import Definitions
 from trunnion.readers.families.heidenhain.flow import ActiveProgram, FlowInterpreter
@@ -82,7 +83,8 @@ class HeidenhainInterpreter(FlowInterpreter):
 
     def _main_program(self, source: SourceText) -> ActiveProgram:
         assert isinstance(source, KlartextText)
-        return ActiveProgram(source, 0)
+        self._main = ActiveProgram(source, 0)
+        return self._main
 
     def _may_scan(self, source: SourceText) -> bool:
         if (
@@ -137,6 +139,8 @@ class HeidenhainInterpreter(FlowInterpreter):
         if not statement:
             return
         self.control.line, self.control.block_number = self._block_start
+        if not statement.startswith("BEGIN"):
+            active.has_blocks = True
         try:
             self._statement(active, statement)
         except KlartextError as error:
@@ -147,7 +151,19 @@ class HeidenhainInterpreter(FlowInterpreter):
             # The last line announces a continuation that does not follow.
             self._finish_block(self._stack[-1])
             return
+        program_frame.check_end_of_file(self._stack[-1], self._note)
         super()._leave_program()
+
+    def _check_rest(self, main: SourceText) -> None:
+        def note(text: str, severity: Severity) -> None:
+            self.control.line = main.line - 1
+            self._note(text, severity)
+
+        program_frame.check_rest(self._main, main, note)
+        program_frame.check_end_of_file(self._main, note)
+
+    def _has_words(self, raw: str) -> bool:
+        return bool(split_line(raw).statement)
 
     def _statement(self, active: ActiveProgram, statement: str) -> None:
         path, assigned = _PATH.match(statement), ASSIGNED.match(statement)
@@ -192,6 +208,7 @@ class HeidenhainInterpreter(FlowInterpreter):
     def _begin_program(self, active: ActiveProgram, rest: str) -> None:
         if not rest.split()[:1] == ["PGM"]:
             raise KlartextError("BEGIN needs PGM")
+        program_frame.begin(active, rest.split(), self.control.row, self._note)
         unit = rest.split()[-1]
         if unit not in ("MM", "INCH"):
             self._note("BEGIN PGM without MM or INCH", Severity.ERROR)
@@ -200,6 +217,7 @@ class HeidenhainInterpreter(FlowInterpreter):
 
     def _end_program(self, active: ActiveProgram, rest: str) -> None:
         self._block_parts.clear()
+        program_frame.end(active, rest.split(), self._note)
         if len(self._stack) == 1:
             self.control.end_program()
         self._leave_program()

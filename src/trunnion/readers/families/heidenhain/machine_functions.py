@@ -147,7 +147,12 @@ def tool_block(control: HeidenhainControl, rest: str, parameters: Parameters) ->
     name = _tool_name(match, parameters)
     if match["kind"] == "DEF":
         # With a length and a radius it defines a tool; without them it announces the next one.
-        if name is not None and not block_words:
+        sizes = {word.name: value_of(word.operand, parameters) for word in block_words if word.operand is not None}
+        if len(sizes) < len(block_words) or sizes.keys() - {"L", "R"}:
+            raise KlartextError("TOOL DEF takes L and R")
+        if name is not None and sizes:
+            control.define_tool(name, {key: value * control.length_unit for key, value in sizes.items()})
+        elif name is not None:
             control.select_tool(name)
         return None
     values = {word.name: value_of(word.operand, parameters) for word in block_words if word.operand is not None}

@@ -131,6 +131,13 @@ class SinumerikInterpreter(CallInterpreter):
         finally:
             self._record_comment(line, comment)
 
+    def _has_words(self, raw: str) -> bool:
+        words = split_comment(raw.rstrip("\r"))[0].strip()
+        if not words or words.startswith("%") or len(words) > MAX_LENGTH:
+            return bool(words) and not words.startswith("%")
+        tokens = tokenize(words)
+        return self._read_line_start(tokens) < len(tokens)
+
     def _read_line_start(self, tokens: tuple[Token, ...]) -> int:
         """Read block skip, block number and labels; returns the index of the token after them."""
         at = 0

@@ -1,0 +1,53 @@
+"""BEGIN PGM and END PGM, between which all blocks of a Klartext program stand: no control loads it otherwise."""
+
+import re
+from typing import Final
+
+from trunnion.errors import Severity
+from trunnion.readers.control.row_recorder import Note
+from trunnion.readers.families.heidenhain.flow import ActiveProgram
+from trunnion.readers.families.heidenhain.lexer import split_line
+from trunnion.readers.program.source_text import SourceText
+
+_UNITS: Final = ("MM", "INCH")
+_END: Final = re.compile(r"[ \t]*(?:[0-9]+[ \t]*)?END[ \t]+PGM(?![A-Z])", re.IGNORECASE)
+
+
+def begin(active: ActiveProgram, words: list[str], row: int, note: Note) -> None:
+    """Begin a program; ``words`` are those behind BEGIN."""
+    if active.name is not None:
+        note("a second program begins: it needs a file of its own", Severity.ERROR)
+    elif active.has_blocks or row > active.source.first_row:
+        note("BEGIN PGM is not the first block: no control loads the program", Severity.ERROR)
+    active.name = _name(words)
+
+
+def end(active: ActiveProgram, words: list[str], note: Note) -> None:
+    """End a program; ``words`` are those behind END."""
+    active.ended = True
+    name = _name(words)
+    if active.name is not None and name != active.name:
+        note(f"END PGM {name} ends the program that began as {active.name}", Severity.ERROR)
+
+
+def check_end_of_file(active: ActiveProgram, note: Note) -> None:
+    """Report a program whose file ends before END PGM."""
+    if active.name is not None and not active.ended:
+        active.ended = True
+        note("the program has no END PGM: no control loads it", Severity.ERROR)
+
+
+def check_rest(active: ActiveProgram, source: SourceText, note: Note) -> None:
+    """Look for END PGM behind the block that has ended the run, and report blocks behind it."""
+    while source.fill():
+        raw = source.next_line()
+        if active.name is not None and not active.ended:
+            active.ended = _END.match(raw) is not None
+        elif active.ended and split_line(raw).statement:
+            note("stands behind END PGM: another program needs a file of its own", Severity.ERROR)
+            return
+
+
+def _name(words: list[str]) -> str:
+    """The name of a program, in capitals."""
+    return " ".join(words[1:-1] if words[-1:] and words[-1] in _UNITS else words[1:]).upper()
