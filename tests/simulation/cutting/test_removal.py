@@ -1,6 +1,7 @@
 """Cutting: volumes against theory, five-axis motions against dense stamping, and what must not depend on chance."""
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from tests.support.sweeps import block, bundle_volumes, cut_path, divided, path,
 from trunnion.arrays import Floats
 from trunnion.simulation.cutting.removal import Cutter
 from trunnion.simulation.stock.deviation import left_on, missing_from
+from trunnion.simulation.tools.pieces import revolved_pieces
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.shapes import BodySizes, ball, bull, flat
 
@@ -116,6 +118,19 @@ def test_the_result_does_not_depend_on_the_number_of_threads() -> None:
         assert np.array_equal(one.count, two.count)
         assert np.array_equal(one.ends, two.ends)
         assert np.array_equal(one.rows, two.rows)
+
+
+def test_the_part_that_is_done_is_told_tile_by_tile() -> None:
+    stock, told = block((-40.0, -40.0, -10.0), (40.0, 40.0, 0.0), 0.5), list[float]()
+    pieces, _ = revolved_pieces(ball(6.0, **BODY), 0.01)
+    with ThreadPoolExecutor(2) as executor:
+        Cutter(stock, None, 0.05).cut(
+            path([(-50.0, 0.0, -2.0), (50.0, 0.0, -2.0)]), pieces, executor, advance=told.append
+        )
+    assert told == sorted(told)
+    assert len(told) > 4
+    assert told[0] < 0.5
+    assert told[-1] == 1.0
 
 
 def test_a_comb_of_many_slots_needs_more_room_and_gets_it() -> None:

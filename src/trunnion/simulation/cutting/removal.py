@@ -101,9 +101,16 @@ def cut(
         for first, last, tool in tool_ranges(run, end):
             if tool in tools:
                 sweeps = row_sweeps(run, first, last, cutter.sizes(tools[tool]))
-                yield cutter.cut(sweeps, tools[tool], executor, idle, offset)
+                yield cutter.cut(sweeps, tools[tool], executor, idle, offset, _part_of(progress, first, last, end))
             if progress:
                 progress(last, end)
+
+
+def _part_of(
+    progress: Callable[[int, int], None] | None, first: int, last: int, end: int
+) -> Callable[[float], None] | None:
+    """What tells of a part of the rows ``first`` to ``last`` (exclusive) of ``end``."""
+    return None if progress is None else lambda part: progress(first + int(part * (last - first)), end)
 
 
 class _Task(NamedTuple):
@@ -139,8 +146,9 @@ class Cutter:
         executor: ThreadPoolExecutor,
         idle: Flags | None = None,
         offset: int = 0,
+        advance: Callable[[float], None] | None = None,
     ) -> RowsCut:
-        """Cut with the sweeps of some rows; the rest as for ``cut``."""
+        """Cut with the sweeps of some rows; ``advance`` is called with the part that is done, others as for ``cut``."""
         at_rest = np.zeros(len(sweeps.row), np.bool_) if idle is None else idle[sweeps.row]
         low, high = float(pieces.bounds[:, 0].min()), float(pieces.bounds[:, 1].max())
         boxes = _boxes(sweeps, low, high, float(pieces.bounds[:, 2].max()))
@@ -161,9 +169,13 @@ class Cutter:
         # Longest first: no processor waits at the end for one that has begun a long task last.
         longest = sorted(tasks, key=lambda task: -len(task.wanted))
         running = {task.tile: executor.submit(self._cut_tile, task, tool, columns) for task in longest}
+        done, whole = 0, sum(len(task.wanted) for task in tasks)
         try:
             for task in tasks:
                 total.add(self._stock.tiles[task.tile].bundle, sweeps.row[task.wanted], *running[task.tile].result())
+                done += len(task.wanted)
+                if advance:
+                    advance(done / whole)
         finally:
             for future in running.values():
                 future.cancel()
