@@ -185,7 +185,8 @@ def figures_of(case: Case, one: Measured, threads: int, slower: float) -> list[F
     judged = ratio <= MEMORY_RATIO if one.own and whole and one.dexels >= SMALL_STOCK else None
     found.append(Figure(f"{case.name}, memory of cutting / dexels", f"<= {MEMORY_RATIO:g}", measured, judged))
     growth = one.halves[1] / one.halves[0]
-    judged = growth <= GROWTH_RATIO if whole else None
+    # The second half of the level case cuts deeper.
+    judged = growth <= GROWTH_RATIO if whole and case.tilts else None
     found.append(
         Figure(f"{case.name}, second half of the blocks / first", f"<= {GROWTH_RATIO:g}", f"{growth:.2f}", judged)
     )

@@ -22,6 +22,7 @@ from trunnion.api.simulation_setups import (
 )
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.jit import compile_ahead
+from trunnion.machines.forward import tool_axis_rows
 from trunnion.model.run import Run
 from trunnion.simulation.collisions import Collision, check_collisions, fixture_body, machine_bodies, part_body
 from trunnion.simulation.meshes import DEVIATION, TriangleMesh
@@ -30,6 +31,7 @@ from trunnion.simulation.stock.solids import StockShape, check_narrow_tools, def
 from trunnion.simulation.stock.turning import Pose, turned_stock
 from trunnion.simulation.tool_deltas import as_the_tool_goes
 from trunnion.simulation.tools.profile import ToolShape
+from trunnion.verification.kinematics.axis_motion_kernel import axis_motion_rows
 
 #: Part of a cell within which motions are simulated by default.
 _TOLERANCE: Final = 0.1
@@ -52,7 +54,9 @@ def simulate_setups(given: SimulationInput, observer: Observer) -> SimulationRes
 
 def _simulate_setups(given: SimulationInput, observer: Observer) -> SimulationResult:
     design = simulation.DESIGN_KERNELS if any(each.part is not None for each in given.setups) else ()
-    compile_ahead((*readers.KERNELS, *design, *simulation.KERNELS))
+    # The second process begins with the largest, the last one; what is saved at the end is left to it.
+    called = (*readers.KERNELS, tool_axis_rows, axis_motion_rows, *design, *simulation.KERNELS)
+    compile_ahead((*simulation.SURFACE_KERNELS, *called))
     check_choice("stop_at", given.stop_at or "none", ("none", "first"))
     for name, value in (("cell", given.cell), ("accuracy", given.accuracy), ("near", given.near)):
         check_tolerance(name, value, optional=True)

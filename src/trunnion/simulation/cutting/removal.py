@@ -172,7 +172,9 @@ class Cutter:
         done, whole = 0, sum(len(task.wanted) for task in tasks)
         try:
             for task in tasks:
-                total.add(self._stock.tiles[task.tile].bundle, sweeps.row[task.wanted], *running[task.tile].result())
+                total.add(
+                    self._stock.tiles[task.tile].bundle, sweeps.row[task.wanted], *running.pop(task.tile).result()
+                )
                 done += len(task.wanted)
                 if advance:
                     advance(done / whole)
