@@ -22,6 +22,8 @@ def test_a_sound_program_is_written_and_says_what_it_cuts(tmp_path: Path, capsys
     result = trunnion.post(CL, machine="yl569", output=tmp_path / "hub.mpf", simulation=given)
     assert result.passed
     assert result.simulation is not None
+    assert {remark.file for remark in result.simulation.remarks} <= {str(tmp_path / "hub.mpf"), "tool 2"}
+    assert result.simulation.programs == (str(tmp_path / "hub.mpf"),)
     assert 500.0 < result.simulation.removed < 5000.0  # with the ball of the CL file
     assert [check.key for check in result.checks][-2:] == ["removal", "collision"]
     assert (tmp_path / "hub.mpf").read_bytes() == trunnion.post(CL, machine="yl569").text.encode()  # type: ignore[union-attr]

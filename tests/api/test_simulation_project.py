@@ -164,6 +164,7 @@ def test_a_mistake_is_told_where_it_stands(folder: Path, text: str, line: int, w
 
 def test_a_project_is_told_by_its_content_and_stands_alone(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     plate, nc = project(folder, PROJECT), folder / "nc" / "slot.ngc"
+    assert "file not found; give the path of a project" in wrong(folder / "none.toml")[0][1]
     assert "let its name end in .toml" in wrong(project(folder, PROJECT, "plate.txt"))[0][1]
     assert main(["simulate", str(nc), str(plate)]) == 2
     assert "stands beside other programs; give it alone" in capsys.readouterr().err

@@ -109,9 +109,9 @@ def simulation_files(given: SimulationLike) -> list[FilePath]:
 
 
 def simulate_posted(
-    given: SimulationInput, run: Run | None, toolpaths: Sequence[Toolpath], observer: Observer
+    given: SimulationInput, run: Run | None, name: str, toolpaths: Sequence[Toolpath], observer: Observer
 ) -> SimulationResult:
-    """Simulate the program that was posted.
+    """Simulate the program that was posted; ``name`` is what messages call it, as its file has no name yet.
 
     Raises
     ------
@@ -121,8 +121,15 @@ def simulate_posted(
     if run is None:
         what = "nobody reads programs of this control, and what is not read cannot be simulated"
         raise InputError(argument_problem("simulation", what, "leave it out"))
-    setup = replace(given.setups[0], programs=(run,), machine=run.machine, cl=toolpaths)
+    setup = replace(given.setups[0], programs=(_named(run, name),), machine=run.machine, cl=toolpaths)
     return simulate_setups(replace(given, setups=[setup]), observer)
+
+
+def _named(run: Run, name: str) -> Run:
+    """A run whose files are called as they will be: the program by its name, subprograms as they lie beside it."""
+    names = {file: Path(file).name for file in run.files[1:]} | {run.files[0]: name}
+    told = tuple(replace(each, file=names.get(each.file, each.file)) for each in run.diagnostics)
+    return replace(run, files=tuple(names[file] for file in run.files), diagnostics=told)
 
 
 def simulation_checks(found: SimulationResult) -> tuple[Check, ...]:

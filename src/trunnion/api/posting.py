@@ -189,7 +189,7 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
         observer.problems(problems[-1:])
     simulated = None
     if job.simulation is not None:
-        simulated, verification = _simulate(job, run.result(), toolpaths, verification, observer)
+        simulated, verification = _simulate(job, run.result(), target.name, toolpaths, verification, observer)
         problems += [remark for remark in simulated.remarks if remark.severity is Severity.WARNING]
     if verification is not None:
         observer.verified(verification)
@@ -213,13 +213,18 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
 
 
 def _simulate(
-    job: PostJob, run: Run | None, toolpaths: Sequence[Toolpath], found: Verification | None, observer: Observer
+    job: PostJob,
+    run: Run | None,
+    name: str,
+    toolpaths: Sequence[Toolpath],
+    found: Verification | None,
+    observer: Observer,
 ) -> "tuple[SimulationResult, Verification | None]":
     """What the program cuts and hits, and its proof with these checks."""
     from trunnion.api.posted_simulation import simulate_posted, simulation_checks
 
     assert job.simulation is not None
-    simulated = simulate_posted(job.simulation, run, toolpaths, observer)
+    simulated = simulate_posted(job.simulation, run, name, toolpaths, observer)
     if found is not None:
         found = replace(found, checks=(*found.checks, *simulation_checks(simulated)))
     return simulated, found

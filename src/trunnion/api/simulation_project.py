@@ -18,7 +18,7 @@ from trunnion.api.reading import FilePath
 from trunnion.api.simulation_setups import SetupInput, SimulationInput
 from trunnion.definitions import Table, load_table
 from trunnion.definitions.extends import MAX_FILE_BYTES, is_within
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.machines import shipped_machines
 from trunnion.simulation.stock.turning import Pose
 
@@ -81,6 +81,8 @@ def read_project(path: Path, elsewhere: Collection[str] = ()) -> SimulationInput
     """
     if path.suffix != ".toml":
         raise InputError(Problem(str(path), 0, "is a project by its content", "let its name end in .toml"))
+    if unusable := unusable_file(path, "a project"):
+        raise InputError(unusable)
     root = load_table(path, files(__package__), kind="project")
     if "simulation" not in root:
         what, cure = "has no table [simulation]", "write one, or give NC programs"
