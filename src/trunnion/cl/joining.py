@@ -25,16 +25,21 @@ def join_cuts(
     joined: list[OperationBuilder] = []
     number: int | None = None
     side: CutterComp | None = None
+    register, is_home = 0, False
     for builder in builders:
         before = joined[-1] if joined and builder.continues else None
         loads = [event for event in builder.events if isinstance(event, LoadTool)]
-        if before is None or not _begins_with_cut(before, builder) or _has_other_tool(before, builder, loads, number):
+        if (
+            before is None
+            or is_home
+            or not _begins_with_cut(builder)
+            or _has_other_tool(before, builder, loads, number)
+        ):
             if not in_sections:
                 side = _side_lost(joined[-1:], builder, side, loads, number, diagnostics)
                 _report_lost_coolant(builder, joined[-1:], diagnostics)
             joined.append(builder)
         else:
-            register = _register(joined)
             if first := next((load for load in loads if load.row == 0 and load.adjust != register), None):
                 what = f"tool {first.number} is called with another register where operation {before.name} cuts on"
                 diagnostics.error(first.line, what, "retract by RAPID and GOTO/ before it")
@@ -44,7 +49,8 @@ def join_cuts(
                 before.joined.append(builder.name)
                 before.events.append(Message(builder.first - before.first, builder.line, builder.name))
             _append(before, builder)
-        number = loads[-1].number if loads else number
+        number, register = (loads[-1].number, loads[-1].adjust) if loads else (number, register)
+        is_home = _ends_at_home(builder) or (is_home and builder.stop == builder.first)
         side = None if in_sections else _last_side(builder, side)
     return joined
 
@@ -130,15 +136,19 @@ def _side_lost(
     return None
 
 
-def _begins_with_cut(before: OperationBuilder, builder: OperationBuilder) -> bool:
+def _ends_at_home(builder: OperationBuilder) -> bool:
+    """Whether an operation goes home behind its last row."""
+    end = builder.stop - builder.first
+    return any(isinstance(event, GoHome) and event.row == end for event in builder.events)
+
+
+def _begins_with_cut(builder: OperationBuilder) -> bool:
     """Whether the first motion of an operation is a line or an arc at feed from the last point of the one before."""
     if any(circle.row == 0 for circle in builder.circles):
         is_cut = True
     else:
         is_cut = 0 not in builder.rapids and not _is_hole(builder)
-    end = before.stop - before.first
-    goes_home = any(isinstance(event, GoHome) and event.row == end for event in before.events)
-    goes_home = goes_home or any(isinstance(event, GoHome) and event.row == 0 for event in builder.events)
+    goes_home = any(isinstance(event, GoHome) and event.row == 0 for event in builder.events)
     starts = any(start.row == 0 for start in _stated_starts(builder))
     return is_cut and not goes_home and not starts
 
@@ -182,12 +192,6 @@ def _append(before: OperationBuilder, builder: OperationBuilder) -> None:
 def _is_repeated(event: Event, line: int) -> bool:
     """Whether an event at the beginning of an operation only says again what is so: its cycle, its tool."""
     return isinstance(event, LoadTool) or (isinstance(event, CycleOn) and event.line < line)
-
-
-def _register(builders: list[OperationBuilder]) -> int:
-    """The length register of the tool last called."""
-    loads = (event for builder in reversed(builders) for event in reversed(builder.events))
-    return next((event.adjust for event in loads if isinstance(event, LoadTool)), 0)
 
 
 def _smaller(one: float | None, other: float | None) -> float | None:
