@@ -94,6 +94,18 @@ def test_more_statements_without_a_line_of_their_own_are_refused(body_fails: Fai
     assert (problem.line, "without a line of its own" in problem.what) == (4, True)
 
 
+@pytest.mark.parametrize(
+    "text",
+    ["SHOPEV/" + "A" * 900_000 + "/1", "PSIS/" + "(" * 400_000 + ")" * 400_000, "SHOPEV/" + "(GOTO/" * 99_000],
+    ids=["long", "nested", "open"],
+)
+def test_a_statement_of_a_megabyte_takes_no_longer_than_others(read: Read, fails: Fail, text: str) -> None:
+    if "GOTO" in text:
+        assert "SHOPEV has GOTO within it" in fails(written("apt", text))[0].what
+    else:
+        assert len(read(written("apt", text)).operations[0].moves) == 3
+
+
 @pytest.mark.parametrize("end", ["", "$\n", " "])
 def test_a_command_of_creo_stands_on_a_line_of_its_own(fails: Fail, end: str) -> None:
     (problem,) = fails(written("ncl", f"FEDRAT / 200, MMPM{end}$$-> CUTTER / 12"))

@@ -30,7 +30,7 @@ _BEGINS_VALUES: Final = (
     r"(?:[-+.]?\d|(?:TOOL|MILL|DRILL|TCUTTER|BARREL|COLOR|RPM|SFM|SMM|CLW|CCLW|ON|OFF|FLOOD|MIST|TAP|THRU|AIR|LEFT|RIGHT"
     r"|MMPM|MMPR|IPM|IPR|INVERS|PERMIN|PERREV|MM|INCH(?:ES)?|XYPLAN|DEEP|BRKCHP|FACE|BORE|REAM|WORLD|MODE|ABSOL)\b)"
 )
-_INNERMOST: Final = re.compile(r"\([^()]*\)")
+_BRACKET: Final = re.compile(r"[()]")
 _GLUED_TEXT: Final = re.compile(rf"[^,/]({'|'.join(_TEXT_WORDS)})")
 _CONTROL: Final = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
 _POINT: Final = re.compile(r"(GOTO|GODLTA)\s*/\s*[-+.]?\d", re.IGNORECASE)
@@ -43,6 +43,7 @@ class SwallowedStatements:
         counting = {word.removeprefix("->") for word in words_that_count(dialect)}
         self._words = frozenset(word for word in counting | ACTING_WORDS | _SAYING_NOTHING if len(word) >= _SHORTEST)
         listed = "|".join(r"\s*".join(map(re.escape, word)) for word in sorted(counting | {"TOOLPATH", "INSERT"}))
+        self._longest = max(map(len, self._words))
         self._has_commands = any(word.startswith("->") for word in dialect.handlers)
         self._in_text = re.compile(rf"(?<=[^\s_/-])({listed})\s*/\s*{_BEGINS_VALUES}", re.IGNORECASE)
 
@@ -96,8 +97,7 @@ class SwallowedStatements:
             if first in _BARE_LINES or first.startswith(_TEXT_WORDS):
                 return first.split()[0]
         rest = "".join(joined_lines(statement.source).partition("/")[2].split()).upper()
-        while (plain := _INNERMOST.sub("0", rest)) != rest:
-            rest = plain
+        rest = _outside_brackets(rest)
         for before in rest.split("/")[:-1]:
             if found := self._ending(before.rpartition(",")[2]):
                 return found
@@ -108,4 +108,20 @@ class SwallowedStatements:
 
     def _ending(self, field: str) -> str:
         """The longest known word at the end of a field; empty if there is none."""
-        return next((field[at:] for at in range(len(field) - _SHORTEST + 1) if field[at:] in self._words), "")
+        longest = field[-self._longest :]
+        return next((longest[at:] for at in range(len(longest) - _SHORTEST + 1) if longest[at:] in self._words), "")
+
+
+def _outside_brackets(text: str) -> str:
+    """The text with a 0 for each pair of brackets that is in no other one."""
+    parts, depth, begin = list[str](), 0, 0
+    for found in _BRACKET.finditer(text):
+        depth += 1 if found[0] == "(" else -1
+        if depth < 0:
+            return text
+        if depth == 1 and found[0] == "(":
+            parts.append(text[begin : found.start()])
+        elif depth == 0:
+            begin = found.end()
+            parts.append("0")
+    return text if depth else "".join(parts) + text[begin:]
