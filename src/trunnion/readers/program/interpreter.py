@@ -24,6 +24,7 @@ from trunnion.readers.program.limits import (
     MAX_CALL_DEPTH,
     MAX_DIAGNOSTICS,
     MAX_SUBPROGRAMS,
+    MOST_JUMPS_WITHOUT_CHOICE,
     SCANNED_BLOCKS_PER_STEP,
     StepCounter,
 )
@@ -181,6 +182,8 @@ class Interpreter(ABC, Generic[A]):
             raw = source.next_line()
             self._counter.count_blocks(1, len(raw))
             self._execute_known(active, line, raw) if self._known.any else self._execute_line(active, line, raw)
+            if source.jumps_back > MOST_JUMPS_WITHOUT_CHOICE:
+                raise self._limit_error("jumps back again and again, and no condition ends it")
             self._counter.count_events(control.events)
             self._counter.check_resolutions(control.resolutions)
 

@@ -32,6 +32,10 @@ _LOOKED_AT_AFTER: Final = 1_000
 #: Positions are the same within this, mm and degrees.
 _SAME_POSITION: Final = 1e-6
 
+#: A program that jumps back so often without any condition between, in which a variable stands, never ends: in a loop
+#: that ends, a condition is looked at each time.
+MOST_JUMPS_WITHOUT_CHOICE: Final = 100
+
 #: Subprograms that one program may call.
 MAX_SUBPROGRAMS: Final = 1000
 

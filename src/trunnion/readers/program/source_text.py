@@ -43,6 +43,7 @@ class SourceText:
     line       number of that line
     whole      the buffer is the whole file
     first_row  row of the run before which the text began
+    jumps_back jumps back without a choice since the last condition with a variable in it
     """
 
     def __init__(self, path: Path, *, whole: bool = False) -> None:
@@ -62,6 +63,7 @@ class SourceText:
         self._write_progress: WriteProgress | None = None
         self._size = os.fstat(self._file.fileno()).st_size
         self.first_row = 0
+        self.jumps_back = 0
         self._ended = False
         # A chunk, preceded by the beginning of its first line from the chunk before.
         self._chunk = bytearray(0 if whole else MAX_LINE_LENGTH + CHUNK + 1)
@@ -231,6 +233,11 @@ class SourceText:
         line = min(line, self.lines + 1)
         self.line = line
         self.position = int(self.starts[line - 1])
+
+    def jump_without_choice(self, line: int) -> None:
+        """Continue at a line that no condition chooses: if it lies before, the program may go in circles."""
+        self.jumps_back += line < self.line
+        self.jump(line)
 
     def line_of(self, byte: int) -> int:
         """Return the line of a byte; the program must be loaded."""

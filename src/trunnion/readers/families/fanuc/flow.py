@@ -64,9 +64,11 @@ class Flow:
             raise BlockError(f"something stands behind {match.group()}: {reader.rest!r}")
         return True
 
-    def _holds(self, reader: ExpressionReader) -> bool:
+    def _holds(self, active: ActiveProgram, reader: ExpressionReader) -> bool:
         """Evaluate a condition; one with an error is taken as false."""
         begin = reader.at
+        if "#" in reader.text:
+            active.source.jumps_back = 0
         try:
             return bool(reader.bracket_value())
         except BlockError as error:
@@ -75,7 +77,7 @@ class Flow:
             return False
 
     def _if(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> None:
-        holds = self._holds(reader)
+        holds = self._holds(active, reader)
         if reader.accept("GOTO"):
             if holds:
                 self._goto(active, line, reader)
@@ -90,6 +92,8 @@ class Flow:
         self._variables.set(key, reader.assigned_value())
 
     def _goto(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> None:
+        if "#" in reader.text:
+            active.source.jumps_back = 0
         self.jump(active, line, _whole(reader.signed_value()[0]))
 
     @staticmethod
@@ -98,10 +102,10 @@ class Flow:
         target = active.source.number(number, line)
         if target is None:
             raise BlockError(f"there is no block N{number} to go to")
-        active.source.jump(target)
+        active.source.jump_without_choice(target)
 
     def _while(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> None:
-        holds = self._holds(reader)
+        holds = self._holds(active, reader)
         reader.expect("DO")
         _whole(reader.signed_value()[0])
         end = active.source.partner(line)
@@ -114,7 +118,7 @@ class Flow:
 
     def _end(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> None:
         _whole(reader.signed_value()[0])
-        active.source.jump(active.source.partner(line))
+        active.source.jump_without_choice(active.source.partner(line))
 
 
 def _whole(value: float | None) -> int:

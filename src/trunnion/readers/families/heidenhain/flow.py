@@ -16,6 +16,7 @@ from trunnion.readers.program.interpreter import Interpreter, ProgramEnd
 MAX_LABEL_DEPTH: Final = 20
 
 _LABEL = re.compile(r"(Q[LR]?[0-9]{1,4})|([0-9]{1,5})")
+_PARAMETER = re.compile(r"Q[LR]?[0-9]")
 _CALL = re.compile(r"[ \t]*(LBL|PGM)(?![A-Z])")
 
 
@@ -74,6 +75,7 @@ class FlowInterpreter(Interpreter[ActiveProgram]):
 
     @staticmethod
     def _repeat(active: ActiveProgram, here: int, target: int, repeats: int) -> None:
+        active.source.jumps_back = 0
         left = active.repeats_left.setdefault(here, repeats)
         if left > 0:
             active.repeats_left[here] = left - 1
@@ -103,10 +105,12 @@ class FlowInterpreter(Interpreter[ActiveProgram]):
         self._stack.append(ActiveProgram(source, file, parameters=parameters))
 
     def _fn(self, active: ActiveProgram, rest: str) -> None:
+        if _PARAMETER.search(rest):
+            active.source.jumps_back = 0
         label = execute(rest, active.parameters, self._note)
         if label is not None:
             active.source.load()
-            active.source.jump(self._line_of(active, label))
+            active.source.jump_without_choice(self._line_of(active, label))
 
 
 def _label_name(text: str, parameters: Parameters) -> str:

@@ -46,7 +46,12 @@ class OWord(NamedTuple):
 
     def jump(self, line: int) -> None:
         """Continue at a line."""
-        self.active.source.jump(line)
+        self.active.source.jump_without_choice(line)
+
+    def choose(self) -> None:
+        """Note that a condition or a count decides, unless it is always the same."""
+        if "#" in self.reader.text:
+            self.active.source.jumps_back = 0
 
 
 class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
@@ -167,6 +172,7 @@ class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
 
     def _if(self, word: OWord) -> None:
         structure = word.structure
+        word.choose()
         if self._is_true(word.reader):
             return
         for branch in structure.branches:
@@ -203,6 +209,7 @@ class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
 
     def _while(self, word: OWord) -> None:
         structure = word.structure
+        word.choose()
         is_true = self._is_true(word.reader)
         if structure.word == "DO":
             if is_true:
@@ -225,6 +232,7 @@ class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
     @staticmethod
     def _end_repeat(word: OWord) -> None:
         begin, counters = word.structure.begin, word.active.counters
+        word.active.source.jumps_back = 0
         counters[begin] = counters.get(begin, 0) - 1
         if counters[begin] > 0:
             word.jump(begin + 1)

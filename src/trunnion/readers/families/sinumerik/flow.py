@@ -6,6 +6,7 @@ Of a loop only its lines are known: its end jumps back to its beginning, which e
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.readers.control.row_recorder import Note
@@ -27,6 +28,9 @@ class ActiveProgram(interpreter.ActiveProgram):
     variables: Variables = field(default_factory=Variables)
     modal: Call | None = None
 
+
+#: What a condition that never changes consists of, besides numbers.
+_CONSTANT: Final = frozenset({"TRUE", "FALSE", "=", "==", "<", ">", "<>", "<=", ">=", "(", ")", "+", "-", "*", "/"})
 
 Handler = Callable[[ExpressionReader, ActiveProgram, int], None]
 
@@ -64,6 +68,7 @@ class Flow:
         pass
 
     def _if(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        active.source.jumps_back = 0
         try:
             holds = bool(reader.number())
         except ExpressionError as error:
@@ -87,6 +92,10 @@ class Flow:
 
     def _while(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         end = active.source.partner(line)[1]
+        if any(
+            token.kind is not TokenKind.NUMBER and token.text not in _CONSTANT for token in reader.tokens[reader.at :]
+        ):
+            active.source.jumps_back = 0
         try:
             holds = bool(reader.number())
         except ExpressionError:
@@ -96,10 +105,10 @@ class Flow:
             active.source.jump(end + 1)
 
     def _end_while(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
-        active.source.jump(active.source.partner(line)[1])
+        active.source.jump_without_choice(active.source.partner(line)[1])
 
     def _end_loop(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
-        active.source.jump(active.source.partner(line)[1] + 1)
+        active.source.jump_without_choice(active.source.partner(line)[1] + 1)
 
     def _repeat(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         if reader.token is not None:
@@ -108,6 +117,7 @@ class Flow:
 
     def _until(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         begin = active.source.partner(line)[1]
+        active.source.jumps_back = 0
         if not reader.number():
             active.source.jump(begin + 1)
 
@@ -128,6 +138,7 @@ class Flow:
 
     def _end_for(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         begin = active.source.partner(line)[1]
+        active.source.jumps_back = 0
         head = self._loop_head(active, begin)
         name, index = self._loop_variable(head)
         head.expect("=")
@@ -186,12 +197,12 @@ class Flow:
         reader.at += 1
         active.source.load()
         if word == "GOTOS":
-            active.source.jump(1)
+            active.source.jump_without_choice(1)
             return
         forward, backward = word in ("GOTO", "GOTOF", "GOTOC"), word in ("GOTO", "GOTOB", "GOTOC")
         target, found = self._target(reader, active, line, forward=forward, backward=backward)
         if found is not None:
-            active.source.jump(found)
+            active.source.jump_without_choice(found)
         elif word != "GOTOC":
             self._note(f"the target {target} of {word} is missing: the program ends here", Severity.ERROR)
             raise ProgramEnd
@@ -210,6 +221,7 @@ class Flow:
             return f"N{number}", active.source.number(number, line, forward=forward, backward=backward)
         name = token.text.upper()
         if token.kind is TokenKind.NAME and token.text in active.variables:
+            active.source.jumps_back = 0
             name = (active.variables.text(token.text) or "").upper()
         elif token.kind is TokenKind.NUMBER and token.text.isdigit():
             number = int(min(token.value, 1e15))
@@ -219,6 +231,7 @@ class Flow:
         return name[:80], active.source.label(name, line, forward=forward, backward=backward)
 
     def _case(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        active.source.jumps_back = 0
         value = reader.number()
         reader.expect("OF")
         while reader.token is not None:
