@@ -267,6 +267,47 @@ def test_each_way_in_which_a_feed_differs_counts_once(tmp_path: Path, capfd: pyt
     assert "feed 250 against 251 mm/min" in out
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("N540 ", "M0\nN540 ", "54 (N540) against second:55 (N540): nothing against stop"),
+        ("N540 ", "M1\nN540 ", "nothing against optional stop"),
+        ("N540 ", "G4 F2\nN540 ", "nothing against dwell of 2 s"),
+        ("N540 ", "G4 S3\nN540 ", "nothing against dwell of 3 revolutions"),
+        ("N2010", "M0\nN2010", "nothing against stop"),
+    ],
+)
+def test_stops_and_dwells_are_compared_at_their_places(
+    old: str, new: str, says: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    assert TEXT.count(old) == 1
+    code, out = diff(capfd, tmp_path, TEXT.replace(old, new))
+    assert (code, out.partition(";")[0]) == (1, "different: 1 place")
+    assert says in out
+    first = tmp_path / "first.mpf"
+    first.write_text(TEXT.replace(old, new), encoding="utf-8")
+    assert diff(capfd, tmp_path, without_numbers(TEXT.replace(old, new)), first)[0] == 0
+
+
+def test_an_event_before_a_point_that_only_one_program_has_is_at_the_same_place(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    first = tmp_path / "first.mpf"
+    first.write_text(TEXT.replace("N520 ", "M0\nN520 "), encoding="utf-8")
+    between = "X47.6553 Y-2.2755 Z-20.08575\n"
+    assert diff(capfd, tmp_path, TEXT.replace("N520 ", f"M0\n{between}N520 "), first)[0] == 0
+    code, out = diff(capfd, tmp_path, TEXT.replace("N520 ", f"{between}M0\nN520 "), first)
+    assert (code, out.partition(";")[0]) == (1, "different: 2 places")
+
+
+def test_words_of_the_builder_are_compared_on_one_machine(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    programs = [tmp_path / "first.nc", tmp_path / "second.nc"]
+    for program, text in zip(programs, (FANUC, FANUC.replace("S2000 M3", "S2000 M3\nM88")), strict=True):
+        program.write_text(text, encoding="utf-8")
+    assert main(["diff", *map(str, programs), "--machine", "matsuura_mx330"]) == 1
+    assert "nothing against M88" in capfd.readouterr().out
+
+
 def test_between_languages_work_offsets_are_compared_by_their_order(
     tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

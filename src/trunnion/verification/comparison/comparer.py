@@ -10,6 +10,7 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.verification.comparison.moving_rows import MovingRows
 from trunnion.verification.comparison.on_path import PointTolerances, ends_on_path
+from trunnion.verification.comparison.path_events import PathEvents
 from trunnion.verification.comparison.result import Comparison, Difference
 from trunnion.verification.comparison.row_states import compared_states
 from trunnion.verification.comparison.states import DifferentStretch, StateComparison
@@ -42,6 +43,8 @@ class Comparer:
         self._one = MovingRows(one, same_machine, coolants, tools)
         self._two = MovingRows(two, same_machine, coolants, tools)
         self._states = StateComparison(compared_states(self._one, self._two, path=path))
+        programs = () if path else (self._one, self._two)
+        self._events = [PathEvents(each.run, each.rows, same_machine=same_machine) for each in programs]
         self._tolerances = PointTolerances(tolerance, float(np.radians(axis_tolerance)))
         self._largest_tip = self._largest_axis = 0.0
         self._points = 0
@@ -66,15 +69,21 @@ class Comparer:
             size = _FEW
             if self._is_on_path(one, i, two, j):
                 self._compare_states(i, j, 1)
+                self._compare_events((i, j), (i + 1, j + 1))
                 i += 1
             elif self._is_on_path(two, j, one, i):
                 self._compare_states(i, j, 1)
+                self._compare_events((i, j), (i + 1, j + 1))
                 j += 1
             else:
-                i, j = self._differ(i, j)
+                after = self._differ(i, j)
+                self._compare_events((i, j), after)
+                i, j = after
         if (i < len(one) or j < len(two)) and self._path_count < _MAX_DIFFERENCES:
             which = "first" if i < len(one) else "second"
             self._note(i, j, float("inf"), f"only the {which} program goes on")
+        elif i == len(one) and j == len(two):
+            self._compare_events((i, j), (i + 1, j + 1))
         return Comparison(
             programs=(one.run.files[0], two.run.files[0]),
             points=self._points,
@@ -107,6 +116,24 @@ class Comparer:
         a, b = one.rows[i : i + count], two.rows[j : j + count]
         self._points += int(np.count_nonzero(one.in_machine(a) == two.in_machine(b)))
         self._compare_states(i, j, count)
+        motions = {
+            motion - first
+            for events, first in zip(self._events, (i, j), strict=False)
+            for motion in events.motions_in(first, first + count)
+        }
+        for k in sorted(motions):
+            self._compare_events((i + k, j + k), (i + k + 1, j + k + 1))
+
+    def _compare_events(self, begin: tuple[int, int], end: tuple[int, int]) -> None:
+        """Compare the events of both programs in motions that begin at the same place."""
+        if not self._events:
+            return
+        one, two = (events.take(first, last) for events, first, last in zip(self._events, begin, end, strict=True))
+        if one != two:
+            self._count += 1
+            self._note_first(
+                _Place(*begin, 0.0, f"{', '.join(one) or 'nothing'} against {', '.join(two) or 'nothing'}")
+            )
 
     def _compare_states(self, i: int, j: int, count: int) -> None:
         a, b = self._one.rows[i : i + count], self._two.rows[j : j + count]

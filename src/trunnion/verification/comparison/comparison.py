@@ -1,8 +1,8 @@
 """Whether two programs make the tool do the same.
 
 In:     two runs, possibly of different machines.
-Out:    whether tip, tool axis, kind of motion, feed, spindle, tool, coolant and the registers of offsets, lengths and
-        radii are the same throughout; the first difference and the worst.
+Out:    whether tip, tool axis, kind of motion, feed, spindle, tool, coolant, the registers of offsets, lengths and
+        radii, stops and dwells are the same throughout; the first difference and the worst.
 
 Only what the words do matters: block numbers, modal habits and number formats may differ, and either program may have
 additional points on the path of the other. Motions in the machine frame count if both run on the same machine.
@@ -25,6 +25,6 @@ def compare(
     axis_tolerance
         Another tolerance for tool axes, degrees.
     path
-        Compare only where the tool goes, and whether at rapid; not feed, spindle, tool and coolant.
+        Compare only where the tool goes, and whether at rapid; not feed, spindle, tool, coolant, stops and dwells.
     """
     return Comparer(one, two, tolerance, tolerance if axis_tolerance is None else axis_tolerance, path).compare()
