@@ -8,6 +8,7 @@ import pytest
 
 import trunnion
 from tests.support.sweeps import CUBE, CUBE_FACES
+from trunnion.api.simulation_project import read_project
 from trunnion.cli import main
 from trunnion.simulation.meshes import TriangleMesh, save_mesh
 
@@ -181,3 +182,39 @@ def test_what_is_given_may_be_missing_in_the_project(folder: Path) -> None:
     assert trunnion.simulate(
         project(folder, bare), machine="xyzac_trt", stock="box:50,40,10,0,-20,-10"
     ).removed == pytest.approx(2500.0, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    "value", ["[]", "[[]]", "{}", "[{}]", "[{}, 1]", "1", "-1", "nan", "true", '""', '"x"', '["x", 1]', "2026-01-01"]
+)
+def test_a_value_of_any_type_is_told_with_its_line(folder: Path, value: str) -> None:
+    keys = ["setup", "stock", "machine", "programs", "subprograms", "fixtures", "part", "cl", "tools", "until"]
+    keys += [
+        "unit",
+        "zero_mm",
+        "tool_length_mm",
+        "work_offset",
+        "cell_mm",
+        "accuracy_mm",
+        "near_mm",
+        "stop_at",
+        "until",
+    ]
+    lines = dict(line.split(" = ", 1) for line in PROJECT.splitlines()[1:])
+    told = {}
+    for key in keys:
+        text = "\n".join(f"{name} = {each}" for name, each in (lines | {key: value}).items())
+        told[key] = mistakes(project(folder, f"[simulation]\n{text}\n"))
+    assert all(problem.line for problems in told.values() for problem in problems)
+    assert all(told[key] for key in ("setup", "stock", "programs"))
+    for key in ("pose", "pose.turn_deg", "name", "programs"):
+        place = 'name = "bottom"' if key == "name" else 'programs = ["nc/slot.ngc"]\npose = {'
+        mistakes(project(folder, SETUPS.replace(place, f"{key} = {value} #")))
+
+
+def mistakes(path: Path) -> list[trunnion.Problem]:
+    try:
+        read_project(path)
+    except trunnion.InputError as error:
+        return list(error.problems)
+    return []

@@ -102,16 +102,20 @@ class _Reader:
     def simulation(self, table: Table) -> SimulationInput:
         """All of it."""
         stock = table.text("stock", "") if "stock" in self._elsewhere else table.text("stock")
-        if stock and not stock.startswith(("box:", "cylinder:")):
+        if "stock" in table and stock == "" and not table.problems:
+            table.add_problem("stock", 'is ""', "state a box, a cylinder or a mesh")
+        elif stock and not stock.startswith(("box:", "cylinder:")):
             stock = self._file(table, "stock", stock)
-        own = table.tables("setup")
+        told, own = len(table.problems), table.tables("setup")
+        if "setup" in table and not own and len(table.problems) == told:
+            table.add_problem("setup", "is []", "write tables [[simulation.setup]], or leave it out")
         if len(own) > _MOST_SETUPS:
             table.add_problem("setup", f"has {len(own)} tables", f"write at most {_MOST_SETUPS}")
             own = []
         if own and "programs" in table:
             table.add_problem("programs", "stands beside set-ups", "write it in each [[simulation.setup]]")
             table.mark_read("programs")
-        shared = self._setup(table, None)
+        shared = self._setup(table, None, is_alone=not own)
         setups = [self._setup(each, shared) for each in own] if own else [shared]
         names = [setup["name"] for setup in setups]
         for k, (each, name) in enumerate(zip(own, names, strict=False)):
@@ -133,11 +137,10 @@ class _Reader:
             stock=stock, setups=[SetupInput(**setup) for setup in setups], places=places, **found
         )  # fmt: skip
 
-    def _setup(self, table: Table, shared: dict[str, Any] | None) -> dict[str, Any]:
-        """What a set-up states; ``shared`` is what stands for all of them, None where this is it."""
+    def _setup(self, table: Table, shared: dict[str, Any] | None, *, is_alone: bool = False) -> dict[str, Any]:
+        """What a set-up states; ``shared`` is what stands for all of them, None where this is it, maybe alone."""
         found: dict[str, Any] = {} if shared is None else dict(shared)
         stated = set(table.keys())
-        is_alone = shared is None and "setup" not in stated
         if is_alone or shared is not None:
             found["programs"] = self._programs(table)
         found["name"] = "" if shared is None else table.text("name", f"set-up {_number(table)}")

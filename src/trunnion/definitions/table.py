@@ -310,7 +310,7 @@ class Table:
         value = self._get(key, required, cure)
         if value is None or value == []:
             return []
-        if not isinstance(value, list) or not isinstance(value[0], LocatedValue):
+        if not isinstance(value, list) or not all(isinstance(item, LocatedValue) for item in value):
             self.add_problem(key, f"is {as_written(value)}", cure)
             return []
         children = [Table(item, f"{self.key_path(key)}[{i}]", self.problems) for i, item in enumerate(value)]

@@ -213,3 +213,33 @@ def test_published_programs_hit_nothing_and_a_long_part_does(
     # A clamp where the part is cannot be missed.
     clamp = fixture_body(block("clamp", (-80.0, -80.0, -50.0), (80.0, 80.0, 100.0)), machine)
     assert any("clamp" in each.between for each in check_collisions(run, [clamp], tools))
+
+
+@pytest.mark.parametrize("depth", [0.3, 1.9, 2.1, 3.0, 4.2])
+@pytest.mark.parametrize("sideways", [False, True])
+def test_the_block_that_goes_too_far_is_told_with_its_depth(
+    depth: float, sideways: bool, machine: Machine, tmp_path: Path
+) -> None:
+    # Row 1 goes into the plate, row 2 out of it: the worst pose is where the motion turns.
+    axis, begin = ("X", "X0 Y0 Z0") if sideways else ("Z", "X0 Y0 Z60")
+    way = f"G0 SUPA {axis}{-depth - 40}\nG0 SUPA {axis}60"
+    run = run_text(f"{HEAD}G0 SUPA {begin}\n{way}\nM30\n", machine, tmp_path)
+    high = (-40.0, 100.0, 100.0) if sideways else (100.0, 100.0, -40.0)
+    plate = iron("workpiece", block("plate", (-100.0, -100.0, -100.0), high))
+    ram = iron("spindle", block("ram", (0.0, -5.0, 0.0), (60.0, 5.0, 60.0)))
+    (found,) = check_collisions(run, [plate, ram], {})
+    assert (found.row, found.worst_row, found.last_row) == (1, 1, 2)
+    assert found.depth_mm == pytest.approx(depth, abs=1e-6)
+    assert found.worst_fraction == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(("apart", "near"), [(0.1, 0.15), (0.3, 0.5), (0.9, 1.0), (0.02, 0.5), (0.3, 0.35)])
+def test_the_nearest_pose_is_told_where_the_motion_turns(
+    apart: float, near: float, machine: Machine, tmp_path: Path
+) -> None:
+    run = run_text(f"{HEAD}G0 SUPA X0 Y0 Z60\nG0 SUPA Z{apart - 40}\nG0 SUPA Z60\nM30\n", machine, tmp_path)
+    plate = iron("workpiece", block("plate", (-100.0, -100.0, -100.0), (100.0, 100.0, -40.0)))
+    ram = iron("spindle", block("ram", (0.0, -5.0, 0.0), (60.0, 5.0, 60.0)))
+    (found,) = check_collisions(run, [plate, ram], {}, near=near)
+    assert (found.is_near, found.worst_row, found.worst_fraction) == (True, 1, pytest.approx(1.0))
+    assert found.distance_mm == pytest.approx(apart, abs=1e-6)
