@@ -31,7 +31,9 @@ def test_a_sound_program_is_written_and_says_what_it_cuts(tmp_path: Path, capsys
     assert main([*command, "--stock", STOCK, "--cell", "1"]) == 0
     told = capsys.readouterr().err
     assert "\nremoval       ok    " in told
-    assert "\ncollision     ok    nothing" in told
+    assert "\ncollision     ok    nothing was checked" in told
+    assert f"{tmp_path / 'two.mpf'}: warning: the bodies of the machine are not checked" in told
+    assert ".two.mpf." not in told
 
 
 def test_a_rapid_through_stock_is_refused_and_forced_with_a_notice(

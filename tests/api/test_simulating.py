@@ -223,10 +223,14 @@ def test_a_fixture_is_hit_and_come_near_to(tmp_path: Path) -> None:
     found = simulate(tmp_path, SLOT, fixtures=higher, stop_at="first")
     (finding,) = found.findings
     assert (finding.kind, finding.block, finding.between) == ("collision", 60, ("fixture 1", "cutter of 1"))
+    assert [one.findings for one in found.operations] == [1]
+    assert found.pairs == 3  # with cutter, shank and holder
     later = SLOT.replace("N70 G0 Z20", "N70 G0 X-20\nN80 G0 Y15\nN90 G0 X70\nN95 G0 Z20")
     stopped = simulate(tmp_path, later, fixtures=higher, stop_at="first")
     assert [one.block for one in stopped.findings] == [60]
     assert 90 in {one.block for one in simulate(tmp_path, later, fixtures=higher).findings}
+    (until,) = simulate(tmp_path, later.replace("N70 G0 X-20", "N70 Z-8"), fixtures=higher, until=70).findings
+    assert (until.block, until.last_block) == (60, 60)  # what comes later is not simulated, however deep it goes
     assert finding.depth == pytest.approx(2.0, abs=0.1)
     assert found.remarks[-1].what.startswith("the bodies of the machine are not checked")
 

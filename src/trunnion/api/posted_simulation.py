@@ -163,8 +163,10 @@ def _check(
         summary = broken[0].what
     elif key == "removal":
         summary = f"{found.removed:.0f} mm³ removed by turning cutters at feed, and by nothing else"
+    elif found.pairs:
+        summary = f"nothing touches of {counted(found.pairs, 'pair')} of bodies that were checked"
     else:
-        summary = "nothing that was checked touches"
+        summary = "nothing was checked: there are neither fixtures, nor zero and tool length for the machine's bodies"
     places = (*_places(findings), *(Place(each.line, -1, math.nan, each.what) for each in broken))
     return Check(key, title, passed, summary, deepest, 0.0 if key == "collision" else found.limit, "mm", places)
 

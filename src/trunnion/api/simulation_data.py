@@ -23,6 +23,7 @@ def simulation_data(found: SimulationResult) -> dict[str, object]:
         "removed_mm3": _number(found.removed),
         "left": _excess(found.left),
         "gouge": _excess(found.gouge),
+        "pairs_checked": found.pairs,
         "setups": [_setup(each) for each in found.setups],
         "collisions": [_finding(each) for each in found.findings],
         "near": [_near(each) for each in found.near],

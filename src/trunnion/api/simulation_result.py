@@ -135,6 +135,7 @@ class SimulationResult:
     simulation  that of the last set-up
     setup      its name, where this is one of several
     setups     the results of each, where there are several
+    pairs      of bodies that were checked against each other, of all programs
     """
 
     programs: tuple[str, ...]
@@ -154,6 +155,7 @@ class SimulationResult:
     simulation: Simulation
     setup: str = ""
     setups: tuple["SimulationResult", ...] = ()
+    pairs: int = 0
 
     @property
     def passed(self) -> bool:
@@ -187,6 +189,7 @@ def make_result(
     *,
     runs: Sequence[Run] = (),
     setup: str = "",
+    pairs: int = 0,
 ) -> SimulationResult:
     """Put together what programs have cut, hit and come near to in a set-up.
 
@@ -210,7 +213,8 @@ def make_result(
         seconds_taken = float(at[one.end - 1]) - (float(at[one.first - 1]) if one.first else 0.0)
         lines = int(run.line[one.first]), int(run.line[one.end - 1])
         air_length = sum(each.length for each in idle)
-        operations.append(_operation(run, one, seconds_taken, lines, air_length))
+        own = [each for each in touched[one.job] if not each.is_near and one.first <= each.worst_row < one.end]
+        operations.append(_operation(run, one, seconds_taken, lines, air_length, len(one.findings) + len(own)))
     for number, collisions in enumerate(touched):
         run, at = jobs[number].run, seconds[number]
         hits = [each for each in collisions if not each.is_near]
@@ -223,7 +227,7 @@ def make_result(
         tuple(job.run.files[0] for job in jobs), machine, (x, y, z),
         found.setup.tolerance + found.error, found.setup.limit, found.start_volume - found.stock.volume,
         _named(operations, setup), _named(findings, setup), _named(misses, setup), _longest(_named(air, setup)),
-        found.left, found.gouge, remarks, found.seconds, found, setup,
+        found.left, found.gouge, remarks, found.seconds, found, setup, pairs=pairs,
     )  # fmt: skip
 
 
@@ -248,6 +252,7 @@ def join_results(results: Sequence[SimulationResult]) -> SimulationResult:
         seconds=sum(each.seconds for each in results),
         setup="",
         setups=tuple(results),
+        pairs=sum(each.pairs for each in results),
     )
 
 
@@ -260,9 +265,10 @@ def _longest(air: Iterable[AirCut]) -> tuple[AirCut, ...]:
     return tuple(sorted(air, key=lambda each: -each.length)[:_MOST_AIR])
 
 
-def _operation(run: Run, one: OperationCut, seconds: float, lines: tuple[int, int], air: float) -> SimulatedOperation:
+def _operation(
+    run: Run, one: OperationCut, seconds: float, lines: tuple[int, int], air: float, count: int
+) -> SimulatedOperation:
     tool = one.tool or NO_CALL
-    count = len(one.findings)
     return SimulatedOperation(run.files[0], tool, *lines, one.removed, one.gouged, seconds, air, count)
 
 

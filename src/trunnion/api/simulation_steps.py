@@ -1,7 +1,7 @@
 """Set-ups that are simulated one after another: the stock that one leaves is that of the next."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Final
 
@@ -24,7 +24,7 @@ from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.jit import compile_ahead
 from trunnion.machines.forward import tool_axis_rows
 from trunnion.model.run import Run
-from trunnion.simulation.collisions import Collision, check_collisions, fixture_body, machine_bodies, part_body
+from trunnion.simulation.collisions import Body, Collision, check_collisions, fixture_body, machine_bodies, part_body
 from trunnion.simulation.meshes import DEVIATION, TriangleMesh
 from trunnion.simulation.simulator import Job, Setup, Simulation
 from trunnion.simulation.stock.solids import StockShape, check_narrow_tools, default_cell, stock_shape
@@ -129,7 +129,9 @@ class _Steps:
         self._observer.problems(remarks)
         told = len(remarks)
         around, near = own.fixtures, given.near or 0.0
-        touched = [_collisions(job, number, part, around, near, remarks) for number, job in enumerate(jobs)]
+        bodies = [_bodies(job, number, part, around, remarks) for number, job in enumerate(jobs)]
+        pairs: list[int] = []
+        touched = [_collisions(job, own, near, pairs.append) for job, own in zip(jobs, bodies, strict=True)]
         if given.stop_at == "first":
             jobs = _up_to_first_hit(jobs, touched)
         found = _cut(setup, jobs, given.stop_at == "first", self._threads, self._observer)
@@ -140,10 +142,13 @@ class _Steps:
             what, cure = "takes nothing from the stock", "check the place of the stock, and the tools"
             remarks.append(Problem(runs[0].files[0], 0, what, cure, Severity.WARNING))
         self._observer.problems(remarks[told:])
-        collisions = _until_stop(jobs, touched, found)
+        if given.stop_at == "first":
+            jobs = _until_stop(jobs, found)
+            touched = [_collisions(job, own, near) for job, own in zip(jobs, bodies, strict=False)]
         return make_result(
-            own.machine.key, found, jobs, collisions, tuple(remarks), own.toolpaths, runs=own.runs, setup=own.given.name
-        )
+            own.machine.key, found, jobs, touched, tuple(remarks), own.toolpaths, runs=own.runs,
+            setup=own.given.name, pairs=sum(pairs),
+        )  # fmt: skip
 
 
 def _cut(setup: Setup, jobs: Sequence[Job], to_first: bool, threads: int | None, observer: Observer) -> Simulation:
@@ -171,24 +176,18 @@ def _up_to_first_hit(jobs: Sequence[Job], touched: Sequence[Sequence[Collision]]
     return kept
 
 
-def _until_stop(
-    jobs: Sequence[Job], touched: Sequence[Sequence[Collision]], found: Simulation
-) -> list[list[Collision]]:
-    """The collisions of jobs in the rows that were simulated."""
-    last, row = found.stopped or (len(jobs), -1)
-    ends = [job.end if number < last else (row + 1 if number == last else 0) for number, job in enumerate(jobs)]
-    return [[each for each in own if each.row < end] for own, end in zip(touched, ends, strict=False)]
+def _until_stop(jobs: Sequence[Job], found: Simulation) -> list[Job]:
+    """The jobs as far as they were simulated."""
+    if found.stopped is None:
+        return list(jobs)
+    last, row = found.stopped
+    return [*jobs[:last], replace(jobs[last], end=row + 1)]
 
 
-def _collisions(
-    job: Job,
-    number: int,
-    part: TriangleMesh | None,
-    fixtures: Sequence[TriangleMesh],
-    near: float,
-    remarks: list[Problem],
-) -> list[Collision]:
-    """What touches, or comes near, while a program runs as far as it is simulated."""
+def _bodies(
+    job: Job, number: int, part: TriangleMesh | None, fixtures: Sequence[TriangleMesh], remarks: list[Problem]
+) -> list[Body]:
+    """What a tool can hit while a program runs, and what the machine may hit with it."""
     machine = job.run.machine
     bodies = [fixture_body(mesh, machine) for mesh in fixtures]
     if fixtures and part is not None:
@@ -199,10 +198,16 @@ def _collisions(
         what = "the bodies of the machine are not checked: workpiece zero and tool lengths are not known"
         cure = "give zero, and tool_length or a tool with its holder"
         remarks.append(Problem(job.run.files[0], 0, what, cure, Severity.WARNING))
+    return bodies
+
+
+def _collisions(
+    job: Job, bodies: Sequence[Body], near: float, pairs_told: Callable[[int], None] | None = None
+) -> list[Collision]:
+    """What touches, or comes near, while a program runs as far as it is simulated."""
     if not bodies:
         return []
-    found = check_collisions(job.run, bodies, job.tools, near=near)
-    return [each for each in found if each.row < job.end]
+    return check_collisions(job.run, bodies, job.tools, near=near, end=job.end, pairs_told=pairs_told)
 
 
 def _lengths_known(job: Job) -> bool:

@@ -29,6 +29,8 @@ def check_collisions(
     *,
     near: float = 0.0,
     step: float = STEP,
+    end: int | None = None,
+    pairs_told: Callable[[int], None] | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> list[Collision]:
     """Find which bodies touch while a program runs, or come near each other.
@@ -45,6 +47,10 @@ def check_collisions(
         Distance in mm from which on two bodies are told that do not touch.
     step
         Between bodies nearer to each other than this, the motion is looked at in such steps, mm.
+    end
+        The first row that is left out; None: all are checked.
+    pairs_told
+        Is told how many pairs of bodies are checked against each other.
     progress
         Is told how many rows are done.
 
@@ -63,12 +69,14 @@ def check_collisions(
     for k, length in lengths.items():
         everything += tool_bodies(tools[run.tools[k]], run.machine, run.tools[k], length)
     pairs = body_pairs(run.machine, everything).checked
+    if pairs_told is not None:
+        pairs_told(len(pairs))
     solids = {k: Solid(everything[k].mesh) for pair in pairs for k in pair}
     watches = [
         PairWatch(run.machine, run.tools, (everything[i], everything[j]), (solids[i], solids[j]), near, step)
         for i, j in pairs
     ]
-    for pieces in axis_pieces(run, lengths):
+    for pieces in axis_pieces(run, lengths, end):
         for watch in watches:
             watch.follow(pieces)
         if progress is not None:

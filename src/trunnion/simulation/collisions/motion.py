@@ -60,15 +60,17 @@ class AxisPieces:
     known: Flags
 
 
-def axis_pieces(run: Run, lengths: Mapping[int, float]) -> Iterator[AxisPieces]:
+def axis_pieces(run: Run, lengths: Mapping[int, float], end: int | None = None) -> Iterator[AxisPieces]:
     """Yield the motion of all rows, some thousands of them at a time.
 
     run      the run
     lengths  of tools, from tip to gauge point, mm, by their index in ``Run.tools``; others have that of the machine
+    end      the first row that is left out; None: none is
     """
+    rows = len(run) if end is None else min(end, len(run))
     motion = _Motion(run, lengths)
-    for first in range(0, len(run), CHUNK_ROWS):
-        yield motion.pieces(first, min(first + CHUNK_ROWS, len(run)))
+    for first in range(0, rows, CHUNK_ROWS):
+        yield motion.pieces(first, min(first + CHUNK_ROWS, rows))
 
 
 class _Motion:
