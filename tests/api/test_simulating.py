@@ -439,3 +439,19 @@ def test_the_command_says_it_in_text_and_data(tmp_path: Path, capsys: pytest.Cap
     assert data["removed_mm3"] == pytest.approx(2500.0, rel=1e-3)
     assert main(["simulate", *given, "--json", "-"]) == 1
     assert json.loads(capsys.readouterr().out)["removed_mm3"] == data["removed_mm3"]
+
+
+@pytest.mark.parametrize(
+    ("stock", "words"),
+    [
+        ("box:50,40,9.5,0,-20,-10", "reaches 0.500 mm beyond the stock"),
+        ("cylinder:70,10,-10", "before anything is cut"),
+    ],
+)
+def test_a_part_that_its_stock_does_not_hold_fails(tmp_path: Path, stock: str, words: str) -> None:
+    part = cuboid((-30, -30, -10), (30, 30, 0)) if stock.startswith("cyl") else slotted(5.0)
+    found = simulate(tmp_path, SLOT, stock=stock, part=part, until=60, cell=1.0)
+    assert not found.passed
+    assert [one.file for one in found.remarks if words in one.what] == ["part"]
+    with pytest.raises(trunnion.InputError, match="more than half of a cell"):
+        simulate(tmp_path, SLOT, accuracy=0.6, cell=1.0)

@@ -218,3 +218,11 @@ def mistakes(path: Path) -> list[trunnion.Problem]:
     except trunnion.InputError as error:
         return list(error.problems)
     return []
+
+
+def test_what_an_earlier_set_up_took_of_the_part_fails(folder: Path) -> None:
+    (folder / "nc" / "deep.ngc").write_text(SLOT.replace("Z-5", "Z-6"))
+    later = SETUPS.replace('part = "part.stl"\n', "").replace("slot", "deep", 1) + 'part = "part.stl"\n'
+    found = trunnion.simulate(project(folder, later))
+    assert not found.passed
+    assert [one.what for one in found.remarks if "is missing 1.000 mm deep" in one.what]

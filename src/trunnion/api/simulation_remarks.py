@@ -10,6 +10,7 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.simulation.cutting.sweeps import sideways_exits, unknown_swivels
 from trunnion.simulation.simulator import Setup
+from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.stock.solids import StockShape
 from trunnion.simulation.tool_deltas import is_told_of_length
 from trunnion.simulation.tools.profile import ToolShape
@@ -17,7 +18,7 @@ from trunnion.simulation.tools.profile import ToolShape
 
 def simulation_remarks(setup: Setup, runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]:
     """Return all remarks: errors where a crash may be hidden, else warnings."""
-    return [*_remarks(runs, shapes), *_unknown_ways(runs, setup.stock), *_lengths(runs, shapes), *_outside(setup)]
+    return [*_remarks(runs, shapes), *_unknown_ways(runs, setup.stock), *_lengths(runs, shapes)]
 
 
 def _foreign_length(run: Run, row: int, number: int, names: Sequence[str]) -> list[Problem]:
@@ -100,12 +101,21 @@ def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]
     return found
 
 
-def _outside(setup: Setup) -> list[Problem]:
+def part_remarks(setup: Setup, lacking: Excess | None, slack: float) -> list[Problem]:
+    """Errors where the part cannot come out of the stock: what of it is missing before anything is cut.
+
+    lacking  of the part, within the box of the stock
+    slack    how far the surface of the stock may have been moved, mm
+    """
     if setup.part is None:
         return []
+    cure = "check the size of the stock, and the zero of part and stock"
     beyond = max(float((setup.stock.low - setup.part.low).max()), float((setup.part.high - setup.stock.high).max()))
-    if beyond <= setup.tolerance:
-        return []
-    what = f"reaches {beyond:.3f} mm beyond the stock: what is outside is not compared"
-    cure = "check the zero of part and stock"
-    return [Problem("part", 0, what, cure, Severity.WARNING)]
+    if beyond > setup.tolerance + slack:
+        what = f"reaches {beyond:.3f} mm beyond the stock: it cannot come out, and what is outside is not compared"
+        return [Problem("part", 0, what, cure)]
+    if lacking is not None and lacking.largest > setup.limit + slack:
+        x, y, z = lacking.places[0].at
+        what = f"is missing {lacking.largest:.3f} mm deep at X{x:.3f} Y{y:.3f} Z{z:.3f} before anything is cut"
+        return [Problem("part", 0, what, cure)]
+    return []

@@ -11,7 +11,7 @@ from trunnion import readers, simulation
 from trunnion.api.arguments import check_choice, check_whole
 from trunnion.api.observer import Observer
 from trunnion.api.settings import check_tolerance
-from trunnion.api.simulation_remarks import simulation_remarks
+from trunnion.api.simulation_remarks import part_remarks, simulation_remarks
 from trunnion.api.simulation_result import SimulationResult, join_results, make_result
 from trunnion.api.simulation_setups import (
     PreparedSetup,
@@ -35,6 +35,9 @@ from trunnion.verification.kinematics.axis_motion_kernel import axis_motion_rows
 
 #: Part of a cell within which motions are simulated by default.
 _TOLERANCE: Final = 0.1
+
+#: The greatest part of a cell by which motions may be off.
+_COARSEST: Final = 0.5
 
 #: Part of the tolerance of motions within which exact surfaces of CAD files become facets.
 _FACETS: Final = 0.25
@@ -71,6 +74,9 @@ def _simulate_setups(given: SimulationInput, observer: Observer) -> SimulationRe
     widths = {name: cutting_width(tool) for each in setups for name, tool in each.tools.items()}
     cell = given.cell or default_cell(shape, min(widths.values(), default=math.inf))
     check_narrow_tools(widths, cell)
+    if given.accuracy is not None and given.accuracy > _COARSEST * cell:
+        what = f"{given.accuracy:g} mm is more than half of a cell of {cell:g} mm: gouges of a cell would not be told"
+        raise InputError(argument_problem("accuracy", what, f"give {_COARSEST * cell:g} mm at most, or a wider cell"))
     simulation.check_cell(shape, cell)
     steps = _Steps(cell, given.accuracy or _TOLERANCE * cell, given, threads, observer)
     results: list[SimulationResult] = []
@@ -98,6 +104,8 @@ class _Steps:
         self._cell, self._tolerance, self._given = cell, tolerance, given
         self._threads, self._observer = threads, observer
         self._part: TriangleMesh | None = None
+        #: How far turns may have moved the surface of the stock, mm.
+        self._slack = 0.0
         self._left: Simulation | None = None
 
     def follow(self, own: PreparedSetup, shape: StockShape, remarks: list[Problem]) -> SimulationResult:
@@ -107,6 +115,7 @@ class _Steps:
             shape = StockShape.of_kept(*turned_stock(self._left.stock, pose, self._cell))
             self._part = None if self._part is None else self._part.moved(pose.matrix)
             if not pose.keeps_rays:
+                self._slack += self._cell
                 what = f"is turned through its surface: it may be {0.5 * self._cell:.4g} mm off, and what is thinner"
                 what += f" than a cell of {self._cell:g} mm may be lost"
                 remarks.append(Problem("stock", 0, what, "turn it by quarters to lose nothing", Severity.WARNING))
@@ -135,6 +144,7 @@ class _Steps:
         if given.stop_at == "first":
             jobs = _up_to_first_hit(jobs, touched)
         found = _cut(setup, jobs, given.stop_at == "first", self._threads, self._observer)
+        remarks += part_remarks(setup, found.lacking, self._slack)
         if found.leaks:
             what = f"{found.leaks} of {found.stock.lattice.ray_count} rays pass a hole in it, and were left empty"
             remarks.append(Problem("part", 0, what, "close the mesh", Severity.WARNING))

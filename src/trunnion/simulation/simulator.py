@@ -17,7 +17,7 @@ from trunnion.model.run import Run
 from trunnion.simulation.cutting.removal import RowsCut, cut
 from trunnion.simulation.findings import Finding, air_cuts, gouge_findings, idle_rows, row_findings, spindle_turns
 from trunnion.simulation.near_stock import near_findings, pieces_with_near
-from trunnion.simulation.stock.deviation import Excess, Gouges, left_on, missing_from
+from trunnion.simulation.stock.deviation import Excess, Gouges, lacking_at_start, left_on, missing_from
 from trunnion.simulation.stock.material import Stock
 from trunnion.simulation.stock.solids import StockShape, make_stock
 from trunnion.simulation.stock.spans import Spans
@@ -81,7 +81,8 @@ class Simulation:
 
     error    how far the bodies of tools with round corners may be off, mm
     left     what the stock has beyond the design; None without a design
-    gouge    what of the design is missing
+    gouge    what of the design is missing, and was there
+    lacking  what of it was missing before anything was cut
     stopped  where it was stopped at the first finding: job and row
     seconds  of computing
     """
@@ -93,6 +94,7 @@ class Simulation:
     error: float
     left: Excess | None
     gouge: Excess | None
+    lacking: Excess | None
     leaks: int
     stopped: tuple[int, int] | None
     seconds: float
@@ -142,11 +144,12 @@ def _simulate(
     stock = make_stock(setup.stock, setup.cell)
     start = stock.spans(0), stock.spans(1), stock.spans(2)
     design: tuple[Spans, Spans, Spans] | None = None
-    leaks = 0
+    lacking, leaks = None, 0
     if setup.part is not None:
         part, lattice = setup.part, stock.lattice
         design = part.spans(lattice, 0), part.spans(lattice, 1), part.spans(lattice, 2)
         leaks = sum(spans.leaks for spans in design)
+        lacking = lacking_at_start(stock, design, setup.limit)
     start_volume, operations = stock.volume, list[OperationCut]()
     total, done, error = sum(job.end for job in jobs), 0, 0.0
     for number, job in enumerate(jobs):
@@ -163,7 +166,9 @@ def _simulate(
         for one in operations:
             _add_gouges(one, jobs, gouges, apart)
     seconds = time.perf_counter() - begin
-    return Simulation(setup, tuple(operations), stock, start_volume, error, left, gouge, leaks, stopped, seconds)
+    return Simulation(
+        setup, tuple(operations), stock, start_volume, error, left, gouge, lacking, leaks, stopped, seconds
+    )
 
 
 def _with_whole(gouges: Gouges, setup: Setup, jobs: Sequence[Job], stock: Stock, threads: int | None) -> Gouges:

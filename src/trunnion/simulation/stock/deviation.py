@@ -68,6 +68,12 @@ def left_on(stock: Stock, design: tuple[Spans, Spans, Spans], limit: float) -> E
     return _excess(stock, found, limit)
 
 
+def lacking_at_start(stock: Stock, design: tuple[Spans, Spans, Spans], limit: float) -> Excess:
+    """What of the design is not in stock that nothing has cut yet; places thinner than ``limit`` are not told."""
+    found = compare_solids(stock, list(design), [stock.spans(bundle) for bundle in range(3)])
+    return _excess(stock, found, limit)
+
+
 def missing_from(
     stock: Stock, start: tuple[Spans, Spans, Spans], design: tuple[Spans, Spans, Spans], limit: float
 ) -> tuple[Excess, Gouges]:
