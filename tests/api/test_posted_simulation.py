@@ -92,10 +92,11 @@ def test_what_is_missing_of_the_part_fails(tmp_path: Path) -> None:
         (["--simulate", "--project", "two.toml"], "has 2 set-ups"),
         (["--simulate", "--project", "other.toml"], "other.toml:2: error: simulation.machine is dmu65"),
         (["--simulate", "--project", "zero.toml"], "give --set zero=0,0,120"),
+        (["--simulate", "--project", "until.toml"], "until.toml:4: error: simulation.until is 400"),
         (["--simulate", "--stock", "hub.stl", "--output", "hub.stl"], "hub.stl"),
         (["--simulate", "--stock", STOCK, "--tool", "2=bal:3"], "bal"),
     ],
-    ids=["alone", "none", "stock", "cl", "setups", "machine", "zero", "over", "tool"],
+    ids=["alone", "none", "stock", "cl", "setups", "machine", "zero", "until", "over", "tool"],
 )
 def test_what_cannot_be_simulated_is_told(
     tmp_path: Path,
@@ -114,6 +115,7 @@ def test_what_cannot_be_simulated_is_told(
     )
     (tmp_path / "other.toml").write_text(f'[simulation]\nmachine = "dmu65"\n{setup}')
     (tmp_path / "zero.toml").write_text(f"[simulation]\n{setup}zero_mm = [0, 0, 120]\n")
+    (tmp_path / "until.toml").write_text(f"[simulation]\n{setup}cell_mm = 1.0\nuntil = 400\n")
     before = (tmp_path / "hub.stl").read_bytes()
     output = [] if "--output" in options else ["--output", "out.mpf"]
     assert main(["post", str(CL), "--machine", "yl569", *output, *options]) == 2

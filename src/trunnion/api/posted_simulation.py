@@ -93,7 +93,11 @@ def _of_project(path: Path, machine: Machine, stated: Mapping[str, Any]) -> Simu
             value = ",".join(f"{number:g}" for number in wanted) if isinstance(wanted, tuple) else f"{wanted:g}"
             what = f"{key} is {value}, and the post has {'none' if own is None else 'another one'}"
             raise InputError(Problem(file, line, what, f"give setting {name}={value}"))
-    return replace(found, setups=[replace(setup, zero=None, tool_length=None, until=None)])
+    if setup.until is not None:
+        file, line, key = found.places["until"]
+        what = f"{key} is {setup.until}, and the program that is posted is simulated as a whole"
+        raise InputError(Problem(file, line, what, "leave it out"))
+    return replace(found, setups=[replace(setup, zero=None, tool_length=None)])
 
 
 def simulation_files(given: SimulationLike) -> list[FilePath]:
