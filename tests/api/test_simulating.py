@@ -327,6 +327,11 @@ def test_a_tool_length_that_is_left_out_is_an_error(tmp_path: Path) -> None:
     off = simulate(tmp_path, two.replace("T2 M6", "G49\nT2 M6"), tools=tools)
     assert [one for one in off.remarks if "without a tool length" in one.what]
     assert simulate(tmp_path, two.replace("T2 M6", "T2 M6\nG43 H2"), tools=tools).passed
+    (never,) = [one for one in simulate(tmp_path, SLOT.replace("G43 H1\n", "")).remarks if "length:" in one.what]
+    assert (never.line, never.severity) == (6, "error")
+    sinumerik = "G710 G90 G54\nT1 M6\nD{}\nS1000 M3\nG0 X-20 Y0 Z20\nG0 Z-5\nG1 X70 F500\nG0 Z20\nM30\n"
+    assert not simulate(tmp_path, sinumerik.format(0), machine="yl569").passed
+    assert simulate(tmp_path, sinumerik.format(1), machine="yl569").passed
 
 
 def test_meshes_that_are_odd_are_told(tmp_path: Path) -> None:

@@ -41,9 +41,12 @@ def _lengths(runs: Sequence[Run], shapes: Mapping[str, ToolShape]) -> list[Probl
         rows = np.flatnonzero(run.kind != Kind.RAPID)
         edge, tool = run.edge[rows], run.tool[rows]
         unset = -1 if run.uses_length_numbers else 0
-        if (edge == unset).any() and (edge > 0).any():
-            row = int(rows[np.argmax(edge == unset)])
-            what, cure = "cuts without a tool length, which other tools of the program have", "select it before the cut"
+        # A tool that no program has called may be measured by hand, as long as no other one has a length.
+        called = np.array([name not in ("", "0") for name in run.tools])[tool] | (edge > 0).any()
+        without = (edge == unset) & called & ~run.machine_frame[rows]
+        if without.any():
+            row = int(rows[np.argmax(without)])
+            what, cure = "cuts without a tool length: the spindle goes where the tip should", "select it before the cut"
             found.append(Problem(file_of_row(run, row), int(run.line[row]), what, cure))
         if run.uses_length_numbers:
             for number in np.unique(edge[edge > 0]).tolist():
