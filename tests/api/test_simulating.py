@@ -442,6 +442,11 @@ def test_the_command_says_it_in_text_and_data(tmp_path: Path, capsys: pytest.Cap
     assert load_mesh(tmp_path / "left.stl", closed=True).volume == pytest.approx(17500.0, rel=1e-5)
     capsys.readouterr()
     assert data["removed_mm3"] == pytest.approx(2500.0, rel=1e-3)
+    one, page = str(tmp_path / "one.json"), tmp_path / "nowhere" / "page.html"
+    for twice in (["--report", one, "--json", one], ["--json", str(page)], ["--save-stock", str(nc)]):
+        assert main(["simulate", *given, *twice]) == 2
+        assert "mm³" not in capsys.readouterr().out  # before anything is computed
+    assert not Path(one).exists()
     assert main(["simulate", *given, "--json", "-"]) == 1
     assert json.loads(capsys.readouterr().out)["removed_mm3"] == data["removed_mm3"]
 

@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Iterator
 from typing import Final
 
-from trunnion.api.reports import check_report
+from trunnion.api.reports import check_report_name
 from trunnion.api.simulating import simulate
 from trunnion.api.simulation_data import simulation_data
 from trunnion.api.simulation_project import project_files
@@ -13,7 +13,7 @@ from trunnion.api.simulation_result import NearMiss, SimulationFinding, Simulati
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result
 from trunnion.cli.terminal import Terminal
-from trunnion.files import atomic_file
+from trunnion.files import atomic_file, check_outputs
 from trunnion.machines.motion_time import format_duration
 from trunnion.simulation.meshes import check_mesh_name, save_mesh
 from trunnion.simulation.stock.deviation import Excess
@@ -32,7 +32,9 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.save_stock is not None:
         check_mesh_name(arguments.save_stock)
     if arguments.report is not None:
-        check_report(arguments.report, read)
+        check_report_name(arguments.report)
+    targets = (arguments.save_stock, arguments.report, arguments.json)
+    check_outputs([target for target in targets if target not in (None, "-")], read)
     found = simulate(
         arguments.files,
         machine=arguments.machine,
