@@ -47,6 +47,23 @@ def test_a_slot_is_cut_and_nothing_is_wrong(tmp_path: Path) -> None:
     assert (operation.tool, operation.air, operation.findings) == ("1", 0.0, 0)
 
 
+def test_the_volume_of_each_block_and_minute_is_told(tmp_path: Path) -> None:
+    halves = SLOT.replace("N60 G1 X70 F500\n", "N60 G1 X30 F500\nG1 X70 F250\n")
+    found = simulate(tmp_path, halves)
+    (operation,) = found.operations
+    blocks = operation.blocks
+    assert blocks.line.tolist() == [7, 8]
+    # The first block removes what is before the cutter's middle at X30 and the half circle before it.
+    first = 5.0 * (300.0 + math.pi * 25.0 / 2.0)
+    np.testing.assert_allclose(blocks.removed, [first, 2500.0 - first], rtol=5e-3)
+    np.testing.assert_allclose(blocks.rate, blocks.removed / [50.0 / 500.0, 40.0 / 250.0], rtol=2e-3)
+    assert blocks.removed.sum() == pytest.approx(operation.removed, rel=1e-12)
+    data = tmp_path / "found.json"
+    found.write_report(data)
+    told = json.loads(data.read_text())["operations"][0]["blocks"]
+    assert (told["line"], len(told["removed_mm3"]), len(told["mm3_per_min"])) == ([7, 8], 2, 2)
+
+
 @pytest.mark.parametrize(
     ("program", "kind", "block", "depth"),
     [

@@ -1,9 +1,10 @@
 """A simulation as data for JSON; the schema is in ``docs/simulation.md``."""
 
+import math
 from dataclasses import asdict
 from typing import Final
 
-from trunnion.api.simulation_result import AirCut, NearMiss, SimulationFinding, SimulationResult
+from trunnion.api.simulation_result import AirCut, BlockRemoval, NearMiss, SimulationFinding, SimulationResult
 from trunnion.simulation.stock.deviation import Excess
 
 _DECIMALS: Final = 6
@@ -33,6 +34,7 @@ def simulation_data(found: SimulationResult) -> dict[str, object]:
                 "file": each.file, "tool": each.tool, "line": each.line, "last_line": each.last_line,
                 "removed_mm3": _number(each.removed), "gouged_mm3": _number(each.gouged),
                 "seconds": _number(each.seconds), "air_mm": _number(each.air), "findings": each.findings,
+                "blocks": _blocks(each.blocks),
                 "setup": each.setup or None,
             }
             for each in found.operations
@@ -41,6 +43,14 @@ def simulation_data(found: SimulationResult) -> dict[str, object]:
                     for each in found.remarks],
         "seconds": _number(found.seconds),
     }  # fmt: skip
+
+
+def _blocks(blocks: BlockRemoval) -> dict[str, object]:
+    return {
+        "line": blocks.line.tolist(),
+        "removed_mm3": [round(each, _DECIMALS) for each in blocks.removed.tolist()],
+        "mm3_per_min": [None if math.isnan(each) else round(each, _DECIMALS) for each in blocks.rate.tolist()],
+    }
 
 
 def _setup(found: SimulationResult) -> dict[str, object]:

@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Final, TypeVar
 
 import numpy as np
 
 from trunnion.api.reading import FilePath
-from trunnion.arrays import Floats
+from trunnion.arrays import Floats, Lines
 from trunnion.errors import Problem, Severity
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
@@ -91,6 +91,20 @@ class AirCut:
     setup: str = ""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class BlockRemoval:
+    """What each block removed that removed anything.
+
+    line     (n,) of the program
+    removed  (n,) mm³ of the stock
+    rate     (n,) mm³/min, at the programmed feeds; NaN where the block takes no time
+    """
+
+    line: Lines
+    removed: Floats
+    rate: Floats
+
+
 @dataclass(frozen=True, slots=True)
 class SimulatedOperation:
     """Consecutive blocks with one tool.
@@ -100,6 +114,7 @@ class SimulatedOperation:
     seconds   at the programmed feeds
     air       mm at feed in which nothing was removed
     findings  their number
+    blocks    volume removed by block and minute
     """
 
     file: str
@@ -111,6 +126,7 @@ class SimulatedOperation:
     seconds: float
     air: float
     findings: int
+    blocks: BlockRemoval = field(compare=False, repr=False)
     setup: str = ""
 
 
@@ -214,7 +230,8 @@ def make_result(
         lines = int(run.line[one.first]), int(run.line[one.end - 1])
         air_length = sum(each.length for each in idle)
         own = [each for each in touched[one.job] if not each.is_near and one.first <= each.worst_row < one.end]
-        operations.append(_operation(run, one, seconds_taken, lines, air_length, len(one.findings) + len(own)))
+        count, blocks = len(one.findings) + len(own), _blocks(run, one, at)
+        operations.append(_operation(run, one, seconds_taken, lines, air_length, count, blocks))
     for number, collisions in enumerate(touched):
         run, at = jobs[number].run, seconds[number]
         hits = [each for each in collisions if not each.is_near]
@@ -266,10 +283,32 @@ def _longest(air: Iterable[AirCut]) -> tuple[AirCut, ...]:
 
 
 def _operation(
-    run: Run, one: OperationCut, seconds: float, lines: tuple[int, int], air: float, count: int
+    run: Run,
+    one: OperationCut,
+    seconds: float,
+    lines: tuple[int, int],
+    air: float,
+    count: int,
+    blocks: BlockRemoval,
 ) -> SimulatedOperation:
-    tool = one.tool or NO_CALL
-    return SimulatedOperation(run.files[0], tool, *lines, one.removed, one.gouged, seconds, air, count)
+    tool, removed = one.tool or NO_CALL, float(one.removed.sum())
+    return SimulatedOperation(run.files[0], tool, *lines, removed, one.gouged, seconds, air, count, blocks)
+
+
+def _blocks(run: Run, one: OperationCut, at: Floats) -> BlockRemoval:
+    """What each block of an operation removed; ``at`` are seconds at the ends of the run's rows.
+
+    Rows that follow each other in one line are a block: a cycle, or an arc in pieces.
+    """
+    lines = run.line[one.first : one.end]
+    starts = np.flatnonzero(np.diff(lines, prepend=lines[:1] - 1))
+    removed = np.add.reduceat(one.removed, starts)
+    ends = one.first + np.append(starts[1:], len(lines)) - 1
+    before = one.first + starts - 1
+    minutes = (at[ends] - np.where(before >= 0, at[np.maximum(before, 0)], 0.0)) / 60.0
+    rate = np.divide(removed, minutes, out=np.full(len(removed), np.nan), where=minutes > 0.0)
+    kept = removed > 0.0
+    return BlockRemoval(lines[starts][kept], removed[kept], rate[kept])
 
 
 def _moment(job: Job, finding: Finding, seconds: Floats, slack: float) -> float:

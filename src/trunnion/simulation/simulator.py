@@ -68,11 +68,16 @@ class OperationCut:
     tool: str
     first: int
     end: int
-    removed: float = 0.0
+    volumes: list[Floats] = field(default_factory=list)
     gouged: float = 0.0
     air: list[Ints] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
     near: list[Finding] = field(default_factory=list)
+
+    @property
+    def removed(self) -> Floats:
+        """Volume that each row removed, (end - first,), mm³."""
+        return np.concatenate(self.volumes) if self.volumes else np.zeros(0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -262,7 +267,7 @@ def _cut_job(
                 yield current
             current = OperationCut(number, name, rows.first, rows.first)
         current.end = rows.first + len(rows.removed)
-        current.removed += float(rows.removed.sum())
+        current.volumes.append(rows.removed)
         current.gouged += float(rows.gouged.sum())
         current.findings += row_findings(run, rows, job.tools[name], setup.limit, turning)
         if setup.near > 0.0:
