@@ -255,11 +255,15 @@ def test_a_fixture_is_hit_and_come_near_to(tmp_path: Path) -> None:
 def test_the_bodies_of_the_machine_are_checked_where_it_is_known_where_they_are(tmp_path: Path) -> None:
     names = {body.name for body in trunnion.load_machine("xyzac_trt").bodies}
     unknown = simulate(tmp_path, SLOT)
-    sunk = simulate(tmp_path, SLOT, zero="0,0,-60")
+    (tmp_path / "own.toml").write_text('extends = "xyzac_trt"\n[spindle]\ngauge_point_mm = [0, 0, 0]\n')
+    sunk = simulate(tmp_path, SLOT, zero="0,0,-60", machine=tmp_path / "own.toml")
     told = "the bodies of the machine are not checked"
     assert [told in remark.what for remark in unknown.remarks] == [True]
     assert not [remark for remark in sunk.remarks if told in remark.what]
     assert {one.between[0] for one in sunk.findings if one.kind == "collision"} & names
+    unstated = simulate(tmp_path, SLOT, zero="0,0,-60")
+    assert not {one.between[0] for one in unstated.findings if one.kind == "collision"} & names
+    assert any("has no spindle.gauge_point_mm" in remark.what for remark in unstated.remarks)
 
 
 def test_it_ends_after_the_first_finding_or_before_a_block(tmp_path: Path) -> None:

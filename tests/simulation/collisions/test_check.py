@@ -40,7 +40,7 @@ def iron(link: str, mesh: TriangleMesh) -> Body:
 
 @pytest.fixture(scope="module")
 def machine() -> Machine:
-    return replace(load_machine("yl569"), workpiece_zero=(0.0, 0.0, 0.0), bodies=())
+    return replace(load_machine("yl569"), workpiece_zero=(0.0, 0.0, 0.0), bodies=(), spindle_point_is_stated=True)
 
 
 def run_text(text: str, machine: Machine, folder: Path) -> Run:
@@ -168,13 +168,13 @@ def test_a_gauge_point_that_is_not_stated_is_told() -> None:
     for name in ("yl569", "matsuura_mx330"):
         machine_bodies(load_machine(name), said.append)
     assert [str(each).partition(": ")[2].partition(";")[0] for each in said] == [
-        "warning: does not state spindle.gauge_point_mm: the spindle nose is taken to stand in the machine's zero"
+        "warning: has no spindle.gauge_point_mm: spindle and tools are not checked against the rest of the machine"
     ]
 
 
 @pytest.mark.parametrize("name", shipped_machines())
 def test_the_bodies_of_shipped_machines_are_free_at_home(name: str) -> None:
-    machine = load_machine(name)
+    machine = replace(load_machine(name), spindle_point_is_stated=True)
     bodies = machine_bodies(machine)
     solids = [Solid(body.mesh) for body in bodies]
     home = {link: poses[0] for link, poses in link_transforms(machine, machine.home[None]).items()}
@@ -213,6 +213,21 @@ def test_published_programs_hit_nothing_and_a_long_part_does(
     # A clamp where the part is cannot be missed.
     clamp = fixture_body(block("clamp", (-80.0, -80.0, -50.0), (80.0, 80.0, 100.0)), machine)
     assert any("clamp" in each.between for each in check_collisions(run, [clamp], tools))
+
+
+def test_what_is_at_a_nose_of_unknown_place_hits_fixtures_and_no_machine() -> None:
+    unknown = load_machine("yl569", {"workpiece": {"zero_mm": [0, 0, 0]}})
+    stated = load_machine("yl569", {"workpiece": {"zero_mm": [0, 0, 0]}, "spindle": {"gauge_point_mm": [0, 0, 0]}})
+    clamp = fixture_body(block("clamp", (-80.0, -80.0, -50.0), (80.0, 80.0, 100.0)), unknown)
+    hit = {}
+    for machine in (unknown, stated):
+        run = run_program(TESTS / "golden/yl569/3_blade_finish.expected.mpf", machine)
+        tools = {tool: mill(120.0) for tool in run.tools if tool not in ("", "0")}
+        bodies = [clamp, *machine_bodies(machine)]
+        hit[machine is stated] = {each.between for each in check_collisions(run, bodies, tools)}
+    assert hit[False]
+    assert all("clamp" in between for between in hit[False])
+    assert any("clamp" not in between for between in hit[True])  # the table, which starts beside the nose there
 
 
 @pytest.mark.parametrize("depth", [0.3, 1.9, 2.1, 3.0, 4.2])

@@ -98,8 +98,8 @@ def machine_bodies(machine: Machine, warn: Callable[[Problem], None] | None = No
     if problems:
         raise InputError(problems)
     if found and warn is not None and not machine.spindle_point_is_stated:
-        what = "does not state spindle.gauge_point_mm: the spindle nose is taken to stand in the machine's zero"
-        cure = "enter where it stands with the slides at zero, before you believe what is said of the head"
+        what = "has no spindle.gauge_point_mm: spindle and tools are not checked against the rest of the machine"
+        cure = "enter where the spindle nose stands with the slides at zero"
         warn(Problem(machine.files[0] if machine.files else machine.key, 0, what, cure, Severity.WARNING))
     return tuple(found)
 

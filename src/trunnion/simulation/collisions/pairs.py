@@ -2,7 +2,8 @@
 
 No pair are bodies of one link, a cutter and the part, two tools, and bodies on one side of the machine that overlap
 with all axes at home (table and cradle, head and ram): these touch by construction. What overlaps there from different
-sides is checked all the same.
+sides is checked all the same. Where the definition does not say where the spindle nose stands, what is at the nose and
+the rest of the machine are no pair either: nobody knows how far apart they are.
 """
 
 from collections.abc import Sequence
@@ -12,7 +13,7 @@ from itertools import combinations
 import numpy as np
 
 from trunnion.machines import Machine, Mount, link_transforms
-from trunnion.machines.links import BED, axes_between, carrier
+from trunnion.machines.links import BED, SPINDLE, axes_between, carrier
 from trunnion.simulation.collisions.bodies import Body, BodyKind
 from trunnion.simulation.collisions.queries import Solid, touches
 
@@ -34,6 +35,8 @@ def body_pairs(machine: Machine, bodies: Sequence[Body]) -> BodyPairs:
         one, other = bodies[i], bodies[j]
         if not axes_between(machine, one.link, other.link) or _never_meet(one, other):
             continue
+        if _is_apart_unknown(machine, one, other):
+            continue
         if _on_one_side(machine, one, other):
             for k in (i, j):
                 solids.setdefault(k, Solid(bodies[k].mesh))
@@ -50,6 +53,15 @@ def _never_meet(one: Body, other: Body) -> bool:
     if one.kind.is_tool and other.kind.is_tool:
         return True
     return {one.kind, other.kind} == {BodyKind.CUTTER, BodyKind.PART}
+
+
+def _is_apart_unknown(machine: Machine, one: Body, other: Body) -> bool:
+    """Whether one of two bodies is at a spindle nose of unknown place, and the other is of the rest of the machine."""
+    if machine.spindle_point_is_stated:
+        return False
+    at_nose = [body.link == SPINDLE for body in (one, other)]
+    rest = [body.kind is BodyKind.MACHINE and body.link != SPINDLE for body in (one, other)]
+    return any(at_nose) and any(rest)
 
 
 def _on_one_side(machine: Machine, one: Body, other: Body) -> bool:
