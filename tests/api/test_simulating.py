@@ -266,6 +266,18 @@ def test_the_bodies_of_the_machine_are_checked_where_it_is_known_where_they_are(
     assert any("has no spindle.gauge_point_mm" in remark.what for remark in unstated.remarks)
 
 
+def test_a_stock_outside_of_the_travel_is_told(tmp_path: Path) -> None:
+    machine = trunnion.load_machine("xyzac_trt")
+    low = next(axis.low for axis in machine.axes if axis.name == "X")
+    told = "beyond the travel of X: its corners need"
+    inside = simulate(tmp_path, SLOT, zero=f"{low},0,0")
+    assert not any(told in remark.what for remark in inside.remarks)
+    outside = simulate(tmp_path, SLOT, zero=f"{low - 7.0},0,0")
+    (remark,) = (each for each in outside.remarks if told in each.what)
+    assert "reaches 7.000 mm" in remark.what
+    assert f"need {low - 7.0:.3f} to {low + 43.0:.3f}" in remark.what
+
+
 def test_it_ends_after_the_first_finding_or_before_a_block(tmp_path: Path) -> None:
     program = SLOT.replace("N70 G0 Z20", "N70 G0 Y15\nN80 G0 X-20\nN90 G0 Z20")
     whole = simulate(tmp_path, program)

@@ -1,11 +1,14 @@
 """What a simulation cannot know of its programs, and what it takes for granted."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 
 import numpy as np
 
 from trunnion.api.simulation_result import file_of_row
 from trunnion.errors import Problem, Severity, merge_repeated
+from trunnion.machines import Machine
+from trunnion.machines.inverse import slide_positions
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.simulation.cutting.sweeps import sideways_exits, unknown_swivels
@@ -18,7 +21,27 @@ from trunnion.simulation.tools.profile import ToolShape
 
 def simulation_remarks(setup: Setup, runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]:
     """Return all remarks: errors where a crash may be hidden, else warnings."""
-    return [*_remarks(runs, shapes), *_unknown_ways(runs, setup.stock), *_lengths(runs, shapes)]
+    return [
+        *_remarks(runs, shapes), *_unknown_ways(runs, setup.stock), *_lengths(runs, shapes),
+        *_out_of_travel(runs[0].machine, setup.stock),
+    ]  # fmt: skip
+
+
+def _out_of_travel(machine: Machine, stock: StockShape) -> Iterator[Problem]:
+    """Slides that cannot bring the tool's tip to all corners of the stock while the rotary axes stand at zero."""
+    corners = np.array(list(product(*zip(stock.low, stock.high, strict=True))))
+    joints = slide_positions(machine, corners, np.zeros((len(corners), 2)))
+    for k, axis in enumerate(machine.axes):
+        if axis.is_rotary or not axis.has_limits or not machine.is_placed(k):
+            continue
+        low, high = float(joints[:, k].min()), float(joints[:, k].max())
+        beyond = max(axis.low - low, high - axis.high)
+        if beyond > 0.0:
+            what = (
+                f"reaches {beyond:.3f} mm beyond the travel of {axis.name}: its corners need {low:.3f} to {high:.3f},"
+                f" limits are {axis.low:g} and {axis.high:g}; rotary axes at zero"
+            )
+            yield Problem("stock", 0, what, "check its place and the workpiece zero", Severity.WARNING)
 
 
 def _foreign_length(run: Run, row: int, number: int, names: Sequence[str]) -> list[Problem]:
