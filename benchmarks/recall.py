@@ -119,7 +119,8 @@ def main() -> int:
             reference = Reference.of(sound, folder)
             others = list(sound_contour_setups(sound)) if sound.name == "YL569 contour" else []
             for one in (sound, *others):
-                found = simulated(one, folder, reference.mesh)
+                design = reference if one is sound else Reference.of(one, folder)  # its stock is another
+                found = simulated(one, folder, design.mesh)
                 alarms += [f"{one.name}: {each.kind} in line {each.line}" for each in found.findings]
                 if not found.passed:
                     alarms.append(f"{one.name} does not pass")

@@ -4,6 +4,7 @@ In:     a program as it was planned.
 Out:    problems at the lines of the INSERT statements, before the program is written.
 """
 
+import math
 import tempfile
 from collections.abc import Sequence
 from dataclasses import replace
@@ -159,7 +160,9 @@ def _first_feed(feed: Floats) -> float:
 def _difference(without: Run, with_text: Run, declared: Sequence[readers.KnownWord]) -> str:
     """What a run does that another one does not, in words; words ``declared`` to do nothing do nothing."""
     known = {diagnostic.text for diagnostic in without.errors}
-    unknown = [diagnostic.text for diagnostic in with_text.errors if diagnostic.text not in known]
+    # What stands behind an end that the text has brought about is a consequence of it.
+    end = min((event.line for event in with_text.events if event.kind == "end"), default=math.inf)
+    unknown = [each.text for each in with_text.errors if each.text not in known and each.line <= end]
     if len(with_text) > len(without) and not unknown:
         return "it moves the machine"
     effect = _first_change(without, with_text)

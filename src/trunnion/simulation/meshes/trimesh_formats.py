@@ -5,13 +5,16 @@ Out:    vertices and faces in its own unit and frame.
 """
 
 import io
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
+
+#: Packages that trimesh asks, where they are installed, in what code a text is that is not UTF-8.
+_GUESSERS: Final = frozenset({"charset_normalizer", "chardet"})
 
 
 def read_by_trimesh(data: bytes, ending: str, label: str, extra: str = "simulate") -> tuple[Floats, Ints]:
@@ -29,7 +32,11 @@ def read_by_trimesh(data: bytes, ending: str, label: str, extra: str = "simulate
         mesh = scene.to_mesh()
         vertices = np.array(mesh.vertices, np.float64).reshape(-1, 3)
         faces = np.array(mesh.faces, np.int64).reshape(-1, 3)
-    except (MemoryError, ImportError):
+    except MemoryError:
+        raise
+    except ImportError as error:
+        if error.name in _GUESSERS:
+            raise InputError(Problem(label, 0, "is damaged: its text is not UTF-8", "export it again")) from None
         raise
     except Exception as error:  # whatever a parser raises for a damaged file
         reason = str(error).strip().split("\n")[0][:100] or type(error).__name__
