@@ -266,6 +266,15 @@ def test_the_bodies_of_the_machine_are_checked_where_it_is_known_where_they_are(
     assert any("has no spindle.gauge_point_mm" in remark.what for remark in unstated.remarks)
 
 
+@pytest.mark.parametrize(("given", "missing"), [({}, "workpiece zero"), ({"zero": "0,0,0"}, "tool length of the run")])
+def test_machine_positions_that_cannot_be_placed_are_told(tmp_path: Path, given: dict[str, str], missing: str) -> None:
+    program = SLOT.replace("N70 G0 Z20\n", "N70 G0 Z20\nG53 G0 Z0\n")
+    told = f"retracts along the tool axis: the {missing} is not known"
+    assert any(told in remark.what for remark in simulate(tmp_path, program, **given).remarks)
+    placed = simulate(tmp_path, program, zero="0,0,0", tool_length="110")
+    assert not any("retracts along the tool axis" in remark.what for remark in placed.remarks)
+
+
 def test_a_stock_outside_of_the_travel_is_told(tmp_path: Path) -> None:
     machine = trunnion.load_machine("xyzac_trt")
     low = next(axis.low for axis in machine.axes if axis.name == "X")

@@ -120,8 +120,10 @@ def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]
             what = "radius compensation is on: the programmed path is taken for that of the tool's centre"
             cure = "compensation for wear is simulated as it should be; a programmed contour is not"
             found.append(Problem(file_of_row(run, row), int(run.line[row]), what, cure, Severity.WARNING))
-        if run.machine.workpiece_zero is None and bool(run.state.machine_frame.values.any()):
-            what = "machine positions are taken as retracts along the tool axis: the workpiece zero is not known"
+        missing = "workpiece zero" if run.machine.workpiece_zero is None else "tool length of the run"
+        is_placed = run.machine.workpiece_zero is not None and run.machine.tool_length is not None
+        if not is_placed and bool(run.state.machine_frame.values.any()):
+            what = f"machine positions are taken as retracts along the tool axis: the {missing} is not known"
             cure = "give zero and tool_length"
             found.append(Problem(run.files[0], 0, what, cure, Severity.WARNING))
     return found

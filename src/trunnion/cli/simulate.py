@@ -13,6 +13,7 @@ from trunnion.api.simulation_result import NearMiss, SimulationFinding, Simulati
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result
 from trunnion.cli.terminal import Terminal
+from trunnion.errors import Severity
 from trunnion.files import atomic_file, check_outputs
 from trunnion.machines.motion_time import format_duration
 from trunnion.simulation.meshes import check_mesh_name, save_mesh
@@ -94,7 +95,9 @@ def simulation_lines(found: SimulationResult) -> Iterator[str]:
             yield _of_setup(each.setup) + _excess_line("missing from the part", each.gouge)
     cell = " x ".join(f"{width:.4g}" for width in found.cell)
     yield f"{found.removed:.1f} mm³ removed; cells of {cell} mm, motions and tools within {found.accuracy:.4g} mm"
-    yield "nothing found" if found.passed else f"{counted(len(found.findings), 'finding')}: the program must not run"
+    errors = sum(remark.severity is Severity.ERROR for remark in found.remarks)
+    parts = [counted(len(found.findings), "finding"), *([counted(errors, "error")] if errors else [])]
+    yield "nothing found" if found.passed else f"{' and '.join(parts)}: the program must not run"
 
 
 def _of_setup(name: str) -> str:
