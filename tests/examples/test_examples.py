@@ -36,10 +36,11 @@ def test_a_script_runs_in_an_empty_folder(name: str, tmp_path: Path) -> None:
     assert sorted(path.name for path in tmp_path.iterdir()) == files
 
 
-def texts(notebook: Any) -> list[list[str]]:
+def texts(notebook: Any) -> list[str]:
     """What the outputs of each code cell show."""
     cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
-    return [[one.get("text") or one["data"]["text/plain"] for one in cell.outputs] for cell in cells]
+    # What a cell prints may come in one piece or in several.
+    return ["".join(one.get("text") or one["data"]["text/plain"] for one in cell.outputs) for cell in cells]
 
 
 def test_the_notebook_runs_and_shows_what_it_holds() -> None:
