@@ -52,7 +52,7 @@ from trunnion.verification.comparison import compare
 
 def without_words(run: Run) -> Run:
     """A run without the builder's words: each file says again which are in force where it begins."""
-    return replace(run, events=tuple(event for event in run.events if event.kind != "known"))
+    return replace(run, events=[event for event in run.events if event.kind != "known"])
 
 
 class Language(NamedTuple):
