@@ -1,0 +1,4 @@
+"""Tool paths of an impeller: where the tool's ball goes, then how the tool stands, then moves between cuts.
+
+``passes``   what all steps hand on: passes of ball centres on a family's own parameters
+"""
