@@ -1,6 +1,5 @@
 """The point of a curve that is nearest to a given one."""
 
-from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -25,7 +24,7 @@ def closest_parameters(curve: BSplineCurve, points: Floats) -> Floats:
     derivative of the squared distance, and halving of the interval where a step would leave it.
     """
     knots = np.unique(curve.knots)
-    at = np.unique(np.concatenate([np.linspace(a, b, _SAMPLES + 1) for a, b in pairwise(knots)]))
+    at = np.unique(np.linspace(knots[:-1], knots[1:], _SAMPLES + 1))
     nearest = import_extra("scipy.spatial", "geometry").cKDTree(curve.points(at)).query(points)[1]
     low, high = at[np.maximum(nearest - 1, 0)], at[np.minimum(nearest + 1, len(at) - 1)]
     found = at[nearest]

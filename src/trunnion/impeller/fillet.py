@@ -5,6 +5,7 @@ Out:    the path of the ball's centre, and where it touches blade and hub.
 Units:  mm.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
@@ -63,6 +64,16 @@ class Stations:
             centre[rows], normal[rows] = found
         return centre, normal
 
+    def touching(self, blade: Blade, v: Floats, radius: float) -> tuple[Floats, Floats]:
+        """Centres (k, 3) of balls of a radius that touch the blade there, and its normals (k, 3)."""
+        centre, normal = self.balls(blade, v)
+        return centre + (blade.halves(self.w, v) + radius)[:, None] * normal, normal
+
+    @property
+    def w(self) -> Floats:
+        """w of the stations (k,); those of an edge have the edge's."""
+        return np.asarray(np.where(self.part == 1, 0.0, np.where(self.part == 3, 1.0, self.at)))
+
 
 def root_stations(along: int, around: int, *, round_trailing: bool) -> Stations:
     """Stations along the root: ``along`` on each side, denser towards its ends, and ``around`` on each round edge."""
@@ -87,27 +98,33 @@ def root_fillet(blade: Blade, hub: Profile, radius: float, stations: Stations) -
     low, high = np.full(count, blade.low), np.full(count, blade.high)
 
     def gap(v: Floats) -> Floats:
-        centre, normal = stations.balls(blade, v)
-        half = blade.halves(_w(stations), v)
-        return hub.distances(centre + (half + radius)[:, None] * normal)[0] - radius
+        return hub.distances(stations.touching(blade, v, radius)[0])[0] - radius
 
-    at_low, at_high = gap(low), gap(high)
-    if (at_low > 0.0).any() or (at_high < 0.0).any():
+    if (gap(low) > 0.0).any() or (gap(high) < 0.0).any():
         what = f"a fillet of {radius:g} mm finds no place between blade and hub"
         raise InputError(Problem("fillet", 0, what, "make it smaller, or let the blade's sections reach the hub"))
-    for _ in range(_STEPS):  # the Illinois method: the secant, whose idle end counts half
-        v = low - at_low * (high - low) / np.where(at_high > at_low, at_high - at_low, 1.0)
-        at_v = gap(v)
-        if np.abs(at_v).max() < _TOUCH:
-            break
-        below = at_v < 0.0
-        at_high, at_low = np.where(below, at_high / 2.0, at_v), np.where(below, at_v, at_low / 2.0)
-        low, high = np.where(below, v, low), np.where(below, high, v)
-    centre, normal = stations.balls(blade, v)
-    centre = centre + (blade.halves(_w(stations), v) + radius)[:, None] * normal
+    v = crossings(gap, low, high)
+    centre, normal = stations.touching(blade, v, radius)
     return Fillet(centre, -normal, -hub.distances(centre)[1], v, bool((stations.part == 3).any()))
 
 
-def _w(stations: Stations) -> Floats:
-    """w of stations; those of an edge have the edge's."""
-    return np.asarray(np.where(stations.part == 1, 0.0, np.where(stations.part == 3, 1.0, stations.at)))
+def crossings(gap: Callable[[Floats], Floats], low: Floats, high: Floats) -> Floats:
+    """Where gaps (k,) rise through 0 between ``low`` and ``high`` (k,); the end that is nearer to it where none does.
+
+    The Illinois method: the secant; an end that stays twice counts half.
+    """
+    at_low, at_high = gap(low), gap(high)
+    high, at_high = np.where(at_low >= 0.0, low, high), np.where(at_low >= 0.0, at_low, at_high)
+    low, at_low = np.where(at_high <= 0.0, high, low), np.where(at_high <= 0.0, at_high, at_low)
+    open_ = low < high
+    v, was_below = high, np.full(len(high), -1)
+    for _ in range(_STEPS):
+        v = np.where(open_, low - at_low * (high - low) / np.where(at_high > at_low, at_high - at_low, 1.0), high)
+        at_v = gap(v)
+        if np.abs(at_v)[open_].max(initial=0.0) < _TOUCH:
+            break
+        below = at_v < 0.0
+        idle = np.where(below == was_below, 0.5, 1.0)
+        at_high, at_low = np.where(below, idle * at_high, at_v), np.where(below, at_v, idle * at_low)
+        low, high, was_below = np.where(open_ & below, v, low), np.where(open_ & ~below, v, high), below
+    return np.asarray(v)
