@@ -1,4 +1,4 @@
-"""Passes round a blade against exact distances."""
+"""Passes of a blade finish against exact distances."""
 
 from pathlib import Path
 
