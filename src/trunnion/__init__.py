@@ -25,6 +25,7 @@ Functions
     model_impeller Impeller -> ImpellerModel: a closed mesh
     write_report   Verification -> page or data
     write_plot     ClDescription -> page with the path in space
+    write_view     NC program -> page that shows it on its machine, block by block
 
 They print nothing and raise ``TrunnionError``. Names are imported when they are first used.
 """
@@ -61,6 +62,7 @@ if TYPE_CHECKING:
     from trunnion.api.simulating import simulate as simulate
     from trunnion.api.simulation_result import SimulationResult as SimulationResult
     from trunnion.api.verifying import verify as verify
+    from trunnion.api.viewing import write_view as write_view
     from trunnion.errors import InputError as InputError
     from trunnion.errors import Problem as Problem
     from trunnion.errors import RefusedError as RefusedError
@@ -140,6 +142,7 @@ _MODULES: Final = {
     "write_curve_picture": "api.curves",
     "write_plot": "api.plotting",
     "write_report": "api.reports",
+    "write_view": "api.viewing",
 }
 
 __all__ = [
@@ -195,6 +198,7 @@ __all__ = [
     "write_curve_picture",
     "write_plot",
     "write_report",
+    "write_view",
 ]
 
 

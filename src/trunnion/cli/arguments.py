@@ -139,6 +139,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
         commands.add_parser("convert", help="turn an NC program into a CL file, or post it for another machine")
     )
     _add_simulate(commands.add_parser("simulate", help="cut stock with NC programs: what is left, and what is hit"))
+    _add_view(commands.add_parser("view", help="show an NC program on its machine, in a browser"))
     _add_info(commands.add_parser("info", help="show what CL files hold; no machine is needed"))
     _add_curve(commands.add_parser("curve", help="fit curves to measured points; no machine is needed"))
     _add_impeller(commands.add_parser("impeller", help="make an impeller from measured points"))
@@ -279,6 +280,28 @@ def _add_stock(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--near", type=_tolerance, metavar="MM", help="tell bodies that come as near as this, too")
     parser.add_argument("--cell", type=_tolerance, metavar="MM", help="width of the cells; a 200th of the stock's side")
     parser.add_argument("--accuracy", type=_tolerance, metavar="MM", help="of motions and tools; a tenth of a cell")
+
+
+def _add_view(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("files", nargs=1, metavar="NC", help="NC program")
+    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs it")
+    parser.add_argument("--cl", action="append", default=[], metavar="CL", help="CL file that it was made from")
+    _add_subprograms(parser, "it")
+    parser.add_argument("--part", metavar="MESH", help="the finished part")
+    parser.add_argument("--fixture", action="append", default=[], metavar="MESH", dest="fixtures", help="a fixture")
+    parser.add_argument(
+        "--tool", action="append", default=[], metavar="N=KIND:SIZES", dest="tools", help="a tool, as simulate has it"
+    )
+    parser.add_argument(
+        "--tools", action="append", default=[], metavar="LIBRARY", dest="libraries", help="tool library"
+    )
+    parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
+    parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
+    parser.add_argument("--output", metavar="FILE.html", help="write a page that works offline, and serve nothing")
+    parser.add_argument("--no-browser", action="store_false", dest="browser", help="only print the address")
+    parser.add_argument("--host", default="127.0.0.1", help="serve other computers, too, on this address; with a token")
+    parser.add_argument("--port", type=int, default=0, help="a free one by default")
+    parser.set_defaults(run=_lazy_command("view", "run"))
 
 
 def _add_simulate(parser: argparse.ArgumentParser) -> None:

@@ -1,0 +1,38 @@
+"""``trunnion view``: a program on its machine, in a browser."""
+
+import argparse
+import sys
+import webbrowser
+
+from trunnion.api.viewing import check_view_name, prepare_view, write_view
+from trunnion.cli.cl_files import cl_inputs, named_files
+from trunnion.cli.terminal import Terminal
+from trunnion.files import check_outputs
+from trunnion.viewer.server import listen, serve
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the page, or serve it until the user ends it."""
+    (nc,) = arguments.files
+    read = [nc, *arguments.subprograms, *named_files(arguments.cl), *arguments.libraries, *arguments.fixtures]
+    read += [arguments.part] if arguments.part else []
+    given = {
+        "machine": arguments.machine, "cl": cl_inputs(arguments.cl), "subprograms": arguments.subprograms,
+        "part": arguments.part, "fixtures": arguments.fixtures, "tools": arguments.tools,
+        "libraries": arguments.libraries, "zero": arguments.zero or None, "tool_length": arguments.tool_length or None,
+    }  # fmt: skip
+    if arguments.output is not None:
+        check_view_name(arguments.output)
+        check_outputs([arguments.output], read)
+        write_view(nc, output=arguments.output, observer=Terminal(), **given)
+        return 0
+
+    def ready(address: str) -> None:
+        print(address, flush=True)
+        print("Ctrl-C ends it", file=sys.stderr)
+        if arguments.browser:
+            webbrowser.open(address)
+
+    with listen(arguments.host, arguments.port) as listening:
+        serve(prepare_view(nc, observer=Terminal(), **given), listening, ready)
+    return 0

@@ -1,0 +1,215 @@
+"""What a page shows: the machine and what is on it, the program's text, and its motion as columns.
+
+In:     a ``Verification``, the bodies of tools, meshes around the part.
+Out:    ``ViewContent``: one record of names and numbers, columns by name, texts by name.
+Units:  mm, degrees, seconds, mm/min.
+"""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.machines import Machine
+from trunnion.machines.links import link_chain
+from trunnion.model.run import Run
+from trunnion.simulation.collisions.bodies import Body, BodyKind, fixture_body, machine_bodies, part_body, tool_bodies
+from trunnion.simulation.meshes import TriangleMesh
+from trunnion.simulation.tools.profile import ToolShape
+from trunnion.simulation.tools.text import parse_tool
+from trunnion.verification.results import Check, Verification, durations
+from trunnion.viewer.motion import motion_columns
+
+Column = NDArray[np.float32] | NDArray[np.int32]
+
+#: Of a check, so many places are shown at most.
+_MOST_PLACES: Final = 50
+
+#: Names by which programs empty the spindle.
+_NO_TOOL: Final = ("", "0")
+
+#: A tool whose form nothing states is drawn as a needle of this diameter and length, mm.
+_NEEDLE: Final = (1.0, 60.0)
+
+_COLOURS: Final = {
+    BodyKind.CUTTER: "#d9a441", BodyKind.SHANK: "#8f979e", BodyKind.HOLDER: "#5c6670", BodyKind.FIXTURE: "#7b8f6a",
+    BodyKind.PART: "#6f94b8",
+}  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ViewContent:
+    """What a page shows.
+
+    scene    names and numbers, as JSON has them
+    columns  by name, (k,) float32 or int32
+    texts    of the program and its subprograms, UTF-8, in the order of ``scene["files"]``
+    """
+
+    scene: Mapping[str, Any]
+    columns: Mapping[str, Column]
+    texts: tuple[bytes, ...]
+
+
+def view_content(
+    verification: Verification,
+    texts: Sequence[str],
+    tools: Mapping[str, ToolShape],
+    part: TriangleMesh | None = None,
+    fixtures: Iterable[TriangleMesh] = (),
+) -> ViewContent:
+    """Put together what a page shows.
+
+    Parameters
+    ----------
+    verification
+        Of the program; with its columns, motions take their times.
+    texts
+        Of the files of its run, in their order.
+    tools
+        Bodies of tools by their names in the program; others are drawn as needles.
+    part, fixtures
+        Meshes in the workpiece frame.
+
+    Raises
+    ------
+    InputError
+        If a mesh of the machine cannot be used.
+    """
+    run, machine = verification.run, verification.machine
+    seconds = durations(verification)[0] if len(verification.seconds) else np.zeros(0)
+    lengths = {k: _length(tools.get(name), machine) for k, name in enumerate(run.tools)}
+    motion = motion_columns(run, seconds, lengths)
+    bodies = list(machine_bodies(machine))
+    bodies += [] if part is None else [part_body(part, machine)]
+    bodies += [fixture_body(mesh, machine) for mesh in fixtures]
+    for k, name in enumerate(run.tools):
+        shape = tools.get(name)
+        bodies += _needle(machine, name) if shape is None else tool_bodies(shape, machine, name, lengths[k])
+    columns: dict[str, Column] = {
+        "row": motion.row.astype(np.int32),
+        "seconds": motion.seconds.astype(np.float32),
+        "known": motion.known.astype(np.int32),
+        "line": run.lines.column(np.int32),
+        "file": run.file.astype(np.int32),
+        "kind": run.kind.astype(np.int32),
+        "tool": run.state.tool.column().astype(np.int32),
+        "feed": _tip_feeds(verification),
+        "cl": verification.cl_line.astype(np.int32),
+    }
+    for k in range(5):
+        columns[f"axis-{k}"] = motion.joints[:, k].astype(np.uint32).view(np.int32)
+    for k, body in enumerate(bodies):
+        columns[f"vertices-{k}"] = body.mesh.vertices.astype(np.float32).ravel()
+        columns[f"faces-{k}"] = body.mesh.faces.astype(np.int32).ravel()
+    scene = {
+        "title": verification.program,
+        "machine": _machine(machine),
+        "bodies": [_body(body, machine) for body in bodies],
+        "tools": [
+            {"name": name, "length": lengths[k], "known": name in tools or name in _NO_TOOL}
+            for k, name in enumerate(run.tools)
+        ],
+        "files": list(run.files),
+        "operations": [{"name": one.name, "first": one.first, "end": one.end} for one in verification.operations],
+        "events": _events(run),
+        "findings": [*_findings(verification.checks, run), *_diagnostics(run)],
+        "timed": bool(len(seconds)),
+        "checks": [{"key": one.key, "passed": one.passed, "summary": one.summary} for one in verification.checks],
+    }
+    return ViewContent(scene, columns, tuple(text.encode() for text in texts))
+
+
+def _tip_feeds(verification: Verification) -> NDArray[np.float32]:
+    """Speed of the tip, (n,), mm/min; 0 where it is not known."""
+    feed = verification.tip_feed if len(verification.tip_feed) else np.zeros(len(verification.run))
+    return np.nan_to_num(feed, posinf=0.0).astype(np.float32)
+
+
+def _length(shape: ToolShape | None, machine: Machine) -> float:
+    """From tip to gauge point, mm: that of the definition or the command, else that of the tool's body."""
+    if machine.tool_length is not None:
+        return machine.tool_length
+    if shape is None:
+        return _NEEDLE[1]
+    return shape.length or max(section.outline[-1].end[1] for section in shape.sections)
+
+
+def _needle(machine: Machine, name: str) -> Iterable[Body]:
+    """What stands for a tool of unknown form; nothing for no tool."""
+    if name in _NO_TOOL:
+        return
+    diameter, length = _NEEDLE
+    shape = parse_tool(f"1=flat:{diameter},length={length},flutes={length}", {})
+    yield from tool_bodies(shape, machine, name, _length(None, machine))
+
+
+def _machine(machine: Machine) -> dict[str, Any]:
+    chain = link_chain(machine)
+    return {
+        "key": machine.key,
+        "name": machine.name,
+        "partAxes": chain.part_axes,
+        "zero": machine.workpiece_zero,
+        "gauge": machine.spindle_point,
+        "spindle": machine.spindle_direction,
+        "axes": [
+            {
+                "name": axis.name,
+                "rotary": axis.is_rotary,
+                "direction": chain.direction[k].tolist(),
+                "point": chain.point[k].tolist(),
+                "low": axis.low if math.isfinite(axis.low) and not axis.endless else None,
+                "high": axis.high if math.isfinite(axis.high) and not axis.endless else None,
+                "rapid": axis.rapid,
+                "placed": machine.is_placed(k),
+                "displayLow": None if math.isnan(axis.display_low) else axis.display_low,
+            }
+            for k, axis in enumerate(machine.axes)
+        ],
+    }
+
+
+def _body(body: Body, machine: Machine) -> dict[str, Any]:
+    own = next((each.colour for each in machine.bodies if each.name == body.name), None)
+    colour = own if body.kind is BodyKind.MACHINE and own else _COLOURS.get(body.kind, "#9aa0a6")
+    return {"name": body.name, "link": body.link, "kind": str(body.kind), "tool": body.tool, "colour": colour}
+
+
+def _events(run: Run) -> list[dict[str, Any]]:
+    """Tool changes and stops, with the row before which they happen."""
+    kinds = ("tool", "tool_change", "stop")
+    return [
+        {"kind": event.kind, "row": event.before_row, "line": event.line, "file": event.file, "text": str(event.value)}
+        for event in run.events if event.kind in kinds
+    ]  # fmt: skip
+
+
+def _findings(checks: Sequence[Check], run: Run) -> list[dict[str, Any]]:
+    """The places of the checks that have not passed, as rows."""
+    if all(check.passed for check in checks) or not len(run):
+        return []
+    order = np.argsort(run.line, kind="stable")
+    lines = run.line[order]
+    found = []
+    for check in checks:
+        for place in () if check.passed else check.places[:_MOST_PLACES]:
+            at = int(np.searchsorted(lines, place.nc_line))
+            row = int(order[min(at, len(order) - 1)])
+            found.append({"kind": check.key, "row": row, "line": place.nc_line, "file": 0, "text": place.text})
+    return found
+
+
+def _diagnostics(run: Run) -> list[dict[str, Any]]:
+    """What the reader did not understand, at its line."""
+    numbers = {name: k for k, name in enumerate(run.files)}
+    found = []
+    for each in run.errors:
+        file = numbers.get(each.file, 0)
+        at = np.flatnonzero((run.line >= each.line) & (run.file == file))
+        row = int(at[0]) if len(at) else max(len(run) - 1, 0)
+        found.append({"kind": "word", "row": row, "line": each.line, "file": file, "text": each.text})
+    return found

@@ -1,0 +1,147 @@
+// Curves over time: for each pixel across, the least and the greatest value that it stands for.
+
+const LEFT = 64, RIGHT = 10, GAP = 6;
+
+export class Curves {
+  /**
+   * @param {HTMLCanvasElement} canvas
+   * @param {import("./program.js").Program} program
+   * @param {{name: string, unit: string, at: (piece: number) => number, low: number | null, high: number | null}[]} strips
+   * @param {(time: number) => void} onTime a time was chosen
+   */
+  constructor(canvas, program, strips, onTime) {
+    this.canvas = canvas;
+    this.program = program;
+    this.strips = strips;
+    this.range = [0, program.end || 1];
+    this.cursor = 0;
+    /** times of findings @type {number[]} */
+    this.marks = [];
+    this.background = null;
+    new ResizeObserver(() => this.redraw()).observe(canvas);
+    const seek = (/** @type {PointerEvent} */ event) => {
+      const box = canvas.getBoundingClientRect();
+      const share = (event.clientX - box.left - LEFT) / Math.max(box.width - LEFT - RIGHT, 1);
+      onTime(this.range[0] + Math.min(Math.max(share, 0), 1) * (this.range[1] - this.range[0]));
+    };
+    canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); seek(event); });
+    canvas.addEventListener("pointermove", (event) => { if (event.buttons & 1) seek(event); });
+    canvas.addEventListener("wheel", (event) => { event.preventDefault(); this.zoom(event.deltaY > 0 ? 1.25 : 0.8); }, { passive: false });
+    canvas.addEventListener("dblclick", () => { this.range = [0, program.end || 1]; this.redraw(); });
+  }
+
+  /** Show less or more of the time, about the cursor. @param {number} factor */
+  zoom(factor) {
+    const end = this.program.end || 1;
+    const width = Math.min(Math.max((this.range[1] - this.range[0]) * factor, end * 1e-5), end);
+    const share = (this.cursor - this.range[0]) / (this.range[1] - this.range[0]);
+    const first = Math.min(Math.max(this.cursor - Math.min(Math.max(share, 0), 1) * width, 0), end - width);
+    this.range = [first, first + width];
+    this.redraw();
+  }
+
+  /** @param {number} time */
+  setCursor(time) {
+    this.cursor = time;
+    if (time < this.range[0] || time > this.range[1]) {
+      const width = this.range[1] - this.range[0];
+      const first = Math.min(Math.max(time - width / 2, 0), Math.max(this.program.end - width, 0));
+      this.range = [first, first + width];
+      this.redraw();
+    } else this.#drawCursor();
+  }
+
+  /** Least and greatest value for each pixel across. @param {(piece: number) => number} at @param {number} width */
+  #extents(at, width) {
+    const { program, range } = this;
+    const low = new Float64Array(width).fill(Infinity), high = new Float64Array(width).fill(-Infinity);
+    const first = program.pieceAt(range[0]), last = program.pieceAt(range[1]);
+    const scale = width / (range[1] - range[0]);
+    for (let i = first; i <= last && i < program.pieces; i++) {
+      const value = at(i);
+      const from = Math.max(Math.floor((program.time[i] - range[0]) * scale), 0);
+      const to = Math.min(Math.floor((program.time[i + 1] - range[0]) * scale), width - 1);
+      for (let x = from; x <= to; x++) {
+        if (value < low[x]) low[x] = value;
+        if (value > high[x]) high[x] = value;
+      }
+    }
+    return { low, high };
+  }
+
+  redraw() {
+    const ratio = window.devicePixelRatio || 1;
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (!width || !height) return;
+    this.canvas.width = width * ratio;
+    this.canvas.height = height * ratio;
+    const pen = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d"));
+    pen.scale(ratio, ratio);
+    const style = getComputedStyle(this.canvas);
+    const across = Math.max(Math.floor(width - LEFT - RIGHT), 1);
+    const tall = (height - GAP) / this.strips.length - GAP;
+    pen.font = "11px system-ui, sans-serif";
+    this.strips.forEach((strip, k) => {
+      const top = GAP + k * (tall + GAP);
+      const { low, high } = this.#extents(strip.at, across);
+      let least = Math.min(...low), most = Math.max(...high);
+      if (!Number.isFinite(least)) [least, most] = [0, 1];
+      const room = Math.max((most - least) * 0.08, 1e-3);
+      const y = (/** @type {number} */ value) => top + tall - ((value - least + room) / (most - least + 2 * room)) * tall;
+      pen.strokeStyle = style.getPropertyValue("--rule");
+      pen.strokeRect(LEFT + 0.5, top + 0.5, across, tall);
+      for (const limit of [strip.low, strip.high]) {
+        if (limit === null || limit < least - room || limit > most + room) continue;
+        pen.strokeStyle = style.getPropertyValue("--bad");
+        pen.beginPath(); pen.moveTo(LEFT, y(limit)); pen.lineTo(LEFT + across, y(limit)); pen.stroke();
+      }
+      pen.strokeStyle = style.getPropertyValue("--line-1");
+      pen.beginPath();
+      for (let x = 0; x < across; x++) {
+        if (low[x] > high[x]) continue;
+        pen.moveTo(LEFT + x + 0.5, y(low[x]) + 0.5);
+        pen.lineTo(LEFT + x + 0.5, y(high[x]) - 0.5);
+      }
+      pen.stroke();
+      pen.fillStyle = style.getPropertyValue("--ink");
+      pen.textAlign = "right";
+      pen.fillText(`${strip.name} ${strip.unit}`, LEFT - 6, top + tall / 2 + 4);
+      pen.fillStyle = style.getPropertyValue("--soft");
+      if (tall > 34) {
+        pen.fillText(most.toPrecision(5), LEFT - 6, top + 10);
+        pen.fillText(least.toPrecision(5), LEFT - 6, top + tall - 2);
+      }
+    });
+    pen.fillStyle = style.getPropertyValue("--bad");
+    for (const time of this.marks) {
+      if (time < this.range[0] || time > this.range[1]) continue;
+      pen.fillRect(LEFT + ((time - this.range[0]) / (this.range[1] - this.range[0])) * across - 1, 0, 3, GAP);
+    }
+    this.background = pen.getImageData(0, 0, this.canvas.width, this.canvas.height);
+    this.#drawCursor();
+  }
+
+  #drawCursor() {
+    if (!this.background) return;
+    const pen = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d"));
+    pen.putImageData(this.background, 0, 0);
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const share = (this.cursor - this.range[0]) / (this.range[1] - this.range[0]);
+    const x = LEFT + share * (width - LEFT - RIGHT);
+    pen.strokeStyle = getComputedStyle(this.canvas).getPropertyValue("--hold");
+    pen.lineWidth = 1.5;
+    pen.beginPath(); pen.moveTo(x, 0); pen.lineTo(x, height); pen.stroke();
+    pen.lineWidth = 1;
+  }
+
+  /** All curves, one line for each piece. */
+  csv() {
+    const rows = [["seconds", "line", ...this.strips.map((strip) => `${strip.name} ${strip.unit}`.trim())].join(",")];
+    const { program } = this;
+    for (let i = 0; i < program.pieces; i++) {
+      const values = this.strips.map((strip) => Number(strip.at(i).toFixed(5)));
+      rows.push([program.time[i + 1].toFixed(4), program.line[program.row[i]], ...values].join(","));
+    }
+    return `${rows.join("\n")}\n`;
+  }
+}

@@ -1,0 +1,53 @@
+// What the page shows: from the server, or from elements of the page itself.
+
+/**
+ * @typedef {{name: string, rotary: boolean, direction: number[], point: number[], low: number | null, high: number | null,
+ *   rapid: number | null, placed: boolean, displayLow: number | null}} Axis
+ * @typedef {{key: string, name: string, partAxes: number, zero: number[] | null, gauge: number[], spindle: number[], axes: Axis[]}} Machine
+ * @typedef {{kind: string, row: number, line: number, file: number, text: string}} Mark
+ * @typedef {{title: string, machine: Machine, bodies: {name: string, link: string, kind: string, tool: string, colour: string}[],
+ *   tools: {name: string, length: number, known: boolean}[], files: string[], operations: {name: string, first: number, end: number}[],
+ *   events: Mark[], findings: Mark[], timed: boolean, checks: {key: string, passed: boolean, summary: string}[],
+ *   columns: Record<string, string>}} SceneData
+ */
+
+const EMBEDDED = document.documentElement.dataset.embedded === "true";
+
+/** @param {string} id of an element with base64 of deflated bytes; the element goes */
+async function inflated(id) {
+  const element = /** @type {HTMLElement} */ (document.getElementById(id));
+  const text = atob(/** @type {string} */ (element.textContent));
+  element.remove();
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < bytes.length; i++) bytes[i] = text.charCodeAt(i);
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+/** @param {string} name of a column or a text on the server */
+async function fetched(name) {
+  const answer = await fetch(`data/${name}`);
+  if (!answer.ok) throw new Error(`${name}: ${answer.status}`);
+  return answer.arrayBuffer();
+}
+
+/** @returns {SceneData} */
+export function readScene() {
+  return JSON.parse(/** @type {string} */ (document.getElementById("scene")?.textContent));
+}
+
+/**
+ * A column by its name; "f" holds float32, "i" int32.
+ * @param {SceneData} scene
+ * @param {string} name
+ * @returns {Promise<any>}
+ */
+export async function readColumn(scene, name) {
+  const words = EMBEDDED ? (await unpack(`column-${name}`)).buffer : await fetched(`column/${name}`);
+  return scene.columns[name] === "f" ? new Float32Array(words) : new Int32Array(words);
+}
+
+/** The text of a file of the program. @param {number} number */
+export async function readText(number) {
+  return EMBEDDED ? inflated(`text-${number}`) : new Uint8Array(await fetched(`text/${number}`));
+}

@@ -1,0 +1,386 @@
+// The page: what its controls do, and how time, picture, text and curves follow one another.
+
+import { readColumn, readScene, readText } from "./data.js";
+import { Curves } from "./curves.js";
+import { Listing } from "./listing.js";
+import { Program } from "./program.js";
+import { Space } from "./space.js";
+import { say } from "./texts.js";
+
+/** Slowest and fastest play, times real time; the slider is their logarithm. */
+const SPEEDS = [0.1, 1000];
+
+/** @param {string} id @returns {any} */
+const element = (id) => document.getElementById(id);
+
+/** What a piece is coloured by: least and greatest become the ends of the scale. */
+const SCALE = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
+const KINDS = [[200, 120, 40], [30, 110, 200], [20, 150, 130]];
+const PALETTE = [[31, 119, 180], [255, 127, 14], [44, 160, 44], [214, 39, 40], [148, 103, 189], [140, 86, 75], [227, 119, 194], [23, 190, 207]];
+const FINDING = [220, 30, 40], QUIET = [150, 160, 170];
+
+/** @param {number} share from 0 to 1 */
+function scaled(share) {
+  const at = Math.min(Math.max(share, 0), 1) * (SCALE.length - 1), k = Math.min(Math.floor(at), SCALE.length - 2);
+  return SCALE[k].map((low, j) => Math.round(low + (at - k) * (SCALE[k + 1][j] - low)));
+}
+
+class Page {
+  /** @param {Program} program @param {Space} space @param {Listing} listing */
+  constructor(program, space, listing) {
+    this.program = program;
+    this.scene = program.scene;
+    this.space = space;
+    this.listing = listing;
+    this.time = 0;
+    this.playing = false;
+    this.shownFile = -1;
+    /** @type {number[]} */
+    this.measuring = [];
+    this.isMeasuring = false;
+    this.curves = new Curves(element("curves"), program, this.#strips(), (time) => this.goTo(time));
+    this.curves.marks = this.scene.findings.map((each) => program.timeOf(each.row));
+    this.paint();
+    this.#listen();
+    this.#fillFindings();
+  }
+
+  #strips() {
+    const { program } = this;
+    const axes = program.machine.axes.map((axis, k) => ({
+      name: axis.name, unit: axis.rotary ? "°" : "mm", low: axis.placed ? axis.low : null, high: axis.placed ? axis.high : null,
+      at: (/** @type {number} */ piece) => program.axes[k][piece + 1],
+    }));
+    const feed = { name: "F", unit: "mm/min", low: null, high: null, at: (/** @type {number} */ piece) => program.feed[program.row[piece]] };
+    return [...axes, { name: "ω", unit: "°/min", low: null, high: null, at: (/** @type {number} */ piece) => this.rotarySpeed(piece) }, feed];
+  }
+
+  /** Speed of the faster rotary axis, degrees a minute; 0 where no time is known. @param {number} piece */
+  rotarySpeed(piece) {
+    const { program } = this;
+    const takes = program.time[piece + 1] - program.time[piece];
+    if (!(takes > 0) || !this.scene.timed) return 0;
+    let most = 0;
+    program.machine.axes.forEach((axis, k) => {
+      if (axis.rotary) most = Math.max(most, Math.abs(program.axes[k][piece + 1] - program.axes[k][piece]));
+    });
+    return (60 * most) / takes;
+  }
+
+  /** Colour the path by what is chosen. */
+  paint() {
+    const { program } = this;
+    const by = element("colour").value;
+    if (by === "kind") this.space.paint((piece) => KINDS[program.kind[program.row[piece]]] ?? QUIET);
+    else if (by === "tool") this.space.paint((piece) => PALETTE[program.tool[program.row[piece]] % PALETTE.length]);
+    else if (by === "operation") this.space.paint((piece) => PALETTE[this.#operationOf(program.row[piece]) % PALETTE.length] ?? QUIET);
+    else if (by === "finding") {
+      const rows = new Set(this.scene.findings.map((each) => each.row));
+      this.space.paint((piece) => (rows.has(program.row[piece]) ? FINDING : QUIET));
+    } else {
+      const value = by === "feed" ? (/** @type {number} */ piece) => program.feed[program.row[piece]] : (/** @type {number} */ piece) => this.rotarySpeed(piece);
+      let most = 0;
+      for (let i = 0; i < program.pieces; i++) if (program.kind[program.row[i]] !== 0) most = Math.max(most, value(i));
+      this.space.paint((piece) => scaled(value(piece) / (most || 1)));
+      element("legend").textContent = `0 … ${most.toFixed(0)} ${by === "feed" ? "mm/min" : "°/min"}`;
+      return;
+    }
+    element("legend").textContent = "";
+  }
+
+  /** @param {number} row */
+  #operationOf(row) {
+    const found = this.scene.operations.findIndex((one) => row >= one.first && row < one.end);
+    return found < 0 ? PALETTE.length - 1 : found;
+  }
+
+  /** Show a moment. @param {number} time */
+  goTo(time) {
+    const { program } = this;
+    const within = Math.min(Math.max(time, 0), program.end);
+    this.#show(within, program.rowAt(within), program.valuesAt(within));
+  }
+
+  /** Show the end of a row: times cannot tell it from rows after it that take none. @param {number} wanted */
+  goToRow(wanted) {
+    const { program } = this;
+    const row = Math.min(Math.max(wanted, 0), Math.max(program.rows - 1, 0));
+    this.#show(program.timeOf(row), row, program.valuesAfter(row));
+  }
+
+  /** @param {number} time @param {number} row @param {number[]} values of the five axes */
+  #show(time, row, values) {
+    this.time = time;
+    this.row = row;
+    this.space.setPose(values, row);
+    this.curves.setCursor(time);
+    element("scrub").value = String(this.program.end ? time / this.program.end : 0);
+    this.#readOut(values, row);
+    this.#showLine(row);
+  }
+
+  /** @param {number} row */
+  async #showLine(row) {
+    if (!this.program.rows) return;
+    const file = this.program.file[row];
+    if (file !== this.shownFile) {
+      this.shownFile = file;
+      element("file").value = String(file);
+      const text = await readTextOnce(file);
+      if (this.shownFile !== file) return;
+      this.listing.marks = new Map(this.scene.findings.filter((each) => each.file === file).map((each) => [each.line, "finding"]));
+      this.listing.setText(text);
+    }
+    this.listing.show(this.program.line[this.row]);
+  }
+
+  /** @param {number[]} values @param {number} row */
+  #readOut(values, row) {
+    const { program } = this;
+    const { tip, axis } = this.space.toolOf(values, row);
+    const shown = program.machine.axes.map((one, k) => {
+      const value = one.displayLow === null ? values[k] : ((((values[k] - one.displayLow) % 360) + 360) % 360) + one.displayLow;
+      const out = one.placed && ((one.low !== null && values[k] < one.low - 1e-6) || (one.high !== null && values[k] > one.high + 1e-6));
+      return `<dt>${escaped(one.name)}</dt><dd class="${out ? "out" : ""}">${value.toFixed(4)}</dd>`;
+    });
+    const three = (/** @type {ArrayLike<number>} */ v, /** @type {number} */ digits) => Array.from(v, (part) => part.toFixed(digits)).join("  ");
+    const tool = this.scene.tools[program.rows ? program.tool[row] : 0]?.name ?? "";
+    const rows = [
+      [say("tip"), three(tip, 4)], [say("toolAxis"), three(axis, 5)], ["F", program.rows ? program.feed[row].toFixed(0) : ""], [say("tool"), tool],
+      [say("against"), `${clock(this.time)} / ${clock(program.end)}`],
+    ];
+    if (program.rows && program.cl[row] > 0) rows.push([say("cl"), String(program.cl[row])]);
+    element("values").innerHTML = shown.join("") + rows.map(([name, value]) => `<dt>${escaped(name)}</dt><dd>${escaped(value)}</dd>`).join("");
+  }
+
+  #fillFindings() {
+    const list = element("findings");
+    const failed = this.scene.checks.filter((check) => !check.passed);
+    element("findings-title").textContent = `${say("findings")}: ${this.scene.findings.length}`;
+    for (const check of failed) {
+      const line = document.createElement("li");
+      line.textContent = `${check.key}: ${check.summary}`;
+      list.append(line);
+    }
+    this.scene.findings.forEach((each) => {
+      const line = document.createElement("li"), button = document.createElement("button");
+      button.type = "button";
+      button.textContent = `${say("line")} ${each.line}: ${each.text}`;
+      button.addEventListener("click", () => this.goToRow(each.row));
+      line.append(button);
+      list.append(line);
+    });
+  }
+
+  /** Go to the next or the previous of some rows. @param {number[]} rows @param {number} step 1 or -1 */
+  jump(rows, step) {
+    const sorted = [...new Set(rows)].sort((a, b) => a - b);
+    const found = step > 0 ? sorted.find((row) => row > this.row) : sorted.reverse().find((row) => row < this.row);
+    if (found !== undefined) this.goToRow(found);
+  }
+
+  play() {
+    this.playing = !this.playing;
+    element("play").textContent = this.playing ? "❚❚" : "▶";
+    element("play").setAttribute("aria-label", say(this.playing ? "pause" : "play"));
+    if (!this.playing) { this.space.hurry(false); return; }
+    if (this.time >= this.program.end) this.time = 0;
+    let before = performance.now();
+    const next = (/** @type {number} */ now) => {
+      if (!this.playing) return;
+      this.goTo(this.time + ((now - before) / 1000) * this.speed);
+      before = now;
+      if (this.time >= this.program.end) this.play();
+      else requestAnimationFrame(next);
+    };
+    this.space.hurry(true);
+    requestAnimationFrame(next);
+  }
+
+  get speed() {
+    const share = Number(element("speed").value);
+    return SPEEDS[0] * (SPEEDS[1] / SPEEDS[0]) ** share;
+  }
+
+  /** @param {number} change of the slider */
+  changeSpeed(change) {
+    element("speed").value = String(Number(element("speed").value) + change);
+    this.#tellSpeed();
+  }
+
+  #tellSpeed() { element("speed-text").textContent = `${this.speed < 10 ? this.speed.toFixed(1) : this.speed.toFixed(0)} ×`; }
+
+  search(backwards = false) {
+    const words = element("search").value.trim();
+    if (!words) return;
+    const line = this.listing.find(words, this.listing.current || 1, backwards);
+    element("status").textContent = line ? "" : say("notFound");
+    if (line) this.goToLine(line);
+  }
+
+  /** @param {number} line of the file that is shown, from 1 */
+  goToLine(line) {
+    const row = this.program.rowOfLine(this.shownFile, line);
+    this.goToRow(row);
+    this.listing.show(line);
+  }
+
+  picture() {
+    this.space.drawNow();
+    save(this.space.canvas.toDataURL("image/png"), "view.png");
+  }
+
+  #section() { this.space.section(element("section").value, Number(element("section-at").value)); }
+
+  #pickAt(/** @type {PointerEvent} */ event) {
+    const box = this.space.canvas.getBoundingClientRect();
+    const piece = this.space.pick(event.clientX - box.left, event.clientY - box.top);
+    if (piece < 0) return;
+    if (!this.isMeasuring) { this.goToRow(this.program.row[piece]); return; }
+    this.measuring = [...this.measuring, piece].slice(-2);
+    if (this.measuring.length < 2) return;
+    const { length, away } = this.space.measure(this.measuring[0], this.measuring[1]);
+    element("status").textContent = `${say("distance")} ${length.toFixed(4)} mm (${away.map((part) => part.toFixed(4)).join("  ")})`;
+    this.measuring = [];
+  }
+
+  #measure() {
+    this.isMeasuring = !this.isMeasuring;
+    this.measuring = [];
+    element("measure").setAttribute("aria-pressed", String(this.isMeasuring));
+    element("status").textContent = this.isMeasuring ? say("measureHint") : "";
+    if (!this.isMeasuring) this.space.clearMeasure();
+  }
+
+  #listen() {
+    const on = (/** @type {string} */ id, /** @type {string} */ kind, /** @type {(event: any) => void} */ done) => element(id).addEventListener(kind, done);
+    on("play", "click", () => this.play());
+    on("first", "click", () => this.goToRow(0));
+    on("back", "click", () => this.goToRow(this.row - 1));
+    on("step", "click", () => this.goToRow(this.row + 1));
+    on("last", "click", () => this.goToRow(this.program.rows - 1));
+    on("scrub", "input", (event) => { this.space.hurry(true); this.goTo(Number(event.target.value) * this.program.end); });
+    on("scrub", "change", () => this.space.hurry(false));
+    on("speed", "input", () => this.#tellSpeed());
+    on("colour", "change", () => this.paint());
+    on("view", "change", (event) => this.space.look(event.target.value, true));
+    on("frame", "change", (event) => this.space.setFrame(event.target.value));
+    on("section", "change", () => this.#section());
+    on("section-at", "input", () => this.#section());
+    on("bodies", "change", (event) => this.space.showMachine(event.target.checked));
+    on("path", "change", (event) => this.space.showPath(event.target.checked));
+    on("file", "change", async (event) => this.#chooseFile(Number(event.target.value)));
+    on("search", "keydown", (event) => { if (event.key === "Enter") this.search(event.shiftKey); });
+    on("measure", "click", () => this.#measure());
+    on("picture", "click", () => this.picture());
+    on("csv", "click", () => save(URL.createObjectURL(new Blob([this.curves.csv()], { type: "text/csv" })), "curves.csv"));
+    on("help", "click", () => element("keys").showModal());
+    on("close", "click", () => element("keys").close());
+    let down = [0, 0];
+    on("space", "pointerdown", (event) => { down = [event.clientX, event.clientY]; });
+    on("space", "pointerup", (event) => { if (Math.hypot(event.clientX - down[0], event.clientY - down[1]) < 4) this.#pickAt(event); });
+    document.addEventListener("keydown", (event) => this.#key(event));
+    this.#tellSpeed();
+  }
+
+  /** @param {number} file */
+  async #chooseFile(file) {
+    const row = this.program.rowOfLine(file, 0);
+    if (this.program.file[row] === file) this.goToRow(row);
+  }
+
+  /** @param {KeyboardEvent} event */
+  #key(event) {
+    const typing = /** @type {HTMLElement} */ (event.target).matches("input[type=search], select");
+    if (event.ctrlKey || event.metaKey || event.altKey || typing || element("keys").open) return;
+    const rows = (/** @type {string} */ kind) => this.scene.events.filter((each) => each.kind.startsWith(kind)).map((each) => each.row);
+    /** @type {Record<string, () => void>} */
+    const keys = {
+      " ": () => this.play(), ArrowRight: () => this.goToRow(this.row + 1), ArrowLeft: () => this.goToRow(this.row - 1),
+      Home: () => this.goToRow(0), End: () => this.goToRow(this.program.rows - 1),
+      "+": () => this.changeSpeed(0.05), "-": () => this.changeSpeed(-0.05),
+      n: () => this.jump(this.scene.findings.map((each) => each.row), 1), N: () => this.jump(this.scene.findings.map((each) => each.row), -1),
+      t: () => this.jump(rows("tool"), 1), T: () => this.jump(rows("tool"), -1),
+      o: () => this.jump(this.scene.operations.map((one) => one.first), 1), O: () => this.jump(this.scene.operations.map((one) => one.first), -1),
+      1: () => this.space.look("iso"), 2: () => this.space.look("top", true), 3: () => this.space.look("front", true), 4: () => this.space.look("right", true),
+      f: () => { const other = element("frame").value === "part" ? "machine" : "part"; element("frame").value = other; this.space.setFrame(/** @type {any} */ (other)); },
+      "/": () => element("search").focus(), m: () => this.#measure(), p: () => this.picture(), "?": () => element("keys").showModal(),
+    };
+    if (!keys[event.key]) return;
+    event.preventDefault();
+    keys[event.key]();
+  }
+}
+
+/** @type {Map<number, Promise<Uint8Array>>} */
+const TEXTS_READ = new Map();
+
+/** @param {number} file */
+function readTextOnce(file) {
+  if (!TEXTS_READ.has(file)) TEXTS_READ.set(file, readText(file));
+  return /** @type {Promise<Uint8Array>} */ (TEXTS_READ.get(file));
+}
+
+/** @param {string} text */
+function escaped(text) {
+  const box = document.createElement("span");
+  box.textContent = text;
+  return box.innerHTML;
+}
+
+/** @param {number} seconds */
+function clock(seconds) {
+  const whole = Math.floor(seconds);
+  return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}.${Math.floor((seconds - whole) * 10)}`;
+}
+
+/** @param {string} address @param {string} name */
+function save(address, name) {
+  const link = document.createElement("a");
+  link.href = address;
+  link.download = name;
+  link.click();
+}
+
+/** Put the words of the language where the page has keys for them. */
+function putTexts() {
+  document.querySelectorAll("[data-say]").forEach((each) => { each.textContent = say(/** @type {HTMLElement} */ (each).dataset.say ?? ""); });
+  document.querySelectorAll("[data-label]").forEach((each) => {
+    const text = say(/** @type {HTMLElement} */ (each).dataset.label ?? "");
+    each.setAttribute("aria-label", text);
+    each.setAttribute("title", text);
+  });
+}
+
+/** @param {import("./data.js").SceneData} scene */
+function remarksOf(scene) {
+  const found = scene.tools.filter((tool) => !tool.known).map((tool) => say("toolForm", tool.name));
+  if (!scene.machine.zero) found.unshift(say("zero"));
+  if (!scene.timed) found.push(say("untimed"));
+  return found;
+}
+
+async function start() {
+  putTexts();
+  const scene = readScene();
+  /** @type {Record<string, any>} */
+  const columns = {};
+  await Promise.all(Object.keys(scene.columns).map(async (name) => { columns[name] = await readColumn(scene, name); }));
+  const program = new Program(scene, columns);
+  const space = new Space(element("space"), program, columns);
+  const file = element("file");
+  scene.files.forEach((name, k) => file.append(new Option(name.split(/[\\/]/).pop(), String(k))));
+  const listing = new Listing(element("listing"), (line) => page.goToLine(line));
+  const page = new Page(program, space, listing);
+  const paper = () => space.setBackground(getComputedStyle(document.body).getPropertyValue("--sky").trim());
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { paper(); page.curves.redraw(); });
+  paper();
+  page.goToRow(0);
+  space.look("iso");
+  element("remarks").textContent = remarksOf(scene).join(" ");
+  element("status").textContent = "";
+  Object.assign(window, { page });
+  document.documentElement.dataset.ready = "true";
+}
+
+start().catch((error) => { element("status").textContent = String(error); });

@@ -1,0 +1,97 @@
+// A program in time: which piece of its motion is when, and where the axes are then.
+
+import { toolAt, unwrapped } from "./kinematics.js";
+
+const COUNT = 1e-5;
+
+export class Program {
+  /**
+   * @param {import("./data.js").SceneData} scene
+   * @param {Record<string, any>} columns
+   */
+  constructor(scene, columns) {
+    this.scene = scene;
+    this.machine = scene.machine;
+    /** axis values before the first piece and after each @type {Float64Array[]} */
+    this.axes = [0, 1, 2, 3, 4].map((k) => unwrapped(columns[`axis-${k}`], COUNT));
+    /** row of each piece @type {Int32Array} */
+    this.row = columns.row;
+    this.known = columns.known;
+    this.line = columns.line;
+    this.file = columns.file;
+    this.kind = columns.kind;
+    this.tool = columns.tool;
+    this.feed = columns.feed;
+    this.cl = columns.cl;
+    this.pieces = this.row.length;
+    this.rows = this.line.length;
+    /** seconds at which pieces begin, and the end */
+    this.time = new Float64Array(this.pieces + 1);
+    for (let i = 0; i < this.pieces; i++) this.time[i + 1] = this.time[i] + columns.seconds[i];
+    /** last piece of each row, and -1 before */
+    this.last = new Int32Array(this.rows).fill(-1);
+    for (let i = 0; i < this.pieces; i++) this.last[this.row[i]] = i;
+    for (let i = 1; i < this.rows; i++) if (this.last[i] < 0) this.last[i] = this.last[i - 1];
+  }
+
+  get end() { return this.time[this.pieces]; }
+
+  /** The piece that runs at a time. @param {number} time */
+  pieceAt(time) {
+    let low = 0, high = this.pieces - 1;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.time[middle + 1] > time) high = middle;
+      else low = middle + 1;
+    }
+    return Math.max(low, 0);
+  }
+
+  /**
+   * Axis values at a time.
+   * @param {number} time
+   * @returns {number[]}
+   */
+  valuesAt(time) {
+    if (!this.pieces) return this.axes.map((column) => column[0]);
+    const piece = this.pieceAt(time);
+    const takes = this.time[piece + 1] - this.time[piece];
+    const share = takes > 0 ? Math.min(Math.max((time - this.time[piece]) / takes, 0), 1) : 1;
+    return this.axes.map((column) => column[piece] + share * (column[piece + 1] - column[piece]));
+  }
+
+  /** Axis values at the end of a row. @param {number} row */
+  valuesAfter(row) {
+    const piece = this.rows ? this.last[row] + 1 : 0;
+    return this.axes.map((column) => column[piece]);
+  }
+
+  /** Time at the end of a row. @param {number} row */
+  timeOf(row) {
+    return this.pieces ? this.time[Math.max(this.last[Math.min(Math.max(row, 0), this.rows - 1)], -1) + 1] : 0;
+  }
+
+  /** The row that runs at a time. @param {number} time */
+  rowAt(time) { return this.pieces ? this.row[this.pieceAt(time)] : 0; }
+
+  /** Length of the tool of a row, mm. @param {number} row */
+  lengthAt(row) { return this.scene.tools[this.rows ? this.tool[row] : 0]?.length ?? 0; }
+
+  /** The first row of a line or of the next one that moves. @param {number} file @param {number} line */
+  rowOfLine(file, line) {
+    for (let row = 0; row < this.rows; row++) if (this.file[row] === file && this.line[row] >= line) return row;
+    return this.rows - 1;
+  }
+
+  /** Tips (pieces + 1, 3) in the workpiece frame. @returns {Float32Array} */
+  tips() {
+    const found = new Float32Array(3 * (this.pieces + 1));
+    const values = new Float64Array(5), p = new Float64Array(3);
+    for (let i = 0; i <= this.pieces; i++) {
+      for (let k = 0; k < 5; k++) values[k] = this.axes[k][i];
+      toolAt(this.machine, values, this.lengthAt(i ? this.row[i - 1] : 0), p);
+      found[3 * i] = p[0]; found[3 * i + 1] = p[1]; found[3 * i + 2] = p[2];
+    }
+    return found;
+  }
+}

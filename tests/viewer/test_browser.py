@@ -1,0 +1,170 @@
+"""The viewer in a real browser: what is shown is where the machine is, and everything follows the cursor."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser, Page
+
+from tests.support.browser import browser as browser
+from tests.support.browser import needs_browser, open_file, open_page
+from tests.support.locations import GOLDEN
+from trunnion import post, read_program, write_view
+from trunnion.machines import forward
+from trunnion.machines.loading import shipped_machines
+
+pytestmark = needs_browser
+
+CL = GOLDEN / "yl569" / "3_blade_finish.cls"
+TOOL = "2=ball:10,length=60,flutes=20,shank=10,holder=40x50"
+ROWS = 200
+
+
+@pytest.fixture(scope="module")
+def view(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterator[Page]:
+    folder = tmp_path_factory.mktemp("view")
+    write_view(
+        CL.with_name("3_blade_finish.expected.mpf"), machine="yl569", cl=CL, tools=[TOOL], output=folder / "view.html",
+        zero=(0.0, 0.0, -20.0), tool_length=110.0,
+    )  # fmt: skip
+    with open_page(browser, open_file(folder / "view.html")) as (page, errors):
+        yield page
+        assert errors == []
+
+
+def shown(page: Page) -> str:
+    """The text of the current line."""
+    return str(page.locator(".line.current").inner_text())
+
+
+@pytest.mark.parametrize("name", shipped_machines())
+def test_the_pose_that_is_shown_is_that_of_the_forward_map(name: str, tmp_path: Path, browser: Browser) -> None:
+    program = tmp_path / "program.nc"
+    try:
+        post(CL, machine=name, output=program)
+    except Exception as error:
+        pytest.skip(str(error))
+    run = read_program(program, machine=name)
+    write_view(program, machine=name, output=tmp_path / "view.html")
+    rows = np.random.default_rng(5).permutation(np.flatnonzero(run.tcp & ~run.machine_frame))[:ROWS]
+    tip, axis = forward(run.machine, run.joints[rows])
+    with open_page(browser, open_file(tmp_path / "view.html")) as (page, errors):
+        found = page.evaluate(
+            """rows => rows.map(row => { page.goToRow(row); const { tip, axis } = page.space.shownTool();
+            return [tip, axis, Array(3).fill(page.program.known[page.program.last[row]])]; })""",
+            rows.tolist(),
+        )
+        assert errors == []
+    poses = np.array(found)
+    known = poses[:, 2, 0] == 1.0  # a tool that has been at a position of the machine is nowhere at the workpiece
+    assert known.sum() > 0.9 * len(rows)
+    tip, axis, poses = tip[known], axis[known], poses[known]
+    np.testing.assert_allclose(poses[:, 0], tip, atol=1e-4)
+    np.testing.assert_allclose(poses[:, 1], axis, atol=1e-6)
+
+
+def test_a_line_leads_to_its_pose_and_a_pose_to_its_line(view: Page) -> None:
+    view.evaluate("page.goToRow(0)")
+    row = 60
+    line = view.evaluate(f"page.program.line[{row}]")
+    view.evaluate(f"page.listing.view.scrollTop = {18 * (line - 5)}")
+    view.locator(f".line[data-line='{line}']").click()
+    assert view.evaluate("page.row") == row
+    place = view.evaluate(
+        """row => { page.goToRow(10); page.space.shownTool();
+        const p = page.space.tips.subarray(3 * (page.program.last[row] + 1));
+        const v = new THREE.Vector3(p[0], p[1], p[2]).applyMatrix4(page.space.place.matrixWorld);
+        page.space.controls.target.copy(v);
+        page.space.camera.position.set(v.x, v.y - 0.001, v.z + 8);
+        page.space.controls.update(); page.space.drawNow(); v.project(page.space.camera);
+        const box = page.space.canvas.getBoundingClientRect();
+        return [box.left + (v.x + 1) / 2 * box.width, box.top + (1 - v.y) / 2 * box.height]; }""",
+        row,
+    )
+    view.mouse.click(*place)
+    assert view.evaluate("page.row") == row
+    assert shown(view).split()[0].startswith(str(line))
+
+
+def test_play_moves_and_stops_at_the_end(view: Page) -> None:
+    view.evaluate("page.goToRow(0); document.getElementById('speed').value = 1")
+    view.locator("#play").click()
+    view.wait_for_function("() => !page.playing", timeout=20_000)
+    assert view.evaluate("page.time === page.program.end")
+    assert view.locator("#play").get_attribute("aria-label") == "Play"
+
+
+def test_keys_step_through_the_program(view: Page) -> None:
+    view.evaluate("page.goToRow(20)")
+    view.locator("#space").focus()
+    for key, row in (("ArrowRight", 21), ("ArrowRight", 22), ("ArrowLeft", 21), ("Home", 0), ("ArrowLeft", 0)):
+        view.keyboard.press(key)
+        assert view.evaluate("page.row") == row
+    view.keyboard.press("?")
+    assert view.locator("#keys").is_visible()
+    view.keyboard.press("Escape")
+    assert not view.locator("#keys").is_visible()
+
+
+def test_the_curves_show_and_set_the_cursor(view: Page) -> None:
+    box = view.locator("#curves").bounding_box()
+    assert box is not None
+    view.mouse.click(box["x"] + 64 + (box["width"] - 74) / 2, box["y"] + 40)
+    assert view.evaluate("page.time / page.program.end") == pytest.approx(0.5, abs=0.01)
+    assert float(view.locator("#scrub").input_value()) == pytest.approx(0.5, abs=0.01)
+
+
+def test_search_goes_round(view: Page) -> None:
+    view.evaluate("page.goToRow(0)")
+    view.locator("#search").fill("retract move")
+    view.locator("#search").press("Enter")
+    assert "Retract Move" in view.evaluate("page.listing.lineText(page.listing.current)")
+    view.locator("#search").fill("no such word")
+    view.locator("#search").press("Enter")
+    assert view.locator("#status").inner_text() == "Not found"
+
+
+def test_a_section_cuts_the_picture_open(view: Page) -> None:
+    picture = "() => { page.space.drawNow(); return page.space.canvas.toDataURL(); }"
+    view.evaluate("page.goToRow(20); page.space.look('iso')")
+    whole = view.evaluate(picture)
+    view.locator("#section").select_option("x")
+    cut = view.evaluate(picture)
+    view.locator("#section").select_option("")
+    assert cut != whole
+    assert view.evaluate(picture) == whole
+
+
+def test_the_part_stands_still_in_its_own_frame(view: Page) -> None:
+    view.locator("#frame").select_option("part")
+    stands = "row => { page.goToRow(row); page.space.shownTool(); return page.space.place.matrixWorld.elements; }"
+    first, second = (view.evaluate(stands, row) for row in (5, 90))
+    np.testing.assert_allclose(first, second, atol=1e-9)
+    view.locator("#frame").select_option("machine")
+    first, second = (view.evaluate(stands, row) for row in (5, 90))
+    assert np.abs(np.subtract(first, second)).max() > 1.0
+
+
+def test_each_colouring_paints_each_segment(view: Page) -> None:
+    for colour in ("operation", "tool", "feed", "rotary", "finding", "kind"):
+        view.locator("#colour").select_option(colour)
+        colours = view.evaluate("Array.from(page.space.colours)")
+        assert len(colours) == 6 * view.evaluate("page.space.segments.length")
+        assert max(colours) > 0
+
+
+def test_a_finding_leads_to_its_line(tmp_path: Path, browser: Browser) -> None:
+    program = tmp_path / "wrong.mpf"
+    text = CL.with_name("3_blade_finish.expected.mpf").read_text(encoding="utf-8")
+    wrong = text.replace("X35.72781", "X36.72781")
+    assert wrong != text
+    program.write_text(wrong, encoding="utf-8")
+    write_view(program, machine="yl569", cl=CL, output=tmp_path / "view.html")
+    with open_page(browser, open_file(tmp_path / "view.html")) as (page, errors):
+        page.locator("#space").focus()
+        page.keyboard.press("n")
+        assert "X36.72781" in shown(page)
+        page.locator("#findings button").first.click()
+        assert "X36.72781" in shown(page)
+        assert errors == []

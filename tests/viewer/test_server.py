@@ -1,0 +1,150 @@
+"""The server: its page, columns and texts, for this computer only, whatever is asked."""
+
+import asyncio
+import socket
+import threading
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+import uvicorn
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.support.locations import GOLDEN
+from trunnion import InputError
+from trunnion.api.viewing import prepare_view
+from trunnion.viewer.content import ViewContent
+from trunnion.viewer.server import listen, view_application
+
+PROGRAM = GOLDEN / "yl569" / "3_blade_finish.expected.mpf"
+
+NAMES = ("127.0.0.1", "localhost")
+
+
+@pytest.fixture(scope="module")
+def content() -> ViewContent:
+    return prepare_view(PROGRAM, machine="yl569")
+
+
+def ask(application: Any, path: str, headers: dict[str, str], method: str = "GET") -> tuple[int, bytes, dict[str, str]]:
+    """Status, body and headers of what an application answers."""
+    sent: list[dict[str, Any]] = []
+
+    async def receive() -> dict[str, Any]:
+        return {"type": "http.request", "body": b"", "more_body": False}
+
+    async def send(message: dict[str, Any]) -> None:
+        sent.append(message)
+
+    where, _, query = path.partition("?")
+    scope = {
+        "type": "http", "method": method, "path": where, "raw_path": where.encode(), "query_string": query.encode(),
+        "headers": [(name.lower().encode(), value.encode("latin-1")) for name, value in headers.items()],
+        "http_version": "1.1", "scheme": "http", "root_path": "", "client": ("127.0.0.1", 1),
+        "server": ("127.0.0.1", 80),
+    }  # fmt: skip
+    asyncio.run(application(scope, receive, send))
+    status = sent[0]["status"]
+    body = b"".join(message.get("body", b"") for message in sent[1:])
+    return status, body, {name.decode(): value.decode() for name, value in sent[0]["headers"]}
+
+
+def test_it_gives_the_page_its_columns_and_its_texts(content: ViewContent) -> None:
+    application = view_application(content, NAMES)
+    status, page, _ = ask(application, "/", {"Host": "127.0.0.1:8000"})
+    assert status == 200
+    assert b'data-embedded="false"' in page
+    for name, column in content.columns.items():
+        status, body, _ = ask(application, f"/data/column/{name}", {"Host": "localhost:8000"})
+        assert (status, body) == (200, column.tobytes())
+    assert ask(application, "/data/text/0", {"Host": "localhost"})[1] == PROGRAM.read_bytes()
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Host": "evil.example"}, {"Host": "127.0.0.1.evil.example:80"}, {},
+        {"Host": "127.0.0.1:80", "Origin": "http://evil.example"}, {"Host": "127.0.0.1:80", "Origin": "null"},
+        {"Host": "localhost@evil.example"},
+    ],
+)  # fmt: skip
+def test_another_host_or_origin_gets_nothing(content: ViewContent, headers: dict[str, str]) -> None:
+    application = view_application(content, NAMES)
+    for path in ("/", "/data/column/line", "/data/text/0"):
+        assert ask(application, path, headers)[0] == 403
+
+
+def test_off_this_computer_a_token_is_asked_for(content: ViewContent) -> None:
+    application = view_application(content, (*NAMES, "10.0.0.5"), "secret")
+    host = {"Host": "10.0.0.5:80"}
+    for path in ("/", "/?token=", "/?token=Secret", "/data/text/0", "/?token=%FF"):
+        assert ask(application, path, host)[0] == 403
+    status, _, headers = ask(application, "/?token=secret", host)
+    assert status == 200
+    cookie = headers["set-cookie"]
+    assert "HttpOnly" in cookie
+    assert "samesite=strict" in cookie.lower()
+    assert ask(application, "/data/text/0", {**host, "Cookie": cookie.partition(";")[0]})[0] == 200
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/data/text/1", "/data/text/-1", "/data/text/x", "/data/text/99999999999999999999",
+        "/data/column/../../etc/passwd",
+        "/data/column/%2e%2e%2fpage.py", "/etc/passwd", "//etc/passwd", "/data/column/", "/web/main.js", "/data",
+    ],
+)  # fmt: skip
+def test_there_is_nothing_else(content: ViewContent, path: str) -> None:
+    assert ask(view_application(content, NAMES), path, {"Host": "localhost"})[0] == 404
+
+
+@given(path=st.text(max_size=40), method=st.sampled_from(["GET", "HEAD", "POST", "PUT", "DELETE", "BREW"]))
+def test_whatever_is_asked_is_answered(content: ViewContent, path: str, method: str) -> None:
+    status = ask(view_application(content, NAMES), "/" + path, {"Host": "localhost"}, method)[0]
+    assert status in (200, 404, 405)
+
+
+@pytest.fixture(scope="module")
+def port(content: ViewContent) -> Iterator[int]:
+    listening = listen("127.0.0.1", 0)
+    server = uvicorn.Server(uvicorn.Config(view_application(content, NAMES), log_level="critical"))
+    thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
+    thread.start()
+    while not server.started:
+        time.sleep(0.01)
+    yield listening.getsockname()[1]
+    server.should_exit = True
+    thread.join()
+    listening.close()
+
+
+@pytest.mark.parametrize(
+    "garbage",
+    [
+        b"", b"\x00\xff\x16\x03\x01", b"GET", b"GET / HTTP/9.9\r\n\r\n", b"GET / HTTP/1.1\r\nX: " + b"a" * 200_000,
+        b"POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99999999999\r\n\r\nx", b"A" * 1_000_000,
+        b"GET / HTTP/1.1\r\n" + b"X: y\r\n" * 5_000 + b"\r\n",
+    ],
+)  # fmt: skip
+def test_garbage_leaves_the_server_alive(port: int, garbage: bytes) -> None:
+    with socket.create_connection(("127.0.0.1", port), timeout=10) as connection:
+        try:
+            connection.sendall(garbage)
+            connection.shutdown(socket.SHUT_WR)
+            connection.recv(100)
+        except OSError:
+            pass  # it may hang up
+    with urllib.request.urlopen(f"http://127.0.0.1:{port}/data/text/0", timeout=10) as answer:
+        assert answer.read() == PROGRAM.read_bytes()
+
+
+def test_a_port_that_is_taken_is_told(port: int) -> None:
+    with pytest.raises(InputError, match="choose another port"):
+        listen("127.0.0.1", port)
+    with pytest.raises(InputError, match="choose another port"):
+        listen("127.0.0.1", 70_000)
