@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.impellers import mixed_flow
 from trunnion.arrays import Floats
 from trunnion.geometry.interpolation import interpolate
 from trunnion.geometry.parameters import parameters_of
@@ -102,6 +103,19 @@ def test_points_off_the_blade_along_its_normals_are_as_far_away(published: Impel
         centre, normal = blade.edge(end, rng.random(300), v)
         found, _ = blade.distances(centre + (blade.halves(np.full(300, end), v) + away)[:, None] * normal)
         np.testing.assert_allclose(found, away, atol=1e-10)
+
+
+def test_the_nearest_ball_is_found_at_edges_where_parameters_are_skew() -> None:
+    impeller = build_impeller(mixed_flow())
+    for blade, _ in list(impeller.blades())[:2]:
+        for end in (0.0, 1.0):
+            turn, v = (grid.ravel() for grid in np.meshgrid(np.linspace(0, 1, 41), np.linspace(0, 1, 61)))
+            centre, normal = blade.edge(end, turn, v)
+            for away in (0.5, 2.0, 6.0):
+                points = centre + (blade.halves(np.full(len(v), end), v) + away)[:, None] * normal
+                found = blade.distances(points)[0]
+                assert found.max() < away + 1e-10
+                assert away > 0.5 or found.min() > away - 1e-10  # farther off, another part of the blade may be nearer
 
 
 def test_no_ball_of_the_blade_is_nearer_than_its_distance(published: Impeller) -> None:

@@ -1,6 +1,7 @@
 """The point of a curve that is nearest to a given one."""
 
-from typing import Final
+from functools import lru_cache
+from typing import Any, Final
 
 import numpy as np
 
@@ -23,9 +24,8 @@ def closest_parameters(curve: BSplineCurve, points: Floats) -> Floats:
     The nearest of dense samples begins the search, which stays between that sample's neighbours: Newton's method on the
     derivative of the squared distance, and halving of the interval where a step would leave it.
     """
-    knots = np.unique(curve.knots)
-    at = np.unique(np.linspace(knots[:-1], knots[1:], _SAMPLES + 1))
-    nearest = import_extra("scipy.spatial", "geometry").cKDTree(curve.points(at)).query(points)[1]
+    at, tree = _samples(curve)
+    nearest = tree.query(points)[1]
     low, high = at[np.maximum(nearest - 1, 0)], at[np.minimum(nearest + 1, len(at) - 1)]
     found = at[nearest]
     for _ in range(_STEPS):
@@ -44,3 +44,11 @@ def closest_parameters(curve: BSplineCurve, points: Floats) -> Floats:
         if moved < _CLOSE:
             break
     return np.asarray(found)
+
+
+@lru_cache(maxsize=8)
+def _samples(curve: BSplineCurve) -> tuple[Floats, Any]:
+    """Parameters of dense samples of a curve, and a tree of the samples; hub and shroud are asked again and again."""
+    knots = np.unique(curve.knots)
+    at = np.unique(np.linspace(knots[:-1], knots[1:], _SAMPLES + 1))
+    return at, import_extra("scipy.spatial", "geometry").cKDTree(curve.points(at))

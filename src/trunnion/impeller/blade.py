@@ -212,6 +212,14 @@ def _step(
         area = ww * vv - wv * wv
         if area > 0.0 and ww > 0.0:
             dw, dv = -(vv * gw - wv * gv) / area, -(ww * gv - wv * gw) / area
+            # Where that leaves the range, the least on its edge is the next: the parameters are skew, so that it would
+            # be no step down to cut off one of them alone.
+            if w + dw < 0.0 or w + dw > 1.0:
+                dw = min(max(dw, -w), 1.0 - w)
+                dv = -(gv + wv * dw) / vv
+            if v + dv < low or v + dv > high:
+                dv = min(max(dv, low - v), high - v)
+                dw = -(gw + wv * dv) / ww
         else:
             dw, dv = -gw / (abs(ww) + 1e-12), -gv / (abs(vv) + 1e-12)
     elif not hold_w:
