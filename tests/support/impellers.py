@@ -5,10 +5,13 @@ With u from 0 to 1: radius of hub and shroud r = r0 + (r1 - r0) u, angle of the 
 """
 
 import numpy as np
+import pytest
+from hypothesis import strategies as st
 
 from trunnion.arrays import Floats
 from trunnion.geometry.point_tables import PointTable
 from trunnion.impeller.definition import ImpellerDefinition, StockSize
+from trunnion.impeller.paths.passes import PassFamily
 
 
 def mixed_flow_sections(wrap: float, twist: float, points: int = 15, sections: int = 2) -> list[Floats]:
@@ -46,3 +49,35 @@ def mixed_flow(
         fillet=fillet,
         stock=StockSize(diameter=120.0, height=36.0, bottom=0.0, bore=20.0),
     )
+
+
+def dense_path(family: PassFamily, step: float) -> Floats:
+    """Points (k, 3) on the path of a ball's centre, straight between the points of its passes."""
+    found = []
+    for one in family.passes:
+        pieces = np.maximum(np.ceil(np.linalg.norm(np.diff(one.centre, axis=0), axis=1) / step), 1).astype(int)
+        at = np.concatenate([k + np.arange(n) / n for k, n in enumerate(pieces)] + [[float(len(pieces))]])
+        rows = np.arange(len(one.centre))
+        found.append(np.column_stack([np.interp(at, rows, one.centre[:, axis]) for axis in range(3)]))
+    return np.concatenate(found)
+
+
+def nearest_on_path(family: PassFamily, points: Floats, step: float = 0.05) -> Floats:
+    """Distance (k,) of points (k, 3) to the path of a ball's centre; too large by less than step²/8 of the distance."""
+    tree = pytest.importorskip("scipy.spatial").cKDTree(dense_path(family, step))
+    return np.asarray(tree.query(points)[0])
+
+
+@st.composite
+def mixed_flow_cases(draw: st.DrawFn) -> tuple[ImpellerDefinition, float]:
+    """An impeller of the family, with or without splitters, and the radius of a ball for its fillet."""
+    fillet = draw(st.floats(1.0, 2.5))
+    definition = mixed_flow(
+        wrap=draw(st.floats(0.1, 0.7)),
+        twist=draw(st.floats(0.0, 0.2)),
+        number=draw(st.integers(3, 6)),
+        splitter=draw(st.sampled_from([None, 0.35, 0.5])),
+        fillet=fillet,
+        sections=draw(st.integers(2, 3)),
+    )
+    return definition, fillet * draw(st.floats(0.5, 1.0))

@@ -6,6 +6,7 @@ SLOW = (
     "api/test_same_as_command.py", "cl/test_scan.py", "cl/test_surface_normals.py", "cl/test_write.py",
     "conversion/test_angles.py", "conversion/test_leaving_the_part.py", "conversion/test_pairs.py",
     "conversion/test_round_trip.py", "conversion/test_settings_by_operation.py", "examples", "fuzz",
+    "impeller/paths/test_blade_finish.py", "impeller/paths/test_root_blend.py",
     "jit/test_kernels.py", "linuxcnc", "machines/test_chains.py", "machines/test_turn_clearance.py", "matrix",
     "output/families/fanuc/test_haas.py", "output/families/fanuc/test_programs.py",
     "output/families/fanuc/test_vectors.py", "output/families/fidia/test_programs.py",

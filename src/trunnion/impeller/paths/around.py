@@ -146,9 +146,9 @@ def lay_passes(sheet: Sheet, s: Floats, rows: Floats, radius: float, way: Way) -
         raise InputError(argument_problem("way", what, f"choose {Way.ONE_WAY} or {Way.BOTH_WAYS}"))
     centres = np.stack([sheet.balls(np.full(len(s), depth))[0] for depth in rows])
     lengths = np.linalg.norm(np.diff(centres, axis=1), axis=2).mean(axis=0)
-    along = np.r_[0.0, np.cumsum(lengths)] / lengths.sum()
+    along = _shares(lengths)
     steps = np.linalg.norm(np.diff(centres, axis=0), axis=2).mean(axis=1)
-    across = np.r_[0.0, np.cumsum(steps)] / max(steps.sum(), 1e-300)
+    across = _shares(steps)
 
     def row(depth: Floats) -> Pass:
         centre, normal = sheet.balls(depth)
@@ -161,6 +161,12 @@ def lay_passes(sheet: Sheet, s: Floats, rows: Floats, radius: float, way: Way) -
     if way is Way.BOTH_WAYS:
         passes = [one.backwards() if k % 2 else one for k, one in enumerate(passes)]
     return PassFamily(tuple(passes), radius, way)
+
+
+def _shares(lengths: Floats) -> Floats:
+    """How far along (n + 1,) each end of n lengths is, from 0 to 1."""
+    so_far = np.r_[0.0, np.cumsum(lengths)]
+    return np.asarray(so_far / max(so_far[-1], 1e-300))
 
 
 def _joined(turns: list[Pass]) -> Pass:
