@@ -57,6 +57,25 @@ def test_a_ball_leaves_its_sphere() -> None:
     assert mesh.volume == pytest.approx(4000.0 - cap, rel=2e-3)
 
 
+@pytest.mark.parametrize("cell", [1.0, 0.7, 0.3])
+@pytest.mark.parametrize("depth", [0.05, 0.3, 1.0])
+def test_a_shallow_groove_leaves_the_faces_of_the_stock_where_they_are(cell: float, depth: float) -> None:
+    low, high = (0.0, -20.0, -10.0), (50.0, 20.0, 0.0)
+    stock = block(low, high, cell)
+    cut_path(stock, path([(-20.0, 0.0, -depth), (70.0, 3.0, -depth)]), ball(10.0, **BODY), cell / 10)
+    vertices = stock_surface(stock).vertices
+    assert (vertices >= low).all()
+    assert (vertices <= high).all()
+    inside = vertices[(vertices[:, 0] > 5.0) & (vertices[:, 0] < 45.0) & (vertices[:, 2] > -9.0)]
+    inside = inside[np.abs(inside[:, 1]) < 19.0]
+    along = np.array([90.0, 3.0]) / math.hypot(90.0, 3.0)
+    aside = (inside[:, 0] + 20.0) * along[1] - inside[:, 1] * along[0]
+    off = np.maximum(inside[:, 2], 5.0 - np.hypot(aside, inside[:, 2] - 5.0 + depth))
+    assert len(inside) > 500
+    assert np.abs(off).max() < 0.05 * cell
+    assert np.abs(off[np.abs(aside) > 5.0]).max() == 0.0
+
+
 @settings(max_examples=12)
 @given(st.integers(0, 10_000))
 def test_whatever_was_cut_the_surface_is_closed(seed: int) -> None:

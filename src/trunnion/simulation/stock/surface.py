@@ -26,8 +26,8 @@ from trunnion.simulation.stock.spans import Spans
 #: Votes of bundles, or normals in 127ths.
 Votes2: TypeAlias = Annotated[NDArray[np.int8], 2]
 
-#: Directions in which the planes of a cube differ by less than this do not place its vertex.
-_FLAT: Final = 0.02
+#: Directions in which the planes of a cube differ by less than this do not place its vertex: edges of less than 8 deg.
+_FLAT: Final = 0.005
 
 #: Decimals of vertices, mm, and part of the way to the middle of its cube by which one that is not alone is moved.
 _DECIMALS: Final = 6
@@ -145,7 +145,7 @@ def _cubes(stock: Stock, shape: tuple[int, ...], used: Ints) -> Floats:
 
 
 def _vertices(stock: Stock, lows: Floats, vertex: Ints, point: Floats, normal: Floats) -> Floats:
-    """The point of each cube that is nearest to the planes of its ends, and to their mean."""
+    """The point of each cube that is nearest to the planes of its ends, and to their mean; within the stock's box."""
     count = len(lows)
     flat, four = vertex.ravel(), np.repeat(np.arange(len(point)), 4)
     ends = np.bincount(flat, minlength=count).astype(np.float64)
@@ -167,7 +167,9 @@ def _vertices(stock: Stock, lows: Floats, vertex: Ints, point: Floats, normal: F
     inverse = np.where(kept, 1.0 / np.where(kept, values, 1.0), 0.0)
     along = np.einsum("nji,nj->ni", vectors, right) * inverse
     place = middle + np.einsum("nij,nj->ni", vectors, along)
-    return np.asarray(np.clip(place, lows, lows + stock.lattice.cell))
+    # Cubes at the faces of the stock reach beyond them, and so may the point between a face and a flat edge to it.
+    lowest, highest = np.maximum(lows, stock.lattice.low), np.minimum(lows + stock.lattice.cell, stock.lattice.high)
+    return np.asarray(np.clip(place, lowest, highest))
 
 
 def _apart(vertices: Floats, middles: Floats) -> Floats:
@@ -225,7 +227,8 @@ def nearest_ends(
 ) -> None:
     """Find where the material of rays ends (``leaving``) or begins between ``low`` and the next centre.
 
-    Where a ray does not know of it, since two others do, it is taken to be half-way, and across the ray.
+    Two other rays may have outvoted the ray at a centre that its end passes by a little: that end, at most half a step
+    away, is taken, at the centre. Without one it is taken to be half-way, and across the ray.
     """
     rays = len(first) - 1
     for k in range(len(ray)):
@@ -233,13 +236,17 @@ def nearest_ends(
         normal[k, 0], normal[k, 1], normal[k, 2] = 0.0, 0.0, 1.0 if leaving[k] else -1.0
         if not 0 <= ray[k] < rays:
             continue
+        nearest = 0.5 * step
         for s in range(first[ray[k]], first[ray[k] + 1]):
             at = 2 * s + 1 if leaving[k] else 2 * s
-            if low[k] - 1e-9 <= ends[at] <= low[k] + step + 1e-9:
-                height[k] = ends[at]
-                length = 0.0
+            beyond = max(low[k] - ends[at], ends[at] - low[k] - step, 0.0)
+            if beyond > nearest:
+                continue
+            nearest = beyond
+            height[k] = min(max(ends[at], low[k]), low[k] + step)
+            length = 0.0
+            for axis in range(3):
+                length += float(normals[at, axis]) ** 2
+            if length > 0.0:
                 for axis in range(3):
-                    length += float(normals[at, axis]) ** 2
-                if length > 0.0:
-                    for axis in range(3):
-                        normal[k, axis] = normals[at, axis] / math.sqrt(length)
+                    normal[k, axis] = normals[at, axis] / math.sqrt(length)
