@@ -1,4 +1,5 @@
 """Tool paths of an impeller: where the tool's ball goes, then how the tool stands, then moves between cuts.
 
+``channel``  passes between two blades: roughing and hub finish
 ``passes``   what all steps hand on: passes of ball centres on a family's own parameters
 """

@@ -1,0 +1,152 @@
+"""Layers of ball centres in a channel: how far the ball goes to either blade on each sheet.
+
+In:     a channel, the ball, a step-down.
+Out:    a ``Layer`` for each sheet: nodes from the inlet to the outlet, with the angles between which the ball moves.
+Units:  mm; angles in radians about Z.
+"""
+
+import math
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.errors import InputError, Problem
+from trunnion.impeller.impeller import Impeller
+from trunnion.impeller.paths.channel import Channel, Extent, turned
+from trunnion.impeller.paths.channel_sheets import Ball, Sheet, problem, sheets_of
+
+#: How often the ball's way in before an edge is laid, and moved off the blade where it is too near.
+_SWINGS: Final = 3
+
+#: Share of the tolerance that chords between nodes take, where no path bends more sharply than the ball.
+_SHARE: Final = 0.125
+
+#: The largest ball that fits is found by so many trials, at so many places of each sheet.
+_TRIALS: Final = 6
+_SPARSE: Final = 65
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Layer:
+    """Nodes (n,) of a layer from inlet to outlet.
+
+    u       of the mean surface
+    place   (n, 3) points of a sheet, which are turned
+    normal  (n, 3) of the hub there, turned alike
+    low, high   angles between which the ball moves
+    height  0: the lowest layer, 1: the highest
+    """
+
+    u: Floats
+    place: Floats
+    normal: Floats
+    low: Floats
+    high: Floats
+    height: float
+
+    def across(self, share: float) -> Floats:
+        """Centres (n, 3) at a share of the way from the lower to the higher angle."""
+        return turned(self.place, self.low + share * (self.high - self.low))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Throat:
+    """The narrowest place: its u, the point between the blades, and the distance of a ball's centre to both, mm."""
+
+    u: float
+    point: Floats
+    room: float
+
+
+def layers_of(channel: Channel, ball: Ball, step_down: float | None) -> list[Layer]:
+    """All layers of a channel from the lowest one, or that one alone without a step-down.
+
+    Raises
+    ------
+    InputError
+        If the ball is smaller than the fillet, does not get out of the stock, or does not fit between the blades; the
+        place is named then, and the largest ball that fits.
+    """
+    impeller = channel.impeller
+    fillet = impeller.definition.fillet
+    if ball.radius + min(ball.blade_allowance, ball.hub_allowance) < fillet:
+        what = f"a ball of {2.0 * ball.radius:g} mm is smaller than the fillet of {fillet:g} mm, and would cut into it"
+        raise InputError(problem(impeller, what, "take a larger ball, or leave more on blades and hub"))
+    sheets = sheets_of(impeller, ball, step_down)
+    found, throats = list[Layer](), list[_Throat]()
+    for k, sheet in enumerate(sheets):
+        u = np.linspace(sheet.first, sheet.last, _count(sheet, ball))
+        place = sheet.points(u)
+        extent = channel.extent(place, ball.to_blade)
+        throats.append(_throat(u, place, extent))
+        for _ in range(_SWINGS):
+            extent = channel.narrowed(place, ball.to_blade, _swung(place, extent))
+        normal = impeller.hub.distances(place)[1]
+        found.append(Layer(u, place, normal, extent.low, extent.high, k / max(len(sheets) - 1, 1)))
+    throat = min(throats, key=lambda one: one.room)
+    if throat.room < ball.to_blade:
+        raise InputError(_too_narrow(channel, ball, step_down, throat))
+    return found
+
+
+def _count(sheet: Sheet, ball: Ball) -> int:
+    """So many nodes that chords of a path that bends like the ball are within a share of the tolerance."""
+    u = np.linspace(sheet.first, sheet.last, 65)
+    longest = 64.0 * float(np.linalg.norm(np.diff(sheet.points(u), axis=0), axis=1).max())
+    return max(9, math.ceil(longest / math.sqrt(8.0 * _SHARE * ball.tolerance * ball.radius)))
+
+
+def _swung(place: Floats, extent: Extent) -> Extent:
+    """Angles that change by no more than 45 degrees to the path: so the ball swings in before an edge.
+
+    Where a blade begins, the place of contact would turn off at a right angle to the line in front of it.
+    """
+    step = np.gradient(place, axis=0)
+    radius = np.maximum(np.hypot(place[:, 0], place[:, 1]), 1e-9)
+    around = (place[:, 0] * step[:, 1] - place[:, 1] * step[:, 0]) / radius
+    square = np.einsum("ij,ij->i", step, step)
+    most = square / np.maximum(radius * np.sqrt(np.maximum(square - around**2, 0.0)), 1e-9)
+    low = np.minimum(eased(extent.low, most), extent.middle)
+    high = np.maximum(-eased(-extent.high, most), extent.middle)
+    return replace(extent, low=low, high=high)
+
+
+def eased(values: Floats, most: Floats) -> Floats:
+    """The least values (n,) that are nowhere below others, and change by no more than ``most`` (n,) at a node."""
+    way = np.r_[0.0, np.cumsum((most[1:] + most[:-1]) / 2.0)]
+    behind = np.maximum.accumulate(values + way) - way
+    before = np.maximum.accumulate((values - way)[::-1])[::-1] + way
+    return np.asarray(np.maximum(behind, before))
+
+
+def _throat(u: Floats, place: Floats, extent: Extent) -> _Throat:
+    k = int(extent.room.argmin())
+    return _Throat(float(u[k]), turned(place[k : k + 1], extent.middle[k : k + 1])[0], float(extent.room[k]))
+
+
+def _too_narrow(channel: Channel, ball: Ball, step_down: float | None, throat: _Throat) -> Problem:
+    """A channel that is too narrow for a ball."""
+    what = f"a ball of {2.0 * ball.radius:g} mm does not fit between two blades at {_named(channel.impeller, throat)}"
+    allowance = ball.blade_allowance
+    radius = throat.room - allowance
+    for _ in range(_TRIALS):  # a smaller ball goes deeper, where there is less room or more
+        if radius <= 0.0:
+            break
+        sheets = sheets_of(channel.impeller, replace(ball, radius=radius), step_down)
+        u = [np.linspace(sheet.first, sheet.last, _SPARSE) for sheet in sheets]
+        places = np.concatenate([sheet.points(at) for sheet, at in zip(sheets, u, strict=True)])
+        radius = min(radius, float(channel.extent(places, radius + allowance).room.min()) - allowance)
+    largest = math.floor(200.0 * radius) / 100.0
+    if largest <= 0.0:
+        return problem(channel.impeller, f"{what}, nor does any other", "leave less on the blades")
+    return problem(channel.impeller, f"{what}; the largest that fits has {largest:.2f} mm", "take a smaller ball")
+
+
+def _named(impeller: Impeller, throat: _Throat) -> str:
+    """A place by w, height and radius."""
+    x, y, z = throat.point
+    middle = float(impeller.blade.edges[0].mean()), float(impeller.blade.edges[1].mean())
+    w = (throat.u - middle[0]) / (middle[1] - middle[0])
+    return f"w = {w:.3f}, z = {z:.2f} mm, r = {math.hypot(x, y):.2f} mm"

@@ -1,0 +1,109 @@
+"""Steps between two blades, judged by exact distances of their ball centres."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from trunnion.arrays import Floats
+from trunnion.errors import InputError
+from trunnion.impeller.definition import read_impeller
+from trunnion.impeller.impeller import Impeller, build_impeller, rotated
+from trunnion.impeller.paths.channel import channels_of
+from trunnion.impeller.paths.channel_roughing import channel_roughing
+from trunnion.impeller.paths.hub_finish import hub_finish
+from trunnion.impeller.paths.passes import PassFamily, Stepover
+
+PUBLISHED = Path(__file__).resolve().parents[3] / "examples" / "impeller" / "impeller.toml"
+
+TOLERANCE = 0.01
+
+
+@pytest.fixture(scope="module")
+def published() -> Impeller:
+    return build_impeller(read_impeller(PUBLISHED))
+
+
+@pytest.fixture(scope="module")
+def finish(published: Impeller) -> PassFamily:
+    return hub_finish(channels_of(published)[0], 3.0, Stepover(distance=0.5), tolerance=TOLERANCE)
+
+
+@pytest.fixture(scope="module")
+def roughing(published: Impeller) -> PassFamily:
+    (channel,) = channels_of(published)
+    allowances = {"blade_allowance": 0.3, "hub_allowance": 0.4}
+    return channel_roughing(channel, 3.0, Stepover(distance=1.5), 2.5, tolerance=TOLERANCE, **allowances)
+
+
+def with_middles(family: PassFamily) -> Floats:
+    """All centres, and the middles of the chords between them."""
+    middles = [(one.centre[1:] + one.centre[:-1]) / 2.0 for one in family.passes]
+    return np.concatenate((family.centres(), *middles))
+
+
+def from_blades(impeller: Impeller, points: Floats) -> Floats:
+    """Distance to the nearest of all blades."""
+    return np.asarray(
+        np.min([blade.distances(rotated(points, -angle))[0] for blade, angle in impeller.blades()], axis=0)
+    )
+
+
+def test_a_finishing_ball_touches_the_hub_and_the_blade_at_either_side(published: Impeller, finish: PassFamily) -> None:
+    points = with_middles(finish)
+    assert from_blades(published, points).min() >= 3.0 - TOLERANCE
+    np.testing.assert_allclose(published.hub.distances(points)[0], 3.0, atol=TOLERANCE)
+    first, last = (one for one in finish.passes if (one.place[:, 1] == one.place[0, 1]).all())
+    for one, blade_angle in ((first, 0.0), (last, np.pi / 3.0)):
+        along = one.place[:, 0]
+        beside = one.centre[(along > 0.15) & (along < 0.9)]
+        found = published.blade.distances(rotated(beside, -blade_angle))[0]
+        np.testing.assert_allclose(found, 3.0, atol=1e-3)
+
+
+def test_a_roughing_ball_leaves_the_allowances(published: Impeller, roughing: PassFamily) -> None:
+    points = with_middles(roughing)
+    assert from_blades(published, points).min() >= 3.3 - TOLERANCE
+    height = published.hub.distances(points)[0]
+    assert height.min() >= 3.4 - TOLERANCE
+    lowest = np.concatenate([one.centre for one in roughing.passes if one.place[0, 2] == 0.0])
+    np.testing.assert_allclose(published.hub.distances(lowest)[0], 3.4, atol=TOLERANCE)
+
+
+@pytest.mark.parametrize("name", ["finish", "roughing"])
+def test_passes_begin_and_end_off_the_stock(published: Impeller, name: str, request: pytest.FixtureRequest) -> None:
+    family: PassFamily = request.getfixturevalue(name)
+    ends = np.array([one.centre[k] for one in family.passes for k in (0, -1)])
+    stock = published.definition.stock
+    off = [np.hypot(ends[:, 0], ends[:, 1]) - stock.diameter / 2.0, ends[:, 2] - stock.top]
+    assert np.maximum.reduce([*off, published.shroud.distances(ends)[0]]).min() >= 3.0
+
+
+@pytest.mark.parametrize("name", ["finish", "roughing"])
+def test_passes_are_dense_without_doubles_and_places_are_within_0_and_1(
+    name: str, request: pytest.FixtureRequest
+) -> None:
+    family: PassFamily = request.getfixturevalue(name)
+    for one in family.passes:
+        steps = np.linalg.norm(np.diff(one.centre, axis=0), axis=1)
+        assert steps.min() > 1e-3
+        assert steps.max() <= 2.0
+        np.testing.assert_allclose(np.linalg.norm(one.normal, axis=1), 1.0, atol=1e-12)
+    places = family.places()
+    np.testing.assert_allclose(places.min(axis=0)[:2], 0.0, atol=1e-12)
+    np.testing.assert_allclose(places.max(axis=0)[:2], 1.0, atol=1e-12)
+    layers = [one.layer for one in family.passes]
+    assert layers == sorted(layers)
+
+
+def test_a_channel_too_narrow_is_refused_with_the_place_and_the_largest_ball(published: Impeller) -> None:
+    (channel,) = channels_of(published)
+    text = r"a ball of 15 mm does not fit between two blades at w = 0\.\d+, .* mm; the largest that fits has 1\d\.\d"
+    with pytest.raises(InputError, match=text):
+        hub_finish(channel, 7.5, Stepover(distance=0.5), tolerance=TOLERANCE)
+
+
+def test_a_ball_smaller_than_the_fillet_is_refused(published: Impeller) -> None:
+    (channel,) = channels_of(published)
+    with pytest.raises(InputError, match=r"a ball of 3\.8 mm is smaller than the fillet of 2 mm"):
+        hub_finish(channel, 1.9, Stepover(distance=0.5), tolerance=TOLERANCE)
