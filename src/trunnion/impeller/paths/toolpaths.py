@@ -1,0 +1,81 @@
+"""The paths of a step as operations of a CL file.
+
+In:     a ``LinkedPath``, the tool, speeds and feeds.
+Out:    an ``Operation``.
+Units:  mm, rev/min, mm/min.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.impeller.paths.linking import LinkedPath
+from trunnion.model.toolpath import (
+    Arcs,
+    Coolant,
+    Event,
+    Frame,
+    Kind,
+    LoadTool,
+    Moves,
+    Operation,
+    Phase,
+    SpindleOff,
+    SpindleOn,
+    Tool,
+)
+
+#: Phases that are cut at the feed of the step; all others at that of its leads.
+_CUTTING = (Phase.CUT, Phase.STEPOVER)
+
+
+@dataclass(frozen=True, slots=True)
+class CuttingData:
+    """Speeds and feeds of a step.
+
+    rpm        of the spindle, clockwise
+    feed       mm/min
+    lead_feed  on leads, approaches and retracts, mm/min
+    coolant    a CL word, such as ON; empty: none
+    """
+
+    rpm: float
+    feed: float
+    lead_feed: float
+    coolant: str = ""
+
+
+def operation_of(
+    name: str, path: LinkedPath, tool: Tool, number: int, radius: float, data: CuttingData, tolerance: float
+) -> Operation:
+    """The operation of a path.
+
+    Parameters
+    ----------
+    name
+        Of the operation.
+    tool, number
+        As CL files describe it, and by which it is called.
+    radius
+        From the ball's centre to the tip; 0 where centres are tips.
+    tolerance
+        That the path keeps, for INTOL and OUTTOL.
+    """
+    n = len(path.kind)
+    cutting = np.isin(path.phase, _CUTTING)
+    feed: Floats = np.where(cutting, data.feed, data.lead_feed)
+    line = np.ones(n, np.int32)
+    moves = Moves(path.centre - radius * path.axis, path.axis, path.kind, path.phase, feed, np.zeros(n, np.bool_), line)
+    events: list[Event] = [LoadTool(0, 1, number, number), SpindleOn(0, 1, data.rpm)]
+    if data.coolant:
+        events.append(Coolant(0, 1, data.coolant))
+        events.append(Coolant(n, 1, "OFF"))
+    events.append(SpindleOff(n, 1))
+    return Operation(name, tool, Frame(), moves, Arcs.empty(), tuple(events), 1, tolerance, tolerance)
+
+
+def cut_length(path: LinkedPath) -> float:
+    """Length in mm that the ball's centre moves at the feed of the step."""
+    steps = np.linalg.norm(np.diff(path.centre, axis=0), axis=1)
+    return float(steps[np.isin(path.phase[1:], _CUTTING) & (path.kind[1:] != Kind.RAPID)].sum())
