@@ -13,6 +13,9 @@ from trunnion.definitions import Table, load_table
 from trunnion.errors import InputError
 from trunnion.geometry.parameters import PARAMETERIZATIONS
 from trunnion.geometry.point_tables import PointTable, read_point_table, scaled
+from trunnion.impeller.steps import MachiningStep, read_steps
+from trunnion.simulation.tools.library.library import LibraryTool
+from trunnion.simulation.tools.library.toml_library import read_tool_tables
 
 EDGES: Final = ("round", "cut")
 
@@ -47,6 +50,7 @@ class ImpellerDefinition:
     trailing_edge     ``cut`` by the stock, or ``round``
     splitter          share of the blade's length at which its splitters begin; None: it has none
     fillet            radius between blade and hub, mm
+    tools, steps      with which it is machined, in their order; none where the definition has none
     """
 
     file: str
@@ -60,6 +64,8 @@ class ImpellerDefinition:
     splitter: float | None
     fillet: float
     stock: StockSize
+    tools: tuple[LibraryTool, ...] = ()
+    steps: tuple[MachiningStep, ...] = ()
 
 
 def read_impeller(path: Path) -> ImpellerDefinition:
@@ -74,6 +80,7 @@ def read_impeller(path: Path) -> ImpellerDefinition:
     name = root.text("name", path.stem)
     blade, hub, stock = (root.table(key, required=True) for key in ("blade", "hub", "stock"))
     sections = _sections(blade, path)
+    tools = read_tool_tables(root) if "operation" in root or "tool" in root else ()
     found = ImpellerDefinition(
         file=str(path),
         name=name,
@@ -86,6 +93,8 @@ def read_impeller(path: Path) -> ImpellerDefinition:
         splitter=blade.number("splitter_start", None, at_least=0.05, at_most=0.95),
         fillet=hub.number("fillet_mm", above=0.0, at_most=_GREATEST),
         stock=_stock(stock),
+        tools=tools,
+        steps=read_steps(root, tools),
     )
     for table in (root, blade, hub, stock):
         table.report_unread_keys()

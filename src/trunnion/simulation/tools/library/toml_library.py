@@ -25,6 +25,14 @@ def read_toml_library(path: Path) -> ToolLibrary:
         If it cannot be read, with every mistake in it and its line.
     """
     root = load_table(path, files(__package__), kind="tool library")
+    tools = read_tool_tables(root)
+    root.report_unread_keys()
+    root.raise_problems()
+    return ToolLibrary(str(path), tools)
+
+
+def read_tool_tables(root: Table) -> tuple[LibraryTool, ...]:
+    """Read the tables ``[[tool]]`` of a file; mistakes are added to its problems."""
     tools: list[LibraryTool] = []
     taken: dict[int | str, str] = {}
     for table in root.tables("tool", required=True):
@@ -37,9 +45,7 @@ def read_toml_library(path: Path) -> ToolLibrary:
             if value is not None and taken.setdefault(value, table.path) != table.path:
                 table.add_problem(key, f"is that of {taken[value]} too", "tell tools apart")
         tools += _read_tool(table, number, name)
-    root.report_unread_keys()
-    root.raise_problems()
-    return ToolLibrary(str(path), tuple(tools))
+    return tuple(tools)
 
 
 def _read_tool(table: Table, number: int | None, name: str) -> list[LibraryTool]:

@@ -1,0 +1,166 @@
+"""The machining steps of an impeller and their data: ``[[operation]]`` of ``impeller.toml``.
+
+Units: mm, mm/min, rev/min, degrees.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Final
+
+from trunnion.definitions import Table
+from trunnion.impeller.paths.passes import Stepover, Way
+from trunnion.simulation.tools.library.library import LibraryTool
+from trunnion.simulation.tools.sizes import ToolKind
+
+_GREATEST: Final = 1000.0
+
+
+class StepKind(StrEnum):
+    """What a step machines."""
+
+    STOCK_ROUGHING = "stock roughing"
+    STOCK_FINISHING = "stock finishing"
+    CHANNEL_ROUGHING = "channel roughing"
+    HUB_FINISH = "hub finish"
+    BLADE_FINISH = "blade finish"
+    ROOT_BLEND = "root blend"
+
+
+#: Steps that go once round the whole part; the others are cut once for each blade or channel.
+ROUND_STEPS: Final = (StepKind.STOCK_ROUGHING, StepKind.STOCK_FINISHING)
+
+#: Steps that go down in depth.
+_DEEP: Final = (StepKind.STOCK_ROUGHING, StepKind.CHANNEL_ROUGHING)
+
+#: Kinds of tools that a step may have.
+_TOOLS: Final[Mapping[StepKind, tuple[ToolKind, ...]]] = {
+    kind: (ToolKind.FLAT,) if kind is StepKind.STOCK_ROUGHING else (ToolKind.BALL, ToolKind.TAPER_BALL)
+    for kind in StepKind
+}
+
+#: Ways that a step may have; the first one is its own.
+_WAYS: Final[Mapping[StepKind, tuple[Way, ...]]] = {
+    StepKind.STOCK_ROUGHING: (Way.SPIRAL,),
+    StepKind.STOCK_FINISHING: (Way.SPIRAL,),
+    StepKind.CHANNEL_ROUGHING: (Way.BOTH_WAYS,),
+    StepKind.HUB_FINISH: (Way.BOTH_WAYS,),
+    StepKind.BLADE_FINISH: (Way.ONE_WAY, Way.BOTH_WAYS, Way.SPIRAL),
+    StepKind.ROOT_BLEND: (Way.ONE_WAY, Way.BOTH_WAYS, Way.SPIRAL),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class MachiningStep:
+    """A step and its data.
+
+    tool             by its number
+    stepover         from one pass to the next; of stock roughing, the width that one turn may cut
+    step_down        from one layer, or turn, to the next; 0 where the step has none
+    allowance        that stays on blades, or on the form of the shroud
+    hub_allowance    that stays on the hub
+    rpm              of the spindle, clockwise
+    feed, lead_feed  of cuts, and of all that leads to them and away
+    lead             radius of the arcs that lead in and out; 0: none
+    tilt             of the tool axis, outward, in a step that goes round the part
+    clearance        wanted of cutter, shank and holder, and of links from the stock
+    tolerance        of the ball's centre
+    coolant          a CL word; empty: none
+    published_minutes  for one blade or channel, to compare with; 0: none
+    """
+
+    kind: StepKind
+    name: str
+    tool: int
+    stepover: Stepover
+    step_down: float
+    allowance: float
+    hub_allowance: float
+    rpm: float
+    feed: float
+    lead_feed: float
+    lead: float
+    way: Way
+    tilt: float
+    clearance: tuple[float, float, float, float]
+    tolerance: float
+    coolant: str
+    published_minutes: float
+
+
+def read_steps(root: Table, tools: Sequence[LibraryTool]) -> tuple[MachiningStep, ...]:
+    """Read the tables ``[[operation]]``, in the order of machining; mistakes are added to the problems of ``root``."""
+    found: list[MachiningStep] = []
+    taken: dict[str, str] = {}
+    for table in root.tables("operation"):
+        step = _read_step(table, {tool.number: tool for tool in tools})
+        if step is None:
+            continue
+        if taken.setdefault(step.name, table.path) != table.path:
+            table.add_problem("name", f"is that of {taken[step.name]} too", "tell operations apart")
+        found.append(step)
+    return tuple(found)
+
+
+def _read_step(table: Table, tools: Mapping[int | None, LibraryTool]) -> MachiningStep | None:
+    """The step of a table; None if its kind is not known, which the table then says."""
+    word = table.text("kind", one_of=list(StepKind))
+    if word not in list(StepKind):
+        table.mark_read(*table.keys())
+        return None
+    kind = StepKind(word)
+    tool = table.integer("tool", at_least=0)
+    if tool in tools and tools[tool].sizes.kind not in _TOOLS[kind]:
+        names = " or ".join(_TOOLS[kind])
+        table.add_problem("tool", f"{tool} is a {tools[tool].sizes.kind} mill", f"{kind} wants {names}")
+    elif tool not in tools:
+        known = ", ".join(str(number) for number in tools if number is not None)
+        table.add_problem("tool", f"{tool} is not among the tools", f"give a [[tool]] of that number; there are {known}")
+    feed = table.number("feed_mm_min", above=0.0, at_most=100_000.0)
+    ways = _WAYS[kind]
+    step = MachiningStep(
+        kind=kind,
+        name=table.text("name", word.replace(" ", "_").upper()),
+        tool=tool,
+        stepover=_read_stepover(table),
+        step_down=table.number("step_down_mm", above=0.0, at_most=_GREATEST) if kind in _DEEP else 0.0,
+        allowance=table.number("allowance_mm", 0.0, at_least=0.0, at_most=_GREATEST),
+        hub_allowance=_read_hub_allowance(table, kind),
+        rpm=table.number("rpm", above=0.0, at_most=200_000.0),
+        feed=feed,
+        lead_feed=table.number("lead_feed_mm_min", feed, above=0.0, at_most=100_000.0),
+        lead=table.number("lead_mm", 0.0, at_least=0.0, at_most=100.0),
+        way=Way(table.text("way", ways[0], one_of=ways) or ways[0]),
+        tilt=table.number("tilt_deg", 0.0, at_least=0.0, at_most=90.0) if kind is StepKind.STOCK_FINISHING else 0.0,
+        clearance=_read_clearance(table),
+        tolerance=table.number("tolerance_mm", 0.01, at_least=0.0005, at_most=1.0),
+        coolant=table.text("coolant", "", one_of=("", "ON", "FLOOD", "MIST", "THRU", "AIR")),
+        published_minutes=table.number("published_min", 0.0, at_least=0.0),
+    )
+    table.report_unread_keys()
+    return step
+
+
+def _read_stepover(table: Table) -> Stepover:
+    if ("stepover_mm" in table) == ("scallop_mm" in table):
+        table.add_problem("", "needs either stepover_mm or scallop_mm", "give one of them")
+        table.mark_read("stepover_mm", "scallop_mm")
+        return Stepover(distance=1.0)
+    if "stepover_mm" in table:
+        return Stepover(distance=table.number("stepover_mm", above=0.0, at_most=_GREATEST))
+    return Stepover(scallop=table.number("scallop_mm", at_least=1e-5, at_most=1.0))
+
+
+def _read_hub_allowance(table: Table, kind: StepKind) -> float:
+    if kind in (StepKind.CHANNEL_ROUGHING, StepKind.HUB_FINISH):
+        return table.number("hub_allowance_mm", 0.0, at_least=0.0, at_most=_GREATEST)
+    return 0.0
+
+
+def _read_clearance(table: Table) -> tuple[float, float, float, float]:
+    """Of cutter, shank and holder, and of links from the stock."""
+    keys = {"cutter_clearance_mm": 0.1, "shank_clearance_mm": 0.3, "holder_clearance_mm": 1.0, "link_clearance_mm": 2.0}
+    cutter, shank, holder, link = (
+        table.number(key, value, at_least=0.0, at_most=100.0) for key, value in keys.items()
+    )
+    return cutter, shank, holder, link
