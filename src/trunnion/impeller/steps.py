@@ -115,7 +115,9 @@ def _read_step(table: Table, tools: Mapping[int | None, LibraryTool]) -> Machini
         table.add_problem("tool", f"{tool} is a {tools[tool].sizes.kind} mill", f"{kind} wants {names}")
     elif tool not in tools:
         known = ", ".join(str(number) for number in tools if number is not None)
-        table.add_problem("tool", f"{tool} is not among the tools", f"give a [[tool]] of that number; there are {known}")
+        table.add_problem(
+            "tool", f"{tool} is not among the tools", f"give a [[tool]] of that number; there are {known}"
+        )
     feed = table.number("feed_mm_min", above=0.0, at_most=100_000.0)
     ways = _WAYS[kind]
     step = MachiningStep(
@@ -160,7 +162,5 @@ def _read_hub_allowance(table: Table, kind: StepKind) -> float:
 def _read_clearance(table: Table) -> tuple[float, float, float, float]:
     """Of cutter, shank and holder, and of links from the stock."""
     keys = {"cutter_clearance_mm": 0.1, "shank_clearance_mm": 0.3, "holder_clearance_mm": 1.0, "link_clearance_mm": 2.0}
-    cutter, shank, holder, link = (
-        table.number(key, value, at_least=0.0, at_most=100.0) for key, value in keys.items()
-    )
+    cutter, shank, holder, link = (table.number(key, value, at_least=0.0, at_most=100.0) for key, value in keys.items())
     return cutter, shank, holder, link

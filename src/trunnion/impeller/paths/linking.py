@@ -5,7 +5,7 @@ Out:    ``LinkedPath``: ball centres and tool axes with the kind and the phase o
 Frame:  that of the impeller. Units: mm.
 
 Outside of the stock, grown by a clearance, a tool moves in rapid: up to a height at which nothing of it reaches the
-stock, whatever its tilt, then across and down. Inside it moves at feed, and only where every pose has been proven clear.
+stock, whatever its tilt, then across and down. Inside it moves at feed, where every pose has been proven clear.
 """
 
 import math
@@ -202,25 +202,23 @@ def _lead(one: Pass, axis: Floats, radius: float, is_clear: IsClear, *, out: boo
     k, beside = (-1, -2) if out else (0, 1)
     centre, direction = one.centre[k], axis[k]
     if radius <= 0.0 or len(one) < 2:
-        return centre[None]
+        return np.asarray(centre[None])
     along = one.centre[beside] - centre  # away from the end, into the pass
     along = along / max(float(np.linalg.norm(along)), 1e-12)
     normal = one.normal[k] - (one.normal[k] @ along) * along
     size = float(np.linalg.norm(normal))
     if size < 1e-6:
-        return centre[None]
+        return np.asarray(centre[None])
     angle = np.linspace(math.pi / 2.0, 0.0, _ARC_CHORDS + 1)[:, None]
     for _ in range(_HALVINGS):
         arc = centre + radius * ((1.0 - np.cos(angle)) * (normal / size) - np.sin(angle) * along)
         if is_clear(arc, np.repeat(direction[None], len(arc), axis=0)).all():
             return np.asarray(arc[::-1] if out else arc)
         radius /= 2.0
-    return centre[None]
+    return np.asarray(centre[None])
 
 
-def _leave(
-    path: _Path, one: Pass, axis: Floats, space: FreeSpace, links: Links, is_clear: IsClear, name: str
-) -> None:
+def _leave(path: _Path, one: Pass, axis: Floats, space: FreeSpace, links: Links, is_clear: IsClear, name: str) -> None:
     """Lead out of a pass, retract along the tool axis, and go up."""
     lead, direction = _lead(one, axis, links.lead, is_clear, out=True), axis[-1]
     path.add(lead, np.repeat(direction[None], len(lead), axis=0), Kind.LINEAR, Phase.RETRACT)

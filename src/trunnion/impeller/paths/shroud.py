@@ -61,8 +61,8 @@ def stock_roughing(
         If the stock has nothing outside of the shroud.
     """
     stock = impeller.definition.stock
-    heights, form = _form(impeller)
-    limit = np.maximum.accumulate(form[::-1])[::-1] + allowance  # the mill stands in all that is above its tip
+    heights, form = _form(impeller, allowance)
+    limit = np.maximum.accumulate(form[::-1])[::-1]  # the mill stands in all that is above its tip
     outside = stock.diameter / 2.0
     stands = limit < outside
     if not stands.any():
@@ -116,8 +116,7 @@ def shroud_finish(
     reach = radius + allowance
     centre = np.column_stack((r, z)) + reach * normal
     lean = np.array([math.sin(math.radians(tilt)), math.cos(math.radians(tilt))])
-    solid = inside & (heights <= stock.top)
-    kept = _kept_out(centre, lean, np.column_stack((form[solid], heights[solid])), reach)
+    kept = _kept_out(centre, lean, np.column_stack((form[inside], heights[inside])), reach)
     left = float(np.einsum("ij,ij->i", kept - centre, normal).max())
     way = np.r_[0.0, np.cumsum(size[1:])]
     bends = np.linalg.norm(np.diff(normal, axis=0), axis=1) / np.maximum(np.diff(way), 1e-12)
@@ -133,19 +132,20 @@ def shroud_finish(
     return TurnedPasses((helix,), (axis,), max(left, 0.0))
 
 
-def _form(impeller: Impeller) -> tuple[Floats, Floats]:
-    """Heights from below to above, and the radius of the shroud there: straight on beyond its ends, to the stock."""
-    stock = impeller.definition.stock
+def _form(impeller: Impeller, allowance: float = 0.0) -> tuple[Floats, Floats]:
+    """Heights within the stock, from below to above, and the radius of the shroud there, with an allowance on it."""
+    definition, stock = impeller.definition, impeller.definition.stock
     outline = impeller.shroud.outline(1e-4, 2.0 * (stock.height + stock.diameter))
-    order = np.argsort(outline[:, 1], kind="stable")
-    highest = stock.top + stock.diameter
-    heights = np.linspace(stock.bottom, highest, math.ceil((highest - stock.bottom) * _PER_MM) + 1)
-    rows = np.flatnonzero(np.diff(outline[:, 1]) > 1e-9)
-    if len(rows):
-        z = outline[int(rows[0]), 1]
+    falls = np.diff(outline[:, 1])
+    if (falls > 1e-9).any():
+        z = float(outline[int(np.argmax(falls > 1e-9)), 1])
         what = f"the shroud rises towards the outlet at height {z:.2f} mm: a helix round Z does not reach below it"
-        raise InputError(Problem(impeller.definition.file, 0, what, "leave this step out, or turn the stock's form"))
-    return heights, np.interp(heights, outline[order, 1], outline[order, 0])
+        raise InputError(Problem(definition.file, 0, what, "leave this step out, or turn the stock's form"))
+    along = np.gradient(outline, axis=0)
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    outline = outline + allowance * np.column_stack((-along[:, 1], along[:, 0]))
+    heights = np.linspace(stock.bottom, stock.top, math.ceil(stock.height * _PER_MM) + 1)
+    return heights, np.interp(heights, outline[::-1, 1], outline[::-1, 0])
 
 
 def _kept_out(centre: Floats, lean: Floats, form: Floats, reach: float) -> Floats:
@@ -175,7 +175,7 @@ def _angles(radius: float, turns: float, tolerance: float) -> Floats:
 
 
 def _helix(around: Floats, z: Floats, angle: Floats, up: Floats, out: Floats, layer: int = 0) -> Pass:
-    """A pass clockwise round Z, seen from above: the part is on its right, so that a tool that turns clockwise climbs."""
+    """A pass clockwise round Z, seen from above: with the part on its right, a tool that turns clockwise climbs."""
     cosine, sine = np.cos(angle), -np.sin(angle)
     centre = np.column_stack((around * cosine, around * sine, z))
     normal = np.column_stack((out * cosine, out * sine, up))

@@ -72,9 +72,7 @@ def _may_go(
 
 
 @kernel(writes="keep")
-def thin_rows(
-    centre: Floats2, axis: Floats2, radius: float, tolerance: float, cosine: float, keep: Flags
-) -> None:
+def thin_rows(centre: Floats2, axis: Floats2, radius: float, tolerance: float, cosine: float, keep: Flags) -> None:
     """Mark the points that stay, (n,): from each one, as far as all between may go."""
     n = centre.shape[0]
     keep[0] = True
