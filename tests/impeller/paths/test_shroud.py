@@ -47,7 +47,7 @@ def test_narrow_turns_follow_each_other_from_outside(impeller: Impeller) -> None
 def test_a_tilted_ball_touches_the_form_everywhere(impeller: Impeller, tilt: float) -> None:
     found = shroud_finish(impeller, 5.0, Stepover(distance=0.5), tilt, 0.0, 0.005)
     (one,), (axis,) = found.passes, found.axes
-    beside = one.centre[:, 2] <= impeller.definition.stock.top
+    beside = one.centre[:, 2] <= impeller.definition.stock.top - 1.0
     assert np.abs(impeller.shroud.distances(one.centre[beside])[0] - 5.0).max() < 0.002
     assert found.left < 1e-3
     np.testing.assert_allclose(np.degrees(np.arccos(axis[:, 2])), tilt)
@@ -58,7 +58,7 @@ def test_a_tilted_ball_touches_the_form_everywhere(impeller: Impeller, tilt: flo
 def test_an_upright_ball_keeps_off_an_undercut_form_and_says_how_far(impeller: Impeller) -> None:
     found = shroud_finish(impeller, 5.0, Stepover(distance=0.5), 0.0, 0.0, 0.005)
     (one,) = found.passes
-    beside = one.centre[:, 2] <= impeller.definition.stock.top
+    beside = one.centre[:, 2] <= impeller.definition.stock.top - 1.0
     assert impeller.shroud.distances(one.centre[beside])[0].min() > 5.0 - 0.002
     assert 0.01 < found.left < 0.2
     inner = np.hypot(one.centre[:, 0], one.centre[:, 1]) - 5.0
