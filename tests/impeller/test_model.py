@@ -57,6 +57,15 @@ def test_splitters_round_trailing_edges_and_a_bore(tmp_path: Path) -> None:
     assert found.volume == pytest.approx(81580.0, rel=5e-2)
 
 
+def test_a_mixed_flow_impeller_of_three_sections_with_splitters_has_no_holes_beside_its_fillets() -> None:
+    found = modelled(FOLDER / "mixed_flow.toml")
+    assert found.deviation <= 0.05
+    assert found.volume == pytest.approx(177_090.0, rel=1e-3)
+    mesh = trimesh.Trimesh(found.mesh.vertices.astype("f4"), found.mesh.faces)
+    assert mesh.is_watertight
+    assert mesh.euler_number == 0  # the bore goes through; a hole inside would add 2
+
+
 def mistakes(path: Path) -> list[tuple[int, str]]:
     with pytest.raises(InputError) as raised:
         modelled(path)

@@ -20,6 +20,12 @@ from trunnion.impeller.profiles import Profile
 _TOUCH: Final = 1e-11
 _STEPS: Final = 60
 
+#: A fillet's body goes so far below the hub, as a part of its radius: more than facets are off.
+_BELOW: Final = 0.25
+
+#: And into the blade up to this part of the radii of its balls.
+_IN_BALL: Final = 0.2
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Fillet:
@@ -29,6 +35,7 @@ class Fillet:
     to_blade  (k, 3) unit vectors from the centre to where the ball touches the blade
     to_hub    (k, 3) and the hub
     v         (k,) of the blade
+    inside    (2, k, 3) points in the blade: beside where the ball touches it, and below the hub
     is_closed whether it goes round the trailing edge too
     """
 
@@ -36,6 +43,7 @@ class Fillet:
     to_blade: Floats
     to_hub: Floats
     v: Floats
+    inside: Floats
     is_closed: bool
 
 
@@ -105,7 +113,21 @@ def root_fillet(blade: Blade, hub: Profile, radius: float, stations: Stations) -
         raise InputError(Problem("fillet", 0, what, "make it smaller, or let the blade's sections reach the hub"))
     v = crossings(gap, low, high)
     centre, normal = stations.touching(blade, v, radius)
-    return Fillet(centre, -normal, -hub.distances(centre)[1], v, bool((stations.part == 3).any()))
+    inside = _inside(blade, hub, stations, v, _BELOW * radius)
+    return Fillet(centre, -normal, -hub.distances(centre)[1], v, inside, bool((stations.part == 3).any()))
+
+
+def _inside(blade: Blade, hub: Profile, stations: Stations, v: Floats, below: float) -> Floats:
+    """Points (2, k, 3) in the blade, at v (k,) and so far below the hub; they keep off the blade's middle."""
+
+    def within(at: Floats) -> Floats:
+        centre, normal = stations.balls(blade, at)
+        return centre + (_IN_BALL * blade.halves(stations.w, at))[:, None] * normal
+
+    def gap(at: Floats) -> Floats:
+        return hub.distances(within(at))[0] + below
+
+    return np.stack((within(v), within(crossings(gap, np.full(len(v), blade.low), v))))
 
 
 def crossings(gap: Callable[[Floats], Floats], low: Floats, high: Floats) -> Floats:

@@ -16,7 +16,7 @@ from trunnion.impeller.blade import Blade
 from trunnion.impeller.fillet import Fillet
 from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
 
-#: How far a fillet's body goes into blade and hub, as a part of its radius: more than facets are off.
+#: How far a fillet's body goes into the hub, as a part of its radius: more than facets are off.
 _INTO: Final = 0.25
 
 
@@ -79,12 +79,10 @@ def fillet_mesh(fillet: Fillet, radius: float, steps: int) -> TriangleMesh:
     a, b = fillet.to_blade[:, None], fillet.to_hub[:, None]
     angle = np.arccos(np.clip(np.einsum("ij,ij->i", fillet.to_blade, fillet.to_hub), -1.0, 1.0))[:, None, None]
     arc = (np.sin((1.0 - share) * angle) * a + np.sin(share * angle) * b) / np.sin(angle)
-    into = (1.0 + _INTO) * radius
-    corner = (fillet.to_blade + fillet.to_hub) / (1.0 + np.cos(angle[:, 0]))
-    section = np.concatenate(
-        (radius * arc, into * fillet.to_hub[:, None], into * corner[:, None], into * fillet.to_blade[:, None]), axis=1
-    )
-    vertices = (fillet.centre[:, None] + section).reshape(-1, 3)
+    centre = fillet.centre[:, None]
+    upper, lower = fillet.inside[:, :, None]
+    below = centre + (1.0 + _INTO) * radius * b
+    vertices = np.concatenate((centre + radius * arc, below, lower, upper), axis=1).reshape(-1, 3)
     ring = np.arange(len(vertices)).reshape(count, -1)
     if fillet.is_closed:
         return _outward(TriangleMesh(vertices, _strip(ring, np.roll(ring, -1, axis=0))))

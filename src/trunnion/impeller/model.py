@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Floats
+from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
 from trunnion.impeller.blade import Blade
@@ -82,8 +82,15 @@ def impeller_model(impeller: Impeller, tolerance: float) -> ImpellerModel:
     if not len(faces) or found.status() != import_extra("manifold3d", "impeller").Error.NoError:
         what = "its bodies make no closed solid"
         raise InputError(Problem(definition.file, 0, what, "check curves, thicknesses and stock"))
-    mesh = TriangleMesh(vertices, faces, definition.name)
+    mesh = TriangleMesh(*_joined(vertices, faces), definition.name)
     return ImpellerModel(mesh, mesh.volume, _deviation(impeller, mesh, fillets))
+
+
+def _joined(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
+    """Vertices and facets of a mesh without edges that have no length in the numbers of an STL file."""
+    _, first, number = np.unique(vertices.astype(np.float32), axis=0, return_index=True, return_inverse=True)
+    a, b, c = faces = number.ravel()[faces].T
+    return vertices[first], np.ascontiguousarray(faces[:, (a != b) & (b != c) & (c != a)].T)
 
 
 def _fillets(impeller: Impeller, tolerance: float) -> list[tuple[Blade, Fillet]]:
