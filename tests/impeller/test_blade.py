@@ -164,3 +164,19 @@ def test_a_profile_is_its_curve_turned_about_z_and_goes_on_straight() -> None:
     found, normals, _ = profile.distances(points)
     np.testing.assert_allclose(found, flat @ normal, atol=0.02)
     np.testing.assert_allclose(normals[1], [0.0, normal[0], normal[1]], atol=1e-5)
+
+
+def test_a_known_distance_is_kept_where_it_is_less(published: Impeller) -> None:
+    blade, rng = published.blade, np.random.default_rng(7)
+    points = rng.uniform([-60, -60, -10], [60, 60, 60], (2000, 3))
+    distance = blade.distances(points)[0]
+    known = distance + rng.choice([-5.0, -1e-3, 0.0, 1e-3, 5.0, np.inf], len(points))
+    np.testing.assert_array_equal(blade.nearer(points, known), np.minimum(distance, known))
+
+
+def test_distances_do_not_depend_on_the_points_before(published: Impeller) -> None:
+    points = np.random.default_rng(8).uniform([0, -20, 0], [48, 20, 40], (500, 3))
+    together = published.blade.distances(points)
+    alone = [published.blade.distances(point[None]) for point in points]
+    np.testing.assert_array_equal(together[0], [distance[0] for distance, _ in alone])
+    np.testing.assert_array_equal(together[1], [place[0] for _, place in alone])

@@ -14,6 +14,7 @@ Beyond, it goes on straight.
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -27,11 +28,15 @@ from trunnion.jit import inner, kernel
 _ALONG: Final = 33
 _ACROSS: Final = 13
 
+#: Places are searched in blocks of so many along w and v.
+_BLOCK: Final = 4
+_BLOCKS_ACROSS: Final = -(-_ACROSS // _BLOCK)
+
 _STEPS: Final = 50
 _HALVINGS: Final = 30
 
-#: A step this small ends the search: of parameters from 0 to 1.
-_SMALL: Final = 1e-13
+#: A step this small is the last one: of parameters from 0 to 1. The distance, least there, is off by its square.
+_SMALL: Final = 1e-8
 
 
 class BladeData(NamedTuple):
@@ -115,9 +120,43 @@ class Blade:
 
     def distances(self, points: Floats) -> tuple[Floats, Floats]:
         """Distance of points (k, 3) to the blade, mm, below 0 inside; and w, v of the nearest ball, (k, 2)."""
-        found, at = np.empty(len(points)), np.empty((len(points), 2))
-        blade_distances(self.data, np.ascontiguousarray(points, float), found, at)
+        return self._distances(points, np.full(len(points), np.inf))
+
+    def nearer(self, points: Floats, known: Floats) -> Floats:
+        """The distance of points (k, 3) to the blade, mm, or a known one (k,) where that is less.
+
+        It takes little time where the blade is far away.
+        """
+        return self._distances(points, known.copy())[0]
+
+    def _distances(self, points: Floats, found: Floats) -> tuple[Floats, Floats]:
+        at = np.full((len(points), 2), np.nan)
+        blade_distances(self.data, _samples(self), np.ascontiguousarray(points, float), found, at)
         return found, at
+
+
+class Samples(NamedTuple):
+    """Balls at places of a blade, from which the search for the nearest one begins.
+
+    grid    (_ALONG · _ACROSS, 4) centres and radii
+    bounds  (blocks, 4) a ball for each block of places, which holds all of theirs
+    reach   any other ball of the blade is within this distance of one of them, mm
+    """
+
+    grid: Floats2
+    bounds: Floats2
+    reach: float
+
+
+@lru_cache(maxsize=16)
+def _samples(blade: Blade) -> Samples:
+    """The samples of a blade, kept as it is asked again and again."""
+    grid = np.empty((_ALONG * _ACROSS, 4))
+    bounds = np.empty((-(-_ALONG // _BLOCK) * _BLOCKS_ACROSS, 4))
+    blade_samples(blade.data, grid, bounds)
+    cells = grid.reshape(_ALONG, _ACROSS, 4)
+    sides = [np.linalg.norm(np.diff(cells, axis=axis), axis=2).max() for axis in (0, 1)]
+    return Samples(grid, bounds, float(sum(sides)))
 
 
 @inner
@@ -229,27 +268,82 @@ def _step(
     return min(max(w + dw, 0.0), 1.0), min(max(v + dv, low), high)
 
 
+@kernel(writes="grid bounds")
+def blade_samples(blade: BladeData, grid: Floats2, bounds: Floats2) -> None:
+    """Write centres and radii of the balls at places of a blade to ``grid``, (_ALONG · _ACROSS, 4).
+
+    Also to ``bounds``, (blocks, 4), a ball for each block of places that holds all of theirs.
+    """
+    work, row, frame = np.empty((3, 4, 4)), np.empty((6, 3)), np.empty((8, 3))
+    for n in range(_ALONG * _ACROSS):
+        v = blade.low + (n % _ACROSS) * (blade.high - blade.low) / (_ACROSS - 1)
+        _frame(blade, (n // _ACROSS) / (_ALONG - 1), v, work, row, frame)
+        for axis in range(3):
+            grid[n, axis] = frame[0, axis]
+        grid[n, 3] = frame[6, 0]
+    for block in range(bounds.shape[0]):
+        first, second = (block // _BLOCKS_ACROSS) * _BLOCK, (block % _BLOCKS_ACROSS) * _BLOCK
+        last, end = min(first + _BLOCK, _ALONG), min(second + _BLOCK, _ACROSS)
+        middle = (first + last - 1) // 2 * _ACROSS + (second + end - 1) // 2
+        for axis in range(3):
+            bounds[block, axis] = grid[middle, axis]
+        bounds[block, 3] = 0.0
+        for i in range(first, last):
+            for j in range(second, end):
+                n = i * _ACROSS + j
+                bounds[block, 3] = max(bounds[block, 3], _far(grid, n, grid[middle]) + 2.0 * grid[n, 3])
+
+
+@inner
+def _far(balls: Floats2, n: int, point: Floats) -> float:
+    """How far a point is from a ball."""
+    dx, dy, dz = point[0] - balls[n, 0], point[1] - balls[n, 1], point[2] - balls[n, 2]
+    return float((dx * dx + dy * dy + dz * dz) ** 0.5 - balls[n, 3])
+
+
+@inner
+def _nearest(samples: Samples, point: Floats, place: int) -> int:
+    """The place whose ball is nearest to a point; one that may be it is given.
+
+    A block whose balls cannot be as near as one that is found already is left out.
+    """
+    best = _far(samples.grid, place, point)
+    for block in range(samples.bounds.shape[0]):
+        if _far(samples.bounds, block, point) > best:
+            continue
+        first, second = (block // _BLOCKS_ACROSS) * _BLOCK, (block % _BLOCKS_ACROSS) * _BLOCK
+        for i in range(first, min(first + _BLOCK, _ALONG)):
+            for j in range(second, min(second + _BLOCK, _ACROSS)):
+                n = i * _ACROSS + j
+                gap = _far(samples.grid, n, point)
+                if gap < best or (gap == best and n < place):
+                    best, place = gap, n
+    return place
+
+
+@inner
+def _may_be_nearer(samples: Samples, point: Floats, known: float) -> bool:
+    """Whether a ball of the blade may be nearer to a point than so many mm."""
+    nearest = np.inf
+    for block in range(samples.bounds.shape[0]):
+        nearest = min(nearest, _far(samples.bounds, block, point))
+    return bool(nearest - samples.reach <= known)
+
+
 @kernel(writes="found at")
-def blade_distances(blade: BladeData, points: Floats2, found: Floats, at: Floats2) -> None:
-    """Write the distance of points (k, 3) to the blade, and w, v of the nearest ball (k, 2)."""
+def blade_distances(blade: BladeData, samples: Samples, points: Floats2, found: Floats, at: Floats2) -> None:
+    """Write the distance of points (k, 3) to the blade, and w, v of the nearest ball (k, 2).
+
+    Where ``found`` is less than the distance, both stay as they are.
+    """
     work, row = np.empty((3, 4, 4)), np.empty((6, 3))
     frame = np.empty((8, 3))
-    grid = np.empty((_ALONG * _ACROSS, 4))
-    for i in range(_ALONG):
-        for j in range(_ACROSS):
-            v = blade.low + j * (blade.high - blade.low) / (_ACROSS - 1)
-            _frame(blade, i / (_ALONG - 1), v, work, row, frame)
-            for axis in range(3):
-                grid[i * _ACROSS + j, axis] = frame[0, axis]
-            grid[i * _ACROSS + j, 3] = frame[6, 0]
+    place = 0
     for k in range(points.shape[0]):
+        if not _may_be_nearer(samples, points[k], found[k]):
+            continue
         x, y, z = points[k, 0], points[k, 1], points[k, 2]
-        best, place = np.inf, 0
-        for n in range(grid.shape[0]):
-            dx, dy, dz = x - grid[n, 0], y - grid[n, 1], z - grid[n, 2]
-            gap = (dx * dx + dy * dy + dz * dz) ** 0.5 - grid[n, 3]
-            if gap < best:
-                best, place = gap, n
+        place = _nearest(samples, points[k], place)
         w = (place // _ACROSS) / (_ALONG - 1)
         v = blade.low + (place % _ACROSS) * (blade.high - blade.low) / (_ACROSS - 1)
         _frame(blade, w, v, work, row, frame)
@@ -263,7 +357,10 @@ def blade_distances(blade: BladeData, points: Floats2, found: Floats, at: Floats
                 if tried <= gap:
                     break
                 dw, dv = 0.5 * dw, 0.5 * dv
-            if tried > gap or abs(dw) + abs(dv) < _SMALL:
+            if tried > gap:
                 break
             w, v, gap = w + dw, v + dv, tried
-        found[k], at[k, 0], at[k, 1] = gap, w, v
+            if abs(dw) + abs(dv) < _SMALL:
+                break
+        if gap <= found[k]:
+            found[k], at[k, 0], at[k, 1] = gap, w, v

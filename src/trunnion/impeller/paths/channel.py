@@ -91,11 +91,12 @@ class Channel:
         high = -_root(behind, _last_inside(behind, -end, -middle), -middle, TOUCH)
         return Extent(np.where(fits, low, middle), np.where(fits, high, middle), middle, room)
 
-    def narrowed(self, places: Floats, wanted: float, extent: Extent) -> Extent:
-        """The same extent, but that both angles go towards the middle where they do not keep the distance."""
-        before, behind = self._beyond(places, wanted)
-        low = _root(before, extent.low, extent.middle, TOUCH)
-        high = -_root(behind, -extent.high, -extent.middle, TOUCH)
+    def narrowed(self, places: Floats, wanted: float, extent: Extent, rows: Ints) -> Extent:
+        """The same extent, but that the angles of rows go towards the middle where they do not keep the distance."""
+        before, behind = self._beyond(places[rows], wanted)
+        low, high = extent.low.copy(), extent.high.copy()
+        low[rows] = _root(before, low[rows], extent.middle[rows], TOUCH)
+        high[rows] = -_root(behind, -high[rows], -extent.middle[rows], TOUCH)
         return replace(extent, low=low, high=high)
 
     def _beyond(self, places: Floats, wanted: float) -> tuple[_Function, _Function]:
@@ -131,8 +132,11 @@ def turned(points: Floats, angle: Floats) -> Floats:
 
 
 def _nearest(blades: tuple[tuple[Blade, float], ...], points: Floats) -> Floats:
-    distances = [blade.distances(rotated(points, -angle))[0] for blade, angle in blades]
-    return np.asarray(np.minimum.reduce(distances))
+    """Distance (k,) to the nearest of blades, each with its angle; the first one is likely to be it."""
+    found = np.full(len(points), np.inf)
+    for blade, angle in blades:
+        found = blade.nearer(rotated(points, -angle), found)
+    return found
 
 
 def _last_inside(function: _Function, low: Floats, high: Floats) -> Floats:

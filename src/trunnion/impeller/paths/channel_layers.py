@@ -6,6 +6,7 @@ Units:  mm; angles in radians about Z.
 """
 
 import math
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -22,6 +23,11 @@ _SWINGS: Final = 3
 
 #: Share of the tolerance that chords between nodes take, where no path bends more sharply than the ball.
 _SHARE: Final = 0.125
+
+#: Values that would be raised by less stay as they are.
+_EASED: Final = 1e-12
+
+_THREADS: Final = 2
 
 #: The largest ball that fits is found by so many trials, at so many places of each sheet.
 _TRIALS: Final = 6
@@ -75,20 +81,28 @@ def layers_of(channel: Channel, ball: Ball, step_down: float | None) -> list[Lay
         what = f"a ball of {2.0 * ball.radius:g} mm is smaller than the fillet of {fillet:g} mm, and would cut into it"
         raise InputError(problem(impeller, what, "take a larger ball, or leave more on blades and hub"))
     sheets = sheets_of(impeller, ball, step_down)
-    found, throats = list[Layer](), list[_Throat]()
-    for k, sheet in enumerate(sheets):
-        u = np.linspace(sheet.first, sheet.last, _count(sheet, ball))
-        place = sheet.points(u)
-        extent = channel.extent(place, ball.to_blade)
-        throats.append(_throat(u, place, extent))
-        for _ in range(_SWINGS):
-            extent = channel.narrowed(place, ball.to_blade, _swung(place, extent))
-        normal = impeller.hub.distances(place)[1]
-        found.append(Layer(u, place, normal, extent.low, extent.high, k / max(len(sheets) - 1, 1)))
-    throat = min(throats, key=lambda one: one.room)
+    with ThreadPoolExecutor(_THREADS) as executor:  # kernels run beside each other
+        laid = list(executor.map(lambda sheet: _laid(channel, ball, sheet), sheets))
+    throat = min((throat for _, throat in laid), key=lambda one: one.room)
     if throat.room < ball.to_blade:
         raise InputError(_too_narrow(channel, ball, step_down, throat))
-    return found
+    return [replace(layer, height=k / max(len(laid) - 1, 1)) for k, (layer, _) in enumerate(laid)]
+
+
+def _laid(channel: Channel, ball: Ball, sheet: Sheet) -> tuple[Layer, _Throat]:
+    """The layer of a sheet, and where it is narrowest."""
+    u = np.linspace(sheet.first, sheet.last, _count(sheet, ball))
+    place = sheet.points(u)
+    extent = channel.extent(place, ball.to_blade)
+    throat = _throat(u, place, extent)
+    for _ in range(_SWINGS):
+        swung = _swung(place, extent)
+        rows = np.flatnonzero((swung.low > extent.low) | (swung.high < extent.high))
+        if not len(rows):
+            break
+        extent = channel.narrowed(place, ball.to_blade, swung, rows)
+    normal = channel.impeller.hub.distances(place)[1]
+    return Layer(u, place, normal, extent.low, extent.high, 0.0), throat
 
 
 def _count(sheet: Sheet, ball: Ball) -> int:
@@ -118,7 +132,8 @@ def eased(values: Floats, most: Floats) -> Floats:
     way = np.r_[0.0, np.cumsum((most[1:] + most[:-1]) / 2.0)]
     behind = np.maximum.accumulate(values + way) - way
     before = np.maximum.accumulate((values - way)[::-1])[::-1] + way
-    return np.asarray(np.maximum(behind, before))
+    found = np.maximum(behind, before)
+    return np.asarray(np.where(found > values + _EASED, found, values))
 
 
 def _throat(u: Floats, place: Floats, extent: Extent) -> _Throat:
