@@ -8,7 +8,7 @@ SLOW = (
     "conversion/test_round_trip.py", "conversion/test_settings_by_operation.py", "examples", "fuzz",
     "impeller/paths/test_blade_finish.py", "impeller/paths/test_clearance.py",
     "impeller/paths/test_root_blend.py", "impeller/paths/test_tool_axes.py",
-    "jit/test_kernels.py", "linuxcnc", "machines/test_chains.py", "machines/test_turn_clearance.py", "matrix",
+    "impeller/test_machining.py", "jit/test_kernels.py", "linuxcnc", "machines/test_chains.py", "machines/test_turn_clearance.py", "matrix",
     "output/families/fanuc/test_haas.py", "output/families/fanuc/test_programs.py",
     "output/families/fanuc/test_vectors.py", "output/families/fidia/test_programs.py",
     "output/families/heidenhain/test_arcs.py", "output/families/heidenhain/test_holes.py",

@@ -61,7 +61,7 @@ def stock_roughing(
         If the stock has nothing outside of the shroud.
     """
     stock = impeller.definition.stock
-    heights, form = _form(impeller, allowance)
+    heights, form = shroud_form(impeller, allowance)
     limit = np.maximum.accumulate(form[::-1])[::-1]  # the mill stands in all that is above its tip
     outside = stock.diameter / 2.0
     stands = limit < outside
@@ -105,7 +105,7 @@ def shroud_finish(
         Of chords.
     """
     stock = impeller.definition.stock
-    heights, form = _form(impeller)
+    heights, form = shroud_form(impeller)
     inside = form < stock.diameter / 2.0
     lowest = float(heights[inside].min())
     z = np.linspace(stock.top + radius, lowest, max(2, math.ceil((stock.top + radius - lowest) * _PER_MM)))
@@ -132,7 +132,7 @@ def shroud_finish(
     return TurnedPasses((helix,), (axis,), max(left, 0.0))
 
 
-def _form(impeller: Impeller, allowance: float = 0.0) -> tuple[Floats, Floats]:
+def shroud_form(impeller: Impeller, allowance: float = 0.0) -> tuple[Floats, Floats]:
     """Heights within the stock, from below to above, and the radius of the shroud there, with an allowance on it."""
     definition, stock = impeller.definition, impeller.definition.stock
     outline = impeller.shroud.outline(1e-4, 2.0 * (stock.height + stock.diameter))

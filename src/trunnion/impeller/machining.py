@@ -1,0 +1,231 @@
+"""The paths of all steps of an impeller.
+
+In:     ``Impeller`` with its steps and tools; which tool axes a machine reaches.
+Out:    ``StepPaths`` for each step: one path for each blade, channel or turn round the part, and what was proven of it.
+Units:  mm.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats
+from trunnion.errors import InputError, Problem
+from trunnion.impeller.impeller import Impeller
+from trunnion.impeller.paths.blade_finish import BladeFinish, blade_finish
+from trunnion.impeller.paths.channel import channels_of
+from trunnion.impeller.paths.channel_roughing import channel_roughing
+from trunnion.impeller.paths.clear_poses import pose_check
+from trunnion.impeller.paths.clearance import Obstacles, obstacles_of
+from trunnion.impeller.paths.hub_finish import hub_finish
+from trunnion.impeller.paths.linking import FreeSpace, IsClear, LinkedPath, Links, link_passes
+from trunnion.impeller.paths.passes import PassFamily
+from trunnion.impeller.paths.root_blend import RootBlend, root_blend
+from trunnion.impeller.paths.shroud import shroud_finish, shroud_form, stock_roughing
+from trunnion.impeller.paths.tool_axes import ToolAxes, Wanted, choose_axes
+from trunnion.impeller.steps import ROUND_STEPS, MachiningStep, StepKind
+from trunnion.simulation.tools.library.library import LibraryTool
+from trunnion.simulation.tools.profile import ToolShape
+
+#: Which tool axes (n, 3) a machine reaches, (n,).
+Reachable = Callable[[Floats], Flags]
+
+#: Parts of a step's tolerance for the chords of its passes, and for the points that are left out of them.
+_PASS_SHARE: Final = 0.5
+_THINNING_SHARE: Final = 0.5
+
+#: A direct link is as long as so many step-overs at most, or this long, mm.
+_LINK_STEPS: Final = 4.0
+_LINK: Final = 3.0
+
+#: A ball this far in the form of the shroud still touches it only, mm.
+_NEAR: Final = 0.01
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StepPaths:
+    """A step as paths.
+
+    radius        from ball centres to tips; 0 where centres are tips
+    names, paths  for each blade, channel, or the whole part, in the order of machining
+    families      its passes, once for all blades that are alike; none of steps round the part
+    axes          of these families, with what was proven of them
+    left          what a step round the part leaves besides its allowance, where the tool's side would cut too much
+    """
+
+    step: MachiningStep
+    tool: LibraryTool
+    radius: float
+    names: tuple[str, ...]
+    paths: tuple[LinkedPath, ...]
+    families: tuple[PassFamily, ...] = ()
+    axes: tuple[ToolAxes, ...] = ()
+    left: float = 0.0
+
+
+def step_paths(impeller: Impeller, reachable: Reachable | None, names: Sequence[str] = ()) -> Iterator[StepPaths]:
+    """Yield the paths of the steps of an impeller, one after another.
+
+    Parameters
+    ----------
+    impeller
+        Its definition has the steps and their tools.
+    reachable
+        None: every tool axis can be had.
+    names
+        Of the steps to make; none: all of them.
+
+    Raises
+    ------
+    InputError
+        If a step cannot be made, with its place and cure; or there is none.
+    """
+    definition = impeller.definition
+    if not definition.steps:
+        raise InputError(Problem(definition.file, 0, "has no [[operation]]", "describe the machining steps"))
+    makers = _StepMaker(impeller, reachable)
+    for step in definition.steps:
+        if names and step.name not in names:
+            continue
+        try:
+            yield makers.make(step)
+        except InputError as error:
+            raise InputError(
+                [
+                    Problem(definition.file, 0, f"{step.name}: {each.what}", each.cure, each.severity)
+                    for each in error.problems
+                ]
+            ) from None
+
+
+class _StepMaker:
+    """Makes steps, with what they share: the bodies that tools keep clear of."""
+
+    def __init__(self, impeller: Impeller, reachable: Reachable | None) -> None:
+        self._impeller, self._reachable = impeller, reachable
+        self._obstacles: Obstacles | None = None
+
+    def make(self, step: MachiningStep) -> StepPaths:
+        """The paths of a step."""
+        tool = next(each for each in self._impeller.definition.tools if each.number == step.tool)
+        return self._round(step, tool) if step.kind in ROUND_STEPS else self._five_axis(step, tool)
+
+    def _round(self, step: MachiningStep, tool: LibraryTool) -> StepPaths:
+        """A step that goes round the part."""
+        impeller, half, chord = self._impeller, tool.sizes.diameter / 2.0, _PASS_SHARE * step.tolerance
+        if step.kind is StepKind.STOCK_ROUGHING:
+            width = step.stepover.on(half)
+            turned = stock_roughing(impeller, half, step.step_down, width, step.allowance, chord)
+            radius = 0.0
+        else:
+            turned = shroud_finish(impeller, half, step.stepover, step.tilt, step.allowance, chord)
+            radius = half
+        space = self._space(step, tool.shape(), half, radius, turned.axes)
+        check = _outside(impeller, radius)
+        path = link_passes(turned.passes, turned.axes, space, _links(step), radius, check, step.name)
+        return StepPaths(step, tool, radius, (step.name,), (path,), left=turned.left)
+
+    def _space(
+        self, step: MachiningStep, shape: ToolShape, half: float, radius: float, axes: Sequence[Floats]
+    ) -> FreeSpace:
+        elements = [element for section in shape.sections for element in section.outline]
+        outline = np.array([point for one in elements for point in (one.start, one.end)]) - [0.0, radius]
+        stock = self._impeller.definition.stock
+        return FreeSpace.around(stock, step.clearance[3], half, outline, np.concatenate(list(axes)))
+
+    def _five_axis(self, step: MachiningStep, tool: LibraryTool) -> StepPaths:
+        """A step that is made once and copied to each blade or channel."""
+        if self._obstacles is None:
+            self._obstacles = obstacles_of(self._impeller)
+        shape, radius = tool.shape(), tool.sizes.diameter / 2.0
+        cutter, shank, holder, _ = step.clearance
+        wanted = Wanted(cutter=cutter, shank=shank, holder=holder)
+        is_clear = pose_check(self._obstacles, shape, radius, step.tolerance)
+        copies: list[tuple[float, LinkedPath]] = []
+        families, fields = [], []
+        for family, angles in self._families(step, radius):
+            found = choose_axes(family, shape, self._obstacles, wanted, self._everywhere(angles))
+            space = self._space(step, shape, radius, radius, found.axes)
+            path = link_passes(family.passes, found.axes, space, _links(step), radius, is_clear, step.name)
+            copies += [(angle, path.turned(angle)) for angle in angles]
+            families.append(family)
+            fields.append(found)
+        copies.sort(key=lambda each: each[0])
+        names = tuple(f"{step.name}_{k}" for k in range(1, len(copies) + 1))
+        paths = tuple(path for _, path in copies)
+        return StepPaths(step, tool, radius, names, paths, tuple(families), tuple(fields))
+
+    def _everywhere(self, angles: Sequence[float]) -> Reachable | None:
+        """Which tool axes a machine reaches in all copies of a family."""
+        reachable = self._reachable
+        if reachable is None:
+            return None
+
+        def in_all(axes: Floats) -> Flags:
+            found = np.ones(len(axes), np.bool_)
+            for angle in angles:
+                cosine, sine = np.cos(angle), np.sin(angle)
+                turned = axes @ np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+                found[found] = reachable(turned[found])
+            return found
+
+        return in_all
+
+    def _families(self, step: MachiningStep, radius: float) -> Iterator[tuple[PassFamily, list[float]]]:
+        """The families of a step, and the angles of their copies about Z."""
+        impeller, chord = self._impeller, _PASS_SHARE * step.tolerance
+        pitch = 2.0 * np.pi / impeller.definition.number
+        if step.kind in (StepKind.CHANNEL_ROUGHING, StepKind.HUB_FINISH):
+            for channel in channels_of(impeller):
+                if step.kind is StepKind.CHANNEL_ROUGHING:
+                    family = channel_roughing(
+                        channel, radius, step.stepover, step.step_down, tolerance=chord,
+                        blade_allowance=step.allowance, hub_allowance=step.hub_allowance,
+                    )  # fmt: skip
+                else:
+                    family = hub_finish(
+                        channel, radius, step.stepover, tolerance=chord, blade_allowance=step.allowance,
+                        hub_allowance=step.hub_allowance,
+                    )  # fmt: skip
+                yield family, [k * pitch for k in range(impeller.definition.number)]
+            return
+        own = impeller.blade if impeller.splitter is None else impeller.splitter
+        for blade in dict.fromkeys((impeller.blade, own)):
+            angles = [angle for each, angle in impeller.blades() if each is blade]
+            if step.kind is StepKind.BLADE_FINISH:
+                wanted = BladeFinish(radius, step.stepover, step.way, step.allowance, chord)
+                yield blade_finish(impeller, blade, wanted), angles
+            else:
+                yield root_blend(impeller, blade, self._root_blend(step, radius, chord)), angles
+
+    def _root_blend(self, step: MachiningStep, radius: float, chord: float) -> RootBlend:
+        """What is wanted of a root blend: it reaches as far as the balls that went before could not."""
+        largest = {StepKind.HUB_FINISH: radius, StepKind.BLADE_FINISH: radius}
+        for other in self._impeller.definition.steps:
+            if other.kind in largest:
+                tool = next(each for each in self._impeller.definition.tools if each.number == other.tool)
+                largest[other.kind] = max(largest[other.kind], tool.sizes.diameter / 2.0 + other.allowance)
+        hub, blade = largest[StepKind.HUB_FINISH], largest[StepKind.BLADE_FINISH]
+        return RootBlend(radius, step.stepover, hub, blade, step.way, chord)
+
+
+def _links(step: MachiningStep) -> Links:
+    longest = max(_LINK, _LINK_STEPS * step.stepover.distance)
+    return Links(step.lead, step.clearance[3], longest, _THINNING_SHARE * step.tolerance)
+
+
+def _outside(impeller: Impeller, radius: float) -> IsClear:
+    """Whether a ball is outside of the form of the shroud; the end of a flat mill is where its path is."""
+    heights, form = shroud_form(impeller)
+
+    def is_clear(centre: Floats, _axis: Floats) -> Flags:
+        if not radius:
+            return np.ones(len(centre), np.bool_)
+        across, up = np.hypot(centre[:, 0], centre[:, 1]), centre[:, 2]
+        apart = np.hypot(across[:, None] - form, up[:, None] - heights).min(axis=1) >= radius - _NEAR
+        beside = (up >= heights[-1]) | (across >= np.interp(up, heights, form))
+        return np.asarray(apart & beside)
+
+    return is_clear

@@ -1,0 +1,135 @@
+"""All steps of the published impeller: every pose of every linked path is clear, by exact distances."""
+
+import numpy as np
+import pytest
+
+from tests.support.locations import ROOT
+from trunnion import InputError, load_impeller
+from trunnion.arrays import Flags, Floats
+from trunnion.impeller.impeller import Impeller, rotated
+from trunnion.impeller.machining import step_paths
+from trunnion.model.toolpath import Kind
+
+EXAMPLE = ROOT / "examples" / "impeller"
+
+TOOLS = """
+[[tool]]
+number = 1
+kind = "flat"
+diameter_mm = 20
+length_mm = 60
+
+[[tool]]
+number = 2
+kind = "ball"
+diameter_mm = 6
+flute_length_mm = 20
+length_mm = 60
+holder = [{ diameter_mm = 24, height_mm = 40 }]
+
+[[tool]]
+number = 3
+kind = "ball"
+diameter_mm = 4
+flute_length_mm = 12
+length_mm = 60
+"""
+
+STEP = """
+[[operation]]
+kind = "{kind}"
+tool = {tool}
+stepover_mm = {stepover}
+rpm = 5000
+feed_mm_min = 400
+lead_mm = 0.5
+{more}
+"""
+
+COARSE = (
+    ("stock roughing", 1, 20.0, "step_down_mm = 6"),
+    ("stock finishing", 2, 4.0, "tilt_deg = 10"),
+    ("channel roughing", 2, 3.0, "step_down_mm = 5\nallowance_mm = 0.3\nhub_allowance_mm = 0.3"),
+    ("hub finish", 2, 2.5, ""),
+    ("blade finish", 3, 3.0, ""),
+    ("root blend", 3, 1.5, ""),
+)
+
+
+def impeller_with(folder, steps: str) -> Impeller:  # type: ignore[no-untyped-def]
+    text = (EXAMPLE / "impeller.toml").read_text(encoding="utf-8").split("[[tool]]")[0]
+    (folder / "blade_points.csv").write_bytes((EXAMPLE / "blade_points.csv").read_bytes())
+    (folder / "impeller.toml").write_text(text + TOOLS + steps, encoding="utf-8")
+    return load_impeller(folder / "impeller.toml")
+
+
+@pytest.fixture(scope="module")
+def impeller(tmp_path_factory: pytest.TempPathFactory) -> Impeller:
+    steps = "".join(STEP.format(kind=kind, tool=tool, stepover=over, more=more) for kind, tool, over, more in COARSE)
+    return impeller_with(tmp_path_factory.mktemp("impeller"), steps)
+
+
+def up_to_tilt(axes: Floats) -> Flags:
+    return np.asarray(axes[:, 2] >= np.cos(np.radians(100.0)))
+
+
+def gaps(impeller: Impeller, points: Floats) -> Floats:
+    """Exact distances of points to the finished impeller within its stock."""
+    found = np.full(len(points), np.inf)
+    stock = impeller.definition.stock
+    inside = (np.hypot(points[:, 0], points[:, 1]) < stock.diameter / 2.0) & (points[:, 2] < stock.top)
+    found[inside] = impeller.hub.distances(points[inside])[0]
+    for blade, angle in impeller.blades():
+        found[inside] = np.minimum(found[inside], blade.distances(rotated(points[inside], -angle))[0])
+    return found
+
+
+def test_no_pose_of_any_path_cuts_into_the_part(impeller: Impeller) -> None:
+    made = list(step_paths(impeller, up_to_tilt))
+    assert [one.step.kind for one in made] == [kind for kind, *_ in COARSE]
+    for one in made:
+        assert len(one.paths) == (1 if one.step.kind.startswith("stock") else 6)
+        if one.radius and one.axes:
+            for path in one.paths[:2]:
+                assert gaps(impeller, path.centre).min() > one.radius - one.step.tolerance
+                assert up_to_tilt(path.axis).all()
+        for path in one.paths:
+            np.testing.assert_allclose(np.linalg.norm(path.axis, axis=1), 1.0)
+            rapid = path.centre[path.kind == Kind.RAPID]
+            stock = impeller.definition.stock
+            assert ((np.hypot(rapid[:, 0], rapid[:, 1]) > stock.diameter / 2.0 + 2.0) | (rapid[:, 2] > stock.top)).all()
+
+
+def test_only_the_steps_that_are_asked_for_are_made(impeller: Impeller) -> None:
+    assert [one.names for one in step_paths(impeller, None, ["STOCK_ROUGHING"])] == [("STOCK_ROUGHING",)]
+
+
+def test_what_is_wrong_names_the_step(impeller: Impeller, tmp_path_factory: pytest.TempPathFactory) -> None:
+    large = STEP.format(kind="root blend", tool=2, stepover=1.0, more="")
+    wrong = impeller_with(tmp_path_factory.mktemp("wrong"), large)
+    with pytest.raises(InputError, match=r"ROOT_BLEND: a ball of radius 3 mm is larger than the fillet"):
+        list(step_paths(wrong, None))
+    with pytest.raises(InputError, match=r"no tool axis"):
+        list(step_paths(impeller, lambda axes: np.zeros(len(axes), np.bool_), ["HUB_FINISH"]))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (("tool = 1", "tool = 9"), "is not among the tools"),
+        (("tool = 1", "tool = 2"), "stock roughing wants flat"),
+        (('kind = "stock roughing"', 'kind = "stock rouging"'), "stock rouging"),
+        (("stepover_mm = 20.0", "stepover_mm = 20.0\nscallop_mm = 0.1"), "either stepover_mm or scallop_mm"),
+        (("rpm = 5000", "rpm = 0"), "rpm"),
+        (("step_down_mm = 6", ""), "step_down_mm"),
+        (("lead_mm = 0.5", "lead = 0.5"), "lead"),
+    ],
+)
+def test_mistakes_of_a_step_are_told_with_their_line(
+    change: tuple[str, str], message: str, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    kind, tool, over, more = COARSE[0]
+    text = STEP.format(kind=kind, tool=tool, stepover=over, more=more).replace(*change)
+    with pytest.raises(InputError, match=message) as told:
+        impeller_with(tmp_path_factory.mktemp("wrong"), text)
+    assert all(problem.line > 0 for problem in told.value.problems)
