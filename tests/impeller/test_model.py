@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 import trimesh
 
+from tests.support import turbo3d
+from tests.support.locations import SHARED
 from trunnion.errors import InputError
 from trunnion.impeller.definition import read_impeller
 from trunnion.impeller.impeller import build_impeller
@@ -15,6 +17,7 @@ from trunnion.impeller.model import ImpellerModel, impeller_model
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples" / "impeller"
 TEXT = (FOLDER / "impeller.toml").read_text("utf-8")
+TURBO3D = SHARED / "seeds" / "turbo3d"
 POINTS = (FOLDER / "blade_points.csv").read_text("utf-8")
 
 
@@ -64,6 +67,30 @@ def test_a_mixed_flow_impeller_of_three_sections_with_splitters_has_no_holes_bes
     mesh = trimesh.Trimesh(found.mesh.vertices.astype("f4"), found.mesh.faces)
     assert mesh.is_watertight
     assert mesh.euler_number == 0  # the bore goes through; a hole inside would add 2
+
+
+def test_the_impeller_of_others_is_a_closed_solid() -> None:
+    found = modelled(FOLDER / "turbo3d.toml")
+    assert found.deviation <= 0.05
+    assert found.volume == pytest.approx(70_020.0, rel=2e-3)
+    mesh = trimesh.Trimesh(found.mesh.vertices.astype("f4"), found.mesh.faces)
+    assert mesh.is_watertight
+    assert mesh.euler_number == 0
+
+
+@pytest.mark.skipif(not TURBO3D.is_dir(), reason="the files of others are not here")
+def test_the_blade_of_others_is_where_its_published_flanks_are() -> None:
+    patches = turbo3d.flanks(TURBO3D)
+    assert turbo3d.table(patches) == (FOLDER / "turbo3d_points.csv").read_text("utf-8")
+    blade = build_impeller(read_impeller(FOLDER / "turbo3d.toml")).blade
+    w, v = (grid.ravel() for grid in np.meshgrid(np.linspace(0.05, 0.9, 21), np.linspace(0.0, 1.0, 9)))
+    off = []
+    for side in (-1.0, 1.0):
+        centre, normal = blade.sides(w, v, side)
+        points = centre + blade.halves(w, v)[:, None] * normal
+        off.append(np.min([turbo3d.patch_distances(patch, points) for patch in patches], axis=0))
+    # Thickness changes evenly here, and there by up to 0.1 mm along the blade.
+    assert np.max(off) < 0.06
 
 
 def mistakes(path: Path) -> list[tuple[int, str]]:

@@ -16,6 +16,7 @@ from trunnion.impeller.impeller import Impeller, build_impeller
 from trunnion.impeller.paths.around import stations_at
 from trunnion.impeller.paths.blade_finish import BladeFinish, blade_finish, tip_heights
 from trunnion.impeller.paths.passes import PassFamily, Stepover, Way
+from trunnion.impeller.paths.root_blend import RootBlend, root_blend
 
 PUBLISHED = Path(__file__).resolve().parents[3] / "examples" / "impeller" / "impeller.toml"
 
@@ -108,6 +109,21 @@ def test_balls_touch_blades_of_a_family_with_their_allowance(
 def middles(centre: Floats) -> Floats:
     """Middles of chords."""
     return (centre[1:] + centre[:-1]) / 2.0
+
+
+@pytest.mark.parametrize(("name", "radius"), [("mixed_flow", 2.5), ("turbo3d", 1.0)])
+def test_other_impellers_have_their_blade_finish_and_root_blend(name: str, radius: float) -> None:
+    impeller = build_impeller(read_impeller(PUBLISHED.with_name(f"{name}.toml")))
+    limit = impeller.definition.stock.diameter / 2.0
+    for blade in filter(None, (impeller.blade, impeller.splitter)):
+        finish = blade_finish(impeller, blade, BladeFinish(radius, Stepover(distance=1.0), tolerance=0.02))
+        step = RootBlend(radius, Stepover(distance=1.0), 1.2 * radius, radius, tolerance=0.02)
+        for family in (finish, root_blend(impeller, blade, step)):
+            centre = family.centres()
+            touch = centre - radius * np.concatenate([one.normal for one in family.passes])
+            gaps = np.minimum(blade.distances(centre)[0], impeller.hub.distances(centre)[0])
+            assert gaps.min() > radius - 1e-9
+            np.testing.assert_allclose(gaps[np.hypot(touch[:, 0], touch[:, 1]) < limit], radius, atol=1e-9)
 
 
 def test_a_spiral_round_a_cut_trailing_edge_is_refused(published: Impeller) -> None:
