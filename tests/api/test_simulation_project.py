@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import trunnion
+from tests.support.locations import ROOT
 from tests.support.sweeps import CUBE, CUBE_FACES
 from trunnion.api.simulation_project import read_project
 from trunnion.cli import main
@@ -163,6 +164,37 @@ def test_a_mistake_is_told_where_it_stands(folder: Path, text: str, line: int, w
     assert words in found[1]
 
 
+def test_texts_are_judged_with_everything_else(folder: Path) -> None:
+    text = (
+        PROJECT.replace("box:50,40,10,0,-20,-10", "box:50,40")
+        .replace("cell_mm", "cel_mm")
+        .replace("1=flat:10", "1=endmill:10")
+    )
+    found = wrong(project(folder, text + 'work_offset = "54"\n'))
+    assert [line for line, _ in found] == [3, 4, 6, 7]
+    assert "has 2 numbers" in found[0][1]
+    assert 'did you mean "flat"?' in found[2][1]
+    assert "write G54 to G59" in found[3][1]
+    assert 'such as "G54"' in wrong(project(folder, PROJECT + "work_offset = 54\n"))[0][1]
+    both = SETUPS.replace('name = "top"', 'name = "top"\ntools = ["2=ball:6"]').replace(
+        'name = "bottom"', 'name = "bottom"\ntools = ["3=ball:6"]'
+    )
+    told = wrong(project(folder, both))
+    assert [words.partition(":")[0] for _, words in told] == ["top", "bottom"]
+
+
+def test_the_example_comes_out_and_is_what_the_page_shows() -> None:
+    plate = ROOT / "examples" / "simulation" / "plate.toml"
+    shown = plate.read_text(encoding="utf-8").partition("\n")[2]
+    assert f"```toml\n{shown}```" in (ROOT / "docs" / "simulation.md").read_text(encoding="utf-8")
+    found = trunnion.simulate(plate)
+    assert found.passed
+    assert [one.removed for one in found.operations] == pytest.approx([8000.0, 5000.0, 6400.0], rel=1e-3)
+    assert found.left is not None
+    assert found.left.largest < 0.01
+    assert [one.what for one in found.remarks if "gauge_point_mm" not in one.what] == []
+
+
 def test_a_project_is_told_by_its_content_and_stands_alone(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     plate, nc = project(folder, PROJECT), folder / "nc" / "slot.ngc"
     assert "file not found; give the path of a project" in wrong(folder / "none.toml")[0][1]
@@ -225,4 +257,41 @@ def test_what_an_earlier_set_up_took_of_the_part_fails(folder: Path) -> None:
     later = SETUPS.replace('part = "part.stl"\n', "").replace("slot", "deep", 1) + 'part = "part.stl"\n'
     found = trunnion.simulate(project(folder, later))
     assert not found.passed
-    assert [one.what for one in found.remarks if "is missing 1.000 mm deep" in one.what]
+    (told,) = [one for one in found.remarks if "is missing 1.000 mm deep" in one.what]
+    assert told.what.startswith("bottom: ")
+    assert told.what.endswith("before this set-up cuts anything")
+    assert told.cure.startswith("check what the earlier set-ups took there")
+
+
+def test_floor_and_wall_that_an_earlier_set_up_took_are_no_deeper_than_they_are(folder: Path) -> None:
+    boxes = [cuboid((0, -20, -12), (50, -5, 0)), cuboid((0, -5, -12), (50, 5, -5)), cuboid((0, 5, -12), (50, 20, 0))]
+    faces = np.concatenate([box.faces + 8 * k for k, box in enumerate(boxes)])
+    save_mesh(TriangleMesh(np.concatenate([box.vertices for box in boxes]), faces), folder / "part.stl")
+    # 1.5 mm too deep, and 1.5 mm into the wall: along the wall 6.5 mm are missing, along the edge all 50.
+    (folder / "nc" / "deep.ngc").write_text(SLOT.replace("Z-5", "Z-6.5").replace("Y0", "Y1.5"))
+    (folder / "nc" / "slot.ngc").write_text(HEAD + "G1 X0 F500\nM5\nM30\n")
+    later = SETUPS.replace('part = "part.stl"\n', "").replace("slot", "deep", 1) + 'part = "part.stl"\n'
+    same = later.replace("[180, 0, 0], origin_mm = [0, 0, -12]", "[0, 0, 0]")
+    found = trunnion.simulate(project(folder, same), cell=0.4)
+    (told,) = [one.what for one in found.remarks if "is missing" in one.what]
+    assert 1.4 < float(told.split()[3]) < 3.5
+
+
+def test_remarks_name_their_set_up_and_those_of_a_machine_are_told_once(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    home = SLOT.replace("N70 G0 Z20", "N70 G0 Z20\nG53 G0 Z0")
+    (folder / "nc" / "slot.ngc").write_text(home)
+    twice = SETUPS.replace('"nc/slot.ngc"', '"nc/slot.ngc", "nc/slot.ngc"').replace(
+        "cell_mm", "zero_mm = [0, 0, 0]\ncell_mm"
+    )
+    assert main(["simulate", str(project(folder, twice)), "--json", str(folder / "out.json")]) in (0, 1)
+    told = capsys.readouterr().err
+    remarks = json.loads((folder / "out.json").read_text())["remarks"]
+    assert told.count("has no spindle.gauge_point_mm") == 1
+    assert sum("has no spindle.gauge_point_mm" in one["what"] for one in remarks) == 1
+    of_programs = [one for one in remarks if "spindle.gauge_point_mm" not in one["what"]]
+    assert {one["setup"] for one in of_programs} == {"top", "bottom"}
+    assert all(one["what"].startswith(one["setup"] + ": ") for one in of_programs)
+    assert "top: machine positions are taken as retracts" in told
+    assert "bottom: machine positions are taken as retracts" in told

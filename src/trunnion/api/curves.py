@@ -2,17 +2,16 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from pathlib import Path
-from typing import Final, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.api.arguments import check_choice, check_path, wrong_argument
 from trunnion.api.reading import FilePath
+from trunnion.api.targets import check_output_name
 from trunnion.arrays import Floats
-from trunnion.errors import InputError, Problem
-from trunnion.files import OutputPlace, atomic_file, check_outputs, resolve_output
+from trunnion.files import OutputPlace, atomic_file, check_outputs
 from trunnion.geometry.ends import Ends, Natural, Tangent, parse_end
 from trunnion.geometry.fitting import CurveFit, Wanted, fit
 from trunnion.geometry.parameters import PARAMETERIZATIONS
@@ -20,8 +19,6 @@ from trunnion.geometry.point_tables import PointTable, read_point_table, scaled
 from trunnion.reporting.curve_picture import curve_picture
 
 EndLike: TypeAlias = str | Natural | Tangent
-
-_SUFFIX: Final = ".svg"
 
 
 def read_points(points: FilePath, *, scale: float = 1.0) -> tuple[PointTable, ...]:
@@ -118,9 +115,7 @@ def fit_curve(
 
 def check_picture(file: FilePath, inputs: Iterable[FilePath]) -> OutputPlace:
     """The place of a picture; raises ``InputError`` if it cannot be written, or is one of the files that are read."""
-    place = resolve_output(check_path("picture", file))
-    if Path(place.name).suffix.lower() != _SUFFIX:
-        raise InputError(Problem(place.name, 0, "curves are drawn as SVG", f"let its name end in {_SUFFIX}"))
+    place = check_output_name("picture", file, (".svg",), "curves are drawn as SVG")
     check_outputs([file], inputs)
     return place
 

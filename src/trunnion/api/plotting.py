@@ -2,26 +2,21 @@
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Final
 
-from trunnion.api.arguments import check_path, wrong_argument
+from trunnion.api.arguments import wrong_argument
 from trunnion.api.describing_cl import ClDescription
 from trunnion.api.reading import FilePath
-from trunnion.errors import InputError, Problem
-from trunnion.files import OutputPlace, atomic_file, check_outputs, file_on_disk, resolve_output
+from trunnion.api.targets import check_output_name
+from trunnion.files import OutputPlace, atomic_file, check_outputs, file_on_disk
 from trunnion.model.frames import into_frame
 from trunnion.model.toolpath import Frame
 from trunnion.reporting.path_page import render_path_page
 from trunnion.reporting.path_series import collect_paths
 
-_SUFFIX: Final = ".html"
-
 
 def check_plot(file: FilePath, inputs: Iterable[FilePath]) -> OutputPlace:
     """The place of a page; raises ``InputError`` if it cannot be written, or is one of the files that are read."""
-    place = resolve_output(check_path("plot", file))
-    if Path(place.name).suffix.lower() != _SUFFIX:
-        raise InputError(Problem(place.name, 0, "the path is drawn on a page", f"let its name end in {_SUFFIX}"))
+    place = check_output_name("plot", file, (".html",), "the path is drawn on a page")
     check_outputs([file], inputs)
     return place
 

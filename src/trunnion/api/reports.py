@@ -4,11 +4,12 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final
 
-from trunnion.api.arguments import check_path, wrong_argument
+from trunnion.api.arguments import wrong_argument
 from trunnion.api.input_files import verified_files
 from trunnion.api.reading import FilePath
+from trunnion.api.targets import check_output_name
 from trunnion.errors import InputError, Problem
-from trunnion.files import OutputPlace, atomic_file, check_outputs, resolve_output
+from trunnion.files import OutputPlace, atomic_file, check_outputs
 from trunnion.machines import Machine
 from trunnion.model.motion import Decision
 from trunnion.verification import Verification
@@ -27,11 +28,7 @@ def check_report_name(file: FilePath) -> OutputPlace:
     InputError
         If it is of an unknown form, or cannot be written.
     """
-    place = resolve_output(check_path("report", file))
-    if Path(place.name).suffix.lower() not in _SUFFIXES:
-        cure = f"let its name end in {' or '.join(_SUFFIXES)}"
-        raise InputError(Problem(place.name, 0, "a report is a page or data", cure))
-    return place
+    return check_output_name("report", file, _SUFFIXES, "a report is a page or data")
 
 
 def check_report(file: FilePath, inputs: Iterable[FilePath]) -> None:

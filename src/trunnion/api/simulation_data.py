@@ -39,8 +39,10 @@ def simulation_data(found: SimulationResult) -> dict[str, object]:
             }
             for each in found.operations
         ],
-        "remarks": [{key: str(value) if key == "severity" else value for key, value in asdict(each).items()}
-                    for each in found.remarks],
+        "remarks": [
+            asdict(each) | {"severity": str(each.severity), "setup": one.setup or None}
+            for one in found.setups or (found,) for each in one.remarks
+        ],
         "seconds": _number(found.seconds),
     }  # fmt: skip
 

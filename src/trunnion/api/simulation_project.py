@@ -9,18 +9,22 @@ A project may come from anyone: it names files beside or below its own only, and
 
 import os
 import re
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from importlib.resources import files
 from pathlib import Path, PurePosixPath
 from typing import Any, Final
 
-from trunnion.api.reading import FilePath
-from trunnion.api.simulation_setups import SetupInput, SimulationInput
+from trunnion.api.reading import FilePath, as_machine
+from trunnion.api.settings import work_offset_setting
+from trunnion.api.simulation_setups import SetupInput, SimulationInput, listed, with_place
 from trunnion.definitions import Table, load_table
 from trunnion.definitions.extends import MAX_FILE_BYTES, is_within
 from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.machines import shipped_machines
+from trunnion.model.toolpath import Toolpath
+from trunnion.simulation.stock.solids import stock_shape
 from trunnion.simulation.stock.turning import Pose
+from trunnion.simulation.tools.text import parse_tool
 
 #: A line that begins the table of a simulation: no control has one like it.
 _HEADER: Final = re.compile(rb"^[ \t]*\[{1,2}[ \t]*[\"']?simulation[\"']?[ \t]*[\].]", re.MULTILINE)
@@ -65,8 +69,9 @@ def project_files(given: Iterable[FilePath], elsewhere: Collection[str] = ()) ->
 
 
 def _named_files(setup: SetupInput) -> Iterator[FilePath]:
-    for names in (setup.programs, setup.subprograms, setup.fixtures, setup.libraries, setup.cl, [setup.part]):
-        yield from (name for name in names if isinstance(name, str | os.PathLike))  # type: ignore[union-attr]
+    several: tuple[Iterable[object], ...] = setup.programs, setup.subprograms, setup.fixtures, setup.libraries
+    for names in (*several, listed("cl", setup.cl, Toolpath), (setup.part,)):
+        yield from (name for name in names if isinstance(name, str | os.PathLike))
     if isinstance(setup.machine, str) and setup.machine.endswith(".toml"):
         yield setup.machine
 
@@ -106,6 +111,8 @@ class _Reader:
             table.add_problem("stock", 'is ""', "state a box, a cylinder or a mesh")
         elif stock and not stock.startswith(("box:", "cylinder:")):
             stock = self._file(table, "stock", stock)
+        elif stock and "stock" not in self._elsewhere:
+            _try(table, stock_shape, stock)
         told, own = len(table.problems), table.tables("setup")
         if "setup" in table and not own and len(table.problems) == told:
             table.add_problem("setup", "is []", "write tables [[simulation.setup]], or leave it out")
@@ -155,9 +162,16 @@ class _Reader:
             found["part"] = None  # it is where the last set-up's part lies now
         if shared is None or "tools" in stated:
             found["tools"] = table.texts("tools", ())
-        for key in ("work_offset", "unit"):
-            if shared is None or key in stated:
-                found[key] = table.text(key, None, one_of=("mm", "inch") if key == "unit" else ())
+            # Libraries may have diameters that the texts leave out.
+            if not found.get("libraries") and not {"tools", "libraries"} & set(self._elsewhere):
+                for tool in found["tools"]:
+                    _try(table, parse_tool, tool)
+        if shared is None or "unit" in stated:
+            found["unit"] = table.text("unit", None, one_of=("mm", "inch"))
+        if shared is None or "work_offset" in stated:
+            found["work_offset"] = table.text("work_offset", None, example="G54")
+            if found["work_offset"] is not None and found["machine"] and "machine" not in self._elsewhere:
+                _try(table, lambda: work_offset_setting(found["work_offset"], as_machine(found["machine"])))
         if shared is None or "zero_mm" in stated:
             found["zero"] = table.vector("zero_mm", 3, None)
         if shared is None or "tool_length_mm" in stated:
@@ -211,6 +225,14 @@ class _Reader:
         elif not location.is_file():
             table.add_problem(key, f'names "{name}", and there is no such file', cure)
         return str(location)
+
+
+def _try(table: Table, check: Callable[..., object], *values: object) -> None:
+    """Note what cannot be used of a text, so that it is told with all other mistakes."""
+    try:
+        check(*values)
+    except InputError as error:
+        table.problems.extend(with_place(problem, _places(table)) for problem in error.problems)
 
 
 def _number(table: Table) -> int:

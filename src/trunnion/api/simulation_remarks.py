@@ -1,6 +1,7 @@
 """What a simulation cannot know of its programs, and what it takes for granted."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -129,21 +130,30 @@ def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]
     return found
 
 
-def part_remarks(setup: Setup, lacking: Excess | None, slack: float) -> list[Problem]:
-    """Errors where the part cannot come out of the stock: what of it is missing before anything is cut.
+def part_remarks(setup: Setup, lacking: Excess | None, slack: float, *, is_later: bool = False) -> list[Problem]:
+    """Errors where the part cannot come out of the stock: what of it is missing before a set-up cuts anything.
 
-    lacking  of the part, within the box of the stock
-    slack    how far the surface of the stock may have been moved, mm
+    lacking   of the part, within the box of the stock
+    slack     how far the surface of the stock may have been moved, mm
+    is_later  whether the stock is what an earlier set-up has left
     """
     if setup.part is None:
         return []
+    before = "this set-up cuts anything" if is_later else "anything is cut"
     cure = "check the size of the stock, and the zero of part and stock"
     beyond = max(float((setup.stock.low - setup.part.low).max()), float((setup.part.high - setup.stock.high).max()))
     if beyond > setup.tolerance + slack:
         what = f"reaches {beyond:.3f} mm beyond the stock: it cannot come out, and what is outside is not compared"
-        return [Problem("part", 0, what, cure)]
+        return [Problem("part", 0, what, "check the pose, and the zero of the part" if is_later else cure)]
     if lacking is not None and lacking.largest > setup.limit + slack:
         x, y, z = lacking.places[0].at
-        what = f"is missing {lacking.largest:.3f} mm deep at X{x:.3f} Y{y:.3f} Z{z:.3f} before anything is cut"
+        what = f"is missing {lacking.largest:.3f} mm deep at X{x:.3f} Y{y:.3f} Z{z:.3f} before {before}"
+        if is_later:
+            cure = "check what the earlier set-ups took there, the pose, and the zero of the part"
         return [Problem("part", 0, what, cure)]
     return []
+
+
+def of_setup(remarks: Iterable[Problem], name: str) -> list[Problem]:
+    """Remarks that name the set-up they are of; an empty name is that of the only one."""
+    return [replace(each, what=f"{name}: {each.what}") if name else each for each in remarks]

@@ -140,15 +140,22 @@ _Named = TypeVar("_Named", SimulationFinding, NearMiss, AirCut, SimulatedOperati
 class SimulationResult:
     """What a simulation found.
 
+    programs   files, in their order
+    machine    its key; of several set-ups their keys
     cell       width of the cells along X, Y and Z, mm
     accuracy   how far motions and tools are off at most, mm; across a ray another 0.41 cells
     limit      what is no deeper than this is not told, mm
     removed    mm³ of the stock
-    left       what the stock has beyond the part; None without a part
+    operations consecutive blocks with one tool, ``SimulatedOperation``
+    findings   what must not be, ``SimulationFinding``; in the data they are ``collisions``
+    near       bodies that come near each other, ``NearMiss``
+    air        the longest air cuts, ``AirCut``
+    left       what the stock has beyond the part; None without a part. ``volume`` in mm³, ``largest`` in mm, places,
+               each ``at`` (mm) and its ``thickness``
     gouge      what of the part is missing; None without a part. Both are those of the last set-up
     remarks    what was not simulated, or was taken for granted
     seconds    of computing
-    simulation  that of the last set-up
+    simulation  that of the last set-up: ``simulation.stock`` is the finished stock
     setup      its name, where this is one of several
     setups     the results of each, where there are several
     pairs      of bodies that were checked against each other, of all programs

@@ -127,19 +127,21 @@ def prepare_setup(
 
 
 @contextmanager
-def told_with_places(places: Places) -> Iterator[None]:
-    """Tell problems with arguments at the places where a project states them."""
+def told_with_places(places: Places, setup: str = "") -> Iterator[None]:
+    """Tell problems with arguments at the places where a project states them, with the set-up that has them."""
     try:
         yield
     except InputError as error:
-        raise InputError([_with_place(problem, places) for problem in error.problems]) from None
+        raise InputError([with_place(problem, places, setup) for problem in error.problems]) from None
 
 
-def _with_place(problem: Problem, places: Places) -> Problem:
+def with_place(problem: Problem, places: Places, setup: str = "") -> Problem:
+    """A problem with an argument where a project states it; any other as it is."""
     if not isinstance(problem.file, ArgumentName) or problem.file not in places:
         return problem
     file, line, key = places[problem.file]
-    return replace(problem, file=file, line=line, what=f"{key}: {problem.what}")
+    of_setup = f"{setup}: " if setup else ""
+    return replace(problem, file=file, line=line, what=f"{of_setup}{key}: {problem.what}")
 
 
 def listed(name: str, values: Any, record: type) -> list[Any]:

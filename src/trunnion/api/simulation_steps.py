@@ -11,7 +11,7 @@ from trunnion import readers, simulation
 from trunnion.api.arguments import check_choice, check_whole
 from trunnion.api.observer import Observer
 from trunnion.api.settings import check_tolerance
-from trunnion.api.simulation_remarks import part_remarks, simulation_remarks
+from trunnion.api.simulation_remarks import of_setup, part_remarks, simulation_remarks
 from trunnion.api.simulation_result import SimulationResult, join_results, make_result
 from trunnion.api.simulation_setups import (
     PreparedSetup,
@@ -67,10 +67,15 @@ def _simulate_setups(given: SimulationInput, observer: Observer) -> SimulationRe
     remarks: list[list[Problem]] = [[] for _ in given.setups]
     deviation = _deviation(given)
     shape = stock_shape(given.stock, remarks[0].append, deviation)
-    setups = []
+    setups, problems = [], list[Problem]()
     for each, told in zip(given.setups, remarks, strict=True):
-        with told_with_places(each.places):
-            setups.append(prepare_setup(each, told, observer, deviation))
+        try:
+            with told_with_places(each.places, each.name):
+                setups.append(prepare_setup(each, told, observer, deviation))
+        except InputError as error:
+            problems += error.problems
+    if problems:
+        raise InputError(dict.fromkeys(problems))
     widths = {name: cutting_width(tool) for each in setups for name, tool in each.tools.items()}
     cell = given.cell or default_cell(shape, min(widths.values(), default=math.inf))
     check_narrow_tools(widths, cell)
@@ -107,6 +112,8 @@ class _Steps:
         #: How far turns may have moved the surface of the stock, mm.
         self._slack = 0.0
         self._left: Simulation | None = None
+        #: What is odd about machines, which is told once, whatever runs on them.
+        self._of_machines: list[Problem] = []
 
     def follow(self, own: PreparedSetup, shape: StockShape, remarks: list[Problem]) -> SimulationResult:
         """Cut the stock in a set-up; ``shape`` is the first one's."""
@@ -130,34 +137,38 @@ class _Steps:
     def _simulated(
         self, own: PreparedSetup, setup: Setup, part: TriangleMesh | None, remarks: list[Problem]
     ) -> SimulationResult:
-        given, runs = self._given, [as_the_tool_goes(run)[0] for run in own.runs]
+        given, runs, name = self._given, [as_the_tool_goes(run)[0] for run in own.runs], own.given.name
         remarks += simulation_remarks(setup, runs, own.tools)
         remarks += [problem for run in own.runs for problem in as_the_tool_goes(run)[1]]
         jobs = [_job(run, own.tools, own.given.until if run is runs[-1] else None) for run in runs]
         remarks += [Problem(job.run.files[0], 0, job.broken_off) for job in jobs if job.broken_off]
-        self._observer.problems(remarks)
+        self._observer.problems(of_setup(remarks, name))
         told = len(remarks)
         around, near = own.fixtures, given.near or 0.0
-        bodies = [_bodies(job, number, part, around, remarks) for number, job in enumerate(jobs)]
+        machines = list[Problem]()
+        bodies = [_bodies(job, number, part, around, remarks, machines) for number, job in enumerate(jobs)]
+        machines = [each for each in dict.fromkeys(machines) if each not in self._of_machines]
+        self._of_machines += machines
+        self._observer.problems(machines)
         pairs: list[int] = []
         touched = [_collisions(job, own, near, pairs.append) for job, own in zip(jobs, bodies, strict=True)]
         if given.stop_at == "first":
             jobs = _up_to_first_hit(jobs, touched)
         found = _cut(setup, jobs, given.stop_at == "first", self._threads, self._observer)
-        remarks += part_remarks(setup, found.lacking, self._slack)
+        remarks += part_remarks(setup, found.lacking, self._slack, is_later=self._left is not None)
         if found.leaks:
             what = f"{found.leaks} of {found.stock.lattice.ray_count} rays pass a hole in it, and were left empty"
             remarks.append(Problem("part", 0, what, "close the mesh", Severity.WARNING))
         if found.start_volume - found.stock.volume <= 0.0:
             what, cure = "takes nothing from the stock", "check the place of the stock, and the tools"
             remarks.append(Problem(runs[0].files[0], 0, what, cure, Severity.WARNING))
-        self._observer.problems(remarks[told:])
+        self._observer.problems(of_setup(remarks[told:], name))
         if given.stop_at == "first":
             jobs = _until_stop(jobs, found)
             touched = [_collisions(job, own, near) for job, own in zip(jobs, bodies, strict=False)]
         return make_result(
-            own.machine.key, found, jobs, touched, tuple(remarks), own.toolpaths, runs=own.runs,
-            setup=own.given.name, pairs=sum(pairs),
+            own.machine.key, found, jobs, touched, (*of_setup(remarks, name), *machines), own.toolpaths, runs=own.runs,
+            setup=name, pairs=sum(pairs),
         )  # fmt: skip
 
 
@@ -195,7 +206,12 @@ def _until_stop(jobs: Sequence[Job], found: Simulation) -> list[Job]:
 
 
 def _bodies(
-    job: Job, number: int, part: TriangleMesh | None, fixtures: Sequence[TriangleMesh], remarks: list[Problem]
+    job: Job,
+    number: int,
+    part: TriangleMesh | None,
+    fixtures: Sequence[TriangleMesh],
+    remarks: list[Problem],
+    of_machine: list[Problem],
 ) -> list[Body]:
     """What a tool can hit while a program runs, and what the machine may hit with it."""
     machine = job.run.machine
@@ -203,7 +219,7 @@ def _bodies(
     if fixtures and part is not None:
         bodies.append(part_body(part, machine))
     if machine.workpiece_zero is not None and _lengths_known(job):
-        bodies += machine_bodies(machine, remarks.append)
+        bodies += machine_bodies(machine, of_machine.append)
     elif number == 0 and machine.bodies:
         what = "the bodies of the machine are not checked: workpiece zero and tool lengths are not known"
         cure = "give zero, and tool_length or a tool with its holder"

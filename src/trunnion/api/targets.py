@@ -2,12 +2,14 @@
 
 import io
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, TypeAlias
 
+from trunnion.api.arguments import check_path
+from trunnion.errors import InputError, Problem
 from trunnion.files import OutputFiles, OutputPlace, atomic_output, check_stream, resolve_output
 
 #: A file by its path, a stream that takes bytes, or None: the result keeps the text.
@@ -35,6 +37,20 @@ class Target:
     def subprograms(self) -> tuple[Path, ...]:
         """The files beside the first, once the block has ended."""
         return tuple(self.path.with_name(file.name) for file in self.files.other_paths) if self.path else ()
+
+
+def check_output_name(argument: str, file: object, endings: Sequence[str], what: str) -> OutputPlace:
+    """The place of an output whose name tells its form, which is found out before any work; ``what`` says why it is so.
+
+    Raises
+    ------
+    InputError
+        If its name ends otherwise, or it cannot be written.
+    """
+    place = resolve_output(check_path(argument, file))
+    if Path(place.name).suffix.lower() not in endings:
+        raise InputError(Problem(place.name, 0, what, f"let its name end in {' or '.join(endings)}"))
+    return place
 
 
 @contextmanager

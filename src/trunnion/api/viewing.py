@@ -2,15 +2,15 @@
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Final
 
 from trunnion.api.arguments import check_path, check_paths
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.api.settings import set_up_machine
+from trunnion.api.targets import check_output_name
 from trunnion.api.verifying import rapid_feed_of, verify
-from trunnion.errors import InputError, Problem
-from trunnion.files import OutputPlace, atomic_file, resolve_output
+from trunnion.errors import InputError
+from trunnion.files import OutputPlace, atomic_file
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.readers.program.source_text import decode
@@ -23,8 +23,6 @@ from trunnion.verification import restore_rapids
 from trunnion.viewer.content import ViewContent, view_content
 from trunnion.viewer.page import render_view
 
-_SUFFIX: Final = ".html"
-
 
 def check_view_name(file: FilePath) -> OutputPlace:
     """The place of a page, which is found out before any work.
@@ -34,10 +32,7 @@ def check_view_name(file: FilePath) -> OutputPlace:
     InputError
         If its name ends otherwise, or it cannot be written.
     """
-    place = resolve_output(check_path("output", file))
-    if Path(place.name).suffix.lower() != _SUFFIX:
-        raise InputError(Problem(place.name, 0, "the view is a page", f"let its name end in {_SUFFIX}"))
-    return place
+    return check_output_name("output", file, (".html",), "the view is a page")
 
 
 def prepare_view(

@@ -2,12 +2,15 @@
 
 import difflib
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
+from typing import Final
 
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.definitions.units import unit_of
 
 _MAX_SHOWN = 60
+_NO_NAMES: Final[Mapping[str, str]] = MappingProxyType({})
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)")
 
 
@@ -27,9 +30,13 @@ def as_written(value: object) -> str:
     return text if len(text) <= _MAX_SHOWN else text[: _MAX_SHOWN - 3] + "..."
 
 
-def did_you_mean(word: str, known: Iterable[str]) -> str:
-    """A question for the known word that resembles an unknown one; empty if none does."""
-    near = difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)
+def did_you_mean(word: str, known: Iterable[str], other_names: Mapping[str, str] = _NO_NAMES) -> str:
+    """A question for the known word that resembles an unknown one, or has it as another name; empty if none does.
+
+    ``other_names`` are in small letters, and in letters alone.
+    """
+    other = other_names.get("".join(filter(str.isalpha, word.lower())))
+    near = [other] if other else difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)
     return f'did you mean "{near[0]}"?' if near else ""
 
 

@@ -2,8 +2,9 @@
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Final, TypedDict, Unpack, overload
 
 from trunnion.definitions.messages import a_number, as_written, bounds, did_you_mean, in_quotes, in_unit, unquoted
@@ -17,6 +18,8 @@ class Required:
 
 
 REQUIRED: Final = Required()
+
+_NO_NAMES: Final[Mapping[str, str]] = MappingProxyType({})
 
 #: No length, angle, speed or count of a definition is greater; squares of what is do not overflow.
 _GREATEST: Final = 1e9
@@ -161,20 +164,35 @@ class Table:
         return content.value
 
     @overload
-    def text(self, key: str, default: str | Required = ..., *, one_of: Sequence[str] = ...) -> str: ...
+    def text(
+        self, key: str, default: str | Required = ..., *,
+        one_of: Sequence[str] = ..., other_names: Mapping[str, str] = ..., example: str = ...,
+    ) -> str: ...  # fmt: skip
     @overload
-    def text(self, key: str, default: None, *, one_of: Sequence[str] = ...) -> str | None: ...
-    def text(self, key: str, default: str | Required | None = REQUIRED, *, one_of: Sequence[str] = ()) -> str | None:
-        """Return a text; with ``one_of``, one of these words."""
+    def text(
+        self, key: str, default: None, *,
+        one_of: Sequence[str] = ..., other_names: Mapping[str, str] = ..., example: str = ...,
+    ) -> str | None: ...  # fmt: skip
+    def text(
+        self,
+        key: str,
+        default: str | Required | None = REQUIRED,
+        *,
+        one_of: Sequence[str] = (),
+        other_names: Mapping[str, str] = _NO_NAMES,
+        example: str = "",
+    ) -> str | None:
+        """Return a text; with ``one_of``, one of these words, to which ``other_names`` lead in a message."""
         fallback = "" if isinstance(default, Required) else default
         words = ", ".join(f'"{word}"' for word in one_of)
-        cure = f"write one of {words}" if one_of else "write a text in quotes"
+        such_as = f', such as "{example}"' if example else ""
+        cure = f"write one of {words}" if one_of else f"write a text in quotes{such_as}"
         value = self._get(key, isinstance(default, Required), cure)
         if value is None:
             return fallback
         if not isinstance(value, str) or (one_of and value not in one_of):
-            near = did_you_mean(value, one_of) if isinstance(value, str) else ""
-            quoted = "" if one_of else in_quotes(key, value)
+            near = did_you_mean(value, one_of, other_names) if isinstance(value, str) else ""
+            quoted = "" if one_of or example else in_quotes(key, value)
             self.add_problem(key, f"is {as_written(value)}", (near + " " + cure if near else cure) + quoted)
             return fallback
         return value

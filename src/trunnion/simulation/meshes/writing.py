@@ -24,7 +24,8 @@ def check_mesh_name(path: str | Path) -> None:
     """Raise ``InputError`` if the ending of a name says no format that is written."""
     ending = Path(path).suffix.lower()
     if ending not in _WRITERS:
-        what = f'ends in "{Path(path).suffix}"' if ending else "has no ending that names a format"
+        unknown = f'ends in "{Path(path).suffix}", a format that is not written'
+        what = unknown if ending else "has no ending that names a format"
         raise InputError(Problem(str(path), 0, what, f"end it in one of {', '.join(_WRITERS)}"))
 
 

@@ -71,7 +71,7 @@ def left_on(stock: Stock, design: tuple[Spans, Spans, Spans], limit: float) -> E
 def lacking_at_start(stock: Stock, design: tuple[Spans, Spans, Spans], limit: float) -> Excess:
     """What of the design is not in stock that nothing has cut yet; places thinner than ``limit`` are not told."""
     found = compare_solids(stock, list(design), [stock.spans(bundle) for bundle in range(3)])
-    return _excess(stock, found, limit)
+    return _excess(stock, replace(found, thickness=_from_surface(stock, found, limit)), limit)
 
 
 def missing_from(

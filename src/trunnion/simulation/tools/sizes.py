@@ -42,6 +42,24 @@ class ToolKind(StrEnum):
     BARREL = "barrel"
 
 
+#: What others call them, as ``did_you_mean`` takes it.
+OTHER_KINDS: Final = {
+    "mill": ToolKind.FLAT, "endmill": ToolKind.FLAT, "flatmill": ToolKind.FLAT, "flatendmill": ToolKind.FLAT,
+    "squareendmill": ToolKind.FLAT, "cylinder": ToolKind.FLAT, "cylindrical": ToolKind.FLAT, "facemill": ToolKind.FLAT,
+    "ballmill": ToolKind.BALL, "ballnose": ToolKind.BALL, "ballnosemill": ToolKind.BALL, "ballend": ToolKind.BALL,
+    "ballendmill": ToolKind.BALL, "ballnoseendmill": ToolKind.BALL, "spherical": ToolKind.BALL,
+    "bullmill": ToolKind.BULL, "bullnose": ToolKind.BULL, "bullnosemill": ToolKind.BULL, "bullendmill": ToolKind.BULL,
+    "bullnoseendmill": ToolKind.BULL, "torus": ToolKind.BULL, "toroid": ToolKind.BULL, "toroidal": ToolKind.BULL,
+    "cone": ToolKind.TAPER, "conical": ToolKind.TAPER, "tapered": ToolKind.TAPER, "tapermill": ToolKind.TAPER,
+    "taperedball": ToolKind.TAPER_BALL, "conicalball": ToolKind.TAPER_BALL, "taperballmill": ToolKind.TAPER_BALL,
+    "twistdrill": ToolKind.DRILL, "spotdrill": ToolKind.DRILL, "centerdrill": ToolKind.DRILL,
+    "chamfermill": ToolKind.CHAMFER, "countersink": ToolKind.CHAMFER, "engraver": ToolKind.CHAMFER,
+    "undercut": ToolKind.LOLLIPOP, "undercutmill": ToolKind.LOLLIPOP, "slotmill": ToolKind.T_SLOT,
+    "woodruff": ToolKind.T_SLOT, "keyseat": ToolKind.T_SLOT, "threadcutter": ToolKind.THREAD_MILL,
+    "circlesegment": ToolKind.BARREL, "oval": ToolKind.BARREL,
+}  # fmt: skip
+
+
 @dataclass(frozen=True, slots=True)
 class BodyPiece:
     """A piece of a shank or a holder: a cylinder, or a cone where the diameters differ, mm."""

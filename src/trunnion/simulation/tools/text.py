@@ -15,7 +15,7 @@ from trunnion.definitions.messages import did_you_mean
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.shapes import shape_faults, tool_shape
-from trunnion.simulation.tools.sizes import OF_BODY, OF_KIND, BodyPiece, ToolKind, ToolSizes
+from trunnion.simulation.tools.sizes import OF_BODY, OF_KIND, OTHER_KINDS, BodyPiece, ToolKind, ToolSizes
 
 #: Longer texts are no tool.
 _LONGEST: Final = 1000
@@ -121,7 +121,7 @@ def _kind(word: str) -> ToolKind:
     try:
         return ToolKind(word)
     except ValueError:
-        near = did_you_mean(word, ToolKind)
+        near = did_you_mean(word, ToolKind, OTHER_KINDS)
         cure = f"{near} " if near else ""
         raise _TextError(f'"{word}" is no kind of tool', f"{cure}write one of {', '.join(ToolKind)}") from None
 

@@ -7,7 +7,16 @@ from typing import Any, Final
 from trunnion.definitions import Table, load_table
 from trunnion.simulation.tools.library.library import LibraryTool, ToolLibrary
 from trunnion.simulation.tools.shapes import shape_faults
-from trunnion.simulation.tools.sizes import ANGLE_LIMITS, GREATEST, OF_BODY, OF_KIND, BodyPiece, ToolKind, ToolSizes
+from trunnion.simulation.tools.sizes import (
+    ANGLE_LIMITS,
+    GREATEST,
+    OF_BODY,
+    OF_KIND,
+    OTHER_KINDS,
+    BodyPiece,
+    ToolKind,
+    ToolSizes,
+)
 
 #: Greatest number of a tool.
 _MOST: Final = 999_999_999
@@ -52,7 +61,7 @@ def _read_tool(table: Table, number: int | None, name: str) -> list[LibraryTool]
     """The tool of a table; none if there is a mistake in it, which the table then has."""
     before = len(table.problems)
     description = table.text("description", "")
-    word = table.text("kind", one_of=list(ToolKind))
+    word = table.text("kind", one_of=list(ToolKind), other_names=OTHER_KINDS)
     if word not in list(ToolKind):
         table.mark_read(*table.keys())
         return []
