@@ -2,6 +2,7 @@
 
 python3 make.py sample     set up, and post a real five-axis toolpath
 python3 make.py simulate   set up, cut a part with its three programs, and draw what comes out
+python3 make.py impeller   set up, and make an impeller from measured points: paths, programs, proof, and the part
 python3 make.py test       set up, and run everything that CI runs
 python3 make.py quick      style, types, import contracts, and the fast half of the tests
 python3 make.py docs       build the documentation site in build/site
@@ -24,6 +25,8 @@ HERE = Path(__file__).resolve().parent
 HOME = HERE / ".venv"
 SUPPORTED = (11, 12, 13)  # minor versions of Python 3 that the wheel is tried on
 TESTS = ("python", "-m", "pytest", "-n", "auto", "--dist", "worksteal")  # neighbours share what one process has kept
+IMPELLER = Path("examples", "impeller", "impeller.toml")
+CELL = "0.25"  # mm, of the simulation of the impeller
 SAMPLE = Path("tests", "golden", "yl569", "3_blade_finish.cls")
 CUT = ("1_contour_rough", "2_hub_rough", "3_blade_finish")  # programs of one part, in their order
 
@@ -99,6 +102,17 @@ def simulate() -> None:
     # 1: a rapid goes through this stock, as it is told.
     run("trunnion", "simulate", *programs, "--machine", "yl569", *stock, *tools, good=(0, 1))
     print(f"the finished stock is drawn in {HERE / 'stock.png'}; --save-stock stock.stl saves it as a solid")
+
+
+def impeller() -> None:
+    """Model the published impeller, make its programs, prove them, simulate the finished part, and draw it."""
+    set_up(".[impeller]")
+    folder = HERE / "build" / "impeller"
+    folder.mkdir(parents=True, exist_ok=True)
+    run("trunnion", "impeller", "model", IMPELLER, "--output", folder / "model.stl")
+    how = ("--machine", "yl569", "--set", "zero=0,0,0", "--cell", CELL)
+    run("trunnion", "impeller", "cut", IMPELLER, *how, "--output", folder / "nc", good=(0, 1))
+    print(f"CL files, programs, the report of their proof, that of the simulation, and pictures are in {folder / 'nc'}")
 
 
 def check() -> None:
@@ -183,7 +197,8 @@ def try_out(archive: Path, python: str, variables: Mapping[str, str] | None = No
 
 
 COMMANDS: dict[str, Callable[[], None]] = {
-    "sample": sample, "simulate": simulate, "test": test, "quick": quick, "docs": docs, "package": package,
+    "sample": sample, "simulate": simulate, "impeller": impeller, "test": test, "quick": quick, "docs": docs,
+    "package": package,
 }  # fmt: skip
 
 

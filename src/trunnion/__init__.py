@@ -21,6 +21,7 @@ Functions
     simulate       NC programs and stock -> SimulationResult: what is cut, and what is hit
     read_points    table of measured points -> PointTable of each curve
     fit_curve      points -> CurveFit: a B-spline curve, and how far it is off
+    cut_impeller   definition, machine -> CL files and one proven program of all operations
     load_impeller  definition and measured points -> Impeller: blades, hub and shroud as surfaces
     model_impeller Impeller -> ImpellerModel: a closed mesh
     write_report   Verification -> page or data
@@ -47,6 +48,8 @@ if TYPE_CHECKING:
     from trunnion.api.describing_cl import describe_cl as describe_cl
     from trunnion.api.describing_machine import MachineDescription as MachineDescription
     from trunnion.api.describing_machine import describe_machine as describe_machine
+    from trunnion.api.impeller_cutting import ImpellerCut as ImpellerCut
+    from trunnion.api.impeller_cutting import cut_impeller as cut_impeller
     from trunnion.api.impellers import load_impeller as load_impeller
     from trunnion.api.impellers import model_impeller as model_impeller
     from trunnion.api.observer import Observer as Observer
@@ -101,6 +104,7 @@ _MODULES: Final = {
     "CurveFit": "geometry.fitting",
     "Decision": "model.motion",
     "Impeller": "impeller.impeller",
+    "ImpellerCut": "api.impeller_cutting",
     "ImpellerModel": "impeller.model",
     "InputError": "errors",
     "Machine": "machines.machine",
@@ -123,6 +127,7 @@ _MODULES: Final = {
     "TrunnionError": "errors",
     "Verification": "verification.results",
     "convert": "api.converting",
+    "cut_impeller": "api.impeller_cutting",
     "describe_cl": "api.describing_cl",
     "describe_control": "api.describing",
     "describe_controls": "api.describing",
@@ -156,6 +161,7 @@ __all__ = [
     "CurveFit",
     "Decision",
     "Impeller",
+    "ImpellerCut",
     "ImpellerModel",
     "InputError",
     "Machine",
@@ -179,6 +185,7 @@ __all__ = [
     "Verification",
     "__version__",
     "convert",
+    "cut_impeller",
     "describe_cl",
     "describe_control",
     "describe_controls",

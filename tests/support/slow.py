@@ -3,7 +3,8 @@
 #: Files that take more than some three seconds of processor time, and folders of them: whole matrices, judges, fuzzing,
 #: and long property tests.
 SLOW = (
-    "api/test_same_as_command.py", "cl/test_scan.py", "cl/test_surface_normals.py", "cl/test_write.py",
+    "api/test_impeller_cutting.py", "api/test_same_as_command.py", "cl/test_scan.py", "cl/test_surface_normals.py",
+    "cl/test_write.py",
     "conversion/test_angles.py", "conversion/test_leaving_the_part.py", "conversion/test_pairs.py",
     "conversion/test_round_trip.py", "conversion/test_settings_by_operation.py", "examples", "fuzz",
     "impeller/paths/test_blade_finish.py", "impeller/paths/test_clearance.py",

@@ -357,14 +357,29 @@ def _add_curve(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_impeller(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("step", choices=("model",), help="model: a closed mesh of the impeller")
-    parser.add_argument("file", metavar="IMPELLER", help="definition of the impeller (.toml)")
-    parser.add_argument("--output", metavar="FILE", help="the mesh (.stl, .ply, .3mf or .glb)")
     parser.add_argument(
-        "--tolerance", type=_tolerance, default=0.01, metavar="MM", help="how far facets may be off the surfaces; 0.01"
+        "step",
+        choices=("model", "cut"),
+        help="model: a closed mesh of it; cut: CL files and a proven program",
     )
+    parser.add_argument("file", metavar="IMPELLER", help="definition of the impeller (.toml)")
+    parser.add_argument("--output", metavar="FILE|FOLDER", help="the mesh (.stl, .ply, .3mf or .glb); folder of a cut")
+    parser.add_argument("--tolerance", type=_tolerance, metavar="MM", help="model: how far facets may be off; 0.01")
+    parser.add_argument("--machine", metavar="NAME_OR_FILE", help="cut: machine that runs the program")
+    parser.add_argument(
+        "--operation", action="append", default=[], metavar="NAME", dest="operations",
+        help="cut: make this operation of the definition only; may be repeated",
+    )  # fmt: skip
+    parser.add_argument(
+        "--cell", type=_tolerance, metavar="MM",
+        help="cut: simulate the program in cells of this width, and compare the part with the model",
+    )  # fmt: skip
+    parser.add_argument(
+        "--set", action=_Setting, type=_key_value, default=[], metavar="KEY=VALUE", dest="settings",
+        help="cut: settings as for post; may be repeated",
+    )  # fmt: skip
     parser.add_argument("--json", action="store_true", help="data in place of text")
-    parser.set_defaults(run=_lazy_command("impeller", "model"))
+    parser.set_defaults(run=_lazy_command("impeller", "run"))
 
 
 def _add_machines(parser: argparse.ArgumentParser) -> None:

@@ -1,24 +1,49 @@
 """``trunnion impeller``: an impeller from measured points."""
 
 import argparse
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
+from trunnion.api.impeller_cutting import CutStep, ImpellerCut, cut_impeller
 from trunnion.api.impellers import load_impeller, model_impeller
+from trunnion.api.simulation_data import simulation_data
 from trunnion.cli.results import as_json, print_result
+from trunnion.cli.simulate import simulation_lines
+from trunnion.cli.terminal import Terminal
+from trunnion.errors import InputError, argument_problem
+from trunnion.machines.motion_time import format_duration
 from trunnion.simulation.meshes import check_mesh_name, save_mesh
-from trunnion.wording import one_line
+from trunnion.wording import counted, one_line
 
 _DECIMALS: Final = 6
+
+#: Width of the facets' errors where none is stated, mm.
+_TOLERANCE: Final = 0.01
+
+#: Options of the other step.
+_OF_CUT: Final = ("machine", "operations", "cell", "settings")
+_OF_MODEL: Final = ("tolerance",)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Carry out a step; options of the other one are refused."""
+    is_model = arguments.step == "model"
+    wrong = [name for name in (_OF_CUT if is_model else _OF_MODEL) if getattr(arguments, name) not in (None, [])]
+    if wrong:
+        what = f"is not for {arguments.step}"
+        raise InputError([argument_problem(name, what, "leave it out") for name in wrong])
+    return model(arguments) if is_model else cut(arguments)
 
 
 def model(arguments: argparse.Namespace) -> int:
     """Make the mesh of an impeller, and say how good it is."""
     if arguments.output is not None:
         check_mesh_name(arguments.output)
+    tolerance = _TOLERANCE if arguments.tolerance is None else arguments.tolerance
     impeller = load_impeller(arguments.file)
     definition = impeller.definition
-    found = model_impeller(impeller, tolerance=arguments.tolerance)
+    found = model_impeller(impeller, tolerance=tolerance)
     if arguments.output is not None:
         points = {Path(table.file) for table in definition.sections}
         save_mesh(found.mesh, arguments.output, inputs=[arguments.file, *points])
@@ -42,7 +67,79 @@ def model(arguments: argparse.Namespace) -> int:
     lines = (
         f"{definition.name}: {definition.number} blades{splitters}, {size} mm",
         f"volume {found.volume:.1f} mm³, {facets} facets, a closed solid",
-        f"facets are at most {found.deviation:.4f} mm off the exact surfaces, {arguments.tolerance:g} mm were asked",
+        f"facets are at most {found.deviation:.4f} mm off the exact surfaces, {tolerance:g} mm were asked",
     )
     print_result(*map(one_line, lines))
     return 0
+
+
+def cut(arguments: argparse.Namespace) -> int:
+    """Machine an impeller; 0 if its program is proven, and what was simulated has no finding."""
+    missing = [name for name in ("machine", "output") if getattr(arguments, name) is None]
+    if missing:
+        cures = {"machine": "name the machine that runs the program", "output": "name a folder"}
+        raise InputError([argument_problem(name, "is missing", cures[name]) for name in missing])
+    found = cut_impeller(
+        arguments.file,
+        machine=arguments.machine,
+        output=arguments.output,
+        operations=arguments.operations,
+        settings=dict(arguments.settings),
+        cell=arguments.cell,
+        observer=Terminal(),
+    )
+    if arguments.json:
+        print_result(as_json(_cut_data(found)))
+    else:
+        print_result(*map(one_line, _cut_lines(found)))
+    return 0 if found.passed else 1
+
+
+def _cut_lines(found: ImpellerCut) -> Iterator[str]:
+    """What was made, step by step."""
+    for step in found.steps:
+        yield _step_line(step)
+    yield f"{found.result.output}: {counted(sum(step.points for step in found.steps), 'point')}"
+    if found.simulation is not None:
+        yield from simulation_lines(found.simulation)
+
+
+def _step_line(step: CutStep) -> str:
+    """A step: its operations, its time, and how near the tool comes to the part."""
+    count = len(step.seconds)
+    time = format_duration(60.0 * step.minutes)
+    parts = [f"{step.step.name}: {counted(step.points, 'point')}, {f'{count} x ' if count > 1 else ''}{time}"]
+    if step.step.published_minutes:
+        parts.append(f"published {format_duration(60.0 * step.step.published_minutes)}")
+    for one in step.clearance:
+        parts.append(f"{one.part} {one.distance:.3f} mm from {one.body}")
+    return ", ".join(parts)
+
+
+def _cut_data(found: ImpellerCut) -> dict[str, object]:
+    """The same as data."""
+    return {
+        "schema": 1,
+        "name": found.impeller.definition.name,
+        "passed": found.passed,
+        "program": str(found.result.output),
+        "subprograms": [str(file) for file in found.result.subprograms],
+        "cl_files": [str(file) for file in found.cl_files],
+        "steps": [
+            {
+                "name": step.step.name,
+                "kind": step.step.kind,
+                "operations": len(step.seconds),
+                "points": step.points,
+                "minutes": round(step.minutes, _DECIMALS),
+                "published_minutes": step.step.published_minutes or None,
+                "clearances": [
+                    {"part": one.part, "body": one.body, "mm": round(one.distance, _DECIMALS), "at": one.centre}
+                    for one in step.clearance
+                ],
+            }
+            for step in found.steps
+        ],
+        "checks": {check.key: check.passed for check in found.result.checks},
+        "simulation": None if found.simulation is None else simulation_data(found.simulation),
+    }

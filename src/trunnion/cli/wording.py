@@ -14,6 +14,7 @@ _OPTIONS: Final = {
     "tools": "--tool",
     "libraries": "--tools",
     "fixtures": "--fixture",
+    "operations": "--operation",
     "cl": "CL",
     "nc": "NC",
     "first": "NC",

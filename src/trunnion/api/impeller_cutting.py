@@ -1,0 +1,304 @@
+"""Impellers, machined: from a definition to CL files and one proven program of all operations."""
+
+import io
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from trunnion.api import kernels
+from trunnion.api.arguments import check_observer, check_path, wrong_argument
+from trunnion.api.impellers import load_impeller, model_impeller
+from trunnion.api.input_files import definition_files
+from trunnion.api.job import prepare
+from trunnion.api.observer import SILENT, Observer
+from trunnion.api.post_result import PostResult
+from trunnion.api.posting import post_toolpaths
+from trunnion.api.reading import FilePath, MachineLike, as_machine, read_cl
+from trunnion.api.settings import Settings
+from trunnion.api.simulating import simulate
+from trunnion.api.simulation_result import SimulationResult
+from trunnion.api.targets import open_target
+from trunnion.arrays import Flags, Floats
+from trunnion.cl.writers import WRITERS
+from trunnion.controls import load_control
+from trunnion.errors import InputError, argument_problem
+from trunnion.files.places import cannot_write
+from trunnion.impeller.impeller import Impeller
+from trunnion.impeller.machining import StepPaths, step_paths
+from trunnion.impeller.paths.tool_axes import PartClearance
+from trunnion.impeller.paths.toolpaths import CuttingData, operation_of
+from trunnion.impeller.steps import MachiningStep
+from trunnion.jit import compile_ahead
+from trunnion.machines import Machine
+from trunnion.machines.inverse import inverse
+from trunnion.model.toolpath import Operation, Tool, Toolpath
+from trunnion.simulation.meshes import save_mesh
+from trunnion.simulation.stock.surface import stock_surface
+from trunnion.simulation.tools.library import LibraryTool
+from trunnion.simulation.tools.sizes import ToolKind
+from trunnion.verification import durations
+
+#: How closely the model follows the surfaces where a simulation compares with it, as a part of the width of its cells.
+_MODEL: Final = 0.1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CutStep:
+    """A machining step as it is cut.
+
+    toolpath   its operations, one for each blade or channel, as the CL file says them
+    points     of all of them
+    seconds    of each operation on the machine, with what leads to it
+    clearance  of each part of the tool, the least that it has to a blade or the hub; none for steps round the part
+    """
+
+    step: MachiningStep
+    toolpath: Toolpath
+    points: int
+    seconds: tuple[float, ...]
+    clearance: tuple[PartClearance, ...]
+
+    @property
+    def minutes(self) -> float:
+        """Of one operation, in the mean."""
+        return sum(self.seconds) / len(self.seconds) / 60.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ImpellerCut:
+    """An impeller as it is machined.
+
+    steps       in their order
+    result      of the post: the program, its proof and its files
+    cl_files    one for each step
+    simulation  what the program leaves of the stock, against the model; None: it was not simulated
+    """
+
+    impeller: Impeller
+    steps: tuple[CutStep, ...]
+    result: PostResult
+    cl_files: tuple[Path, ...]
+    simulation: SimulationResult | None
+
+    def __repr__(self) -> str:
+        """Return what matters in a notebook."""
+        return f"ImpellerCut(passed={self.passed}, {len(self.steps)} steps)"
+
+    @property
+    def passed(self) -> bool:
+        """Whether the program is proven, and what was simulated has no finding."""
+        return self.result.passed and (self.simulation is None or self.simulation.passed)
+
+
+def cut_impeller(
+    impeller: Impeller | FilePath,
+    *,
+    machine: MachineLike,
+    output: FilePath,
+    operations: Sequence[str] = (),
+    settings: Settings | None = None,
+    cell: float | None = None,
+    observer: Observer = SILENT,
+) -> ImpellerCut:
+    """Machine an impeller: tool paths of all its operations, CL files, and one program for all of them, proven.
+
+    Parameters
+    ----------
+    impeller
+        Of ``trunnion.load_impeller``, or its definition, with ``[[operation]]`` and ``[[tool]]`` (docs/impeller.md).
+    machine
+        As for ``trunnion.post``. Tool axes keep to what its rotary axes reach.
+    output
+        Folder, made if there is none: it takes a CL file for each operation of the definition, the main program with
+        its subprograms, and the report of the proof. All of them appear together, or none.
+    operations
+        Names of operations, to make these only; by default all.
+    settings
+        As for ``trunnion.post``. ``programs`` is ``operations`` where the control has subprograms.
+    cell
+        Width in mm of the cells in which the program is simulated, and what it leaves compared with the model; the
+        folder gets the report of that and a picture. None: it is not simulated.
+    observer
+        Receives the progress, warnings and the proof.
+
+    Returns
+    -------
+    ImpellerCut
+        Steps with their toolpaths, times and clearances; the proof; the files.
+
+    Raises
+    ------
+    InputError
+        As ``load_impeller``; if the definition has no operations or none of a name; or a step cannot be made, with the
+        place and what helps.
+    RefusedError
+        As ``post``: when the program must not run. Nothing is written.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> found = trunnion.cut_impeller(
+    ...     "examples/impeller/impeller.toml", machine="yl569", output="build/impeller", operations=["STOCK_ROUGHING"],
+    ... )
+    >>> found
+    ImpellerCut(passed=True, 1 steps)
+    """
+    check_observer(observer)
+    found = impeller if isinstance(impeller, Impeller) else load_impeller(impeller)
+    definition = found.definition
+    chosen = _chosen(found, operations)
+    loaded = as_machine(machine)
+    control = load_control(loaded.control)
+    divided = {} if control.subprograms is None else {"programs": "operations"}
+    job = prepare(loaded, {"title": definition.name, **divided, **(settings or {})}, columns=True)
+    folder = _folder(output)
+    stem = _file_stem(definition.name)
+    report = folder / f"{stem}.html"
+    job = replace(job, report=report)
+    read = [definition.file, *(table.file for table in definition.sections), *definition_files(machine, loaded)]
+    with open_target(folder / f"{stem}{control.extension}", report=report, inputs=read) as target:
+        compile_ahead(kernels.POSTING)
+        job.subprograms(target.files, target.path)
+        made, texts, toolpaths = [], [], []
+        with observer.progress("tool paths", len(chosen), "steps") as advance:
+            for paths in step_paths(found, reachable_axes(loaded), chosen):
+                file = folder / f"{stem}_{_file_stem(paths.step.name)}.cls"
+                text = cl_text(step_toolpath(paths, definition.name, str(file)))
+                made.append(paths)
+                texts.append((file, text))
+                toolpaths.append(replace(read_cl(io.BytesIO(text)), file=str(file)))
+                advance(1)
+        result = post_toolpaths(toolpaths, job, target, observer)
+        for file, text in texts:
+            target.files.add_file(file.name).write(text)
+    steps = tuple(_steps(made, toolpaths, result))
+    simulated = None
+    if cell is not None:
+        simulated = _simulated(found, loaded, steps, result, cell, observer)
+        simulated.write_report(folder / f"{stem}_simulation.html")
+        save_mesh(stock_surface(simulated.simulation.stock), folder / f"{stem}_stock.png", inputs=read)
+    return ImpellerCut(found, steps, result, tuple(file for file, _ in texts), simulated)
+
+
+def _chosen(impeller: Impeller, names: Sequence[str]) -> list[str]:
+    """The names of the steps to be made.
+
+    Raises
+    ------
+    InputError
+        If the definition has none, or none of a name.
+    """
+    known = [step.name for step in impeller.definition.steps]
+    if not known:
+        what, cure = "has no operations", "write tables [[operation]] and [[tool]] in the definition"
+        raise InputError(argument_problem("impeller", what, cure))
+    if isinstance(names, str) or not all(isinstance(name, str) for name in names):
+        raise wrong_argument("operations", names, "give a list of names")
+    if unknown := [name for name in names if name not in known]:
+        cure = f"the definition has {', '.join(known)}"
+        raise InputError([argument_problem("operations", f"has {name!r}, which is none", cure) for name in unknown])
+    return [name for name in known if name in names or not names]
+
+
+def _folder(output: object) -> Path:
+    """The folder of the files, made if there is none."""
+    folder = check_path("output", output)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise cannot_write(str(folder), error) from None
+    return folder
+
+
+def _file_stem(name: str) -> str:
+    """A name as that of a file and of a program: letters, digits and underscores."""
+    return "".join(letter if letter.isascii() and letter.isalnum() else "_" for letter in name) or "IMPELLER"
+
+
+def reachable_axes(machine: Machine) -> Callable[[Floats], Flags]:
+    """Tells of tool axes (n, 3) whether the rotary axes of a machine reach them within their travel, (n,)."""
+    columns = list(machine.rotary)
+    limits = machine.limits[columns]
+
+    def reachable(axes: Floats) -> Flags:
+        found = inverse(machine, np.zeros_like(axes), axes)
+        angles = found.joints[:, :, columns, None] + np.array([-360.0, 0.0, 360.0])
+        inside = (angles >= limits[:, 0, None]) & (angles <= limits[:, 1, None])
+        return np.asarray(found.reachable & inside.any(axis=3).all(axis=2).any(axis=0))
+
+    return reachable
+
+
+def step_toolpath(paths: StepPaths, part: str, file: str) -> Toolpath:
+    """The operations of a step as the content of a CL file."""
+    step = paths.step
+    data = CuttingData(step.rpm, step.feed, step.lead_feed, step.coolant)
+    tool = cl_tool(paths.tool)
+    operations: list[Operation] = [
+        operation_of(name, path, tool, step.tool, paths.radius, data, step.tolerance)
+        for name, path in zip(paths.names, paths.paths, strict=True)
+    ]
+    return Toolpath(file, tuple(operations), part)
+
+
+def cl_tool(tool: LibraryTool) -> Tool:
+    """A tool as CL files describe it: its cutter."""
+    sizes = tool.sizes
+    radius = 0.0 if sizes.kind is ToolKind.FLAT else sizes.diameter / 2.0
+    centre = (0.0, radius) if sizes.kind is ToolKind.TAPER_BALL else None
+    name = tool.name or f"T{tool.number}"
+    return Tool(
+        "MILL", name, sizes.diameter, radius, sizes.length, sizes.side_angle, flute_length=sizes.flute_length,
+        corner_centre=centre,
+    )  # fmt: skip
+
+
+def cl_text(toolpath: Toolpath) -> bytes:
+    """A toolpath as a CL file.
+
+    Raises
+    ------
+    InputError
+        If it cannot hold it.
+    """
+    sink = io.BytesIO()
+    WRITERS["clsf"](toolpath).write(sink)
+    return sink.getvalue()
+
+
+def _steps(made: Sequence[StepPaths], toolpaths: Sequence[Toolpath], result: PostResult) -> Iterator[CutStep]:
+    """The steps with the times of their operations."""
+    assert result.verification is not None
+    seconds, _ = durations(result.verification)
+    of_operation = iter([float(seconds[rows.first : rows.end].sum()) for rows in result.verification.operations])
+    for paths, toolpath in zip(made, toolpaths, strict=True):
+        points = sum(len(operation.moves) for operation in toolpath.operations)
+        clearance: dict[str, PartClearance] = {}
+        for axes in paths.axes:
+            for one in axes.clearance:
+                if one.part not in clearance or one.distance < clearance[one.part].distance:
+                    clearance[one.part] = one
+        own = tuple(next(of_operation) for _ in toolpath.operations)
+        yield CutStep(paths.step, toolpath, points, own, tuple(clearance.values()))
+
+
+def _simulated(
+    impeller: Impeller, machine: Machine, steps: Sequence[CutStep], result: PostResult, cell: float, observer: Observer
+) -> SimulationResult:
+    """What the program leaves of the stock, compared with the model."""
+    definition = impeller.definition
+    stock = definition.stock
+    called = {one.step.tool for one in steps}
+    assert result.run is not None
+    return simulate(
+        result.run,
+        machine=machine,
+        stock=f"cylinder:{stock.diameter:g},{stock.height:g},{stock.bottom:g}",
+        part=model_impeller(impeller, tolerance=max(_MODEL * cell, 0.005)).mesh,
+        tools=[tool.shape() for tool in definition.tools if tool.number in called],
+        cell=cell,
+        observer=observer,
+    )

@@ -1,0 +1,93 @@
+"""Operations and tools of a definition: what is read, and every mistake at once."""
+
+from pathlib import Path
+
+import pytest
+
+from trunnion.errors import InputError
+from trunnion.impeller.definition import read_impeller
+from trunnion.impeller.paths.passes import Stepover, Way
+from trunnion.impeller.steps import StepKind
+from trunnion.simulation.tools.sizes import ToolKind
+
+FOLDER = Path(__file__).resolve().parents[2] / "examples" / "impeller"
+TEXT = (FOLDER / "impeller.toml").read_text("utf-8").partition("[[tool]]")[0]
+TOOLS = """
+[[tool]]
+number = 1
+kind = "flat"
+diameter_mm = 20
+
+[[tool]]
+number = 4
+kind = "ball"
+diameter_mm = 4
+flute_length_mm = 12
+length_mm = 60
+"""
+FEEDS = "rpm = 8000\nfeed_mm_min = 200\n"
+
+
+def read(folder: Path, text: str) -> list[tuple[int, str]]:
+    """The mistakes of a definition, with their lines counted from the first table of a tool."""
+    (folder / "blade_points.csv").write_bytes((FOLDER / "blade_points.csv").read_bytes())
+    path = folder / "part.toml"
+    path.write_text(TEXT + text, "utf-8")
+    with pytest.raises(InputError) as error:
+        read_impeller(path)
+    return [(problem.line - TEXT.count("\n"), f"{problem.what}; {problem.cure}") for problem in error.value.problems]
+
+
+def test_the_published_impeller_has_its_six_operations() -> None:
+    found = read_impeller(FOLDER / "impeller.toml")
+    assert [step.kind for step in found.steps] == list(StepKind)
+    sizes = {tool.number: (tool.sizes.kind, tool.sizes.diameter) for tool in found.tools}
+    published = [
+        (ToolKind.FLAT, 20.0, 2000.0, 500.0), (ToolKind.BALL, 10.0, 3000.0, 200.0),
+        (ToolKind.BALL, 6.0, 5000.0, 500.0), (ToolKind.BALL, 6.0, 5000.0, 200.0),
+        (ToolKind.BALL, 4.0, 8000.0, 200.0), (ToolKind.BALL, 4.0, 8000.0, 200.0),
+    ]  # fmt: skip
+    assert [(*sizes[step.tool], step.rpm, step.feed) for step in found.steps] == published
+    assert [step.stepover.distance for step in found.steps][1:] == [0.5, 0.8, 0.2, 0.2, 0.2]
+    assert found.steps[0].step_down == 1.5
+
+
+def test_what_a_step_does_not_say_has_its_default(tmp_path: Path) -> None:
+    (tmp_path / "blade_points.csv").write_bytes((FOLDER / "blade_points.csv").read_bytes())
+    path = tmp_path / "part.toml"
+    path.write_text(
+        TEXT + TOOLS + f'[[operation]]\nkind = "blade finish"\ntool = 4\nscallop_mm = 0.01\n{FEEDS}', "utf-8"
+    )
+    (step,) = read_impeller(path).steps
+    assert (step.name, step.way, step.stepover) == ("BLADE_FINISH", Way.ONE_WAY, Stepover(scallop=0.01))
+    assert (step.lead_feed, step.allowance, step.coolant, step.published_minutes) == (200.0, 0.0, "", 0.0)
+
+
+def test_every_mistake_is_told_at_once_with_its_line(tmp_path: Path) -> None:
+    first, second = TOOLS.count("\n"), TOOLS.count("\n") + 6
+    text = TOOLS + '[[operation]]\nkind = "hub finish"\ntool = 1\nstepover_mm = 0.2\nscallop_mm = 0.1\nrpm = "fast"\n'
+    text += (
+        f'[[operation]]\nkind = "blade finish"\ntool = 9\nstepover_mm = 0\nstep_down_mm = 1\n{FEEDS}way = "zigzag"\n'
+    )
+    found = dict(read(tmp_path, text))
+    assert found[first + 3] == "operation[0].tool 1 is a flat mill; hub finish wants ball or taper_ball"
+    assert found[first + 1].startswith("operation[0] needs either stepover_mm or scallop_mm") or (
+        found[first + 1].startswith("operation[0].feed_mm_min is missing")
+    )
+    assert found[first + 6].startswith('operation[0].rpm is "fast"')
+    assert (
+        found[second + 3]
+        == "operation[1].tool 9 is not among the tools; give a [[tool]] of that number; there are 1, 4"
+    )
+    assert found[second + 4].startswith("operation[1].stepover_mm is 0; write")
+    assert found[second + 5].startswith("operation[1].step_down_mm is not a key that is known here")
+    assert found[second + 8].startswith('operation[1].way is "zigzag"')
+
+
+def test_operations_are_told_apart_and_want_tools(tmp_path: Path) -> None:
+    step = f'[[operation]]\nkind = "blade finish"\ntool = 4\nstepover_mm = 0.2\n{FEEDS}'
+    assert read(tmp_path, TOOLS + step + step) == [
+        (TOOLS.count("\n") + 7, "operation[1].name is that of operation[0] too; tell operations apart")
+    ]
+    ((_, what), *_) = read(tmp_path, step)
+    assert "tool" in what
