@@ -1,5 +1,7 @@
 """All steps of the published impeller: every pose of every linked path is clear, by exact distances."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -133,3 +135,19 @@ def test_mistakes_of_a_step_are_told_with_their_line(
     with pytest.raises(InputError, match=message) as told:
         impeller_with(tmp_path_factory.mktemp("wrong"), text)
     assert all(problem.line > 0 for problem in told.value.problems)
+
+
+def test_splitters_are_cut_where_they_stand(tmp_path: Path) -> None:
+    step = STEP.format(kind="root blend", tool=3, stepover=2.5, more='way = "spiral"\ntolerance_mm = 0.05')
+    text = (EXAMPLE / "mixed_flow.toml").read_text(encoding="utf-8").split("\n[[tool]]")[0]
+    (tmp_path / "mixed_flow_points.csv").write_bytes((EXAMPLE / "mixed_flow_points.csv").read_bytes())
+    (tmp_path / "impeller.toml").write_text(text + TOOLS + step, encoding="utf-8")
+    impeller = load_impeller(tmp_path / "impeller.toml")
+    (found,) = step_paths(impeller, None)
+    assert len(found.paths) == 10
+    centres = np.concatenate([path.centre[path.kind == Kind.LINEAR] for path in found.paths])
+    for blade, angle in impeller.blades():
+        gap = blade.distances(rotated(centres, -angle))[0]
+        assert gap.min() > 2.0 - 0.06
+        assert (gap < 2.06).sum() > 100
+    assert impeller.hub.distances(centres)[0].min() > 2.0 - 0.06

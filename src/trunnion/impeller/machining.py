@@ -193,12 +193,14 @@ class _StepMaker:
             return
         own = impeller.blade if impeller.splitter is None else impeller.splitter
         for blade in dict.fromkeys((impeller.blade, own)):
-            angles = [angle for each, angle in impeller.blades() if each is blade]
+            # Splitters are described in the frame of a blade: only where they stand is clear what is around them.
+            first, *rest = (angle for each, angle in impeller.blades() if each is blade)
             if step.kind is StepKind.BLADE_FINISH:
                 wanted = BladeFinish(radius, step.stepover, step.way, step.allowance, chord)
-                yield blade_finish(impeller, blade, wanted), angles
+                family = blade_finish(impeller, blade, wanted)
             else:
-                yield root_blend(impeller, blade, self._root_blend(step, radius, chord)), angles
+                family = root_blend(impeller, blade, self._root_blend(step, radius, chord))
+            yield family.turned(first), [0.0, *(angle - first for angle in rest)]
 
     def _root_blend(self, step: MachiningStep, radius: float, chord: float) -> RootBlend:
         """What is wanted of a root blend: it reaches as far as the balls that went before could not."""

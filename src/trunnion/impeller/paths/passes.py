@@ -86,3 +86,10 @@ class PassFamily:
     def places(self) -> Floats:
         """The parameters (n, k) of all ball centres."""
         return np.concatenate([one.place for one in self.passes])
+
+    def turned(self, angle: float) -> "PassFamily":
+        """The same passes turned about Z by an angle in radians."""
+        cosine, sine = math.cos(angle), math.sin(angle)
+        turn = np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+        passes = tuple(Pass(one.centre @ turn, one.normal @ turn, one.place, one.layer) for one in self.passes)
+        return PassFamily(passes, self.radius, self.way)
