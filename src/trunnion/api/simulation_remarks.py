@@ -3,10 +3,12 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import product
+from typing import Final
 
 import numpy as np
 
 from trunnion.api.simulation_result import file_of_row
+from trunnion.api.simulation_setups import cutting_width
 from trunnion.errors import Problem, Severity, merge_repeated
 from trunnion.machines import Machine
 from trunnion.machines.inverse import slide_positions
@@ -16,8 +18,11 @@ from trunnion.simulation.cutting.sweeps import sideways_exits, unknown_swivels
 from trunnion.simulation.simulator import Setup
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.stock.solids import StockShape
-from trunnion.simulation.tool_deltas import is_told_of_length
+from trunnion.simulation.tool_deltas import SIZES, is_told_of_length
 from trunnion.simulation.tools.profile import ToolShape
+
+#: Sizes that differ by less are the same, mm.
+_SAME: Final = 1e-3
 
 
 def simulation_remarks(setup: Setup, runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]:
@@ -57,11 +62,45 @@ def _foreign_length(run: Run, row: int, number: int, names: Sequence[str]) -> li
     return [Problem(file, line, what, severity=Severity.WARNING)]
 
 
+def _defined_sizes(run: Run, shapes: Mapping[str, ToolShape]) -> Iterator[Problem]:
+    """Sizes that a program gives its tools (TOOL DEF): errors where the tools that cut have others."""
+    for event in run.events:
+        if event.kind != "delta" or not isinstance(event.value, tuple) or event.value[0] not in SIZES:
+            continue
+        kind, value, file = event.value[0], float(event.value[1] or 0.0), run.files[event.file]
+        rows = np.flatnonzero(np.asarray(run.tool) == run.tool[min(event.before_row, len(run) - 1)])
+        name = run.tools[int(run.tool[rows[0]])]
+        shape = shapes.get(name)
+        if kind == SIZES[0]:
+            told = f"TOOL DEF gives tool {name} the length {value:g} mm"
+            if shape is None or not shape.length:
+                yield Problem(file, event.line, f"{told}, which is taken for its own", severity=Severity.WARNING)
+            elif abs(shape.length - value) > _SAME:
+                what = f"{told}, and from tip to gauge point it has {shape.length:g} mm: its tip is not on the path"
+                yield Problem(file, event.line, what, "let both be the same")
+        elif shape is not None and run.state.compensation.column()[rows].any():
+            wide = cutting_width(shape)
+            if abs(0.5 * wide - value) > _SAME:
+                what = f"TOOL DEF gives tool {name} the radius {value:g} mm for radius compensation"
+                yield Problem(file, event.line, f"{what}, and it has {0.5 * wide:g} mm", "let both be the same")
+
+
+def _edges(run: Run) -> Iterator[Problem]:
+    """Cutting edges (Sinumerik: D2) whose offsets nobody knows."""
+    for edge in np.unique(run.edge[run.edge > 1]).tolist():
+        row = int(np.flatnonzero(run.edge == edge)[0])
+        what = f"works with edge D{edge}, whose length is taken for that of the tool"
+        cure = "check that its offsets are those of the tip"
+        yield Problem(file_of_row(run, row), int(run.line[row]), what, cure, Severity.WARNING)
+
+
 def _lengths(runs: Sequence[Run], shapes: Mapping[str, ToolShape]) -> list[Problem]:
     """Cuts without a tool length, or with that of another tool, in programs that select lengths."""
     found: list[Problem] = []
     names = [*shapes, *(name for run in runs for name in run.tools)]
     for run in runs:
+        found += _defined_sizes(run, shapes)
+        found += () if run.uses_length_numbers else _edges(run)
         rows = np.flatnonzero(run.kind != Kind.RAPID)
         edge, tool = run.edge[rows], run.tool[rows]
         unset = -1 if run.uses_length_numbers else 0

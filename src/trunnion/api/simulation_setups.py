@@ -112,7 +112,8 @@ def prepare_setup(
     machine = set_up_machine(machine, given.zero, given.tool_length)
     part = None if given.part is None else _mesh(given.part, "part", remarks, deviation)
     around = listed("fixtures", given.fixtures, TriangleMesh)
-    fixtures = tuple(_mesh(fixture, f"fixture {k}", remarks, deviation) for k, fixture in enumerate(around, 1))
+    named = zip(around, _fixture_names(around), strict=True)
+    fixtures = tuple(_mesh(fixture, name, remarks, deviation) for fixture, name in named)
     programs: list[FilePath | Run] = listed("nc", given.programs, Run)
     if not programs:
         raise wrong_argument("nc", given.programs, "give an NC program")
@@ -169,6 +170,16 @@ def _mesh(mesh: str | Path | TriangleMesh, name: str, remarks: list[Problem], de
         return mesh.named(name)
     check_path(name, mesh)
     return load_mesh(mesh, name=name, closed=True, deviation=deviation, warn=remarks.append)
+
+
+def _fixture_names(fixtures: Sequence[str | Path | TriangleMesh]) -> list[str]:
+    """What findings call fixtures: by their files, and by their numbers where these are the same or there is none."""
+    files = ["" if isinstance(each, TriangleMesh) else Path(each).name for each in fixtures]
+    alone = [name and files.count(name) == 1 for name in files]
+    return [
+        f"fixture {name}" if is_alone else f"fixture {k} {name}".rstrip()
+        for k, (name, is_alone) in enumerate(zip(files, alone, strict=True), 1)
+    ]
 
 
 def _libraries(libraries: Sequence[FilePath], unit: str | None) -> list[ToolLibrary]:

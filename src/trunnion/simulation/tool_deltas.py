@@ -23,6 +23,9 @@ from trunnion.model.run import Run, RunEvent
 _LENGTHS: Final = frozenset({"DL", "TOFFL", "TOFFLR"})
 _RADII: Final = frozenset({"DR", "DR2", "TOFFR", "TOFFLR"})
 
+#: Sizes that Klartext gives a tool, in place of those of the tool table: they add nothing.
+SIZES: Final = ("TOOL DEF L", "TOOL DEF R")
+
 
 @dataclass(frozen=True, slots=True)
 class _Delta:
@@ -49,12 +52,13 @@ def as_the_tool_goes(run: Run) -> tuple[Run, list[Problem]]:
 
 
 def is_told_of_length(run: Run, line: int, text: str) -> bool:
-    """Whether a reader's warning tells of a length that is simulated here."""
-    return any(
-        event.kind == "delta" and event.line == line and isinstance(event.value, tuple)
-        and event.value[0] in _LENGTHS and text.startswith(f"{event.value[0]} adds ")
-        for event in run.events
-    )  # fmt: skip
+    """Whether a reader's warning tells of a length that is simulated here, or of sizes that are compared."""
+    told = [
+        str(event.value[0]) for event in run.events
+        if event.kind == "delta" and event.line == line and isinstance(event.value, tuple)
+    ]  # fmt: skip
+    lengths = any(name in _LENGTHS and text.startswith(f"{name} adds ") for name in told)
+    return lengths or any(name in SIZES and text.startswith("TOOL DEF gives ") for name in told)
 
 
 def _deltas(run: Run) -> Iterator[_Delta]:
@@ -70,7 +74,7 @@ def _deltas(run: Run) -> Iterator[_Delta]:
     for event in run.events:
         if event.kind == "tool_change":
             yield from ended(list(held), event.before_row)
-        elif event.kind == "delta" and isinstance(event.value, tuple):
+        elif event.kind == "delta" and isinstance(event.value, tuple) and event.value[0] not in SIZES:
             name, value = str(event.value[0]), float(event.value[1] or 0.0)
             yield from ended([name] if name in held else [], event.before_row)
             held[name] = event, value

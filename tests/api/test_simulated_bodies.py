@@ -1,0 +1,138 @@
+"""``trunnion.simulate``: fixtures, the machine's bodies, and where they are."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+import trunnion
+from tests.support.simulating import SLOT, cuboid, simulate
+from trunnion.simulation.meshes import save_mesh
+
+
+def near_stock(found: trunnion.SimulationResult) -> list[tuple[str, int, float]]:
+    return [(one.between[0], one.block, one.distance) for one in found.near if one.between[1] == "stock"]
+
+
+def test_shank_and_holder_near_the_stock_are_told(tmp_path: Path) -> None:
+    over = "1=flat:10,length=6.5,flutes=6.5,holder=40x50"  # 1.5 mm above the top
+    found = simulate(tmp_path, SLOT, tools=[over], near=2.0)
+    ((body, block, distance),) = near_stock(found)
+    assert (body, block) == ("holder of tool 1", 60)
+    assert distance == pytest.approx(1.5, abs=0.06)
+    assert found.passed
+    (one,) = [each for each in found.near if each.between[1] == "stock"]
+    assert one.place[2] == pytest.approx(0.0, abs=0.6)
+    assert not near_stock(simulate(tmp_path, SLOT, tools=[over], near=1.4))
+    again = SLOT.replace("Z-5", "Z-2.5").replace("N70", "G0 Z20\nG0 X-20\nG0 Z-5\nN65 G1 X70\nN70")
+    thick = "1=flat:10,length=60,flutes=3,shank=8"  # in the slot, 1 mm from its walls
+    beside = simulate(tmp_path, again, tools=[thick], near=2.0)
+    assert beside.passed
+    *_, (body, block, distance) = near_stock(beside)
+    assert (body, block) == ("shank of tool 1", 65)
+    assert distance == pytest.approx(1.0, abs=0.06)
+    touching = simulate(tmp_path, SLOT, tools=["1=flat:10,length=4,flutes=4,holder=40x50"], near=2.0)
+    assert {one.kind for one in touching.findings} == {"holder into stock"}
+    assert not [one for one in near_stock(touching) if one[1] == 60]
+
+
+def test_a_fixture_is_hit_and_come_near_to(tmp_path: Path) -> None:
+    clamp = cuboid((55, -5, -20), (65, 5, -6))
+    beside = simulate(tmp_path, SLOT, fixtures=[clamp], near=2.0)
+    assert beside.passed
+    assert [(one.block, round(one.distance, 3)) for one in beside.near] == [(60, 1.0)]
+    assert beside.near[0].between == ("fixture 1", "cutter of 1")
+    higher = cuboid((55, -5, -20), (65, 5, -3))
+    found = simulate(tmp_path, SLOT, fixtures=higher, stop_at="first")
+    (finding,) = found.findings
+    assert (finding.kind, finding.block, finding.between) == ("collision", 60, ("fixture 1", "cutter of 1"))
+    assert [one.findings for one in found.operations] == [1]
+    assert found.pairs == 3  # with cutter, shank and holder
+    later = SLOT.replace("N70 G0 Z20", "N70 G0 X-20\nN80 G0 Y15\nN90 G0 X70\nN95 G0 Z20")
+    stopped = simulate(tmp_path, later, fixtures=higher, stop_at="first")
+    assert [one.block for one in stopped.findings] == [60]
+    assert 90 in {one.block for one in simulate(tmp_path, later, fixtures=higher).findings}
+    (until,) = simulate(tmp_path, later.replace("N70 G0 X-20", "N70 Z-8"), fixtures=higher, until=70).findings
+    assert (until.block, until.last_block) == (60, 60)  # what comes later is not simulated, however deep it goes
+    assert finding.depth == pytest.approx(2.0, abs=0.1)
+    assert found.remarks[-1].what.startswith("the bodies of the machine are not checked")
+
+
+def test_the_bodies_of_the_machine_are_checked_where_it_is_known_where_they_are(tmp_path: Path) -> None:
+    names = {body.name for body in trunnion.load_machine("xyzac_trt").bodies}
+    unknown = simulate(tmp_path, SLOT)
+    (tmp_path / "own.toml").write_text('extends = "xyzac_trt"\n[spindle]\ngauge_point_mm = [0, 0, 0]\n')
+    sunk = simulate(tmp_path, SLOT, zero="0,0,-60", machine=tmp_path / "own.toml")
+    told = "the bodies of the machine are not checked"
+    assert [told in remark.what for remark in unknown.remarks] == [True]
+    assert not [remark for remark in sunk.remarks if told in remark.what]
+    assert {one.between[0] for one in sunk.findings if one.kind == "collision"} & names
+    unstated = simulate(tmp_path, SLOT, zero="0,0,-60")
+    assert not {one.between[0] for one in unstated.findings if one.kind == "collision"} & names
+    assert any("has no spindle.gauge_point_mm" in remark.what for remark in unstated.remarks)
+
+
+@pytest.mark.parametrize(("given", "missing"), [({}, "workpiece zero"), ({"zero": "0,0,0"}, "tool length of the run")])
+def test_machine_positions_that_cannot_be_placed_are_told(tmp_path: Path, given: dict[str, str], missing: str) -> None:
+    program = SLOT.replace("N70 G0 Z20\n", "N70 G0 Z20\nG53 G0 Z0\n")
+    told = f"retracts along the tool axis: the {missing} is not known"
+    assert any(told in remark.what for remark in simulate(tmp_path, program, **given).remarks)
+    placed = simulate(tmp_path, program, zero="0,0,0", tool_length="110")
+    assert not any("retracts along the tool axis" in remark.what for remark in placed.remarks)
+
+
+def test_a_stock_outside_of_the_travel_is_told(tmp_path: Path) -> None:
+    machine = trunnion.load_machine("xyzac_trt")
+    low = next(axis.low for axis in machine.axes if axis.name == "X")
+    told = "beyond the travel of X: its corners need"
+    inside = simulate(tmp_path, SLOT, zero=f"{low},0,0")
+    assert not any(told in remark.what for remark in inside.remarks)
+    outside = simulate(tmp_path, SLOT, zero=f"{low - 7.0},0,0")
+    (remark,) = (each for each in outside.remarks if told in each.what)
+    assert "reaches 7.000 mm" in remark.what
+    assert f"need {low - 7.0:.3f} to {low + 43.0:.3f}" in remark.what
+
+
+def test_the_time_of_a_finding_is_that_of_its_place(tmp_path: Path) -> None:
+    (standing,) = simulate(tmp_path, SLOT.replace("S1000 M3", "S1000")).findings
+    whole = simulate(tmp_path, SLOT).operations[0].seconds
+    x, y, _ = standing.place
+    there = (x - math.sqrt(25.0 - y * y) + 20.0) / 90.0  # of the block, when the tool of 10 mm first covers the place
+    begin = standing.seconds - there * 90.0 / 500.0 * 60.0
+    assert 0.0 < begin < whole - 90.0 / 500.0 * 60.0  # there are rapids before and after
+    assert there < 0.8
+    clamp = cuboid((55, -5, -20), (65, 5, -3))
+    hit = next(one for one in simulate(tmp_path, SLOT, fixtures=clamp).findings if one.kind == "collision")
+    assert begin + 0.7 * 10.8 < hit.seconds < begin + 10.8
+
+
+def test_a_machine_position_across_the_tool_in_the_stock_is_an_error(tmp_path: Path) -> None:
+    program = SLOT.replace("N70 G0 Z20", "N65 G1 X20\nN70 G53 G0 X20 Y60\nN80 G53 G0 Z0")
+    found = simulate(tmp_path, program)
+    assert not found.passed
+    assert [one.line for one in found.remarks if "across the tool axis" in one.what] == [9]
+    assert simulate(tmp_path, SLOT.replace("N70 G0 Z20", "N70 G53 G0 Z0\nN80 G53 G0 X0 Y0")).passed
+    known = simulate(tmp_path, program, zero="0,0,-100", tool_length=60)
+    assert ("rapid through stock", 70) in {(one.kind, one.block) for one in known.findings}
+
+
+def test_a_swivel_beside_the_stock_needs_the_zero(tmp_path: Path) -> None:
+    program = SLOT.replace("N70 G0 Z20", "N70 G0 Z10\nN75 G0 A30\nN78 G0 A0\nN80 G0 Z20")
+    found = simulate(tmp_path, program)
+    assert [one.line for one in found.remarks if "turns rotary axes without TCP" in one.what] == [9]
+    assert not found.passed
+    assert not found.findings  # none is invented
+    home = SLOT.replace("N70 G0 Z20", "N70 G53 G0 Z0\nN75 G0 A30\nN78 G0 A0")
+    assert simulate(tmp_path, home).passed
+
+
+def test_fixtures_are_called_by_their_files(tmp_path: Path) -> None:
+    clamp = cuboid((55, -5, -20), (65, 5, -3))
+    (tmp_path / "other").mkdir()
+    for name in ("vice.stl", "jaw.stl", "other/jaw.stl"):
+        save_mesh(clamp, tmp_path / name)
+    files = [tmp_path / name for name in ("vice.stl", "jaw.stl", "other/jaw.stl")]
+    found = simulate(tmp_path, SLOT, fixtures=[*files, clamp], cell=1.0)
+    assert {one.between[0] for one in found.findings} == {
+        "fixture vice.stl", "fixture 2 jaw.stl", "fixture 3 jaw.stl", "fixture 4",
+    }  # fmt: skip
