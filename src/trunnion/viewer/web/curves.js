@@ -17,7 +17,9 @@ export class Curves {
     this.cursor = 0;
     /** times of findings @type {number[]} */
     this.marks = [];
-    this.background = null;
+    this.pointer = document.createElement("div");
+    this.pointer.className = "pointer";
+    canvas.after(this.pointer);
     new ResizeObserver(() => this.redraw()).observe(canvas);
     const seek = (/** @type {PointerEvent} */ event) => {
       const box = canvas.getBoundingClientRect();
@@ -48,7 +50,7 @@ export class Curves {
       const first = Math.min(Math.max(time - width / 2, 0), Math.max(this.program.end - width, 0));
       this.range = [first, first + width];
       this.redraw();
-    } else this.#drawCursor();
+    } else this.#placePointer();
   }
 
   /** Least and greatest value for each pixel across. @param {(piece: number) => number} at @param {number} width */
@@ -117,21 +119,13 @@ export class Curves {
       if (time < this.range[0] || time > this.range[1]) continue;
       pen.fillRect(LEFT + ((time - this.range[0]) / (this.range[1] - this.range[0])) * across - 1, 0, 3, GAP);
     }
-    this.background = pen.getImageData(0, 0, this.canvas.width, this.canvas.height);
-    this.#drawCursor();
+    this.#placePointer();
   }
 
-  #drawCursor() {
-    if (!this.background) return;
-    const pen = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d"));
-    pen.putImageData(this.background, 0, 0);
-    const { clientWidth: width, clientHeight: height } = this.canvas;
+  /** Move the line at the cursor: an element of its own, so that nothing is drawn anew. */
+  #placePointer() {
     const share = (this.cursor - this.range[0]) / (this.range[1] - this.range[0]);
-    const x = LEFT + share * (width - LEFT - RIGHT);
-    pen.strokeStyle = getComputedStyle(this.canvas).getPropertyValue("--hold");
-    pen.lineWidth = 1.5;
-    pen.beginPath(); pen.moveTo(x, 0); pen.lineTo(x, height); pen.stroke();
-    pen.lineWidth = 1;
+    this.pointer.style.transform = `translateX(${LEFT + share * (this.canvas.clientWidth - LEFT - RIGHT)}px)`;
   }
 
   /** All curves, one line for each piece. */
