@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 
 import uvicorn
-from playwright.sync_api import Page, sync_playwright
+from playwright.sync_api import Page, ViewportSize, sync_playwright
 
 import trunnion
 from make_cls import write
@@ -21,7 +21,7 @@ from trunnion.viewer.server import listen, view_application
 
 BLOCKS = 1_000_000
 MACHINE = "yl569"
-SIZE = {"width": 1280, "height": 720}
+SIZE: ViewportSize = {"width": 1280, "height": 720}
 PICTURES = 60
 ARGUMENTS = [
     "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
