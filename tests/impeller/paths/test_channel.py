@@ -4,10 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 
+from tests.support.impellers import mixed_flow, mixed_flow_cases, nearest_on_path
 from trunnion.arrays import Floats
 from trunnion.errors import InputError
-from trunnion.impeller.definition import read_impeller
+from trunnion.impeller.definition import ImpellerDefinition, read_impeller
 from trunnion.impeller.impeller import Impeller, build_impeller, rotated
 from trunnion.impeller.paths.channel import channels_of
 from trunnion.impeller.paths.channel_roughing import channel_roughing
@@ -94,6 +97,84 @@ def test_passes_are_dense_without_doubles_and_places_are_within_0_and_1(
     np.testing.assert_allclose(places.max(axis=0)[:2], 1.0, atol=1e-12)
     layers = [one.layer for one in family.passes]
     assert layers == sorted(layers)
+
+
+@settings(max_examples=6, deadline=None)
+@given(mixed_flow_cases(), st.sampled_from([0.8, 1.6]), st.booleans())
+def test_nothing_is_cut_and_nothing_is_left(
+    case: tuple[ImpellerDefinition, float], step: float, is_roughing: bool
+) -> None:
+    """Each ball that keeps the distances is near one of the path; all balls of the path keep them."""
+    definition, _ = case
+    try:
+        impeller = build_impeller(definition)
+    except InputError:
+        assume(False)
+    radius, allowance, down = 1.05 * definition.fillet, 0.3 * is_roughing, 2.5
+    families = []
+    for channel in channels_of(impeller):
+        if is_roughing:
+            both = {"blade_allowance": allowance, "hub_allowance": allowance}
+            found = channel_roughing(channel, radius, Stepover(distance=step), down, tolerance=0.02, **both)
+        else:
+            found = hub_finish(channel, radius, Stepover(distance=step), tolerance=0.02)
+        points = with_middles(found)
+        assert from_blades(impeller, points).min() >= radius + allowance - 0.02
+        assert impeller.hub.distances(points)[0].min() >= radius + allowance - 0.02
+        families.append(found)
+    balls = possible_balls(impeller, radius, allowance, on_hub=not is_roughing)
+    pitch = 2.0 * np.pi / definition.number
+    turned_back = [rotated(balls, turn * pitch) for turn in (-1, 0, 1)]
+    off = np.min([nearest_on_path(one, balls, 0.2) for one in families for balls in turned_back], axis=0)
+    # On the hub balls are farther apart than where they touch, and in front of an edge a little is left.
+    size = np.hypot(balls[:, 0], balls[:, 1])
+    apart = 0.5 * step * size / (size - radius - allowance)
+    in_front = (radius + allowance + 0.5 * definition.hub_thickness) / 8.0
+    assert (off <= np.hypot(apart, 0.5 * down * is_roughing) + in_front + 0.02).all()
+
+
+def possible_balls(impeller: Impeller, radius: float, allowance: float, on_hub: bool) -> Floats:
+    """Centres (k, 3) of balls in a channel and the stock that keep allowances; those on the hub touch it."""
+    rng, count = np.random.default_rng(9), 20_000
+    stock, reach = impeller.definition.stock, radius + allowance
+    size = np.sqrt(rng.uniform(0.05, 1.0, count)) * stock.diameter / 2.0
+    angle = rng.uniform(0.0, 2.0 * np.pi / impeller.definition.number, count)
+    height = rng.uniform(stock.bottom, stock.top, count)
+    points = np.column_stack((size * np.cos(angle), size * np.sin(angle), height))
+    distance, normal, _ = impeller.hub.distances(points)
+    if on_hub:
+        points, distance, normal = (one[np.abs(distance - reach) < 4.0] for one in (points, distance, normal))
+        for _ in range(20):
+            points = points + (reach - distance)[:, None] * normal
+            distance, normal, _ = impeller.hub.distances(points)
+    touched = points - radius * normal
+    inside = (np.hypot(touched[:, 0], touched[:, 1]) < stock.diameter / 2.0) & (touched[:, 2] < stock.top)
+    inside &= (
+        (impeller.shroud.distances(points)[0] < radius) & (distance >= reach - 1e-9) & (touched[:, 2] > stock.bottom)
+    )
+    if not on_hub:
+        inside &= (np.hypot(points[:, 0], points[:, 1]) < stock.diameter / 2.0) & (points[:, 2] < stock.top)
+    points = points[inside]
+    return points[from_blades(impeller, points) >= reach]
+
+
+def test_a_scallop_decides_how_far_passes_are_apart(published: Impeller) -> None:
+    (channel,) = channels_of(published)
+    coarse, fine = (hub_finish(channel, 3.0, Stepover(scallop=one), tolerance=0.05) for one in (0.04, 0.01))
+    assert len(fine.passes) == pytest.approx(2 * len(coarse.passes), rel=0.15)
+
+
+def test_with_splitters_there_are_two_channels_that_meet_at_the_splitter() -> None:
+    impeller = build_impeller(mixed_flow(number=4))
+    first, second = channels_of(impeller)
+    assert [first.start, first.end, second.end] == pytest.approx([0.0, np.pi / 4.0, np.pi / 2.0])
+    assert first.end == second.start
+    splitter = impeller.splitter
+    assert splitter is not None
+    ball = np.array([[52.0, 18.0, 14.0]])
+    expected = splitter.distances(rotated(ball, -np.pi / 4.0))[0]
+    np.testing.assert_allclose(first.distance_behind(ball), expected)
+    np.testing.assert_allclose(second.distance_before(ball), expected)
 
 
 def test_a_channel_too_narrow_is_refused_with_the_place_and_the_largest_ball(published: Impeller) -> None:

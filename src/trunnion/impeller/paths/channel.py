@@ -5,8 +5,8 @@ Out:    how far points of the channel are from what is left and right of it; how
 Units:  mm; angles in radians about Z.
 
 A point of a channel is that of the mean surface at u and v, turned about Z by an angle from ``start`` to ``end``. All
-blades have the same mean surface, so that those two angles are the mean surfaces of the two blades, and where a blade
-has not begun yet, or has ended, the line halfway between this channel and the next one.
+blades have the same mean surface, so that those two angles are the mean surfaces of the two blades. Where a blade has
+not begun yet, or has ended, channels part at the angle at which the ball would first meet its edge.
 """
 
 from collections.abc import Callable
@@ -30,8 +30,10 @@ _MIDDLE: Final = 1e-2
 
 _STEPS: Final = 60
 
-#: Where the line from a blade to the middle begins clear of it, it is looked at in so many places.
-_PLACES: Final = 16
+#: Where a blade is not on its mean surface, it is searched at so many angles, up to this share of the channel on either
+#: side.
+_PLACES: Final = 33
+_WINDOW: Final = 0.35
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,7 +78,7 @@ class Channel:
         Parameters
         ----------
         places : (k, 3) float64
-            Points of the mean surface, which are turned from ``start`` to ``end``.
+            Points of the mean surface from inlet to outlet, which are turned from ``start`` to ``end``.
         wanted
             mm. Where ``room`` is less, the ball does not fit, and both angles are that of the middle.
         """
@@ -87,8 +89,8 @@ class Channel:
         rows = np.arange(count)
         room = np.minimum(before(rows, middle), behind(rows, -middle)) + wanted
         fits = room >= wanted
-        low = _root(before, _last_inside(before, start, middle), middle, TOUCH)
-        high = -_root(behind, _last_inside(behind, -end, -middle), -middle, TOUCH)
+        low = _root(before, np.minimum(self._parting(self.before[0], places, wanted), middle), middle, TOUCH)
+        high = -_root(behind, -np.maximum(self._parting(self.behind[0], places, wanted), middle), -middle, TOUCH)
         return Extent(np.where(fits, low, middle), np.where(fits, high, middle), middle, room)
 
     def narrowed(self, places: Floats, wanted: float, extent: Extent, rows: Ints) -> Extent:
@@ -98,6 +100,26 @@ class Channel:
         low[rows] = _root(before, low[rows], extent.middle[rows], TOUCH)
         high[rows] = -_root(behind, -high[rows], -extent.middle[rows], TOUCH)
         return replace(extent, low=low, high=high)
+
+    def _parting(self, bound: tuple[Blade, float], places: Floats, wanted: float) -> Floats:
+        """Angles (k,) that part this channel from the next one, (k, 3) in their order from inlet to outlet.
+
+        Where a ball would meet the blade between them, one at which it does. In front of the blade that of the nearest
+        such place, so that passes come straight on to where the ways round the edge part: a leaning edge is not in
+        front of its mean surface.
+        """
+        angle = np.full(len(places), bound[1])
+        gap = _nearest((bound,), turned(places, angle)) - wanted
+        rows = np.flatnonzero(gap >= 0.0)
+        for share in np.linspace(-_WINDOW, _WINDOW, _PLACES):
+            tried = np.full(len(rows), bound[1] + share * (self.end - self.start))
+            found = _nearest((bound,), turned(places[rows], tried)) - wanted
+            nearer = found < np.minimum(gap[rows], 0.0)
+            angle[rows[nearer]], gap[rows[nearer]] = tried[nearer], found[nearer]
+        meets = np.flatnonzero(gap < 0.0)
+        if not len(meets):
+            return angle
+        return np.asarray(angle[meets[np.abs(np.arange(len(places))[:, None] - meets).argmin(axis=1)]])
 
     def _beyond(self, places: Floats, wanted: float) -> tuple[_Function, _Function]:
         """By how much places are farther away than wanted from what is before, and what is behind, turned by −angle."""
@@ -136,20 +158,6 @@ def _nearest(blades: tuple[tuple[Blade, float], ...], points: Floats) -> Floats:
     found = np.full(len(points), np.inf)
     for blade, angle in blades:
         found = blade.nearer(rotated(points, -angle), found)
-    return found
-
-
-def _last_inside(function: _Function, low: Floats, high: Floats) -> Floats:
-    """The last of some angles from ``low`` to ``high`` at which a function is below 0, or ``low``, (k,).
-
-    In front of a blade, the line from its mean surface to the middle may come near it again.
-    """
-    found = low.copy()
-    rows = np.flatnonzero(function(np.arange(len(low)), low) >= 0.0)
-    for share in np.linspace(0.0, 1.0, _PLACES + 1)[1:-1]:
-        angle = low[rows] + share * (high[rows] - low[rows])
-        inside = function(rows, angle) < 0.0
-        found[rows[inside]] = angle[inside]
     return found
 
 

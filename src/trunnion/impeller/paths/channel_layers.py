@@ -22,7 +22,11 @@ from trunnion.impeller.paths.channel_sheets import Ball, Sheet, problem, sheets_
 _SWINGS: Final = 3
 
 #: Share of the tolerance that chords between nodes take, where no path bends more sharply than the ball.
-_SHARE: Final = 0.125
+_SHARE: Final = 0.05
+
+#: The ball swings in before an edge by no more than so many mm across on one along: what is left in front of the edge,
+#: between there and the ball that touches it, is an eighth of their distance long.
+_SLOPE: Final = 2.0
 
 #: Values that would be raised by less stay as they are.
 _EASED: Final = 1e-12
@@ -113,7 +117,7 @@ def _count(sheet: Sheet, ball: Ball) -> int:
 
 
 def _swung(place: Floats, extent: Extent) -> Extent:
-    """Angles that change by no more than 45 degrees to the path: so the ball swings in before an edge.
+    """Angles that change by no more than a slope to the path: so the ball swings in before an edge.
 
     Where a blade begins, the place of contact would turn off at a right angle to the line in front of it.
     """
@@ -121,7 +125,7 @@ def _swung(place: Floats, extent: Extent) -> Extent:
     radius = np.maximum(np.hypot(place[:, 0], place[:, 1]), 1e-9)
     around = (place[:, 0] * step[:, 1] - place[:, 1] * step[:, 0]) / radius
     square = np.einsum("ij,ij->i", step, step)
-    most = square / np.maximum(radius * np.sqrt(np.maximum(square - around**2, 0.0)), 1e-9)
+    most = _SLOPE * square / np.maximum(radius * np.sqrt(np.maximum(square - around**2, 0.0)), 1e-9)
     low = np.minimum(eased(extent.low, most), extent.middle)
     high = np.maximum(-eased(-extent.high, most), extent.middle)
     return replace(extent, low=low, high=high)

@@ -27,7 +27,7 @@ from trunnion.jit import inner, kernel
 
 #: Share of the tolerance within which points are left out, and the longest chord that it may make, mm: tool axes turn
 #: with the place.
-_SHARE: Final = 0.4
+_SHARE: Final = 0.3
 _LONGEST: Final = 2.0
 
 
@@ -165,7 +165,7 @@ def _sign_outward(layer: Layer) -> Floats:
 def _steps(layer: Layer, radius: float, stepover: Stepover, below: float) -> Floats:
     """How many step-overs (n,) wide a layer is at its nodes, at right angles to the passes."""
     found = []
-    for share in (0.0, 1.0):
+    for share in (0.0, 0.5, 1.0):
         centre = layer.across(share)
         normal = turned(layer.normal, layer.low + share * (layer.high - layer.low))
         point = centre - below * normal
@@ -185,7 +185,7 @@ def _steps(layer: Layer, radius: float, stepover: Stepover, below: float) -> Flo
         wide = np.maximum((layer.high - layer.low) * size * np.sqrt(1.0 - sine), 1e-9)
         # A pass in the middle moves across by half of what the width changes: by no more than it goes along.
         found.append(np.exp(eased(np.log(wide / most), 2.0 * np.sqrt(square) / wide)))
-    return np.asarray(np.maximum(found[0], found[1]))
+    return np.asarray(np.maximum.reduce(found))
 
 
 def _pattern(steps: Floats) -> _Pattern:
