@@ -113,6 +113,20 @@ def test_one_turn_of_the_part_is_the_same_for_all_blades(coarse: trunnion.Impell
         np.testing.assert_allclose(other.moves.tip[other.moves.phase == Phase.CUT], turned, atol=2e-5)
 
 
+def test_the_simulation_finds_no_gouge_and_no_rapid_through_stock(coarse: trunnion.ImpellerCut) -> None:
+    run = coarse.result.run
+    assert run is not None
+    found = trunnion.simulate(
+        run, machine="yl569", stock="cylinder:90,35", cell=1.0,
+        part=trunnion.model_impeller(coarse.impeller, tolerance=0.05).mesh,
+        tools=[tool.shape() for tool in coarse.impeller.definition.tools],
+    )  # fmt: skip
+    # Without channel roughing, the hub's finish meets solid stock above its flutes.
+    assert {finding.kind for finding in found.findings} <= {"shank into stock", "holder into stock"}
+    assert found.gouge is not None
+    assert found.gouge.largest <= 0.1
+
+
 def test_directions_are_reachable_within_the_travel_of_the_rotary_axes() -> None:
     reachable = reachable_axes(trunnion.load_machine("yl569"))
     tilt = np.radians([0.0, 30.0, 99.9, 100.1, 170.0])

@@ -17,7 +17,7 @@ from trunnion.api.observer import SILENT, Observer
 from trunnion.api.post_result import PostResult
 from trunnion.api.posting import post_toolpaths
 from trunnion.api.reading import FilePath, MachineLike, as_machine, read_cl
-from trunnion.api.settings import Settings
+from trunnion.api.settings import Settings, SettingValue
 from trunnion.api.simulating import simulate
 from trunnion.api.simulation_result import SimulationResult
 from trunnion.api.targets import open_target
@@ -117,7 +117,8 @@ def cut_impeller(
     operations
         Names of operations, to make these only; by default all.
     settings
-        As for ``trunnion.post``. ``programs`` is ``operations`` where the control has subprograms.
+        As for ``trunnion.post``. ``programs`` is ``operations`` where the control has subprograms, and ``mode`` is
+        ``tcp`` where it has TCP.
     cell
         Width in mm of the cells in which the program is simulated, and what it leaves compared with the model; the
         folder gets the report of that and a picture. None: it is not simulated.
@@ -152,8 +153,12 @@ def cut_impeller(
     chosen = _chosen(found, operations)
     loaded = as_machine(machine)
     control = load_control(loaded.control)
-    divided = {} if control.subprograms is None else {"programs": "operations"}
-    job = prepare(loaded, {"title": definition.name, **divided, **(settings or {})}, columns=True)
+    own: dict[str, SettingValue] = {"title": definition.name}
+    if control.subprograms is not None:
+        own["programs"] = "operations"
+    if control.tcp:
+        own["mode"] = "tcp"  # links are proven clear as straight lines, which a way through home and a plane is not
+    job = prepare(loaded, {**own, **(settings or {})}, columns=True)
     folder = _folder(output)
     stem = _file_stem(definition.name)
     report = folder / f"{stem}.html"
