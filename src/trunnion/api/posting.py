@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from trunnion.api import kernels
 from trunnion.api.arguments import check_observer, check_paths
 from trunnion.api.expectation import Expectation, expectation
+from trunnion.api.forcing import Proof, Untold, write_forced
 from trunnion.api.input_files import cl_files, definition_files
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.machining_times import operation_times, prints_times, write_times
@@ -24,7 +25,6 @@ from trunnion.api.reports import add_report, check_report_name, write_refusal
 from trunnion.api.settings import Settings
 from trunnion.api.targets import OutputLike, Target, open_target
 from trunnion.api.writing import read_back_while_writing, write
-from trunnion.controls.vocabulary import FORCED_NOTICE
 from trunnion.errors import Problem, Severity, TrunnionError
 from trunnion.files import file_on_disk
 from trunnion.jit import compile_ahead
@@ -34,7 +34,6 @@ from trunnion.verification import Verification, verify, without_columns
 
 if TYPE_CHECKING:  # imported where a program is simulated: others start sooner
     from trunnion.api.posted_simulation import SimulationLike
-    from trunnion.api.simulation_result import SimulationResult
 
 
 def post(
@@ -180,30 +179,35 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
             write_refusal(error.problems, job.machine, target.name, job.report)
         raise
     columns = job.columns or program.has_time_tokens
-    verification = _prove(run.result(), toolpaths, expected, target, columns=columns)
+
+    def prove(run: Run | None) -> Proof:
+        verification = _prove(run, toolpaths, expected, target, columns=columns)
+        # What may get notices in its head is told when lines are those of the file that stays.
+        quiet = Untold(observer) if job.force else observer
+        return _with_simulation(job, run, target.name, toolpaths, verification, quiet)
+
+    proof = prove(run.result())
+    if job.force and proof.failed:
+        proof = write_forced(program, proof, prove, job, target, subprograms)
+    verification, simulated = proof.verification, proof.simulation
     times = operation_times(program, verification) if program.has_time_tokens else []
     if verification is not None and not job.columns:
         verification = without_columns(verification)
     if verification is None:
         problems.append(_nothing_checked(job, target))
         observer.problems(problems[-1:])
-    simulated = None
-    if job.simulation is not None:
-        simulated, verification = _simulate(job, run.result(), target.name, toolpaths, verification, observer)
+    if simulated is not None:
+        if job.force:
+            observer.problems(simulated.remarks)
         problems += [remark for remark in simulated.remarks if remark.severity is Severity.WARNING]
     if verification is not None:
         observer.verified(verification)
     remarks = [remark for toolpath in toolpaths for remark in toolpath.remarks]
     result = PostResult(tuple(toolpaths), planned, verification, (*remarks, *problems), simulation=simulated)
-    failed = [check for check in result.checks if not check.passed]
-    if failed and not job.force:
+    if proof.failed and not job.force:
         if job.report is not None:
             result.write_report(job.report)
         raise _proof_failed(result)
-    if failed:
-        notices = [f"{FORCED_NOTICE}, written by --force: {check.title}: {check.summary}" for check in failed]
-        target.files.restart()
-        write(replace(program, notices=[*program.notices, *notices]), target.files.main, subprograms=subprograms)
     if program.has_time_tokens:
         write_times(target.files, program, times)
     if target.report is not None and verification is not None:
@@ -212,22 +216,23 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
     return replace(result, output=target.path, subprograms=target.subprograms, _memory=target.memory)
 
 
-def _simulate(
+def _with_simulation(
     job: PostJob,
     run: Run | None,
     name: str,
     toolpaths: Sequence[Toolpath],
     found: Verification | None,
     observer: Observer,
-) -> "tuple[SimulationResult, Verification | None]":
-    """What the program cuts and hits, and its proof with these checks."""
+) -> Proof:
+    """The proof of a program with what it cuts and hits, if that is asked for."""
+    if job.simulation is None:
+        return Proof(found, None)
     from trunnion.api.posted_simulation import simulate_posted, simulation_checks
 
-    assert job.simulation is not None
     simulated = simulate_posted(job.simulation, run, name, toolpaths, observer)
     if found is not None:
         found = replace(found, checks=(*found.checks, *simulation_checks(simulated)))
-    return simulated, found
+    return Proof(found, simulated)
 
 
 def _prove(
