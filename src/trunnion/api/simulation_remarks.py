@@ -16,10 +16,12 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.simulation.cutting.sweeps import sideways_exits, unknown_swivels
 from trunnion.simulation.simulator import Setup
+from trunnion.simulation.stated_tips import StatedTips
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.stock.solids import StockShape
 from trunnion.simulation.tool_deltas import SIZES, is_told_of_length
 from trunnion.simulation.tools.profile import ToolShape
+from trunnion.wording import counted
 
 #: Sizes that differ by less are the same, mm.
 _SAME: Final = 1e-3
@@ -160,12 +162,30 @@ def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]
             what = "radius compensation is on: the programmed path is taken for that of the tool's centre"
             cure = "compensation for wear is simulated as it should be; a programmed contour is not"
             found.append(Problem(file_of_row(run, row), int(run.line[row]), what, cure, Severity.WARNING))
+        found += _unjudged(run)
         missing = "workpiece zero" if run.machine.workpiece_zero is None else "tool length of the run"
         is_placed = run.machine.workpiece_zero is not None and run.machine.tool_length is not None
         if not is_placed and bool(run.state.machine_frame.values.any()):
             what = f"machine positions are taken as retracts along the tool axis: the {missing} is not known"
             cure = "give zero and tool_length"
             found.append(Problem(run.files[0], 0, what, cure, Severity.WARNING))
+    return found
+
+
+def _unjudged(run: Run) -> list[Problem]:
+    """Motions with a coordinate that no block has stated: they are neither cut nor judged at an invented place."""
+    tips, found = StatedTips.of(run), []
+    if len(tips.lost_feeds):
+        what = f"{counted(len(tips.lost_feeds), 'block')} at feed, from here on, where nobody knows where the tool is"
+        cure = "give zero and tool_length, or state X, Y and Z in workpiece coordinates before"
+        row = int(tips.lost_feeds[0])
+        found.append(Problem(file_of_row(run, row), int(run.line[row]), f"{what}: they are not cut", cure))
+    if len(tips.unjudged) > len(tips.lost_feeds):
+        row = int(np.setdiff1d(tips.unjudged, tips.lost_feeds)[0])
+        count = len(tips.unjudged) - len(tips.lost_feeds)
+        what = f"{counted(count, 'motion')} before all coordinates of the tool are stated, from here on: not judged"
+        cure = "give zero and tool_length"
+        found.append(Problem(file_of_row(run, row), int(run.line[row]), what, cure, Severity.WARNING))
     return found
 
 

@@ -180,6 +180,7 @@ class ModalState:
     """Values that change seldom, as columns stored by their changes; ``Run`` has whole columns of the same names.
 
     xyz_is_tip  ``Run.xyz`` is the tool tip, not the slide positions
+    plane       the row of ``Run.planes`` in whose coordinates words are; -1: in none of them
     compensation_plane  where radius compensation is on, the row of ``Run.compensation_planes``; -1: across the tool
     radius      the number by which radius compensation takes the radius (D); -1: it is that of the tool, or of the edge
     feed_path   a ``FeedPath``: the path that F refers to where rotary axes turn without TCP
@@ -201,6 +202,7 @@ class ModalState:
     inches: StepColumn
     orientation: StepColumn
     xyz_is_tip: StepColumn
+    plane: StepColumn
     feed_path: StepColumn
 
 

@@ -5,12 +5,10 @@ Out:    a tensor-product B-spline of vectors; its directions are the tool axes.
 
 The field has values in space, not in two angles: so it has no pole, and a cone is a set of linear conditions on its
 coefficients. Where the vectors are not shorter than 1, an axis turns no faster than its vector moves. The greatest
-rate of change is the least that the cones allow (one linear program). Among all fields with about that rate, one is
-taken that bends little, keeps away from the walls of the cones, and does not tilt without need (a second one). The
-coefficients of a spline's derivative bound the derivative.
+rate of change is the least that the cones allow (one linear program), and among all fields with that rate the one that
+bends least is taken (a second one). The coefficients of a spline's derivative bound the derivative.
 """
 
-import math
 from dataclasses import dataclass
 from functools import reduce
 from typing import Any, Final
@@ -22,15 +20,11 @@ from trunnion.extras import import_extra
 from trunnion.impeller.paths.axis_regions import Regions
 
 #: Degrees of the splines: along, across, layer.
-_DEGREES: Final = (3, 2, 1)
+_DEGREES: Final = (3, 2, 2)
 
 #: The axis keeps this sine from a cone's walls where the cone is wide enough, else this part of its width.
 _FROM_WALLS: Final = 0.03
 _OF_WIDTH: Final = 0.3
-
-#: In the middle, an axis is so much of a cone's width from its walls, of which no more counts than this sine.
-_OF_MIDDLE: Final = 0.8
-_WIDE: Final = 0.25
 
 #: How much faster than the least possible the axis may turn, so that it bends less.
 _FASTER: Final = 1.1
@@ -38,13 +32,8 @@ _FASTER: Final = 1.1
 #: What a step out of a cone costs, against the rate of change.
 _OUTSIDE: Final = 1e3
 
-#: Axes that turn no faster than this, radians per mm, as good as stand still.
-_STILL: Final = 0.002
-
-#: What an axis in the middles of its cones is worth, and one that does not tilt more than this angle, in degrees,
-#: against a bend by a radian per mm over the whole family.
-_MIDDLE: Final = 0.01
-_TILT: Final = (0.01, 45.0)
+#: Axes that turn less than this, radians per mm, stand still.
+_STILL: Final = 1e-9
 
 #: A change between passes counts so much, against one along them.
 _BETWEEN_PASSES: Final = 0.3
@@ -81,8 +70,6 @@ class AxisField:
 
 def _values(knots: Floats, degree: int, at: Floats, *, is_closed: bool) -> Floats:
     """Basis functions (n, m) of one parameter."""
-    if not degree:
-        return np.ones((len(at), 1))
     design = import_extra("scipy.interpolate", "impeller").BSpline.design_matrix
     at = np.mod(at, 1.0) if is_closed else np.clip(at, 0.0, 1.0)
     found = np.asarray(design(at, knots, degree).toarray())
@@ -94,8 +81,6 @@ def _values(knots: Floats, degree: int, at: Floats, *, is_closed: bool) -> Float
 
 def even_knots(spans: int, degree: int, *, is_closed: bool) -> Floats:
     """Knots of so many equal spans from 0 to 1."""
-    if not spans:
-        return np.array([0.0, 1.0])
     inner = np.arange(spans + 1) / spans
     if is_closed:
         return np.asarray(np.arange(-degree, spans + degree + 1) / spans)
@@ -138,29 +123,25 @@ def fit_field(
     regions
         A cone at each place; places without one do not count.
     spans
-        Of the spline, for each parameter; 0: nothing changes with it.
+        Of the spline, for each parameter.
     lengths
         What a parameter from 0 to 1 is in mm, (k,).
     """
     sparse = import_extra("scipy.sparse", "impeller")
-    degrees = tuple(degree if count else 0 for degree, count in zip(_DEGREES, spans, strict=False))
+    degrees = _DEGREES[: len(spans)]
     closed = [is_closed and k == 0 for k in range(len(spans))]
     knots = tuple(even_knots(n, p, is_closed=c) for n, p, c in zip(spans, degrees, closed, strict=True))
     sizes = tuple(len(t) - p - 1 - (p if c else 0) for t, p, c in zip(knots, degrees, closed, strict=True))
     empty = AxisField(knots, degrees, np.zeros((*sizes, 3)), is_closed)
     basis = sparse.csr_matrix(empty.basis(places))
     first, second = [], []
-    for k, degree in enumerate(degrees):
-        if not degree:
-            continue
+    for k in range(len(spans)):
         weight = (1.0 if k == 0 else _BETWEEN_PASSES) / float(lengths[k])
-        slope = _slopes(knots[k], degree, is_closed=closed[k]) * weight
+        slope = _slopes(knots[k], degrees[k], is_closed=closed[k]) * weight
         first.append(_over_all(sparse, slope, k, sizes))
-        if degree < 2:
-            continue
         # A derivative's knots lack the outermost ones; even knots that go round are those of any derivative.
-        inner, lower = (knots[k], degree) if closed[k] else (knots[k][1:-1], degree - 1)
-        bend = _slopes(inner, lower, is_closed=closed[k]) * weight * float(lengths.max())
+        inner, degree = (knots[k], degrees[k]) if closed[k] else (knots[k][1:-1], degrees[k] - 1)
+        bend = _slopes(inner, degree, is_closed=closed[k]) * weight * float(lengths.max())
         second.append(_over_all(sparse, bend @ slope, k, sizes))
     coefficients, rate, outside = _programs(sparse, basis, regions, sparse.vstack(first), sparse.vstack(second))
     return FieldFit(AxisField(knots, degrees, coefficients.reshape(*sizes, 3), is_closed), rate, outside)
@@ -175,7 +156,7 @@ def _over_all(sparse: Any, matrix: Floats, parameter: int, sizes: tuple[int, ...
 def _programs(sparse: Any, basis: Any, regions: Regions, first: Any, second: Any) -> tuple[Floats, float, float]:
     """Coefficients of the field, its rate, and how far it is out of its cones, by two linear programs.
 
-    Unknowns of the first are coefficients, the step out of the cones, and the rate.
+    Unknowns are the coefficients, the step out of the cones, and the rate, then the bends.
     """
     there = np.flatnonzero(np.isfinite(regions.middle[:, 0]))
     walls = _rows_of(sparse, basis[regions.owner], regions.walls)
@@ -192,30 +173,14 @@ def _programs(sparse: Any, basis: Any, regions: Regions, first: Any, second: Any
     one = sparse.csr_matrix(np.ones((steps, 1)))
     turns = [sparse.hstack((sign * first, _none(sparse, first, 1), -one)) for sign in (1.0, -1.0)]
     cost = np.r_[np.zeros(count), _OUTSIDE, 1.0]
-    found = _solved(sparse, cost, [*conditions(1), *turns], [*limits, np.zeros(2 * steps)], _bounds(count, 2))
+    found = _solved(sparse, cost, [*conditions(1), *turns], [*limits, np.zeros(2 * steps)], count)
     rate = float(found[count + 1])
-    # Unknowns from here on: coefficients, the step outside, bends, how far from the middles, how much tilted too much.
-    room = _OF_MIDDLE * np.minimum(regions.width[regions.owner], _WIDE)
-    from_middle = sparse.csr_matrix(room[:, None])
-    rows = [sparse.hstack((-walls, _none(sparse, walls, 1 + bends), -from_middle, _none(sparse, walls, 1)))]
-    weight, angle = _TILT
-    upward = _rows_of(sparse, basis[there], np.tile([0.0, 0.0, 1.0], (len(there), 1)))
-    tilted = math.cos(math.radians(angle)) * middles - upward
-    one = sparse.csr_matrix(np.ones((len(there), 1)))
-    rows += [sparse.hstack((tilted, _none(sparse, tilted, 2 + bends), -one))]
-    each = -sparse.identity(bends)
-    rows += [sparse.hstack((k * second, _none(sparse, second, 1), each, _none(sparse, second, 2))) for k in (1.0, -1.0)]
-    rows += [sparse.hstack((sign * first, _none(sparse, first, 3 + bends))) for sign in (1.0, -1.0)]
-    limits += [-room, np.zeros(len(there) + 2 * bends), np.full(2 * steps, max(_FASTER * rate, _STILL))]
-    cost = np.r_[np.zeros(count), _OUTSIDE, np.full(bends, 1.0 / bends), _MIDDLE, weight]
-    found = _solved(sparse, cost, [*conditions(2 + bends), *rows], limits, _bounds(count, 3 + bends))
+    rows = [sparse.hstack((sign * second, _none(sparse, second, 1), -sparse.identity(bends))) for sign in (1.0, -1.0)]
+    rows += [sparse.hstack((sign * first, _none(sparse, first, 1 + bends))) for sign in (1.0, -1.0)]
+    limits += [np.zeros(2 * bends), np.full(2 * steps, _FASTER * rate + _STILL)]
+    cost = np.r_[np.zeros(count), _OUTSIDE, np.full(bends, 1.0 / bends)]
+    found = _solved(sparse, cost, [*conditions(bends), *rows], limits, count)
     return found[:count], rate, float(found[count])
-
-
-def constant_field(direction: Floats, parameters: int) -> AxisField:
-    """The field of one direction (3,)."""
-    knots = tuple(even_knots(0, 0, is_closed=False) for _ in range(parameters))
-    return AxisField(knots, (0,) * parameters, direction.reshape((1,) * parameters + (3,)), is_closed=False)
 
 
 def _none(sparse: Any, beside: Any, columns: int) -> Any:
@@ -229,12 +194,8 @@ def _rows_of(sparse: Any, basis: Any, vectors: Floats) -> Any:
     ]
 
 
-def _bounds(free: int, others: int) -> list[Any]:
-    """So many unknowns of any sign, and others that are not below 0."""
-    return [(None, None)] * free + [(0.0, None)] * others
-
-
-def _solved(sparse: Any, cost: Floats, rows: list[Any], limits: list[Floats], bounds: list[Any]) -> Floats:
+def _solved(sparse: Any, cost: Floats, rows: list[Any], limits: list[Floats], free: int) -> Floats:
+    bounds = [(None, None)] * free + [(0.0, None)] * (len(cost) - free)
     solve = import_extra("scipy.optimize", "impeller").linprog
     found = solve(
         cost, A_ub=sparse.vstack(rows).tocsc(), b_ub=np.concatenate(limits), bounds=bounds, method="highs-ipm"

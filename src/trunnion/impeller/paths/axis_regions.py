@@ -8,14 +8,18 @@ projection): great circles are straight lines there, so that a convex region of 
 from place to place, each from the middle of its neighbour's, so that all of them are on one side of what is in the way.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.extras import import_extra
-from trunnion.impeller.paths.directions import Margin, circle, climb, frames_about, most_central
+
+#: How far directions (n, 3) at places (n,) are from being forbidden, (n,): below 0 they are. Below the third argument,
+#: it may be less than what is told.
+Margin: TypeAlias = Callable[[Ints, Floats, float], Floats]
 
 #: Rays from the middle of a region, and the angles in degrees at which they are tried.
 _RAYS: Final = 16
@@ -30,14 +34,21 @@ _FIRST_ANGLES: Final = (0.5, 1.5, 4.0, 10.0, 18.0, 28.0, 40.0, 54.0)
 _CENTRED: Final = 2
 _NARROW: Final = 0.02
 
+#: A search for a better direction: steps in degrees, each done again as long as it helps, but not more often than this.
+_CLIMB: Final = (8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.1)
+_AGAIN: Final = 4
+_AROUND: Final = 8
+
 #: Angles in degrees about a neighbour's direction that is not allowed here, at which others are tried.
 _FAN: Final = (2.0, 5.0, 10.0, 16.0, 24.0, 34.0, 46.0)
 
 #: A line that cuts a forbidden direction off is the one of these angles to its ray, degrees, that leaves most.
 _TURNS: Final = (0.0, 15.0, -15.0, 30.0, -30.0, 45.0, -45.0, 60.0, -60.0, 75.0, -75.0)
 
-#: Places at which the search begins, and neighbours to which a region grows at a time.
+#: Directions and places of the first search.
+_DIRECTIONS: Final = 800
 _SEEDS: Final = 16
+
 _NEIGHBOURS: Final = 9
 
 
@@ -64,11 +75,19 @@ class Regions:
         return Regions(middle, owner, walls, width)
 
 
+def sphere(count: int) -> Floats:
+    """Directions (count, 3), evenly over the sphere: Fibonacci's lattice."""
+    k = np.arange(count) + 0.5
+    z, angle = 1.0 - 2.0 * k / count, np.pi * (1.0 + 5.0**0.5) * k
+    r = np.sqrt(1.0 - z * z)
+    return np.column_stack((np.cos(angle) * r, np.sin(angle) * r, z))
+
+
 def grow_regions(places: Floats, margin: Margin) -> Regions:
     """Regions at places (n, k), from the narrowest of some of them to all others; none if some of them have none."""
     count = len(places)
     seeds = np.unique(np.linspace(0, count - 1, _SEEDS).astype(int))
-    starts = most_central(seeds, margin)
+    starts = _most_central(seeds, margin)
     middle = np.full((count, 3), np.nan)
     if len(starts) < len(seeds):
         return Regions(middle, np.empty(0, np.int64), np.empty((0, 3)), np.zeros(count))
@@ -132,6 +151,56 @@ def regions_about(rows: Ints, start: Floats, forbidden: Floats, margin: Margin) 
     return Regions(middle, numbers[found.owner], found.walls, width)
 
 
+def _most_central(rows: Ints, margin: Margin) -> list[tuple[float, int, Floats]]:
+    """For places where something is allowed: the most central direction, and its angle to the next forbidden one."""
+    directions = sphere(_DIRECTIONS)
+    count = len(rows)
+    margins = margin(np.repeat(rows, _DIRECTIONS), np.tile(directions, (count, 1)), -1.0).reshape(count, -1)
+    best, value = climb(rows, directions[margins.argmax(axis=1)], margin)
+    found = []
+    for k, row in enumerate(rows.tolist()):
+        if value[k] < 0.0:
+            continue
+        answer = margins[k] >= 0.0
+        good, bad = np.vstack((best[k : k + 1], directions[answer])), directions[~answer]
+        nearest = (good @ bad.T).max(axis=1) if len(bad) else np.full(len(good), -1.0)
+        chosen = int(nearest.argmin())
+        found.append((float(np.arccos(np.clip(nearest[chosen], -1.0, 1.0))), row, good[chosen]))
+    return found
+
+
+def climb(rows: Ints, start: Floats, margin: Margin) -> tuple[Floats, Floats]:
+    """Directions (n, 3) near others that are farther from being forbidden, and how far they are, (n,)."""
+    best, value = start.copy(), margin(rows, start, -np.inf)
+    for angle in np.radians(_CLIMB):
+        for _ in range(_AGAIN):
+            circle = _circle(best, angle, _AROUND)
+            tried = margin(np.repeat(rows, _AROUND), circle.reshape(-1, 3), -np.inf).reshape(-1, _AROUND)
+            k = np.arange(len(rows)), tried.argmax(axis=1)
+            better = tried[k] > value
+            if not better.any():
+                break
+            best, value = np.where(better[:, None], circle[k], best), np.where(better, tried[k], value)
+    return best, value
+
+
+def _circle(directions: Floats, angle: float, count: int) -> Floats:
+    """Directions (n, count, 3) at an angle to directions (n, 3)."""
+    turn = 2.0 * np.pi * np.arange(count) / count
+    one, other = frames_about(directions)
+    side = np.cos(turn)[:, None] * one[:, None] + np.sin(turn)[:, None] * other[:, None]
+    return np.asarray(np.cos(angle) * directions[:, None] + np.sin(angle) * side)
+
+
+def frames_about(directions: Floats) -> tuple[Floats, Floats]:
+    """Two unit vectors (n, 3) each that are perpendicular to directions (n, 3) and to each other."""
+    least = np.abs(directions).argmin(axis=1)
+    helper = np.eye(3)[least]
+    one = np.cross(directions, helper)
+    one /= np.linalg.norm(one, axis=1)[:, None]
+    return one, np.cross(directions, one)
+
+
 def _nearest_allowed(rows: Ints, start: Floats, margin: Margin) -> Floats:
     """The directions (n, 3) themselves where they are allowed, else the nearest of a fan; NaN where none is found."""
     found = start.copy()
@@ -140,7 +209,7 @@ def _nearest_allowed(rows: Ints, start: Floats, margin: Margin) -> Floats:
     for angle in np.radians(_FAN):
         if not len(missing):
             break
-        fan = circle(start[missing], angle, _RAYS)
+        fan = _circle(start[missing], angle, _RAYS)
         answer = margin(np.repeat(rows[missing], _RAYS), fan.reshape(-1, 3), 0.0).reshape(-1, _RAYS) >= 0.0
         hit = answer.any(axis=1)
         # Between allowed ones, not at the edge of what is allowed.

@@ -8,7 +8,7 @@ Units:  mm.
 import numpy as np
 
 from trunnion.arrays import Flags, Floats
-from trunnion.impeller.paths.clearance import SLACK, Margins, Obstacles, distances_of, tool_body, tool_data
+from trunnion.impeller.paths.clearance import SLACK, Margins, Obstacles, distances_of, tool_body
 from trunnion.impeller.paths.clearance_kernel import ToolData
 from trunnion.impeller.paths.linking import IsClear
 from trunnion.simulation.tools.profile import ToolShape
@@ -34,10 +34,8 @@ def pose_check(obstacles: Obstacles, tool: ToolShape, radius: float, tolerance: 
     """
     body = tool_body(tool, radius, Margins(0.0, 0.0, 0.0, 1.0)).real
     point = np.array([[0.0, -_POINT], [_POINT, 0.0], [0.0, _POINT]])
-    centre_only = tool_data([point], [0.0])
-    wanted = np.zeros(len(body.wanted) + 1)
-    first = np.r_[0, len(centre_only.edges) + body.first]
-    data = ToolData(first, np.vstack((centre_only.edges, body.edges)), wanted.copy())
+    data = ToolData(np.r_[0, len(point) + body.first], np.vstack((point, body.corners)), np.zeros(len(body.wanted) + 1))
+    wanted = np.zeros(len(data.wanted))
     wanted[0] = radius - tolerance - SLACK
 
     def is_clear(centre: Floats, axis: Floats) -> Flags:

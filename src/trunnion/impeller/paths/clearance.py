@@ -184,7 +184,7 @@ class ToolBody:
         """The pieces of ``wide`` up to the last one of a role."""
         count = 1 + max(k for k, one in enumerate(self.wide_roles) if one is role)
         first = self.wide.first[: count + 1]
-        return ToolData(first, self.wide.edges[: first[-1]], self.wide.wanted[:count])
+        return ToolData(first, self.wide.corners[: first[-1]], self.wide.wanted[:count])
 
 
 @dataclass(frozen=True, slots=True)
@@ -230,16 +230,12 @@ def tool_body(shape: ToolShape, radius: float, margins: Margins) -> ToolBody:
             wide.append(_closed(_widened(corners, extra, slope)))
         wide_roles.append(role)
         wanted.append(margins.holder if role is Role.HOLDER else 0.0)
-    return ToolBody(tool_data(real, [0.0] * len(real)), tuple(roles), tool_data(wide, wanted), tuple(wide_roles))
+    return ToolBody(_data(real, [0.0] * len(real)), tuple(roles), _data(wide, wanted), tuple(wide_roles))
 
 
-def tool_data(pieces: list[Floats], wanted: list[float]) -> ToolData:
-    """Pieces, each the corners (k, 2) of its half section, as kernels take them."""
-    first = np.array([0, *accumulate(len(piece) - 1 for piece in pieces)])
-    edges = [np.column_stack((piece[:-1], np.diff(piece, axis=0))) for piece in pieces]
-    found = np.vstack(edges) if edges else np.empty((0, 4))
-    length = np.hypot(found[:, 2], found[:, 3])
-    return ToolData(first, np.column_stack((found[:, :2], found[:, 2:] / length[:, None], length)), np.array(wanted))
+def _data(pieces: list[Floats], wanted: list[float]) -> ToolData:
+    first = np.array([0, *accumulate(map(len, pieces))])
+    return ToolData(first, np.vstack(pieces) if pieces else np.empty((0, 2)), np.array(wanted))
 
 
 def _corners(elements: Floats, radius: float) -> Floats:

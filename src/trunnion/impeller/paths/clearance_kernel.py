@@ -39,28 +39,30 @@ class BodyData(NamedTuple):
 class ToolData(NamedTuple):
     """Convex bodies of revolution about the tool axis.
 
-    first   (p + 1,)  edges of piece k are ``first[k]:first[k + 1]``
-    edges   (e, 5)    from the axis below round to the axis above: radius and height above the ball's centre where one
-                      begins, its direction, and its length
-    wanted  (p,)      distance that is wanted from a piece, mm
+    first    (p + 1,)  corners of piece k are ``first[k]:first[k + 1]``
+    corners  (c, 2)    radius and height above the ball's centre, from the axis below round to the axis above
+    wanted   (p,)      distance that is wanted from a piece, mm
     """
 
     first: Ints
-    edges: Floats2
+    corners: Floats2
     wanted: Floats
 
 
 @inner
-def _to_piece(edges: Floats2, first: int, last: int, r: float, z: float) -> tuple[float, float, float]:
+def _to_piece(corners: Floats2, first: int, last: int, r: float, z: float) -> tuple[float, float, float]:
     """Distance of a point to a piece, below 0 inside, and its slope by r and z."""
     inside, inside_r, inside_z = -np.inf, 0.0, 0.0
     near, near_r, near_z = np.inf, 0.0, 0.0
-    for k in range(first, last):
-        x, y, dr, dz = r - edges[k, 0], z - edges[k, 1], edges[k, 2], edges[k, 3]
+    for k in range(first, last - 1):
+        dr, dz = corners[k + 1, 0] - corners[k, 0], corners[k + 1, 1] - corners[k, 1]
+        length = (dr * dr + dz * dz) ** 0.5
+        dr, dz = dr / length, dz / length
+        x, y = r - corners[k, 0], z - corners[k, 1]
         out = dz * x - dr * y
         if out > inside:
             inside, inside_r, inside_z = out, dz, -dr
-        along = min(max(dr * x + dz * y, 0.0), edges[k, 4])
+        along = min(max(dr * x + dz * y, 0.0), length)
         x, y = x - along * dr, y - along * dz
         square = x * x + y * y
         if square < near:
@@ -76,7 +78,7 @@ def _bound(
     cell: Floats,
     part: tuple[float, float, float],
     pose: tuple[float, float, float, float, float, float],
-    edges: Floats2,
+    corners: Floats2,
     first: int,
     last: int,
 ) -> tuple[float, float]:
@@ -91,7 +93,7 @@ def _bound(
     height = x * pose[3] + y * pose[4] + z * pose[5]
     x, y, z = x - height * pose[3], y - height * pose[4], z - height * pose[5]
     r = (x * x + y * y + z * z) ** 0.5
-    distance, by_r, by_z = _to_piece(edges, first, last, r, height)
+    distance, by_r, by_z = _to_piece(corners, first, last, r, height)
     # On the axis, a slope by r of 0 is one of those that the distance has.
     by_r = by_r / r if r > 1e-9 else 0.0
     gx, gy, gz = by_r * x + by_z * pose[3], by_r * y + by_z * pose[4], by_r * z + by_z * pose[5]
@@ -139,7 +141,7 @@ def _least(
                 if child < 0:
                     break
             row = bodies.cells[child]
-            value, bound = _bound(row, part, pose, tool.edges, first, last)
+            value, bound = _bound(row, part, pose, tool.corners, first, last)
             # The bound of what is larger holds for its parts as well.
             bound = max(bound, above)
             if is_smallest:

@@ -4,9 +4,8 @@ In:     a family of passes, the tool, what it must not touch, and what direction
 Out:    an axis for each point of each pass, and the proof that the whole tool stays clear at all of them.
 Units:  mm and degrees.
 
-If one direction does for all points, it is the field. Else regions of directions are found at some places, and a field
-in them. Then every point of every pass is checked: where one is not clear, its place joins the others, without the
-direction that was wrong there.
+Regions of directions are found at some places, and a field in them. Then every point of every pass is checked: where
+one is not clear, its place joins the others, without the direction that was wrong there.
 """
 
 import math
@@ -18,14 +17,15 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.errors import InputError, Problem
-from trunnion.impeller.paths.axis_field import AxisField, FieldFit, constant_field, fit_field
-from trunnion.impeller.paths.axis_regions import Regions, grow_regions, regions_about
+from trunnion.impeller.paths.axis_field import AxisField, FieldFit, fit_field
+from trunnion.impeller.paths.axis_regions import Margin, Regions, climb, grow_regions, regions_about, sphere
 from trunnion.impeller.paths.clearance import Margins, Obstacles, ToolBody, distances_of, margins_of, tool_body
 from trunnion.impeller.paths.clearance_kernel import ToolData
-from trunnion.impeller.paths.directions import Margin, climb, common_directions, sphere
-from trunnion.impeller.paths.nodes import lengths_of, spread_nodes
 from trunnion.impeller.paths.passes import PassFamily, Way
 from trunnion.simulation.tools.profile import Role, ToolShape
+
+#: Places from which the search begins.
+_NODES: Final = 500
 
 #: mm along passes to one span of the field, and spans along, across and in layers.
 _SPAN: Final = 6.0
@@ -44,23 +44,14 @@ _SHARES: Final = (1.0, 0.5, 0.25, 0.0)
 #: The cutter leans away from the surface at least so much beside its ball, degrees.
 _LEAST_LEAN: Final = 0.2
 
-#: About so many points are checked first; all are, where these are clear.
-_FIRST_CHECKED: Final = 4000
-
 #: Directions among which the best one is sought where none is clear.
 _DIRECTIONS: Final = 2000
-
-#: Directions for all points that are tried.
-_TRIED: Final = 12
-
-#: The golden section: its multiples are spread evenly over what they leave beside whole numbers.
-_GOLDEN: Final = (5.0**0.5 - 1.0) / 2.0
 
 #: Places in the way of a field at which the reason is sought.
 _ASKED: Final = 8
 
 #: Clearances are told up to this, mm.
-_FAR: Final = 5.0
+_FAR: Final = 10.0
 
 #: A field that is out of a cone by less than this is in it.
 _NEAR: Final = 1e-6
@@ -167,16 +158,12 @@ class _Search:
         self._tilt = tilt
         self._reachable = reachable
         self._is_closed = family.way is Way.SPIRAL
-        self._lengths = lengths_of(family)
-        self._nodes = spread_nodes(self.places, self._lengths)
-        self._every = max(len(self.places) // _FIRST_CHECKED, 1)
+        self._lengths = _lengths(family)
+        self._nodes = _nodes(self.places, self._lengths)
         self._bad = self._nodes[:1]
 
     def field(self, body: ToolBody) -> AxisField | None:
         """A field that keeps a tool clear everywhere; None if none is found."""
-        direction = self._common(body)
-        if direction is not None:
-            return constant_field(direction, self.places.shape[1])
         nodes = self._nodes
         regions = grow_regions(self._apart(self.places[nodes]), self._margin_at(body.wide, nodes))
         nowhere = np.flatnonzero(np.isnan(regions.middle[:, 0]))
@@ -185,8 +172,7 @@ class _Search:
             return None
         fewest, most = _SPANS
         spans = tuple(
-            int(np.clip(math.ceil(length / _SPAN), fewest[k], most[k])) if length else 0
-            for k, length in enumerate(self._lengths)
+            int(np.clip(math.ceil(length / _SPAN), fewest[k], most[k])) for k, length in enumerate(self._lengths)
         )
         for finer in (1, 2):
             found = self._checked(body, nodes, regions, tuple(finer * count for count in spans))
@@ -199,13 +185,14 @@ class _Search:
         for _ in range(_ROUNDS):
             fit = self._fit(nodes, regions, spans)
             if fit.outside > _NEAR:
-                self._bad = nodes[[self._worst(fit.field, nodes, regions)]]
+                self._bad = nodes[[self._worst(fit, nodes, regions)]]
                 return None
             axes = fit.field.axes(self.places)
-            wrong, margin = self._wrong(body, axes)
+            margin = self._margins(body.wide, np.arange(len(axes)), axes, -1.0, 0.0)
+            wrong = np.flatnonzero(margin < 0.0)
             if not len(wrong):
                 return fit.field
-            self._bad = wrong[[int(margin.argmin())]]
+            self._bad = wrong[[int(margin[wrong].argmin())]]
             added = self._spread(wrong, margin)
             near = _nearest(self._apart(self.places[nodes]), self._apart(self.places[added]))
             more = regions_about(added, regions.middle[near], axes[added], self._margin_at(body.wide, None))
@@ -216,49 +203,21 @@ class _Search:
             nodes, regions = np.r_[nodes, added], regions.joined(more)
         return None
 
-    def _common(self, body: ToolBody) -> Floats | None:
-        """A direction in which a tool is clear at all points; None if none is found."""
-        margin = self._margin_at(body.wide, None)
-        left = common_directions(self._spread_nodes(), margin)
-        for _ in range(_TRIED):
-            if not len(left):
-                break
-            wrong, by = self._wrong(body, np.tile(left[0], (len(self.places), 1)))
-            if not len(wrong):
-                return np.asarray(left[0])
-            points = self._spread(wrong, by)
-            answer = margin(np.repeat(points, len(left)), np.tile(left, (len(points), 1)), 0.0) >= 0.0
-            left = left[answer.reshape(len(points), -1).all(axis=0)]
-        return None
-
-    def _spread_nodes(self) -> Ints:
-        """The nodes in an order in which the first ones are spread over the family."""
-        order = np.argsort(np.mod(np.arange(len(self._nodes)) * _GOLDEN, 1.0), kind="stable")
-        return np.asarray(self._nodes[order])
-
-    def _wrong(self, body: ToolBody, axes: Floats) -> tuple[Ints, Floats]:
-        """Points whose axes do not keep the tool clear, and their margins; of all points, if some of them are clear."""
-        for points in (np.arange(0, len(axes), self._every), np.arange(len(axes))):
-            margin = self._margins(body.wide, points, axes[points], -1.0, 0.0)
-            if (margin < 0.0).any():
-                break
-        return points[margin < 0.0], margin[margin < 0.0]
-
     def _fit(self, nodes: Ints, regions: Regions, spans: tuple[int, ...]) -> FieldFit:
         # Passes that are near to each other may well differ in their axes.
         lengths = np.maximum(self._lengths, _LEAST_WIDTH * self._lengths[0])
         return fit_field(self.places[nodes], regions, spans, lengths, is_closed=self._is_closed)
 
-    def _worst(self, field: AxisField, nodes: Ints, regions: Regions) -> int:
+    def _worst(self, fit: FieldFit, nodes: Ints, regions: Regions) -> int:
         """The node whose cone a field is farthest out of."""
-        axes = field.axes(self.places[nodes])
+        axes = fit.field.axes(self.places[nodes])
         inside = np.einsum("ij,ij->i", axes[regions.owner], regions.walls)
         return int(regions.owner[inside.argmin()])
 
     def _spread(self, wrong: Ints, margin: Floats) -> Ints:
-        """Of points with their margins, the worst of each neighbourhood."""
+        """Of points, the worst of each neighbourhood."""
         cells = np.floor(self.places[wrong] * self._lengths / 2.0).astype(np.int64)
-        order = np.argsort(margin, kind="stable")
+        order = np.argsort(margin[wrong], kind="stable")
         _, first = np.unique(cells[order], axis=0, return_index=True)
         return wrong[order[np.sort(first)[:_ADDED]]]
 
@@ -335,6 +294,40 @@ def _place_words(place: Floats, centre: Floats) -> str:
     names = ("along", "across", "in layers")
     shares = ", ".join(f"{value:.0%} {name}" for value, name in zip(place, names, strict=False))
     return f"at {shares} (radius {math.hypot(centre[0], centre[1]):.3f}, height {centre[2]:.3f} mm)"
+
+
+def _lengths(family: PassFamily) -> Floats:
+    """What a parameter from 0 to 1 is in mm: along, the median of the passes; else as centres change on average."""
+    along = []
+    for one in family.passes:
+        way = np.linalg.norm(np.diff(one.centre, axis=0), axis=1).sum()
+        share = np.abs(np.diff(one.place[:, 0]))
+        share = share[share < 0.5].sum()  # a closed one goes from 1 to 0
+        if share > 0.0:
+            along.append(way / share)
+    places, centres = family.places(), family.centres()
+    design = np.column_stack((places, np.ones(len(places))))
+    slopes = np.linalg.lstsq(design, centres, rcond=None)[0][:-1]
+    found = np.r_[np.median(along) if along else 1.0, np.linalg.norm(slopes[1:], axis=1)]
+    return np.asarray(np.maximum(found, 1.0))
+
+
+def _nodes(places: Floats, lengths: Floats) -> Ints:
+    """Points, in all cells of about one size the one that is nearest to the middle."""
+    low, high = 0.01, float(lengths.max())
+    for _ in range(40):
+        size = math.sqrt(low * high)
+        cells = np.floor(np.clip(places, 0.0, 1.0 - 1e-12) * np.maximum(np.round(lengths / size), 1.0))
+        if len(np.unique(cells, axis=0)) > _NODES:
+            low = size
+        else:
+            high = size
+    counts = np.maximum(np.round(lengths / high), 1.0)
+    scaled = np.clip(places, 0.0, 1.0 - 1e-12) * counts
+    away = np.linalg.norm(scaled - np.floor(scaled) - 0.5, axis=1)
+    order = np.argsort(away, kind="stable")
+    _, first = np.unique(np.floor(scaled)[order], axis=0, return_index=True)
+    return np.asarray(order[first])
 
 
 def _nearest(places: Floats, asked: Floats) -> Ints:

@@ -93,8 +93,8 @@ class CoordinateControl(RowRecorder):
         else:
             origin = self._length_offset + (0.0 if suppressed else self._zero_slides)
         self.position_map = affine_matrix(frame.linear, frame.shift + origin)
-        if self.tip_programmed and not np.array_equal(frame.linear, np.eye(3)):
-            self.record_plane(self.position_map)
+        in_plane = self.tip_programmed and not np.array_equal(frame.linear, np.eye(3))
+        self.record_plane(self.position_map if in_plane else None)
         self.vector_map = self._vector_map(frame)
 
     def _position_of_axes(self) -> Floats:

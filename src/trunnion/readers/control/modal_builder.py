@@ -29,6 +29,7 @@ class ModalBuilder:
         self.inches = StepColumnBuilder(False)
         self.orientation = StepColumnBuilder(ORIENTATION_FROM_WORDS)
         self.xyz_is_tip = StepColumnBuilder(False)
+        self.plane = StepColumnBuilder(-1)
         self.feed_path = StepColumnBuilder(int(FeedPath.SLIDES))
 
     def state(self, n: int) -> ModalState:
@@ -50,5 +51,6 @@ class ModalBuilder:
             inches=self.inches.steps(n, np.bool_),
             orientation=self.orientation.steps(n, np.uint8),
             xyz_is_tip=self.xyz_is_tip.steps(n, np.bool_),
+            plane=self.plane.steps(n, np.int32),
             feed_path=self.feed_path.steps(n, np.uint8),
         )

@@ -117,7 +117,8 @@ class RowRecorder:
         self._spline_columns: list[Splines] = []
         self._spindle_holes: list[SpindleHole] = []
         self._compensation_planes: list[Floats] = []
-        self._planes: dict[bytes, Floats] = {}
+        self._planes: list[Floats] = []
+        self._plane_numbers: dict[bytes, int] = {}
         self._normals: list[tuple[Ints, Floats]] = []
         self._kinematics = kinematic_parameters(machine)
         self._slides = list(slide_columns(machine))
@@ -291,9 +292,14 @@ class RowRecorder:
         """Record the programmed surface normal (3,) of the last row."""
         self._normals.append((np.array([self.row - 1]), (self.vector_map @ normal)[None]))
 
-    def record_plane(self, plane: Floats) -> None:
-        """Record a tilted plane, the map (3, 4) from programmed positions to the workpiece frame."""
-        self._planes.setdefault(plane.tobytes(), plane)
+    def record_plane(self, plane: Floats | None) -> None:
+        """Record the tilted plane of the next rows, the map (3, 4) from programmed positions to the workpiece frame."""
+        number = -1
+        if plane is not None:
+            number = self._plane_numbers.setdefault(plane.tobytes(), len(self._planes))
+            if number == len(self._planes):
+                self._planes.append(plane)
+        self.modal.plane.set(self.row, number)
 
     # Scans
 
@@ -402,7 +408,7 @@ class RowRecorder:
             units_from=self.units_from,
             spindle_holes=tuple(self._spindle_holes),
             compensation_planes=np.array(self._compensation_planes).reshape(-1, 3),
-            planes=np.array(list(self._planes.values())).reshape(-1, 3, 4),
+            planes=np.array(self._planes).reshape(-1, 3, 4),
         )
 
     def _normal_columns(self) -> SurfaceNormals:

@@ -23,6 +23,7 @@ from trunnion.model.axis_positions import RotaryWords, joints_from_rows, resolve
 from trunnion.model.run import CHUNK_ROWS, Orientation, ProgrammedWord, Run
 from trunnion.model.subdivision import circle_points, slerp
 from trunnion.model.toolpath import Kind
+from trunnion.simulation.stated_tips import StatedTips, turns_without_tcp
 
 #: How far an axis may be from where the control has it within a piece, mm; rotary axes count at ``_REACH`` mm.
 SAG: Final = 0.02
@@ -47,7 +48,7 @@ class AxisPieces:
     done        (k,)      and where it ends
     joints      (k + 1, 5)  axis values before the first piece and after each; mm or deg, machine order
     tool        (k,)      index of the tool in ``Run.tools``
-    known       (k,)      where the tool is at the workpiece is known: not at machine positions without a known zero
+    known       (k,)      where the tool is at the workpiece is known: no coordinate of it is left unstated
     """
 
     first: int
@@ -93,13 +94,14 @@ class _Motion:
         tool = run.state.tool.part(first, end).astype(np.int64)
         length = np.array([self.lengths.get(int(k), self.read_with) for k in tool.tolist()]) if n else np.zeros(0)
         xyz_is_tip = run.state.xyz_is_tip.part(first, end)
-        at_start = self.from_machine
         machine = self._from_machine(first, end, xyz_is_tip)
         joints = self._row_joints(first, end, xyz_is_tip, length, machine)
-        known = np.ones(n, np.bool_)
+        tips = StatedTips.of(run)
+        known = tips.before[first:end] & tips.after[first:end]
         if run.machine.workpiece_zero is None:
-            machine_positions = np.concatenate((at_start[None], machine))
-            known = np.logical_not((machine_positions[1:] | machine_positions[:-1]).any(axis=1))
+            known &= ~turns_without_tcp(run, np.arange(first, end))
+        else:  # with its real length, the tool's place follows from the slides
+            known |= ~xyz_is_tip
         before = np.concatenate((self.joints[None], joints))
         for lost in np.flatnonzero(~np.isfinite(joints).all(axis=1)).tolist():
             before[lost + 1] = before[lost]  # the reader has said that no position is known there

@@ -7,9 +7,8 @@ Units:  mm, unit vectors, workpiece frame.
 In a sweep the tip moves on a straight line and the tool axis turns a little. Rows are divided until the chords of the
 tool's outermost cutting point and of the tip are within the tolerance of the motion.
 
-Where the workpiece zero or the tool's length is not known, nobody knows where a machine position (G53, M91) is in the
-workpiece frame. There the tool is taken to leave the part and to come back to it along its axis; between these motions
-nothing is swept. Nor is it known then where the part is when rotary axes turn without TCP: such rapids are not swept.
+What begins or ends where nobody knows is not swept (``stated_tips``). There the tool is taken to leave the part for far
+away, and to come to it from far away, along what is not known; where that is not along the tool, the end alone counts.
 """
 
 import math
@@ -18,21 +17,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Ints
+from trunnion.arrays import Floats, Ints
 from trunnion.machines import forward
-from trunnion.model.run import Orientation, Run
+from trunnion.model.run import Orientation, ProgrammedWord, Run
 from trunnion.model.subdivision import subdivide
 from trunnion.model.toolpath import Kind
-from trunnion.verification.kinematics.machine_positions import MachinePositions
+from trunnion.simulation.stated_tips import StatedTips, turns_without_tcp
+
+_XYZ = int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z)
 
 #: Rows whose sweeps are made at a time.
 CHUNK_ROWS = 8192
-
-#: A slide that moves the tool along its axis by so much of its way takes it out of the part.
-_ALONG = 0.5
-
-#: Smaller rotary motion, degrees, is none.
-_STILL = 1e-3
 
 #: Sweeps that one row may have: a rotary axis that winds a thousand turns is an error of the program.
 _MOST_PIECES = 4096
@@ -77,7 +72,7 @@ class SweepSizes:
     reach      from the tip to the farthest point that cuts
     radius     greatest radius of what cuts
     tolerance  of the motion
-    away       how far along the tool axis it is clear of everything
+    away       how far from the part it is clear of everything
     """
 
     reach: float
@@ -117,11 +112,7 @@ def row_sweeps(run: Run, first: int, end: int, sizes: SweepSizes) -> RowSweeps:
     sweeps = RowSweeps(
         first, end, int(run.state.tool[first]), samples.row, before_tip, samples.tip, before_axis, samples.axis
     )
-    placed = _placed(run, first, end)
-    if not count or MachinePositions.of(run).known:
-        return sweeps
-    turns = _turns_without_tcp(run, np.arange(first, end)) & (run.kind[first:end] == Kind.RAPID)
-    return _along_axis_where_unplaced(run, sweeps, placed, turns, sizes)
+    return _where_stated(run, sweeps, sizes) if count else sweeps
 
 
 def _pieces(run: Run, first: int, joints: Floats, tip: Floats, axis: Floats, sizes: SweepSizes) -> Ints:
@@ -157,36 +148,20 @@ def _pieces(run: Run, first: int, joints: Floats, tip: Floats, axis: Floats, siz
     return np.asarray(np.minimum(pieces, _MOST_PIECES), np.int64)
 
 
-def _placed(run: Run, first: int, end: int) -> Flags:
-    """Whether it is known where the tip is in the workpiece frame before and after rows, (end - first + 1,)."""
-    positions = MachinePositions.of(run)
-    if positions.known:
-        return np.ones(end - first + 1, np.bool_)
-    slides = list(run.machine.linear)
-    return ~np.asarray(positions.at(np.arange(first - 1, end))[:, slides].any(axis=1))
-
-
 def unknown_swivels(run: Run, low: Floats, high: Floats) -> Ints:
     """Rows that turn rotary axes without TCP, nobody knowing about which place of the workpiece frame.
 
     Those with the tool farther from a box, (3,) to (3,) mm, than the box is large are left out, and those that begin or
     end at a machine position.
     """
-    if MachinePositions.of(run).known or not len(run):
+    if _is_placed(run) or not len(run):
         return np.zeros(0, np.int64)
-    placed = _placed(run, 0, len(run))
-    rows = np.flatnonzero(_turns_without_tcp(run, np.arange(len(run))) & placed[:-1] & placed[1:])
+    rows = np.flatnonzero(StatedTips.of(run).before & turns_without_tcp(run, np.arange(len(run))))
+    to_machine = run.state.machine_frame.at(rows) & ((run.programmed[rows] & _XYZ) != 0)
+    rows = rows[~to_machine]
     tip = run.positions(rows - 1).tip
     apart = np.linalg.norm(np.maximum(np.maximum(low - tip, tip - high), 0.0), axis=1)
     return np.asarray(rows[apart < np.linalg.norm(high - low)])
-
-
-def _turns_without_tcp(run: Run, rows: Ints) -> Flags:
-    """Which rows turn a rotary axis while TCP is off."""
-    rotary = list(run.machine.rotary)
-    before = np.where((rows > 0)[:, None], run.joints[np.maximum(rows - 1, 0)], run.start)[:, rotary]
-    turned = np.abs(run.joints[rows][:, rotary] - before).max(axis=1, initial=0.0)
-    return np.asarray((turned > _STILL) & ~run.state.tcp.at(rows))
 
 
 def sideways_exits(run: Run, low: Floats, high: Floats) -> Ints:
@@ -194,43 +169,41 @@ def sideways_exits(run: Run, low: Floats, high: Floats) -> Ints:
 
     Where it stands in the workpiece frame is not known after them: it may have gone through the box.
     """
-    positions = MachinePositions.of(run)
-    if positions.known or not len(run):
-        return np.zeros(0, np.int64)
-    slides = list(run.machine.linear)
-    at = positions.at(np.arange(-1, len(run)))[:, slides]
-    rows = np.flatnonzero(~at[:-1].any(axis=1) & at[1:].any(axis=1))
+    rows = StatedTips.of(run).aside
     poses = run.positions(rows - 1)
-    along = np.empty((len(rows), 3))
-    for k, slide in enumerate(slides):
-        moved = poses.joints.copy()
-        moved[:, slide] += 1.0
-        step = forward(run.machine, moved)[0] - forward(run.machine, poses.joints)[0]
-        along[:, k] = np.abs(np.einsum("ij,ij->i", step, poses.axis))
-    retracts = (at[1:][rows] & (along > _ALONG)).any(axis=1)
     top = np.maximum(low * poses.axis, high * poses.axis).sum(axis=1)
     below = np.einsum("ij,ij->i", poses.tip, poses.axis) < top - 1e-6
-    return np.asarray(rows[~retracts & below])
+    return np.asarray(rows[below])
 
 
-def _along_axis_where_unplaced(
-    run: Run, sweeps: RowSweeps, placed: Flags, turns: Flags, sizes: SweepSizes
-) -> RowSweeps:
-    row = sweeps.row - sweeps.first
-    before, after = placed[row], placed[row + 1]
-    keep = before & after
-    # Out: the first sweep of a row that leaves; in: the last one of a row that comes back.
+def _is_placed(run: Run) -> bool:
+    """Whether positions of the machine are positions of the workpiece too."""
+    return run.machine.workpiece_zero is not None and run.machine.tool_length is not None
+
+
+def _where_stated(run: Run, sweeps: RowSweeps, sizes: SweepSizes) -> RowSweeps:
+    """The sweeps between known places, and those that leave for unknown ones, or come from them."""
+    tips, row = StatedTips.of(run), sweeps.row
+    before, after = tips.before[row], tips.after[row]
+    turns = np.zeros(len(row), np.bool_) if _is_placed(run) else turns_without_tcp(run, row)
+    keep = before & after & ~turns
+    if keep.all():
+        return sweeps
     begins = np.concatenate(([True], row[1:] != row[:-1]))
     ends = np.concatenate((row[1:] != row[:-1], [True]))
-    leaves, comes = before & ~after & begins, ~before & after & ends
-    keep |= leaves | comes
-    keep &= ~turns[row]
     start, end_tip = sweeps.start.copy(), sweeps.end_tip.copy()
     axis, end_axis = sweeps.axis.copy(), sweeps.end_axis.copy()
-    end_axis[leaves] = axis[leaves]
-    end_tip[leaves] = start[leaves] + sizes.away * axis[leaves]
-    axis[comes] = end_axis[comes]
-    start[comes] = end_tip[comes] + sizes.away * end_axis[comes]
+    # Out: the first sweep of a row that leaves; in: the last one of a row that comes back.
+    for k in np.flatnonzero(before & ~after & begins).tolist():
+        way = tips.ways.get(int(row[k]))
+        if way is not None:
+            end_axis[k], end_tip[k] = axis[k], start[k] + sizes.away * way
+            keep[k] = True
+    for k in np.flatnonzero(after & ~(before & ~turns) & ends).tolist():
+        way = tips.ways.get(int(row[k]))
+        axis[k] = end_axis[k]
+        start[k] = end_tip[k] if way is None else end_tip[k] + sizes.away * way
+        keep[k] = True
     return RowSweeps(
-        sweeps.first, sweeps.end, sweeps.tool, sweeps.row[keep], start[keep], end_tip[keep], axis[keep], end_axis[keep]
+        sweeps.first, sweeps.end, sweeps.tool, row[keep], start[keep], end_tip[keep], axis[keep], end_axis[keep]
     )
