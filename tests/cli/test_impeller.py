@@ -36,3 +36,35 @@ def test_what_cannot_be_used_is_told(arguments: list[str], what: str, capfd: Cap
     assert main(["impeller", "model", *arguments]) == 2
     out, err = capfd.readouterr()
     assert (out, what in err) == ("", True), err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "what"),
+    [
+        (["cut", IMPELLER], "--machine: error: is missing; name the machine that runs the program"),
+        (["cut", IMPELLER, "--tolerance", "0.1"], "--tolerance: error: is not for cut; leave it out"),
+        (["model", IMPELLER, "--machine", "yl569"], "--machine: error: is not for model; leave it out"),
+        (
+            ["cut", IMPELLER, "--machine", "yl569", "--output", "nc", "--operation", "HUB"],
+            "--operation: error: has 'HUB'",
+        ),
+    ],
+)
+def test_options_of_a_step_are_its_own(
+    arguments: list[str], what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: Capture
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["impeller", *arguments]) == 2
+    assert what in capfd.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_cut_is_told_as_data(tmp_path: Path, capfd: Capture) -> None:
+    folder = tmp_path / "nc"
+    named = ["--operation", "STOCK_ROUGHING", "--json"]
+    assert main(["impeller", "cut", IMPELLER, "--machine", "yl569", "--output", str(folder), *named]) == 0
+    data = json.loads(capfd.readouterr().out)
+    assert (data["passed"], data["program"]) == (True, str(folder / "IMPELLER.mpf"))
+    (step,) = data["steps"]
+    assert (step["name"], step["operations"], step["published_minutes"]) == ("STOCK_ROUGHING", 1, 1.82)
+    assert set(data["checks"].values()) == {True}
