@@ -1,0 +1,21 @@
+"""Published ruled blades: what a path leaves of the better side is at most what others reached, by the slow measure."""
+
+import pytest
+
+from tests.support.flanks import PUBLISHED, mill
+
+#: Greatest overcut and undercut, mm.
+BOUNDS = {
+    "mixed flow": (1.0, 0.202),
+    "high twist": (1.0, 0.137),
+    "tall leaned": (1.0, 0.335),
+    "default": (1.0, 0.122),
+}
+
+
+@pytest.mark.parametrize("name", BOUNDS)
+def test_what_is_left_is_within_the_bound(name: str) -> None:
+    side, bound = BOUNDS[name]
+    cut = mill(PUBLISHED[name], side)
+    assert cut.left.largest <= bound
+    assert cut.left.largest < cut.begun.largest
