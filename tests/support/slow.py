@@ -7,6 +7,7 @@ SLOW = (
     "cl/test_write.py",
     "conversion/test_angles.py", "conversion/test_leaving_the_part.py", "conversion/test_pairs.py",
     "conversion/test_round_trip.py", "conversion/test_settings_by_operation.py", "examples", "fuzz",
+    "impeller/flank",
     "impeller/paths/test_blade_finish.py", "impeller/paths/test_channel.py", "impeller/paths/test_clearance.py",
     "impeller/paths/test_root_blend.py", "impeller/paths/test_tool_axes.py",
     "impeller/test_machining.py", "impeller/test_model.py", "jit/test_kernels.py", "linuxcnc",

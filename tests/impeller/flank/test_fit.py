@@ -68,9 +68,10 @@ def test_deviations_are_those_of_the_slow_twin(seed: int, slope: float) -> None:
     path = wavy(seed, slope)
     points = np.random.default_rng(seed + 1).uniform((-8.0, -8.0, -8.0), (48.0, 25.0, 40.0), (60, 3))
     found = deviations_of(path, points)[0][:, 0]
-    slow = measured_deviations(path, points, 4001)
+    slow = measured_deviations(path, points, 9001)
     assert np.all(found < slow + 1e-9)
-    assert np.abs(found - slow).max() < 1e-4
+    # Near the axis, poses that are s apart miss up to s/2; further out s²/8 divided by the distance.
+    assert np.abs(found - slow)[found > -2.0].max() < 1e-4
 
 
 @given(st.integers(0, 10_000), st.sampled_from([0.0, 0.08]))

@@ -32,7 +32,7 @@ _PLACES: Final = 41
 
 #: Part of the overcut's limit that a fit is given, and how far from the hub it stays, mm.
 _KEPT: Final = 0.95
-_OFF_HUB: Final = 0.0005
+_OFF_HUB: Final = 0.002
 
 #: Halvings that find where a flank begins.
 _HALVINGS: Final = 40
