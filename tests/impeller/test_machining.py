@@ -10,7 +10,7 @@ from trunnion import InputError, load_impeller
 from trunnion.arrays import Flags, Floats
 from trunnion.impeller.impeller import Impeller, rotated
 from trunnion.impeller.machining import step_paths
-from trunnion.model.toolpath import Kind
+from trunnion.model.toolpath import Kind, Phase
 
 EXAMPLE = ROOT / "examples" / "impeller"
 
@@ -113,6 +113,39 @@ def test_what_is_wrong_names_the_step(impeller: Impeller, tmp_path_factory: pyte
         list(step_paths(wrong, None))
     with pytest.raises(InputError, match=r"no tool axis"):
         list(step_paths(impeller, lambda axes: np.zeros(len(axes), np.bool_), ["HUB_FINISH"]))
+
+
+def test_flanks_are_milled_from_both_sides_with_the_blade_on_the_right(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> None:
+    text = STEP.format(kind="flank milling", tool=3, stepover=1.0, more="overcut_mm = 0.01")
+    long = text.replace("stepover_mm = 1.0\n", "")
+    tools = TOOLS.replace("flute_length_mm = 12", "flute_length_mm = 24")
+    folder = tmp_path_factory.mktemp("flanks")
+    impeller_with(folder, "")
+    file = folder / "impeller.toml"
+    file.write_text(file.read_text(encoding="utf-8").replace(TOOLS, tools) + long, encoding="utf-8")
+    impeller = load_impeller(file)
+    (found,) = step_paths(impeller, up_to_tilt)
+    assert len(found.paths) == 6
+    assert [one.side for one in found.flanks] == [1.0, -1.0]
+    for one in found.flanks:
+        assert one.cut.left.overcut <= 0.01
+        assert one.cut.left.undercut <= 0.02
+    path, touching = found.paths[0], 0
+    for start in np.flatnonzero(path.phase == Phase.CUT)[::4]:
+        if path.phase[start + 1] != Phase.CUT:
+            continue
+        way = path.centre[start + 1] - path.centre[start]
+        right = np.cross(way, path.axis[start])
+        right /= np.linalg.norm(right)
+        middle = path.centre[start] + 3.0 * path.axis[start]
+        left, here, beside = impeller.blade.distances(middle + np.outer([-0.5, 0.0, 0.5], right))[0]
+        if here < 2.05:  # the path goes on before and behind the flank
+            assert beside < here < left
+            touching += 1
+    assert touching > 4
+    assert gaps(impeller, path.centre).min() > 2.0 - 0.015
 
 
 @pytest.mark.parametrize(

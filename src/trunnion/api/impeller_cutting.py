@@ -52,7 +52,9 @@ class CutStep:
     toolpath   its operations, one for each blade or channel, as the CL file says them
     points     of all of them
     seconds    of each operation on the machine, with what leads to it
-    clearance  of each part of the tool, the least that it has to a blade or the hub; none for steps round the part
+    clearance  of each part of the tool, the least that it has to a blade or the hub; none where the step goes round
+               the part or mills flanks
+    flanks     of flank milling: overcut and undercut of each side, mm
     """
 
     step: MachiningStep
@@ -60,6 +62,7 @@ class CutStep:
     points: int
     seconds: tuple[float, ...]
     clearance: tuple[PartClearance, ...]
+    flanks: tuple[tuple[float, float], ...] = ()
 
     @property
     def minutes(self) -> float:
@@ -287,7 +290,8 @@ def _steps(made: Sequence[StepPaths], toolpaths: Sequence[Toolpath], result: Pos
                 if one.part not in clearance or one.distance < clearance[one.part].distance:
                     clearance[one.part] = one
         own = tuple(next(of_operation) for _ in toolpath.operations)
-        yield CutStep(paths.step, toolpath, points, own, tuple(clearance.values()))
+        flanks = tuple((one.cut.left.overcut, one.cut.left.undercut) for one in paths.flanks)
+        yield CutStep(paths.step, toolpath, points, own, tuple(clearance.values()), flanks)
 
 
 def _simulated(

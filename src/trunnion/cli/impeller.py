@@ -113,6 +113,8 @@ def _step_line(step: CutStep) -> str:
         parts.append(f"published {format_duration(60.0 * step.step.published_minutes)}")
     for one in step.clearance:
         parts.append(f"{one.part} {one.distance:.3f} mm from {one.body}")
+    for over, under in step.flanks:
+        parts.append(f"a flank {over:.4f} mm too deep and {under:.4f} mm left at most")
     return ", ".join(parts)
 
 
@@ -136,6 +138,10 @@ def _cut_data(found: ImpellerCut) -> dict[str, object]:
                 "clearances": [
                     {"part": one.part, "body": one.body, "mm": round(one.distance, _DECIMALS), "at": one.centre}
                     for one in step.clearance
+                ],
+                "flanks": [
+                    {"overcut_mm": round(over, _DECIMALS), "undercut_mm": round(under, _DECIMALS)}
+                    for over, under in step.flanks
                 ],
             }
             for step in found.steps

@@ -5,6 +5,7 @@ Out:    ``StepPaths`` for each step: one path for each blade, channel or turn ro
 Units:  mm.
 """
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -13,15 +14,18 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats
 from trunnion.errors import InputError, Problem
-from trunnion.impeller.impeller import Impeller
+from trunnion.impeller.blade import Blade
+from trunnion.impeller.flank.blade_flank import BladeFlank, mill_blade_flank
+from trunnion.impeller.flank.cutter import FlankCutter
+from trunnion.impeller.impeller import Impeller, rotated
 from trunnion.impeller.paths.blade_finish import BladeFinish, blade_finish
 from trunnion.impeller.paths.channel import channels_of
 from trunnion.impeller.paths.channel_roughing import channel_roughing
 from trunnion.impeller.paths.clear_poses import pose_check
-from trunnion.impeller.paths.clearance import Obstacles, obstacles_of
+from trunnion.impeller.paths.clearance import SLACK, Obstacles, obstacles_of
 from trunnion.impeller.paths.hub_finish import hub_finish
 from trunnion.impeller.paths.linking import FreeSpace, IsClear, LinkedPath, Links, link_passes
-from trunnion.impeller.paths.passes import PassFamily
+from trunnion.impeller.paths.passes import Pass, PassFamily
 from trunnion.impeller.paths.root_blend import RootBlend, root_blend
 from trunnion.impeller.paths.shroud import shroud_finish, shroud_form, stock_roughing
 from trunnion.impeller.paths.tool_axes import ToolAxes, Wanted, choose_axes
@@ -52,6 +56,7 @@ class StepPaths:
     names, paths  for each blade, channel, or the whole part, in the order of machining
     families      its passes, once for all blades that are alike; none of steps round the part
     axes          of these families, with what was proven of them
+    flanks        of flank milling: both sides of the blade, and of the splitter, with what is left of them
     left          what a step round the part leaves besides its allowance, where the tool's side would cut too much
     """
 
@@ -62,6 +67,7 @@ class StepPaths:
     paths: tuple[LinkedPath, ...]
     families: tuple[PassFamily, ...] = ()
     axes: tuple[ToolAxes, ...] = ()
+    flanks: tuple[BladeFlank, ...] = ()
     left: float = 0.0
 
 
@@ -110,7 +116,9 @@ class _StepMaker:
     def make(self, step: MachiningStep) -> StepPaths:
         """The paths of a step."""
         tool = next(each for each in self._impeller.definition.tools if each.number == step.tool)
-        return self._round(step, tool) if step.kind in ROUND_STEPS else self._five_axis(step, tool)
+        if step.kind in ROUND_STEPS:
+            return self._round(step, tool)
+        return self._flanks(step, tool) if step.kind is StepKind.FLANK_MILLING else self._five_axis(step, tool)
 
     def _round(self, step: MachiningStep, tool: LibraryTool) -> StepPaths:
         """A step that goes round the part."""
@@ -137,25 +145,49 @@ class _StepMaker:
 
     def _five_axis(self, step: MachiningStep, tool: LibraryTool) -> StepPaths:
         """A step that is made once and copied to each blade or channel."""
-        if self._obstacles is None:
-            self._obstacles = obstacles_of(self._impeller)
+        obstacles = self._bodies()
         shape, radius = tool.shape(), tool.sizes.diameter / 2.0
         cutter, shank, holder, _ = step.clearance
-        wanted = Wanted(cutter=cutter, shank=shank, holder=holder)
-        is_clear = pose_check(self._obstacles, shape, radius, step.tolerance)
+        wanted = Wanted(cutter=cutter, shank=shank, holder=holder, tilt=step.tilt)
+        is_clear = pose_check(obstacles, shape, radius, step.tolerance)
         copies: list[tuple[float, LinkedPath]] = []
         families, fields = [], []
         for family, angles in self._families(step, radius):
-            found = choose_axes(family, shape, self._obstacles, wanted, self._everywhere(angles))
+            found = choose_axes(family, shape, obstacles, wanted, self._everywhere(angles))
             space = self._space(step, shape, radius, radius, found.axes)
             path = link_passes(family.passes, found.axes, space, _links(step), radius, is_clear, step.name)
             copies += [(angle, path.turned(angle)) for angle in angles]
             families.append(family)
             fields.append(found)
-        copies.sort(key=lambda each: each[0])
-        names = tuple(f"{step.name}_{k}" for k in range(1, len(copies) + 1))
-        paths = tuple(path for _, path in copies)
+        names, paths = _named(step, copies)
         return StepPaths(step, tool, radius, names, paths, tuple(families), tuple(fields))
+
+    def _bodies(self) -> Obstacles:
+        if self._obstacles is None:
+            self._obstacles = obstacles_of(self._impeller)
+        return self._obstacles
+
+    def _flanks(self, step: MachiningStep, tool: LibraryTool) -> StepPaths:
+        """Both sides of each blade, with the side of the tool."""
+        obstacles, impeller = self._bodies(), self._impeller
+        shape, radius = tool.shape(), tool.sizes.diameter / 2.0
+        slope = math.sin(math.radians(tool.sizes.side_angle))
+        cutter = FlankCutter(radius, slope, shape.flute_length - radius)
+        is_clear = pose_check(obstacles, shape, radius, step.overcut, step.overcut + SLACK)
+        copies: list[tuple[float, LinkedPath]] = []
+        flanks: list[BladeFlank] = []
+        for blade in _kinds_of_blades(impeller):
+            first, *rest = (angle for each, angle in impeller.blades() if each is blade)
+            sides = [mill_blade_flank(impeller, blade, side, cutter, step.overcut) for side in (1.0, -1.0)]
+            found = [_climbing(one) for one in sides]
+            family = PassFamily(tuple(one for one, _ in found), radius, step.way).turned(first)
+            turned = [rotated(axis, first) for _, axis in found]
+            space = self._space(step, shape, radius, radius, turned)
+            path = link_passes(family.passes, turned, space, _links(step), radius, is_clear, step.name)
+            copies += [(angle, path.turned(angle - first)) for angle in (first, *rest)]
+            flanks += sides
+        names, paths = _named(step, copies)
+        return StepPaths(step, tool, radius, names, paths, flanks=tuple(flanks))
 
     def _everywhere(self, angles: Sequence[float]) -> Reachable | None:
         """Which tool axes a machine reaches in all copies of a family."""
@@ -191,8 +223,7 @@ class _StepMaker:
                     )  # fmt: skip
                 yield family, [k * pitch for k in range(impeller.definition.number)]
             return
-        own = impeller.blade if impeller.splitter is None else impeller.splitter
-        for blade in dict.fromkeys((impeller.blade, own)):
+        for blade in _kinds_of_blades(impeller):
             # Splitters are described in the frame of a blade: only where they stand is clear what is around them.
             first, *rest = (angle for each, angle in impeller.blades() if each is blade)
             if step.kind is StepKind.BLADE_FINISH:
@@ -211,6 +242,25 @@ class _StepMaker:
                 largest[other.kind] = max(largest[other.kind], tool.sizes.diameter / 2.0 + other.allowance)
         hub, blade = largest[StepKind.HUB_FINISH], largest[StepKind.BLADE_FINISH]
         return RootBlend(radius, step.stepover, hub, blade, step.way, chord)
+
+
+def _kinds_of_blades(impeller: Impeller) -> list[Blade]:
+    """The blade, and the splitter if there is one."""
+    return [impeller.blade] if impeller.splitter is None else [impeller.blade, impeller.splitter]
+
+
+def _climbing(flank: BladeFlank) -> tuple[Pass, Floats]:
+    """The pass of a side with the blade on its right, so that a tool that turns clockwise climbs, and its axes."""
+    one, axis = flank.as_pass()
+    return (one.backwards(), axis[::-1]) if flank.side > 0.0 else (one, axis)
+
+
+def _named(
+    step: MachiningStep, copies: list[tuple[float, LinkedPath]]
+) -> tuple[tuple[str, ...], tuple[LinkedPath, ...]]:
+    """Names and paths of the copies of a step, by their angles about Z."""
+    paths = tuple(path for _, path in sorted(copies, key=lambda each: each[0]))
+    return tuple(f"{step.name}_{k}" for k in range(1, len(paths) + 1)), paths
 
 
 def _links(step: MachiningStep) -> Links:

@@ -15,6 +15,9 @@ from trunnion.simulation.tools.sizes import ToolKind
 
 _GREATEST: Final = 1000.0
 
+#: Greatest angle between tool axis and Z where nothing is stated, degrees.
+_TILT: Final = 100.0
+
 
 class StepKind(StrEnum):
     """What a step machines."""
@@ -25,6 +28,7 @@ class StepKind(StrEnum):
     HUB_FINISH = "hub finish"
     BLADE_FINISH = "blade finish"
     ROOT_BLEND = "root blend"
+    FLANK_MILLING = "flank milling"
 
 
 #: Steps that go once round the whole part; the others are cut once for each blade or channel.
@@ -47,6 +51,7 @@ _WAYS: Final[Mapping[StepKind, tuple[Way, ...]]] = {
     StepKind.HUB_FINISH: (Way.BOTH_WAYS,),
     StepKind.BLADE_FINISH: (Way.ONE_WAY, Way.BOTH_WAYS, Way.SPIRAL),
     StepKind.ROOT_BLEND: (Way.ONE_WAY, Way.BOTH_WAYS, Way.SPIRAL),
+    StepKind.FLANK_MILLING: (Way.ONE_WAY,),
 }
 
 
@@ -55,14 +60,15 @@ class MachiningStep:
     """A step and its data.
 
     tool             by its number
-    stepover         from one pass to the next; of stock roughing, the width that one turn may cut
+    stepover         from one pass to the next; of stock roughing, the width that one turn may cut; 0 of flank milling
     step_down        from one layer, or turn, to the next; 0 where the step has none
     allowance        that stays on blades, or on the form of the shroud
     hub_allowance    that stays on the hub
     rpm              of the spindle, clockwise
     feed, lead_feed  of cuts, and of all that leads to them and away
     lead             radius of the arcs that lead in and out; 0: none
-    tilt             of the tool axis, outward, in a step that goes round the part
+    tilt             of the tool axis, outward, in stock finishing; in steps that choose it, the greatest from Z
+    overcut          that flank milling may leave
     clearance        wanted of cutter, shank and holder, and of links from the stock
     tolerance        of the ball's centre
     coolant          a CL word; empty: none
@@ -82,6 +88,7 @@ class MachiningStep:
     lead: float
     way: Way
     tilt: float
+    overcut: float
     clearance: tuple[float, float, float, float]
     tolerance: float
     coolant: str
@@ -124,7 +131,7 @@ def _read_step(table: Table, tools: Mapping[int | None, LibraryTool]) -> Machini
         kind=kind,
         name=table.text("name", word.replace(" ", "_").upper()),
         tool=tool,
-        stepover=_read_stepover(table),
+        stepover=Stepover() if kind is StepKind.FLANK_MILLING else _read_stepover(table),
         step_down=table.number("step_down_mm", above=0.0, at_most=_GREATEST) if kind in _DEEP else 0.0,
         allowance=table.number("allowance_mm", 0.0, at_least=0.0, at_most=_GREATEST),
         hub_allowance=_read_hub_allowance(table, kind),
@@ -133,7 +140,8 @@ def _read_step(table: Table, tools: Mapping[int | None, LibraryTool]) -> Machini
         lead_feed=table.number("lead_feed_mm_min", feed, above=0.0, at_most=100_000.0),
         lead=table.number("lead_mm", 0.0, at_least=0.0, at_most=100.0),
         way=Way(table.text("way", ways[0], one_of=ways) or ways[0]),
-        tilt=table.number("tilt_deg", 0.0, at_least=0.0, at_most=90.0) if kind is StepKind.STOCK_FINISHING else 0.0,
+        tilt=_read_tilt(table, kind),
+        overcut=_read_overcut(table, kind),
         clearance=_read_clearance(table),
         tolerance=table.number("tolerance_mm", 0.01, at_least=0.0005, at_most=1.0),
         coolant=table.text("coolant", "", one_of=("", "ON", "FLOOD", "MIST", "THRU", "AIR")),
@@ -157,6 +165,18 @@ def _read_hub_allowance(table: Table, kind: StepKind) -> float:
     if kind in (StepKind.CHANNEL_ROUGHING, StepKind.HUB_FINISH):
         return table.number("hub_allowance_mm", 0.0, at_least=0.0, at_most=_GREATEST)
     return 0.0
+
+
+def _read_tilt(table: Table, kind: StepKind) -> float:
+    if kind is StepKind.STOCK_FINISHING:
+        return table.number("tilt_deg", 0.0, at_least=0.0, at_most=90.0)
+    if kind in (StepKind.STOCK_ROUGHING, StepKind.FLANK_MILLING):
+        return 0.0
+    return table.number("tilt_deg", _TILT, at_least=1.0, at_most=180.0)
+
+
+def _read_overcut(table: Table, kind: StepKind) -> float:
+    return table.number("overcut_mm", 0.01, at_least=0.001, at_most=1.0) if kind is StepKind.FLANK_MILLING else 0.0
 
 
 def _read_clearance(table: Table) -> tuple[float, float, float, float]:

@@ -17,7 +17,9 @@ from trunnion.simulation.tools.profile import ToolShape
 _POINT = 1e-4
 
 
-def pose_check(obstacles: Obstacles, tool: ToolShape, radius: float, tolerance: float) -> IsClear:
+def pose_check(
+    obstacles: Obstacles, tool: ToolShape, radius: float, tolerance: float, side_tolerance: float = 0.0
+) -> IsClear:
     """A function that says of poses whether the ball and all above it are clear.
 
     Parameters
@@ -27,6 +29,9 @@ def pose_check(obstacles: Obstacles, tool: ToolShape, radius: float, tolerance: 
     tolerance
         How far the ball may be in a surface: it touches one where it cuts.
 
+    side_tolerance
+        How far all above the ball may be in a surface: where the side of the tool cuts, it touches one.
+
     Raises
     ------
     InputError
@@ -35,7 +40,7 @@ def pose_check(obstacles: Obstacles, tool: ToolShape, radius: float, tolerance: 
     body = tool_body(tool, radius, Margins(0.0, 0.0, 0.0, 1.0)).real
     point = np.array([[0.0, -_POINT], [_POINT, 0.0], [0.0, _POINT]])
     data = ToolData(np.r_[0, len(point) + body.first], np.vstack((point, body.corners)), np.zeros(len(body.wanted) + 1))
-    wanted = np.zeros(len(data.wanted))
+    wanted = np.full(len(data.wanted), -side_tolerance)
     wanted[0] = radius - tolerance - SLACK
 
     def is_clear(centre: Floats, axis: Floats) -> Flags:
