@@ -40,7 +40,7 @@ def read(folder: Path, text: str) -> list[tuple[int, str]]:
 
 def test_the_published_impeller_has_its_six_operations() -> None:
     found = read_impeller(FOLDER / "impeller.toml")
-    assert [step.kind for step in found.steps] == list(StepKind)
+    assert [step.kind for step in found.steps] == [kind for kind in StepKind if kind is not StepKind.FLANK_MILLING]
     sizes = {tool.number: (tool.sizes.kind, tool.sizes.diameter) for tool in found.tools}
     published = [
         (ToolKind.FLAT, 20.0, 2000.0, 500.0), (ToolKind.BALL, 10.0, 3000.0, 200.0),
