@@ -15,6 +15,7 @@ from trunnion.api.input_files import definition_files
 from trunnion.api.job import prepare
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.post_result import PostResult
+from trunnion.api.posted_simulation import named_run
 from trunnion.api.posting import post_toolpaths
 from trunnion.api.reading import FilePath, MachineLike, as_machine, read_cl
 from trunnion.api.settings import Settings, SettingValue
@@ -303,7 +304,7 @@ def _simulated(
     called = {one.step.tool for one in steps}
     assert result.run is not None
     return simulate(
-        result.run,
+        named_run(result.run, str(result.output)),
         machine=machine,
         stock=f"cylinder:{stock.diameter:g},{stock.height:g},{stock.bottom:g}",
         part=model_impeller(impeller, tolerance=max(_MODEL * cell, 0.005)).mesh,

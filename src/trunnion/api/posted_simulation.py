@@ -125,11 +125,11 @@ def simulate_posted(
     if run is None:
         what = "nobody reads programs of this control, and what is not read cannot be simulated"
         raise InputError(argument_problem("simulation", what, "leave it out"))
-    setup = replace(given.setups[0], programs=(_named(run, name),), machine=run.machine, cl=toolpaths)
+    setup = replace(given.setups[0], programs=(named_run(run, name),), machine=run.machine, cl=toolpaths)
     return simulate_setups(replace(given, setups=[setup]), observer)
 
 
-def _named(run: Run, name: str) -> Run:
+def named_run(run: Run, name: str) -> Run:
     """A run whose files are called as they will be: the program by its name, subprograms as they lie beside it."""
     names = {file: Path(file).name for file in run.files[1:]} | {run.files[0]: name}
     told = tuple(replace(each, file=names.get(each.file, each.file)) for each in run.diagnostics)

@@ -6,6 +6,7 @@ Units:  mm, rev/min, mm/min.
 """
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -26,8 +27,11 @@ from trunnion.model.toolpath import (
     Tool,
 )
 
+#: Decimals of tips, mm: those that CL files have, so that they say what is meant in as many digits.
+_DECIMALS: Final = 6
+
 #: Phases that are cut at the feed of the step; all others at that of its leads.
-_CUTTING = (Phase.CUT, Phase.STEPOVER)
+_CUTTING: Final = (Phase.CUT, Phase.STEPOVER)
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +70,8 @@ def operation_of(
     cutting = np.isin(path.phase, _CUTTING)
     feed: Floats = np.where(cutting, data.feed, data.lead_feed)
     line = np.ones(n, np.int32)
-    moves = Moves(path.centre - radius * path.axis, path.axis, path.kind, path.phase, feed, np.zeros(n, np.bool_), line)
+    tip = np.round(path.centre - radius * path.axis, _DECIMALS)
+    moves = Moves(tip, path.axis, path.kind, path.phase, feed, np.zeros(n, np.bool_), line)
     events: list[Event] = [LoadTool(0, 1, number, number), SpindleOn(0, 1, data.rpm)]
     if data.coolant:
         events.append(Coolant(0, 1, data.coolant))
