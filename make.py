@@ -106,7 +106,7 @@ def simulate() -> None:
 
 def impeller() -> None:
     """Model the published impeller, make its programs, prove them, simulate the finished part, and draw it."""
-    set_up(".[impeller]")
+    set_up(".[impeller,simulate]")
     folder = HERE / "build" / "impeller"
     folder.mkdir(parents=True, exist_ok=True)
     run("trunnion", "impeller", "model", IMPELLER, "--output", folder / "model.stl")

@@ -4,13 +4,8 @@ import pytest
 
 from tests.support.flanks import PUBLISHED, mill
 
-#: Greatest overcut and undercut, mm.
-BOUNDS = {
-    "mixed flow": (1.0, 0.202),
-    "high twist": (1.0, 0.137),
-    "tall leaned": (1.0, 0.335),
-    "default": (1.0, 0.122),
-}
+#: Greatest overcut and undercut, mm; benchmarks/flank.py has the other surfaces.
+BOUNDS = {"mixed flow": (1.0, 0.202), "default": (1.0, 0.122)}
 
 
 @pytest.mark.parametrize("name", BOUNDS)
