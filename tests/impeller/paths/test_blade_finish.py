@@ -115,7 +115,7 @@ def middles(centre: Floats) -> Floats:
 @pytest.mark.parametrize(("name", "radius"), [("mixed_flow", 2.5), ("turbo3d", 1.0)])
 def test_other_impellers_have_their_blade_finish_and_root_blend(name: str, radius: float) -> None:
     impeller = build_impeller(read_impeller(PUBLISHED.with_name(f"{name}.toml")))
-    assert [step.kind for step in impeller.definition.steps] == list(StepKind)
+    assert {step.kind for step in impeller.definition.steps} == set(StepKind) - {StepKind.FLANK_MILLING}
     limit = impeller.definition.stock.diameter / 2.0
     for blade in filter(None, (impeller.blade, impeller.splitter)):
         finish = blade_finish(impeller, blade, BladeFinish(radius, Stepover(distance=1.0), tolerance=0.02))
