@@ -1,6 +1,7 @@
 """Hypothesis strategies for toolpaths with every kind of event."""
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -172,15 +173,19 @@ def _is_sensible(operation: Operation) -> bool:
     """Whether everything in an operation has a point of its own in the program, and nothing occurs twice there.
 
     Points differ as printed from those before them, no two events of a kind share a row, cutter radius compensation
-    changes on a motion, and coolant is switched off where nothing else happens: if it is off already, the program has
-    no word for it, but an event before it at the same place gets a block of its own.
+    changes on a motion, and to another side (where it is off, one more "off" prints a word after skipped blocks only,
+    which no reader can tell from nothing), and coolant is switched off where nothing else happens: if it is off
+    already, the program has no word for it, but an event before it at the same place gets a block of its own.
     """
     moved = (np.abs(np.diff(np.round(operation.moves.tip, 3), axis=0)) > 0.0015).any(axis=1)
     places = [(event.row, type(event)) for event in operation.events]
-    moving = all(e.row < len(operation.moves) for e in operation.events if isinstance(e, CutterComp))
+    compensations = [event for event in operation.events if isinstance(event, CutterComp)]
+    moving = all(event.row < len(operation.moves) for event in compensations)
+    sides = ["OFF", *(event.side for event in compensations)]
+    changing = all(before != after for before, after in pairwise(sides))
     rows = [event.row for event in operation.events]
     alone = all(rows.count(e.row) == 1 for e in operation.events if isinstance(e, Coolant) and e.kind == "OFF")
-    return bool(moved.all()) and len(set(places)) == len(places) and moving and alone
+    return bool(moved.all()) and len(set(places)) == len(places) and moving and changing and alone
 
 
 def sensible(paths: st.SearchStrategy[Toolpath]) -> st.SearchStrategy[Toolpath]:
