@@ -17,7 +17,8 @@ from playwright.sync_api import Page, ViewportSize, sync_playwright
 import trunnion
 from make_cls import write
 from trunnion.api.viewing import prepare_view
-from trunnion.viewer.server import listen, view_application
+from trunnion.viewer.server import view_application
+from trunnion.viewer.serving import Access, listen
 
 BLOCKS = 1_000_000
 MACHINE = "yl569"
@@ -81,7 +82,7 @@ def main() -> None:
         page_file = folder / "view.html"
         trunnion.write_view(post(blocks // 10, folder), machine=MACHINE, output=page_file)
         with listen("127.0.0.1", 0) as listening:
-            application = view_application(content, ("127.0.0.1",))
+            application = view_application(content, Access(("127.0.0.1",)))
             server = uvicorn.Server(uvicorn.Config(application, log_level="error"))
             thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
             thread.start()

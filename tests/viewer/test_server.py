@@ -18,7 +18,8 @@ from tests.support.locations import GOLDEN
 from trunnion import InputError
 from trunnion.api.viewing import prepare_view
 from trunnion.viewer.content import ViewContent
-from trunnion.viewer.server import listen, view_application
+from trunnion.viewer.server import view_application
+from trunnion.viewer.serving import Access, listen
 
 PROGRAM = GOLDEN / "yl569" / "3_blade_finish.expected.mpf"
 
@@ -54,7 +55,7 @@ def ask(application: Any, path: str, headers: dict[str, str], method: str = "GET
 
 
 def test_it_gives_the_page_its_columns_and_its_texts(content: ViewContent) -> None:
-    application = view_application(content, NAMES)
+    application = view_application(content, Access(NAMES))
     status, page, _ = ask(application, "/", {"Host": "127.0.0.1:8000"})
     assert status == 200
     assert b'data-embedded="false"' in page
@@ -73,13 +74,13 @@ def test_it_gives_the_page_its_columns_and_its_texts(content: ViewContent) -> No
     ],
 )  # fmt: skip
 def test_another_host_or_origin_gets_nothing(content: ViewContent, headers: dict[str, str]) -> None:
-    application = view_application(content, NAMES)
+    application = view_application(content, Access(NAMES))
     for path in ("/", "/data/column/line", "/data/text/0"):
         assert ask(application, path, headers)[0] == 403
 
 
 def test_off_this_computer_a_token_is_asked_for(content: ViewContent) -> None:
-    application = view_application(content, (*NAMES, "10.0.0.5"), "secret")
+    application = view_application(content, Access((*NAMES, "10.0.0.5"), "secret"))
     host = {"Host": "10.0.0.5:80"}
     for path in ("/", "/?token=", "/?token=Secret", "/data/text/0", "/?token=%FF"):
         assert ask(application, path, host)[0] == 403
@@ -100,19 +101,19 @@ def test_off_this_computer_a_token_is_asked_for(content: ViewContent) -> None:
     ],
 )  # fmt: skip
 def test_there_is_nothing_else(content: ViewContent, path: str) -> None:
-    assert ask(view_application(content, NAMES), path, {"Host": "localhost"})[0] == 404
+    assert ask(view_application(content, Access(NAMES)), path, {"Host": "localhost"})[0] == 404
 
 
 @given(path=st.text(max_size=40), method=st.sampled_from(["GET", "HEAD", "POST", "PUT", "DELETE", "BREW"]))
 def test_whatever_is_asked_is_answered(content: ViewContent, path: str, method: str) -> None:
-    status = ask(view_application(content, NAMES), "/" + path, {"Host": "localhost"}, method)[0]
+    status = ask(view_application(content, Access(NAMES)), "/" + path, {"Host": "localhost"}, method)[0]
     assert status in (200, 404, 405)
 
 
 @pytest.fixture(scope="module")
 def port(content: ViewContent) -> Iterator[int]:
     listening = listen("127.0.0.1", 0)
-    server = uvicorn.Server(uvicorn.Config(view_application(content, NAMES), log_level="critical"))
+    server = uvicorn.Server(uvicorn.Config(view_application(content, Access(NAMES)), log_level="critical"))
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
     thread.start()
     while not server.started:

@@ -8,7 +8,8 @@ from trunnion.api.viewing import check_view_name, prepare_view, write_view
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.terminal import Terminal
 from trunnion.files import check_outputs
-from trunnion.viewer.server import listen, serve
+from trunnion.viewer.server import view_application
+from trunnion.viewer.serving import listen, serve
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -34,5 +35,6 @@ def run(arguments: argparse.Namespace) -> int:
             webbrowser.open(address)
 
     with listen(arguments.host, arguments.port) as listening:
-        serve(prepare_view(nc, observer=Terminal(), **given), listening, ready)
+        content = prepare_view(nc, observer=Terminal(), **given)
+        serve(lambda access: view_application(content, access), listening, ready)
     return 0

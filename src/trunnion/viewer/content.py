@@ -107,8 +107,8 @@ def view_content(
         columns[f"faces-{k}"] = body.mesh.faces.astype(np.int32).ravel()
     scene = {
         "title": verification.program,
-        "machine": _machine(machine),
-        "bodies": [_body(body, machine) for body in bodies],
+        "machine": machine_scene(machine),
+        "bodies": [body_scene(body, machine) for body in bodies],
         "tools": [
             {"name": name, "length": lengths[k], "known": name in tools or name in _NO_TOOL}
             for k, name in enumerate(run.tools)
@@ -147,7 +147,8 @@ def _needle(machine: Machine, name: str) -> Iterable[Body]:
     yield from tool_bodies(shape, machine, name, _length(None, machine))
 
 
-def _machine(machine: Machine) -> dict[str, Any]:
+def machine_scene(machine: Machine) -> dict[str, Any]:
+    """The chain of a machine, mm and degrees, as ``web/kinematics.js`` takes it."""
     chain = link_chain(machine)
     return {
         "key": machine.key,
@@ -173,7 +174,8 @@ def _machine(machine: Machine) -> dict[str, Any]:
     }
 
 
-def _body(body: Body, machine: Machine) -> dict[str, Any]:
+def body_scene(body: Body, machine: Machine) -> dict[str, Any]:
+    """Name, link, kind, tool and colour of a body."""
     own = next((each.colour for each in machine.bodies if each.name == body.name), None)
     colour = own if body.kind is BodyKind.MACHINE and own else _COLOURS.get(body.kind, "#9aa0a6")
     return {"name": body.name, "link": body.link, "kind": str(body.kind), "tool": body.tool, "colour": colour}
