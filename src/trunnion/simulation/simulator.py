@@ -84,6 +84,7 @@ class OperationCut:
 class Simulation:
     """What came out.
 
+    jobs     the programs as far as they were cut
     error    how far the bodies of tools with round corners may be off, mm
     left     what the stock has beyond the design; None without a design
     gouge    what of the design is missing, and was there
@@ -93,6 +94,7 @@ class Simulation:
     """
 
     setup: Setup
+    jobs: tuple[Job, ...]
     operations: tuple[OperationCut, ...]
     stock: Stock
     start_volume: float
@@ -158,7 +160,7 @@ def _simulate(
     start_volume, operations = stock.volume, list[OperationCut]()
     total, done, error = sum(job.end for job in jobs), 0, 0.0
     for number, job in enumerate(jobs):
-        pieces, off = _pieces(job, _FACETS * setup.tolerance, setup.near)
+        pieces, off = tool_pieces(job, setup, setup.near)
         error = max(error, off)
         operations += _cut_job(setup, jobs, number, pieces, stock, design, threads, _shifted(progress, done, total))
         done += job.end
@@ -172,7 +174,7 @@ def _simulate(
             _add_gouges(one, jobs, gouges, apart)
     seconds = time.perf_counter() - begin
     return Simulation(
-        setup, tuple(operations), stock, start_volume, error, left, gouge, lacking, leaks, stopped, seconds
+        setup, tuple(jobs), tuple(operations), stock, start_volume, error, left, gouge, lacking, leaks, stopped, seconds
     )
 
 
@@ -207,7 +209,7 @@ def _cut_again(
     """Cut some stretches of material with all programs; what is added to rows of each, and what they did."""
     again = Stock.of_spans(stock.lattice, spans)
     for number, job in enumerate(jobs):
-        offset, pieces = _offset(jobs, number), _pieces(job, _FACETS * setup.tolerance)[0]
+        offset, pieces = _offset(jobs, number), tool_pieces(job, setup)[0]
         own = None if idle is None else idle[offset : offset + len(job.run)]
         for rows in cut(again, job.run, pieces, setup.tolerance, idle=own, end=job.end, threads=threads):
             yield offset, rows
@@ -232,9 +234,10 @@ def _shifted(progress: Callable[[int, int], None] | None, before: int, total: in
     return lambda done, _: progress(before + done, total)
 
 
-def _pieces(job: Job, tolerance: float, near: float = 0.0) -> tuple[dict[int, RevolvedPieces], float]:
-    """The pieces of each tool by its index in the run, and how far they are off."""
-    found, error = {}, 0.0
+def tool_pieces(job: Job, setup: Setup, near: float = 0.0) -> tuple[dict[int, RevolvedPieces], float]:
+    """The pieces of each tool by its index in the run, with what stands ``near`` mm around, and how far they are off,
+    mm."""
+    found, error, tolerance = {}, 0.0, _FACETS * setup.tolerance
     for index, name in enumerate(job.run.tools):
         if name in job.tools:
             found[index], off = pieces_with_near(job.tools[name], near, tolerance)

@@ -66,6 +66,7 @@ def cut(
     idle: Flags | None = None,
     design: tuple[Spans, Spans, Spans] | None = None,
     offset: int = 0,
+    start: int = 0,
     end: int | None = None,
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
@@ -88,8 +89,9 @@ def cut(
         The finished part as spans of the same lattice.
     offset
         What is added to the numbers of rows in ``Tile.rows``.
-    end
-        The row at which to end; by default after the last one.
+    start, end
+        The row at which to begin, which the stock must have been cut up to, and the one at which to end; by default
+        after the last one.
     threads
         How many tiles are cut at a time; by default as many as there are processors.
     progress
@@ -98,7 +100,7 @@ def cut(
     end = len(run) if end is None else end
     cutter = Cutter(stock, design, tolerance)
     with ThreadPoolExecutor(threads or os.cpu_count() or 1) as executor:
-        for first, last, tool in tool_ranges(run, end):
+        for first, last, tool in tool_ranges(run, end, start):
             if tool in tools:
                 sweeps = row_sweeps(run, first, last, cutter.sizes(tools[tool]))
                 yield cutter.cut(sweeps, tools[tool], executor, idle, offset, _part_of(progress, first, last, end))

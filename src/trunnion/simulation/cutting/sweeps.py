@@ -81,11 +81,12 @@ class SweepSizes:
     away: float
 
 
-def tool_ranges(run: Run, end: int) -> Iterator[tuple[int, int, int]]:
-    """Rows with one tool, at most ``CHUNK_ROWS`` at a time: first row, row after the last, index of the tool."""
+def tool_ranges(run: Run, end: int, start: int = 0) -> Iterator[tuple[int, int, int]]:
+    """Rows from ``start`` to ``end`` (exclusive) with one tool, at most ``CHUNK_ROWS`` at a time: first row, row after
+    the last, index of the tool."""
     column = run.state.tool
-    changes = [int(row) for row in column.rows if 0 < row < end] + [end]
-    first = 0
+    changes = [int(row) for row in column.rows if start < row < end] + [end]
+    first = start
     for change in changes:
         for begin in range(first, change, CHUNK_ROWS):
             yield begin, min(begin + CHUNK_ROWS, change), int(column[begin])

@@ -11,6 +11,7 @@ quadrilateral between the four cubes around it. Every edge belongs to two facets
 """
 
 import math
+from dataclasses import dataclass
 from typing import Annotated, Final, TypeAlias
 
 import numpy as np
@@ -37,11 +38,36 @@ _ASIDE: Final = 2e-3
 _ROUNDS: Final = 50
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class SurfaceGrid:
+    """The surface of stock before it becomes triangles; the stock has ``counts`` cells along X, Y and Z.
+
+    inside    (counts + 2) bool   which centres of cells are in the material, with a layer around them that is not
+    cubes     (n,)       int64    cubes of eight centres that the surface passes, in the order of X, Y and Z, Z fastest,
+                                  as places among counts + 1
+    lows      (n, 3)     float64  their lowest corners, mm
+    vertices  (n, 3)     float64  the vertex of each, in it, mm
+    quads     (m, 4)     int64    its quadrilaterals, as numbers of vertices, seen from outside
+    """
+
+    inside: NDArray[np.bool_]
+    cubes: Ints
+    lows: Floats
+    vertices: Floats
+    quads: Ints
+
+
 def stock_surface(stock: Stock) -> TriangleMesh:
     """Return the surface of stock: closed, its edges sharp, within a cell of the ends of all stretches.
 
     Where two bodies touch along an edge of a cell only, that cell is filled.
     """
+    grid = surface_grid(stock)
+    return TriangleMesh(grid.vertices, _triangles(grid.vertices, grid.quads), "stock")
+
+
+def surface_grid(stock: Stock) -> SurfaceGrid:
+    """Return the surface of stock, as ``stock_surface`` has it, on its grid."""
     spans = [stock.spans(bundle) for bundle in range(3)]
     inside = _without_touching_edges(_centres(stock, spans))
     cubes: list[Ints] = []
@@ -62,7 +88,7 @@ def stock_surface(stock: Stock) -> TriangleMesh:
     quads = vertex.reshape(-1, 4)
     leaving = np.concatenate(leaves)
     quads = np.where(leaving[:, None], quads, quads[:, ::-1])
-    return TriangleMesh(vertices, _triangles(vertices, quads), "stock")
+    return SurfaceGrid(inside, used, lows, vertices, quads)
 
 
 def _centres(stock: Stock, spans: list[Spans]) -> NDArray[np.bool_]:

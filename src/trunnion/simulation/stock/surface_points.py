@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Floats, Ints, Lines
 from trunnion.simulation.stock.differences import Stretches, compare_solids
 from trunnion.simulation.stock.lattice import BUNDLE_AXES
 from trunnion.simulation.stock.material import Stock
@@ -28,12 +28,14 @@ class SurfacePoints:
     normal     (k, 3)  unit vectors out of the material
     area       (k,)    mm² that a point stands for: together, the surface
     deviation  (k,)    mm of material beyond the design there, negative where something is missing; None without design
+    row        (k,)    row of the run that made it, ``UNCUT`` for the stock itself
     """
 
     place: Floats
     normal: Floats
     area: Floats
     deviation: Floats | None
+    row: Lines
 
 
 def surface_points(stock: Stock, design: tuple[Spans, Spans, Spans] | None) -> SurfacePoints:
@@ -53,9 +55,9 @@ def surface_points(stock: Stock, design: tuple[Spans, Spans, Spans] | None) -> S
         if over is not None and under is not None:
             off += _at_ends(over, bundle, ray, spans.ends) - _at_ends(under, bundle, ray, spans.ends)
         area = stock.cell_area(bundle) * np.abs(spans.normals[:, 2]) / 127.0
-        parts.append((place, normal, area, off))
-    place, normal, area, off = (np.concatenate(columns) for columns in zip(*parts, strict=True))
-    return SurfacePoints(place, normal, area, off if design is not None else None)
+        parts.append((place, normal, area, off, spans.rows))
+    place, normal, area, off, row = (np.concatenate(columns) for columns in zip(*parts, strict=True))
+    return SurfacePoints(place, normal, area, off if design is not None else None, row)
 
 
 def _at_ends(found: Stretches, bundle: int, ray: Ints, ends: Floats) -> Floats:

@@ -1,0 +1,118 @@
+"""The stock as it is after any row of a program: cut again from the nearest state that is kept.
+
+In:     a set-up and a program that were simulated.
+Out:    ``Stock``.
+Units:  mm, workpiece frame.
+
+A state that is kept shares with the one before it the tiles that nothing has cut in between. Where all of them take
+more than their bound, every second one goes.
+"""
+
+import bisect
+from collections.abc import Callable
+from typing import Final
+
+import numpy as np
+
+from trunnion.simulation.cutting.removal import cut
+from trunnion.simulation.simulator import Job, Setup, tool_pieces
+from trunnion.simulation.stock.material import Stock, Tile
+from trunnion.simulation.stock.solids import make_stock
+
+#: States that are kept of a long program at first, and rows between those of a short one.
+_STATES: Final = 64
+_FEWEST_ROWS: Final = 50
+
+#: Bytes that they may take together.
+_MOST_BYTES: Final = 500_000_000
+
+
+class Replay:
+    """The states of one stock that one program cuts.
+
+    setup     the solids and the accuracy
+    job       the program
+    finished  what it leaves, where that is known
+    bound     bytes that the states may take
+    """
+
+    def __init__(self, setup: Setup, job: Job, finished: Stock | None = None, bound: int = _MOST_BYTES) -> None:
+        self._setup, self._job, self._bound = setup, job, bound
+        self._pieces = tool_pieces(job, setup)[0]
+        self._stock = make_stock(setup.stock, setup.cell)
+        self._done = 0
+        self._step = max(_FEWEST_ROWS, job.end // _STATES)
+        self._kept: dict[int, tuple[Tile, ...]] = {}
+        self._keep()
+        if finished is not None:
+            self._kept[job.end] = tuple(map(_copy, finished.tiles))
+
+    @property
+    def done(self) -> int:
+        """Rows after which the stock is as ``stock`` has it."""
+        return self._done
+
+    @property
+    def stock(self) -> Stock:
+        """The stock at present; the next ``go_to`` changes it."""
+        return self._stock
+
+    @property
+    def kept(self) -> tuple[int, ...]:
+        """Rows after which states are kept, in order."""
+        return tuple(sorted(self._kept))
+
+    def go_to(self, rows: int, go_on: Callable[[], bool] = lambda: True) -> bool:
+        """Cut the first ``rows`` rows, or as many of the program as there are.
+
+        ``go_on`` is asked now and then; where it says no, False is returned, and what was cut so far is kept.
+        """
+        rows = min(max(rows, 0), self._job.end)
+        at = self.kept
+        nearest = at[bisect.bisect_right(at, rows) - 1]
+        if nearest > self._done or rows < self._done:
+            self._stock = Stock(self._stock.lattice, tuple(map(_copy, self._kept[nearest])))
+            self._done = nearest
+        while self._done < rows:
+            if not go_on():
+                return False
+            end = min(self._done - self._done % self._step + self._step, rows)
+            chunks = cut(self._stock, self._job.run, self._pieces, self._setup.tolerance, start=self._done, end=end)
+            for _ in chunks:
+                pass
+            self._done = end
+            if end % self._step == 0:
+                self._keep()
+        return True
+
+    def _keep(self) -> None:
+        """Keep the present state."""
+        at = self.kept
+        place = bisect.bisect_right(at, self._done) - 1
+        before = self._kept[at[place]] if place >= 0 else (None,) * len(self._stock.tiles)
+        self._kept[self._done] = tuple(
+            old if old is not None and _is_same(old, tile) else _copy(tile)
+            for old, tile in zip(before, self._stock.tiles, strict=True)
+        )
+        while self._bytes() > self._bound and len(self._kept) > 2:
+            self._step *= 2
+            for row in self.kept[1::2]:
+                del self._kept[row]
+
+    def _bytes(self) -> int:
+        """What all states take."""
+        tiles = {id(tile): tile for state in self._kept.values() for tile in state}
+        return sum(each.ends.nbytes + each.rows.nbytes + each.normals.nbytes for each in tiles.values())
+
+
+def _copy(tile: Tile) -> Tile:
+    """A tile with arrays of its own."""
+    return Tile(
+        tile.bundle, tile.first_u, tile.first_v, tile.u, tile.v, tile.count.copy(), tile.ends.copy(),
+        tile.rows.copy(), tile.normals.copy(),
+    )  # fmt: skip
+
+
+def _is_same(one: Tile, other: Tile) -> bool:
+    """Whether nothing has cut a tile since it was copied."""
+    return all(np.array_equal(getattr(one, name), getattr(other, name)) for name in ("count", "rows", "ends"))
