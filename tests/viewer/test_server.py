@@ -7,14 +7,18 @@ import time
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
+from urllib.parse import quote
 
+import numpy as np
 import pytest
 import uvicorn
 from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.support.locations import GOLDEN
+from tests.support.stepped_slot import write_slot
 from trunnion import InputError
 from trunnion.api.viewing import prepare_view
 from trunnion.viewer.content import ViewContent
@@ -108,6 +112,54 @@ def test_there_is_nothing_else(content: ViewContent, path: str) -> None:
 def test_whatever_is_asked_is_answered(content: ViewContent, path: str, method: str) -> None:
     status = ask(view_application(content, Access(NAMES)), "/" + path, {"Host": "localhost"}, method)[0]
     assert status in (200, 404, 405)
+
+
+@pytest.fixture(scope="module")
+def cut(tmp_path_factory: pytest.TempPathFactory) -> ViewContent:
+    program, given = write_slot(tmp_path_factory.mktemp("slot"))
+    return prepare_view(program, **{**given, "part": None, "cell": 1.0})
+
+
+def test_it_gives_the_stock_after_rows_as_what_changes(cut: ViewContent) -> None:
+    application, host = view_application(cut, Access(NAMES)), {"Host": "localhost"}
+    assert cut.stock is not None
+    status, whole, _ = ask(application, "/data/stock/2", host)
+    assert (status, np.frombuffer(whole, "<i4", 2).tolist()) == (200, [2, -1])
+    status, changed, _ = ask(application, "/data/stock/4?before=2", host)
+    assert (status, np.frombuffer(changed, "<i4", 2).tolist()) == (200, [4, 2])
+    assert 0 < len(changed) < len(whole)
+    status, again, _ = ask(application, "/data/stock/4?before=4", host)
+    assert (status, len(again)) == (200, 12)
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/data/stock/99999", "/data/stock/-1", "/data/stock/x", "/data/stock/", "/data/stock/1/2",
+        "/data/stock/" + "9" * 400,
+    ],
+)  # fmt: skip
+def test_there_is_no_other_stock(cut: ViewContent, content: ViewContent, path: str) -> None:
+    assert ask(view_application(cut, Access(NAMES)), path, {"Host": "localhost"})[0] == 404
+    assert ask(view_application(content, Access(NAMES)), "/data/stock/1", {"Host": "localhost"})[0] == 404
+    assert ask(view_application(cut, Access(NAMES)), "/data/stock/1", {"Host": "evil.example"})[0] == 403
+
+
+@given(rows=st.text("0123456789-+e.x%/ ", max_size=12), before=st.text(max_size=12))
+def test_whatever_is_asked_of_the_stock_is_answered(cut: ViewContent, rows: str, before: str) -> None:
+    path = f"/data/stock/{rows}?before={quote(before)}"
+    status, body, _ = ask(view_application(cut, Access(NAMES)), path, {"Host": "localhost"})
+    assert status in (200, 404)
+    assert status == 404 or len(body) >= 12
+
+
+def test_many_questions_at_once_end_with_the_last_one(cut: ViewContent) -> None:
+    assert cut.stock is not None
+    stock, rows = cut.stock, cut.stock.rows
+    with ThreadPoolExecutor(8) as threads:
+        found = list(threads.map(lambda k: stock.answer(k % (rows + 1), k % 3), range(40)))
+    assert all(each is None or len(each) >= 12 for each in found)
+    assert stock.answer(rows, -1) is not None
 
 
 @pytest.fixture(scope="module")

@@ -45,6 +45,7 @@ class SimulationFinding:
     depth     how deep, mm
     place     where, workpiece frame, mm
     setup     name of the set-up; empty where there is only one
+    row       of the worst block in the run of its program
     """
 
     kind: str
@@ -60,6 +61,7 @@ class SimulationFinding:
     place: tuple[float, float, float]
     cl_file: str = ""
     setup: str = ""
+    row: int = -1
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +78,7 @@ class NearMiss:
     distance: float
     place: tuple[float, float, float]
     setup: str = ""
+    row: int = -1
 
 
 @dataclass(frozen=True, slots=True)
@@ -341,7 +344,7 @@ def _finding(verified: Verification, finding: Finding, seconds: float) -> Simula
     return SimulationFinding(
         str(finding.what), finding.between, file_of_row(run, row), int(run.line[row]), int(run.block_number[row]),
         int(run.line[last]), int(run.block_number[last]), cl_line, seconds, finding.depth, (x, y, z),
-        cl_file if cl_line else "",
+        cl_file if cl_line else "", row=row,
     )  # fmt: skip
 
 
@@ -354,7 +357,7 @@ def _near_stock(run: Run, each: Finding, seconds: float) -> NearMiss:
     row, last = each.worst, each.rows[1]
     return NearMiss(
         each.between, file_of_row(run, row), int(run.line[row]), int(run.block_number[row]), int(run.line[last]),
-        int(run.block_number[last]), seconds, each.depth, each.place,
+        int(run.block_number[last]), seconds, each.depth, each.place, row=row,
     )  # fmt: skip
 
 
@@ -363,6 +366,7 @@ def _near_miss(run: Run, each: Collision, seconds: Any) -> NearMiss:
     return NearMiss(
         each.between, file_of_row(run, row), int(run.line[row]), int(run.block_number[row]), int(run.line[last]),
         int(run.block_number[last]), _at_fraction(seconds, row, each.worst_fraction), each.distance_mm, each.place,
+        row=row,
     )  # fmt: skip
 
 

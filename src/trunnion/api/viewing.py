@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Literal
 
 from trunnion.api.arguments import check_path, check_paths
 from trunnion.api.observer import SILENT, Observer
@@ -9,6 +10,7 @@ from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.api.settings import set_up_machine
 from trunnion.api.targets import check_output_name
 from trunnion.api.verifying import rapid_feed_of, verify
+from trunnion.api.viewing_stock import view_simulation, with_stock
 from trunnion.errors import InputError
 from trunnion.files import OutputPlace, atomic_file
 from trunnion.model.run import Run
@@ -41,10 +43,15 @@ def prepare_view(
     machine: MachineLike,
     cl: ToolpathLike | Iterable[ToolpathLike] = (),
     subprograms: Sequence[FilePath] = (),
+    stock: FilePath | None = None,
     part: FilePath | None = None,
     fixtures: Sequence[FilePath] = (),
     tools: Iterable[str] = (),
     libraries: Sequence[FilePath] = (),
+    unit: Literal["mm", "inch"] | None = None,
+    near: float | None = None,
+    cell: float | None = None,
+    accuracy: float | None = None,
     zero: str | Iterable[float] | None = None,
     tool_length: str | float | None = None,
     observer: Observer = SILENT,
@@ -58,14 +65,19 @@ def prepare_view(
     """
     place, others = check_path("nc", nc), check_paths("subprograms", subprograms)
     placed = set_up_machine(as_machine(machine), zero, tool_length)
+    simulated = view_simulation(
+        placed, stock=stock, part=part, fixtures=fixtures, tools=tools, libraries=libraries, unit=unit, near=near,
+        cell=cell, accuracy=accuracy,
+    )  # fmt: skip
     run = restore_rapids(as_run(place, placed, others), rapid_feed_of(placed))
     toolpaths = as_toolpaths(cl, None, False, observer)
     verification = verify(run, machine=placed, cl=toolpaths, observer=observer)
     around = [load_mesh(mesh, name=f"fixture {k}") for k, mesh in enumerate(check_paths("fixtures", fixtures), 1)]
     design = None if part is None else load_mesh(check_path("part", part), name="part")
-    bodies = _known_tools(run, tools, libraries, toolpaths)
+    bodies = _known_tools(run, tools, libraries, unit, toolpaths)
     texts = [decode(Path(file).read_bytes()) for file in run.files]
-    return view_content(verification, texts, bodies, design, around)
+    content = view_content(verification, texts, bodies, design, around)
+    return content if simulated is None else with_stock(content, simulated, run, toolpaths, observer)
 
 
 def write_view(
@@ -75,10 +87,15 @@ def write_view(
     output: FilePath,
     cl: ToolpathLike | Iterable[ToolpathLike] = (),
     subprograms: Sequence[FilePath] = (),
+    stock: FilePath | None = None,
     part: FilePath | None = None,
     fixtures: Sequence[FilePath] = (),
     tools: Iterable[str] = (),
     libraries: Sequence[FilePath] = (),
+    unit: Literal["mm", "inch"] | None = None,
+    near: float | None = None,
+    cell: float | None = None,
+    accuracy: float | None = None,
     zero: str | Iterable[float] | None = None,
     tool_length: str | float | None = None,
     observer: Observer = SILENT,
@@ -97,10 +114,13 @@ def write_view(
         Its CL files: the page then names the CL line of each block, and what the proof finds.
     subprograms
         Files of the subprograms that it calls. No others are opened.
+    stock, near, cell, accuracy
+        As for ``simulate``: the page then shows the stock as it is cut, how far it is from ``part`` in the end, and
+        what the simulation finds. Without ``stock`` nothing is simulated.
     part, fixtures
         Meshes in the workpiece frame.
-    tools, libraries
-        Tools as ``simulate`` has them. One whose form nothing states is drawn as a needle.
+    tools, libraries, unit
+        Tools as ``simulate`` has them. Without ``stock``, one whose form nothing states is drawn as a needle.
     zero, tool_length
         As for ``verify``. Without a zero, the part is drawn at the machine's zero.
     observer
@@ -118,18 +138,19 @@ def write_view(
     """
     place = check_view_name(output)
     content = prepare_view(
-        nc, machine=machine, cl=cl, subprograms=subprograms, part=part, fixtures=fixtures, tools=tools,
-        libraries=libraries, zero=zero, tool_length=tool_length, observer=observer,
+        nc, machine=machine, cl=cl, subprograms=subprograms, stock=stock, part=part, fixtures=fixtures, tools=tools,
+        libraries=libraries, unit=unit, near=near, cell=cell, accuracy=accuracy, zero=zero, tool_length=tool_length,
+        observer=observer,
     )  # fmt: skip
     with atomic_file(place, inputs=list(map(Path, content.scene["files"]))) as sink:
         sink.writelines(render_view(content, embedded=True))
 
 
 def _known_tools(
-    run: Run, tools: Iterable[str], libraries: Sequence[FilePath], toolpaths: Sequence[Toolpath]
+    run: Run, tools: Iterable[str], libraries: Sequence[FilePath], unit: str | None, toolpaths: Sequence[Toolpath]
 ) -> dict[str, ToolShape]:
     """The bodies of the tools whose form something states."""
-    read = [read_tools(path, "") for path in check_paths("libraries", libraries)]
+    read = [read_tools(path, unit or "") for path in check_paths("libraries", libraries)]
     diameters = {number: wide for library in reversed(read) for number, wide in library.diameters.items()}
     stated = [parse_tool(tool, diameters) for tool in tools]
     of_cl_files = tools_of_toolpaths(toolpaths)

@@ -287,14 +287,7 @@ def _add_view(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs it")
     parser.add_argument("--cl", action="append", default=[], metavar="CL", help="CL file that it was made from")
     _add_subprograms(parser, "it")
-    parser.add_argument("--part", metavar="MESH", help="the finished part")
-    parser.add_argument("--fixture", action="append", default=[], metavar="MESH", dest="fixtures", help="a fixture")
-    parser.add_argument(
-        "--tool", action="append", default=[], metavar="N=KIND:SIZES", dest="tools", help="a tool, as simulate has it"
-    )
-    parser.add_argument(
-        "--tools", action="append", default=[], metavar="LIBRARY", dest="libraries", help="tool library"
-    )
+    _add_stock(parser)
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
     parser.add_argument("--output", metavar="FILE.html", help="write a page that works offline, and serve nothing")

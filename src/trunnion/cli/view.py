@@ -16,11 +16,12 @@ def run(arguments: argparse.Namespace) -> int:
     """Write the page, or serve it until the user ends it."""
     (nc,) = arguments.files
     read = [nc, *arguments.subprograms, *named_files(arguments.cl), *arguments.libraries, *arguments.fixtures]
-    read += [arguments.part] if arguments.part else []
+    read += [mesh for mesh in (arguments.part, arguments.stock) if mesh is not None]
     given = {
         "machine": arguments.machine, "cl": cl_inputs(arguments.cl), "subprograms": arguments.subprograms,
-        "part": arguments.part, "fixtures": arguments.fixtures, "tools": arguments.tools,
-        "libraries": arguments.libraries, "zero": arguments.zero or None, "tool_length": arguments.tool_length or None,
+        "stock": arguments.stock, "part": arguments.part, "fixtures": arguments.fixtures, "near": arguments.near,
+        "tools": arguments.tools, "libraries": arguments.libraries, "unit": arguments.unit, "cell": arguments.cell,
+        "accuracy": arguments.accuracy, "zero": arguments.zero or None, "tool_length": arguments.tool_length or None,
     }  # fmt: skip
     if arguments.output is not None:
         check_view_name(arguments.output)

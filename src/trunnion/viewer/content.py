@@ -22,6 +22,7 @@ from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.text import parse_tool
 from trunnion.verification.results import Check, Verification, durations
 from trunnion.viewer.motion import motion_columns
+from trunnion.viewer.stock import StockView
 
 Column = NDArray[np.float32] | NDArray[np.int32]
 
@@ -47,11 +48,13 @@ class ViewContent:
     scene    names and numbers, as JSON has them
     columns  by name, (k,) float32 or int32
     texts    of the program and its subprograms, UTF-8, in the order of ``scene["files"]``
+    stock    as it is cut, where that was simulated
     """
 
     scene: Mapping[str, Any]
     columns: Mapping[str, Column]
     texts: tuple[bytes, ...]
+    stock: StockView | None = None
 
 
 def view_content(

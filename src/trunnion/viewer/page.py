@@ -20,7 +20,7 @@ from trunnion.viewer.shell import PageShell, bundle
 _WEB: Final = files("trunnion.viewer") / "web"
 
 #: In an order in which each needs only those before it.
-MODULES: Final = ("texts", "data", "kinematics", "program", "space", "listing", "curves", "main")
+MODULES: Final = ("texts", "data", "kinematics", "program", "space", "stock", "listing", "curves", "main")
 
 
 def render_view(content: ViewContent, *, embedded: bool) -> Iterator[bytes]:
@@ -35,6 +35,9 @@ def render_view(content: ViewContent, *, embedded: bool) -> Iterator[bytes]:
         for k, text in enumerate(content.texts):
             packed = base64.b64encode(zlib.compress(text, COMPRESSION_LEVEL))
             yield f'<script type="text/plain" id="text-{k}">'.encode() + packed + b"</script>\n"
+        if content.stock is not None:
+            packed = base64.b64encode(content.stock.packed())
+            yield b'<script type="text/plain" id="stock-states">' + packed + b"</script>\n"
     yield shell.foot()
 
 

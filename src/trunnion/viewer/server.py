@@ -1,17 +1,23 @@
-"""The viewer's page on this computer: one page, its columns and its texts, and nothing else.
+"""The viewer's page on this computer: one page, its columns, its texts and its stock, and nothing else.
 
 In:     ``ViewContent``.
 Out:    a Starlette application. Nothing is read from disk.
 """
 
+import asyncio
+import re
 from typing import Any, Final
 
 from trunnion.extras import import_extra
+from trunnion.viewer.bricks import NOTHING
 from trunnion.viewer.content import ViewContent
 from trunnion.viewer.page import render_view
 from trunnion.viewer.serving import HEADERS, Access
 
 _BYTES: Final = "application/octet-stream"
+
+#: Rows, in an address.
+_NUMBER: Final = re.compile(r"\d{1,9}", re.ASCII)
 
 
 def view_application(content: ViewContent, access: Access) -> Any:
@@ -44,10 +50,22 @@ def view_application(content: ViewContent, access: Access) -> Any:
         number = request.path_params["number"]
         return responses.Response(content.texts[number], 200, HEADERS, _BYTES) if number < len(content.texts) else None
 
+    async def give_stock(request: Any) -> Any:
+        stock, rows = content.stock, request.path_params["rows"]
+        if stock is None or rows > stock.rows:
+            return None
+        before = request.query_params.get("before", "")
+        known = int(before) if _NUMBER.fullmatch(before) else NOTHING
+        found = await asyncio.to_thread(stock.answer, rows, known)
+        if found is None:
+            return responses.PlainTextResponse("another state was asked for meanwhile", 409, HEADERS)
+        return responses.Response(found, 200, HEADERS, _BYTES)
+
     return applications.Starlette(
         routes=[
             routing.Route("/", access.guarded(show_page)),
             routing.Route("/data/column/{name}", access.guarded(give_column)),
             routing.Route("/data/text/{number:int}", access.guarded(give_text)),
+            routing.Route("/data/stock/{rows:int}", access.guarded(give_stock)),
         ]
     )

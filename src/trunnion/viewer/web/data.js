@@ -4,11 +4,11 @@
  * @typedef {{name: string, rotary: boolean, direction: number[], point: number[], low: number | null, high: number | null,
  *   rapid: number | null, placed: boolean, displayLow: number | null}} Axis
  * @typedef {{key: string, name: string, partAxes: number, zero: number[] | null, gauge: number[], spindle: number[], axes: Axis[]}} Machine
- * @typedef {{kind: string, row: number, line: number, file: number, text: string}} Mark
+ * @typedef {{kind: string, row: number, line: number, file: number, text: string, place?: number[] | null}} Mark
  * @typedef {{title: string, machine: Machine, bodies: {name: string, link: string, kind: string, tool: string, colour: string}[],
  *   tools: {name: string, length: number, known: boolean}[], files: string[], operations: {name: string, first: number, end: number}[],
  *   events: Mark[], findings: Mark[], timed: boolean, checks: {key: string, passed: boolean, summary: string}[],
- *   columns: Record<string, string>}} SceneData
+ *   columns: Record<string, string>, stock?: import("./stock.js").StockData}} SceneData
  */
 
 const EMBEDDED = document.documentElement.dataset.embedded === "true";
@@ -50,4 +50,30 @@ export async function readColumn(scene, name) {
 /** The text of a file of the program. @param {number} number */
 export async function readText(number) {
   return EMBEDDED ? inflated(`text-${number}`) : new Uint8Array(await fetched(`text/${number}`));
+}
+
+/** The states of the stock that the page holds, each a message; null: the server has them. @returns {Promise<Uint8Array[] | null>} */
+export async function readStates() {
+  if (!EMBEDDED) return null;
+  const bytes = await inflated("stock-states"), view = new DataView(bytes.buffer);
+  const found = [];
+  for (let at = 0; at < bytes.length; at += found[found.length - 1].length) {
+    const length = view.getInt32(at, true);
+    at += 4;
+    found.push(bytes.subarray(at, at + length));
+  }
+  return found;
+}
+
+/**
+ * The stock after some rows, as a message; null: another question came between.
+ * @param {number} rows
+ * @param {number} before rows of the stock that is shown, -1 for none
+ * @param {AbortSignal} signal
+ */
+export async function askStock(rows, before, signal) {
+  const answer = await fetch(`data/stock/${rows}${before < 0 ? "" : `?before=${before}`}`, { signal });
+  if (answer.status === 409) return null;
+  if (!answer.ok) throw new Error(`stock: ${answer.status}`);
+  return new Uint8Array(await answer.arrayBuffer());
 }

@@ -5,6 +5,7 @@ import { Curves } from "./curves.js";
 import { Listing } from "./listing.js";
 import { Program } from "./program.js";
 import { Space } from "./space.js";
+import { Places, Stock } from "./stock.js";
 import { say } from "./texts.js";
 
 /** Slowest and fastest play, times real time; the slider is their logarithm. */
@@ -26,12 +27,14 @@ function scaled(share) {
 }
 
 class Page {
-  /** @param {Program} program @param {Space} space @param {Listing} listing */
-  constructor(program, space, listing) {
+  /** @param {Program} program @param {Space} space @param {Listing} listing @param {Stock | null} stock */
+  constructor(program, space, listing, stock) {
     this.program = program;
     this.scene = program.scene;
     this.space = space;
     this.listing = listing;
+    this.stock = stock;
+    this.places = new Places(space, program.scene.findings);
     this.time = 0;
     this.playing = false;
     this.shownFile = -1;
@@ -77,6 +80,9 @@ class Page {
     else if (by === "finding") {
       const rows = new Set(this.scene.findings.map((each) => each.row));
       this.space.paint((piece) => (rows.has(program.row[piece]) ? FINDING : QUIET));
+    } else if (by === "deviation" && this.stock) {
+      const { stock } = this;
+      this.space.paint((piece) => stock.colourOf(stock.rowOff[program.row[piece]]));
     } else {
       const value = by === "feed" ? (/** @type {number} */ piece) => program.feed[program.row[piece]] : (/** @type {number} */ piece) => this.rotarySpeed(piece);
       let most = 0;
@@ -86,6 +92,14 @@ class Page {
       return;
     }
     element("legend").textContent = "";
+    this.#scale();
+  }
+
+  /** The scale of deviations stands where something is coloured by them. */
+  #scale() {
+    const { stock } = this;
+    element("scale").hidden = !stock?.data.deviation || (stock.mode !== "deviation" && element("colour").value !== "deviation");
+    if (stock && !element("scale").hidden) stock.drawScale(element("scale-bar"), element("scale-text"));
   }
 
   /** @param {number} row */
@@ -113,6 +127,7 @@ class Page {
     this.time = time;
     this.row = row;
     this.space.setPose(values, row);
+    this.stock?.show(time >= this.program.timeOf(row) ? row + 1 : row);
     this.curves.setCursor(time);
     element("scrub").value = String(this.program.end ? time / this.program.end : 0);
     this.#readOut(values, row);
@@ -234,6 +249,8 @@ class Page {
 
   #pickAt(/** @type {PointerEvent} */ event) {
     const box = this.space.canvas.getBoundingClientRect();
+    const finding = this.isMeasuring ? -1 : this.places.pick(event.clientX - box.left, event.clientY - box.top);
+    if (finding >= 0) { this.goToRow(this.scene.findings[finding].row); return; }
     const piece = this.space.pick(event.clientX - box.left, event.clientY - box.top);
     if (piece < 0) return;
     if (!this.isMeasuring) { this.goToRow(this.program.row[piece]); return; }
@@ -263,6 +280,7 @@ class Page {
     on("scrub", "change", () => this.space.hurry(false));
     on("speed", "input", () => this.#tellSpeed());
     on("colour", "change", () => this.paint());
+    on("stock", "change", (event) => { this.stock?.setMode(event.target.value); this.#scale(); });
     on("view", "change", (event) => this.space.look(event.target.value, true));
     on("frame", "change", (event) => this.space.setFrame(event.target.value));
     on("section", "change", () => this.#section());
@@ -357,7 +375,17 @@ function remarksOf(scene) {
   const found = scene.tools.filter((tool) => !tool.known).map((tool) => say("toolForm", tool.name));
   if (!scene.machine.zero) found.unshift(say("zero"));
   if (!scene.timed) found.push(say("untimed"));
-  return found;
+  return [...found, ...(scene.stock?.remarks ?? [])];
+}
+
+/** Read what the page holds of the stock, and show its controls. @param {Stock} stock */
+async function openStock(stock) {
+  await stock.open();
+  element("stock-label").hidden = false;
+  for (const option of document.querySelectorAll("option[value=deviation]")) {
+    const lacks = !stock.data.deviation;
+    Object.assign(option, { hidden: lacks, disabled: lacks });
+  }
 }
 
 async function start() {
@@ -371,11 +399,14 @@ async function start() {
   const file = element("file");
   scene.files.forEach((name, k) => file.append(new Option(name.split(/[\\/]/).pop(), String(k))));
   const listing = new Listing(element("listing"), (line) => page.goToLine(line));
-  const page = new Page(program, space, listing);
+  const stock = scene.stock ? new Stock(space, program, columns, element("stock-status")) : null;
+  if (stock) await openStock(stock);
+  const page = new Page(program, space, listing, stock);
   const paper = () => space.setBackground(getComputedStyle(document.body).getPropertyValue("--sky").trim());
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { paper(); page.curves.redraw(); });
   paper();
   page.goToRow(0);
+  stock?.setMode("cut");
   space.look("iso");
   element("remarks").textContent = remarksOf(scene).join(" ");
   element("status").textContent = "";

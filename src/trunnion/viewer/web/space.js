@@ -247,7 +247,7 @@ export class Space {
   look(from, near = false) {
     this.root.updateMatrixWorld(true);
     const box = new THREE.Box3();
-    if (near || this.frame === "part" || !this.bodies.length) box.setFromObject(this.lines);
+    if (near || this.frame === "part" || !this.bodies.length) box.setFromObject(this.place);
     else box.setFromObject(this.root);
     if (box.isEmpty()) box.set(new THREE.Vector3(-50, -50, -50), new THREE.Vector3(50, 50, 50));
     const sphere = box.getBoundingSphere(new THREE.Sphere());
@@ -267,7 +267,7 @@ export class Space {
     if (!axis) this.renderer.clippingPlanes = [];
     else {
       this.root.updateMatrixWorld(true);
-      const box = new THREE.Box3().setFromObject(this.frame === "part" ? this.lines : this.root);
+      const box = new THREE.Box3().setFromObject(this.frame === "part" ? this.place : this.root);
       const normal = new THREE.Vector3(axis === "x" ? -1 : 0, axis === "y" ? 1 : 0, axis === "z" ? -1 : 0);
       const low = box.min[axis], high = box.max[axis];
       const at = low + share * (high - low);
