@@ -37,6 +37,7 @@ class Problem:
     line  counts from 1; 0 if the problem concerns the file as a whole
     what  the fault
     cure  how to correct it; may be empty
+    key   of a definition, from its root, such as ``axis[1].limits_deg``; empty elsewhere
     """
 
     file: str
@@ -44,6 +45,7 @@ class Problem:
     what: str
     cure: str = ""
     severity: Severity = Severity.ERROR
+    key: str = ""
 
     def __str__(self) -> str:
         """Return ``file:line: severity: what; cure``."""

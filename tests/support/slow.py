@@ -4,7 +4,7 @@
 #: and long property tests.
 SLOW = (
     "api/test_impeller_cutting.py", "api/test_same_as_command.py", "cl/test_scan.py", "cl/test_surface_normals.py",
-    "cl/test_write.py",
+    "builder/test_browser.py", "cl/test_write.py",
     "conversion/test_angles.py", "conversion/test_leaving_the_part.py", "conversion/test_pairs.py",
     "conversion/test_round_trip.py", "conversion/test_settings_by_operation.py", "examples", "fuzz",
     "impeller/flank",

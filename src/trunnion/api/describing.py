@@ -207,9 +207,14 @@ def _describe(key: str, control: Control) -> ControlDescription:
         abilities=tuple(_abilities(control)),
         words=words,
         texts=tuple(TemplateDescription(name, control.templates[name].lines) for name in names),
-        settings=tuple(_control_setting(control, name) for name in control.settings if control.has_effect(name)),
+        settings=describe_settings(control),
         run_settings=tuple(setting for setting in run_settings() if setting.name not in control.settings),
     )
+
+
+def describe_settings(control: Control) -> tuple[SettingDescription, ...]:
+    """Return the settings of a control that have an effect."""
+    return tuple(_control_setting(control, name) for name in control.settings if control.has_effect(name))
 
 
 def run_settings() -> tuple[SettingDescription, ...]:

@@ -140,6 +140,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     )
     _add_simulate(commands.add_parser("simulate", help="cut stock with NC programs: what is left, and what is hit"))
     _add_view(commands.add_parser("view", help="show an NC program on its machine, in a browser"))
+    _add_build(commands.add_parser("build", help="set up the definition of a machine, in a browser"))
     _add_info(commands.add_parser("info", help="show what CL files hold; no machine is needed"))
     _add_curve(commands.add_parser("curve", help="fit curves to measured points; no machine is needed"))
     _add_impeller(commands.add_parser("impeller", help="make an impeller from measured points"))
@@ -291,10 +292,20 @@ def _add_view(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
     parser.add_argument("--output", metavar="FILE.html", help="write a page that works offline, and serve nothing")
+    _add_serving(parser)
+    parser.set_defaults(run=_lazy_command("view", "run"))
+
+
+def _add_build(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", nargs="?", default="", metavar="MACHINE.toml", help="definition; none: a new one")
+    _add_serving(parser)
+    parser.set_defaults(run=_lazy_command("build", "run"))
+
+
+def _add_serving(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-browser", action="store_false", dest="browser", help="only print the address")
     parser.add_argument("--host", default="127.0.0.1", help="serve other computers, too, on this address; with a token")
     parser.add_argument("--port", type=int, default=0, help="a free one by default")
-    parser.set_defaults(run=_lazy_command("view", "run"))
 
 
 def _add_simulate(parser: argparse.ArgumentParser) -> None:

@@ -1,11 +1,12 @@
 """``trunnion machines`` and ``trunnion check``."""
 
 import argparse
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, replace
-from pathlib import Path
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path, PurePath
 
 from trunnion.api.cl_statements import check_statements
+from trunnion.api.definition_checks import all_problems, machine_problems, stand_in
 from trunnion.api.describing import describe_control
 from trunnion.api.describing_machine import describe_machine
 from trunnion.cli.controls import control_lines
@@ -14,10 +15,10 @@ from trunnion.cli.results import as_json, print_result
 from trunnion.controls import load_control
 from trunnion.controls.definition_files import is_control_file, load_control_table
 from trunnion.controls.loading import shipped_controls
-from trunnion.definitions import Table, load_table
+from trunnion.definitions import load_table
 from trunnion.definitions.messages import did_you_mean
 from trunnion.errors import InputError, Problem
-from trunnion.machines import Machine, load_machine, shipped_machines
+from trunnion.machines import load_machine, shipped_machines
 from trunnion.machines.loading import machine_library
 from trunnion.readers import check_reading
 
@@ -49,33 +50,25 @@ def check(arguments: argparse.Namespace) -> int:
         print_result(*([as_json(asdict(control))] if arguments.json else [good, "", *control_lines(control)]))
         return 0
     _check_is_known(arguments.file)
-    _raise_all(arguments.file, (load_machine, _load_control, _check_reading, _check_statements))
+    key = PurePath(arguments.file).name.removesuffix(".toml")
+    _raise(machine_problems(load_table(arguments.file, machine_library(), kind="machine"), key))
     found = describe_machine(arguments.file)
     good = f"{arguments.file}: good"
     print_result(*([as_json(machine_data(found))] if arguments.json else [good, "", *machine_lines(found)]))
     return 0
 
 
-def _raise_all(file: str, loaders: Sequence[Callable[[str], object]]) -> None:
-    """Raise the problems of all loaders together."""
-    problems: list[Problem] = []
-    for load in loaders:
-        try:
-            load(file)
-        except InputError as error:
-            problems += [problem for problem in error.problems if problem not in problems]
+def _raise(problems: Sequence[Problem]) -> None:
     if problems:
-        raise InputError(sorted(problems, key=lambda problem: (problem.file, problem.line)))
+        raise InputError(problems)
 
 
 def _check_control_file(file: str) -> None:
     """Raise every mistake of a control's own file, the words that it declares for readers among them."""
     table = load_control_table(file)
-    machine = _any_machine(file, table)
-    _raise_all(
-        file,
-        (lambda _: load_control(table), lambda _: check_reading(machine), lambda _: check_statements(machine)),
-    )
+    machine = stand_in(file, table)
+    checks = (lambda: load_control(table), lambda: check_reading(machine), lambda: check_statements(machine))
+    _raise(all_problems(checks))
 
 
 def _check_is_known(name: str) -> None:
@@ -87,30 +80,3 @@ def _check_is_known(name: str) -> None:
     cure = f"{near} " if near else ""
     cure += f"write the path of a .toml file, or one of {', '.join(known)}"
     raise InputError(Problem(name, 0, "there is no shipped machine or control of this name", cure))
-
-
-def _any_machine(file: str, control: Table) -> Machine:
-    """A machine with a control: what a definition says to readers can be judged although its axes are wrong."""
-    return replace(load_machine(shipped_machines()[0]), key=file, name=file, control=control, files=())
-
-
-def _check_reading(file: str) -> None:
-    """Check what a definition says to the readers of programs."""
-    check_reading(_any_machine(file, _control_table(file)))
-
-
-def _check_statements(file: str) -> None:
-    """Check what a definition says of CL statements; words of a shop only once its machine can be loaded."""
-    check_statements(_any_machine(file, _control_table(file)))
-    check_statements(load_machine(file))
-
-
-def _control_table(file: str) -> Table:
-    return load_table(file, machine_library(), kind="machine").table("control")
-
-
-def _load_control(file: str) -> None:
-    """Read the control's part of a definition, unless it only names a family."""
-    table = _control_table(file)
-    if table.keys() not in ([], ["family"]):
-        load_control(table)

@@ -1,11 +1,10 @@
 """``trunnion view``: a program on its machine, in a browser."""
 
 import argparse
-import sys
-import webbrowser
 
 from trunnion.api.viewing import check_view_name, prepare_view, write_view
 from trunnion.cli.cl_files import cl_inputs, named_files
+from trunnion.cli.serving import announce
 from trunnion.cli.terminal import Terminal
 from trunnion.files import check_outputs
 from trunnion.viewer.server import view_application
@@ -29,13 +28,7 @@ def run(arguments: argparse.Namespace) -> int:
         write_view(nc, output=arguments.output, observer=Terminal(), **given)
         return 0
 
-    def ready(address: str) -> None:
-        print(address, flush=True)
-        print("Ctrl-C ends it", file=sys.stderr)
-        if arguments.browser:
-            webbrowser.open(address)
-
     with listen(arguments.host, arguments.port) as listening:
         content = prepare_view(nc, observer=Terminal(), **given)
-        serve(lambda access: view_application(content, access), listening, ready)
+        serve(lambda access: view_application(content, access), listening, announce(browser=arguments.browser))
     return 0

@@ -8,17 +8,28 @@ A definition may come from anyone, so reading one runs nothing, and opens nothin
 that are shipped with Trunnion, or that lie beside or below the file that extends them.
 """
 
-from trunnion.definitions.extends import MAX_FILE_BYTES, definition_names, load_table, own_keys, resolve_extends
-from trunnion.definitions.source_lines import LocatedValue, key_lines
+from trunnion.definitions.extends import (
+    MAX_FILE_BYTES,
+    definition_names,
+    load_draft,
+    load_table,
+    own_keys,
+    resolve_extends,
+)
+from trunnion.definitions.source_lines import KeyPath, Layout, LocatedValue, key_lines, layout
 from trunnion.definitions.table import Table
 from trunnion.definitions.units import unit_of
 
 __all__ = [
     "MAX_FILE_BYTES",
+    "KeyPath",
+    "Layout",
     "LocatedValue",
     "Table",
     "definition_names",
     "key_lines",
+    "layout",
+    "load_draft",
     "load_table",
     "own_keys",
     "resolve_extends",

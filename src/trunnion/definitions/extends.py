@@ -1,5 +1,6 @@
 """Definition files: each is read, and merged onto the one that it extends."""
 
+import io
 import re
 import tomllib
 from collections.abc import Mapping
@@ -30,11 +31,26 @@ _MAX_NAME: Final = 1000
 Library: TypeAlias = Traversable | Path
 
 
+@dataclass(frozen=True, slots=True)
+class _Draft:
+    """A definition that is in no file yet."""
+
+    data: bytes
+
+    def open(self, _mode: str) -> io.BytesIO:
+        """The text, as a file would give it."""
+        return io.BytesIO(self.data)
+
+    def is_file(self) -> bool:
+        """It can be read."""
+        return True
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _DefinitionFile:
     """A definition file: its location, its name in messages, and the folder that its ``extends`` may reach."""
 
-    location: Library
+    location: Library | _Draft
     label: str
     folder: Path | None
 
@@ -133,7 +149,7 @@ def is_within(location: Path, folder: Path) -> bool:
         return False
 
 
-def _is_file(location: Library) -> bool:
+def _is_file(location: Library | _Draft) -> bool:
     """Whether a path is that of a file; one that is too long, or a link that goes round, is not."""
     try:
         return location.is_file()
@@ -228,6 +244,28 @@ def load_table(
     if overrides:
         root = merge(root, locate_values(dict(overrides), "overrides", {}), "", problems)
     return Table(root, "", problems)
+
+
+def load_draft(text: str, path: Path, library: Library) -> Table:
+    """Read a definition that is not saved yet, and everything that it extends.
+
+    Parameters
+    ----------
+    text
+        Of the definition.
+    path
+        Where it would be saved: what it extends lies beside or below it. It need not be there, and is not read.
+    library
+        The folder of shipped definitions.
+
+    Raises
+    ------
+    InputError
+        As ``load_table``.
+    """
+    source = _DefinitionFile(_Draft(text.encode()), str(path), path.parent)
+    problems: list[Problem] = []
+    return Table(_merge_ancestors(_read(source), source, library, problems), "", problems)
 
 
 def own_keys(path: Path) -> frozenset[str]:

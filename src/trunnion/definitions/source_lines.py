@@ -4,7 +4,7 @@ import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Final, TypeAlias
+from typing import Final, NamedTuple, TypeAlias
 
 #: Deeper keys are refused unread: the time of the TOML parser grows with the cube of their depth.
 MAX_KEY_DEPTH: Final = 32
@@ -64,10 +64,32 @@ def locate_values(
     return LocatedValue(value, file, line)
 
 
-def key_lines(text: str) -> dict[KeyPath, int]:
-    """Line of every key of a TOML text, from 1; the path of a table in an array has its index.
+class ValuePlace(NamedTuple):
+    """Where a key and its value stand in a TOML text: ``text[key:start]`` is the key, ``text[start:end]`` the value."""
 
-    ``tomllib`` keeps no lines. Nothing is checked here: for a text that is not TOML, the lines mean nothing.
+    key: int
+    start: int
+    end: int
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """Where everything stands in a TOML text; the path of a table in an array has its index.
+
+    lines    line of every key, from 1
+    values   places of the values of ``key = value``
+    headers  offsets of the headers of tables, with the paths of the tables, in the order of the text
+    """
+
+    lines: dict[KeyPath, int]
+    values: dict[KeyPath, ValuePlace]
+    headers: list[tuple[int, KeyPath]]
+
+
+def layout(text: str) -> Layout:
+    """Where everything stands in a TOML text, which ``tomllib`` does not keep.
+
+    Nothing is checked here: for a text that is not TOML, the places mean nothing.
 
     Raises
     ------
@@ -75,13 +97,24 @@ def key_lines(text: str) -> dict[KeyPath, int]:
         If tables nest too deeply.
     """
     try:
-        return _KeyLineScanner(text).index()
+        return _Scanner(text).scan()
     except (IndexError, ValueError):
-        return {}
+        return Layout({}, {}, [])
 
 
-class _KeyLineScanner:
-    """Goes over a TOML text once, notes the lines of keys, and skips values."""
+def key_lines(text: str) -> dict[KeyPath, int]:
+    """Line of every key of a TOML text, as ``layout`` has them.
+
+    Raises
+    ------
+    RecursionError
+        If tables nest too deeply.
+    """
+    return layout(text).lines
+
+
+class _Scanner:
+    """Goes over a TOML text once, notes the places of keys, and skips values."""
 
     def __init__(self, text: str) -> None:
         self.text = text
@@ -89,9 +122,11 @@ class _KeyLineScanner:
         self.line = 1
         self.counted = 0
         self.found: dict[KeyPath, int] = {}
+        self.values: dict[KeyPath, ValuePlace] = {}
+        self.headers: list[tuple[int, KeyPath]] = []
         self.arrays: dict[KeyPath, int] = {}
 
-    def index(self) -> dict[KeyPath, int]:
+    def scan(self) -> Layout:
         here: KeyPath = ()
         while self._skip_blanks(newlines=True):
             if self.text.startswith("[[", self.at):
@@ -100,7 +135,7 @@ class _KeyLineScanner:
                 here = self._header(1, array=False)
             else:
                 self._pair(here)
-        return self.found
+        return Layout(self.found, self.values, self.headers)
 
     def _note_line(self, path: KeyPath) -> None:
         self.line += self.text.count("\n", self.counted, self.at)
@@ -139,6 +174,7 @@ class _KeyLineScanner:
             self.at += 1
 
     def _header(self, brackets: int, *, array: bool) -> KeyPath:
+        begin = self.at
         self.at += brackets
         keys = self._key()
         path: KeyPath = ()
@@ -151,15 +187,19 @@ class _KeyLineScanner:
                 path = (*path, self.arrays[path])
             self._note_line(path)
         self.at += brackets
+        self.headers.append((begin, path))
         return path
 
     def _pair(self, here: KeyPath) -> None:
-        path = here
+        path, begin = here, self.at
         for key in self._key():
             path = (*path, key)
             self._note_line(path)
         self.at += 1  # the equals sign
+        self._skip_blanks(newlines=False)
+        start = self.at
         self._value(path)
+        self.values.setdefault(path, ValuePlace(begin, start, start + len(self.text[start : self.at].rstrip())))
 
     def _value(self, path: KeyPath) -> None:
         self._skip_blanks(newlines=False)

@@ -115,8 +115,8 @@ class Table:
     def add_problem(self, key: str, what: str, cure: str = "") -> None:
         """Note a mistake in the value of a key; an empty key means the table itself."""
         file, line = self.location(key)
-        name = self.key_path(key) if key else self.path or "definition"
-        self.problems.append(Problem(file, line, f"{name} {what}", cure))
+        path = self.key_path(key) if key else self.path
+        self.problems.append(Problem(file, line, f"{path or 'definition'} {what}", cure, key=path))
 
     def raise_problems(self) -> None:
         """Raise every problem noted so far.

@@ -1,0 +1,193 @@
+"""A definition that is being written: what it says, where each value comes from, and what is wrong with it.
+
+In:     the text of a definition, and the file that it would be saved as.
+Out:    what the builder's page shows, as JSON has it.
+"""
+
+import json
+import tomllib
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from trunnion.api.definition_checks import machine_problems
+from trunnion.api.describing import describe_settings
+from trunnion.builder.fields import PAGES, Field, SettingNotes, fields_of, named_path, value_at
+from trunnion.controls import load_control
+from trunnion.controls.loading import control_library
+from trunnion.definitions import LocatedValue, Table, load_draft, resolve_extends
+from trunnion.errors import InputError, Problem
+from trunnion.machines import Machine
+from trunnion.machines.jog_table import jog_table
+from trunnion.machines.loading import machine_library, read_machine
+from trunnion.simulation.collisions.bodies import machine_bodies
+from trunnion.viewer.content import body_scene, machine_scene
+
+#: A longer definition is not edited here.
+MOST_LETTERS: Final = 200_000
+
+#: Bodies of more triangles together are not drawn.
+_MOST_TRIANGLES: Final = 100_000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Draft:
+    """A definition as it stands.
+
+    text      as it would be saved
+    path      where it would be saved
+    root      merged with all that it extends, its control too; None: it cannot even be read
+    machine   what it describes; None: it has mistakes
+    problems  all mistakes
+    """
+
+    text: str
+    path: Path
+    root: LocatedValue | None
+    machine: Machine | None
+    problems: tuple[Problem, ...]
+
+
+def judge(text: str, path: Path) -> Draft:
+    """Read a definition, and find every mistake of it.
+
+    Parameters
+    ----------
+    text
+        Of the definition; lines end with a newline alone.
+    path
+        Where it would be saved. What it extends lies beside or below it.
+    """
+    if len(text) > MOST_LETTERS:
+        what = f"has {len(text)} letters; more than {MOST_LETTERS} are not edited here"
+        return Draft(text, path, None, None, (Problem(str(path), 0, what, "edit the file itself"),))
+    try:
+        table = load_draft(text, path, machine_library())
+    except InputError as error:
+        return Draft(text, path, None, None, error.problems)
+    problems = machine_problems(table, path.stem)
+    machine = None
+    with suppress(InputError):
+        machine = read_machine(table.unread_copy(), path.stem)
+    root = table.content
+    with suppress(InputError):
+        control = resolve_extends(table.unread_copy().table("control"), control_library())
+        assert isinstance(root.value, dict)
+        root = LocatedValue({**root.value, "control": control.content}, root.file, root.line)
+        own = table.unread_copy().table("control").content.value
+        if isinstance(own, dict) and "extends" in own and isinstance(control.content.value, dict):
+            control.content.value["extends"] = own["extends"]
+    return Draft(text, path, root, machine, tuple(problems))
+
+
+def draft_data(draft: Draft) -> dict[str, Any]:
+    """Return what the page shows of a definition: pages of fields, mistakes, the machine, and its jog table."""
+    root = draft.root
+    base = None if root is None else _base(draft)
+    fields = [] if root is None else fields_of(root, _notes(root))
+    return {
+        "pages": {page: [_field(each, root, base, draft) for each in fields if each.page == page] for page in PAGES},
+        "problems": [_problem(each, draft) for each in draft.problems],
+        "axes": _axes(root),
+        "extends": _plain_text(root and _own(draft).get("extends")),
+        **_machine(draft.machine),
+    }
+
+
+def inherited_value(draft: Draft, path: tuple[Any, ...]) -> object:
+    """Return what a definition would have at a path without a value of its own; None: nothing."""
+    base = _base(draft)
+    found = None if base is None else value_at(base, path)
+    return None if found is None else _plain(found)
+
+
+def _field(each: Field, root: LocatedValue | None, base: LocatedValue | None, draft: Draft) -> dict[str, Any]:
+    found = None if root is None else value_at(root, each.path)
+    below = None if base is None else value_at(base, each.path)
+    return {
+        "path": [list(step) if isinstance(step, tuple) else step for step in each.path],
+        "key": each.key, "kind": each.kind, "unit": each.unit, "choices": each.choices, "size": each.size,
+        "optional": each.optional, "note": each.note, "allowed": each.allowed,
+        "value": None if found is None else _plain(found),
+        "inherited": None if below is None else _plain(below),
+        "own": found is not None and found.file == str(draft.path),
+        "from": "" if found is None else f"{Path(found.file).name}:{found.line}",
+    }  # fmt: skip
+
+
+def _problem(problem: Problem, draft: Draft) -> dict[str, Any]:
+    own = problem.file == str(draft.path)
+    path = () if draft.root is None else named_path(draft.root, problem.key)
+    return {
+        "line": problem.line if own else 0,
+        "place": "" if own else f"{Path(problem.file).name}:{problem.line}",
+        "path": [list(step) if isinstance(step, tuple) else step for step in path],
+        "what": problem.what,
+        "cure": problem.cure,
+    }
+
+
+def _base(draft: Draft) -> LocatedValue | None:
+    """What the definition extends, merged, without anything of its own."""
+    own = _own(draft)
+    control = own.get("control")
+    parts = [("", own.get("extends")), ("[control]\n", control.get("extends") if isinstance(control, dict) else None)]
+    text = "".join(f"{head}extends = {json.dumps(name)}\n" for head, name in parts if isinstance(name, str))
+    return judge(text, draft.path).root if text else None
+
+
+def _own(draft: Draft) -> dict[str, Any]:
+    try:
+        return tomllib.loads(draft.text)
+    except ValueError:
+        return {}
+
+
+def _notes(root: LocatedValue) -> SettingNotes:
+    """What the settings of the control mean; nothing while it has mistakes."""
+    with suppress(InputError):
+        control = value_at(root, ("control",))
+        assert control is not None
+        assert isinstance(control.value, dict)
+        merged = {key: value for key, value in control.value.items() if key != "extends"}
+        found = describe_settings(load_control(Table(LocatedValue(merged, control.file, control.line), "control")))
+        return SettingNotes({one.name: one.meaning for one in found}, {one.name: one.allowed for one in found})
+    return SettingNotes()
+
+
+def _axes(root: LocatedValue | None) -> list[str]:
+    """Names of the axes in their order."""
+    found = None if root is None else value_at(root, ("axis",))
+    items = found.value if found is not None and isinstance(found.value, list) else []
+    return [str(name.value) for item in items if (name := value_at(item, ("name",))) is not None]
+
+
+def _machine(machine: Machine | None) -> dict[str, Any]:
+    if machine is None:
+        return {"machine": None, "bodies": [], "jogs": [], "remark": ""}
+    remark = ""
+    bodies: list[dict[str, Any]] = []
+    try:
+        for body in machine_bodies(machine):
+            mesh = body.mesh
+            shape = {"vertices": mesh.vertices.round(3).ravel().tolist(), "faces": mesh.faces.ravel().tolist()}
+            bodies.append(body_scene(body, machine) | shape)
+    except InputError as error:
+        remark = "\n".join(map(str, error.problems))
+    if sum(len(body["faces"]) for body in bodies) > 3 * _MOST_TRIANGLES:
+        bodies, remark = [], f"bodies of more than {_MOST_TRIANGLES} triangles are not drawn here"
+    jogs = jog_table(machine)
+    told = [
+        {"axis": each.axis.name, "what": f"{each.tool}; {each.iron}" if each.tool else each.iron} for each in jogs.axes
+    ]
+    homes = [axis.home for axis in machine.axes]
+    return {"machine": {**machine_scene(machine), "homes": homes}, "bodies": bodies, "jogs": told, "remark": remark}
+
+
+def _plain(found: LocatedValue) -> object:
+    return Table(found).to_dict() if isinstance(found.value, dict) else found.value
+
+
+def _plain_text(value: object) -> str:
+    return value if isinstance(value, str) else ""

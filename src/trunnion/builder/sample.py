@@ -1,0 +1,97 @@
+"""A sample program of a definition: CL files posted and proven, as ``trunnion post`` does it, and what has changed.
+
+In:     a machine, a CL file of the user's or the shipped one.
+Out:    the program's lines, the answers of the proof, and what is refused, as JSON has it.
+"""
+
+import difflib
+import io
+import re
+from collections.abc import Sequence
+from importlib.resources import files
+from typing import Any, Final
+
+from trunnion.api.posting import post
+from trunnion.errors import InputError, Problem, Severity
+from trunnion.machines import Machine
+
+#: So many lines are shown; the proof is always that of the whole program.
+_MOST_LINES: Final = 20_000
+
+#: Programs of more lines are not compared line by line: it takes the square of them.
+_MOST_COMPARED: Final = 3_000
+
+
+#: A block number, after the block-skip sign, with a letter or, as Klartext has it, without.
+_BLOCK_NUMBER: Final = re.compile(r"^(/?)[A-Z:]?[0-9]+ ")
+
+
+class _NamedBytes(io.BytesIO):
+    """A CL file in memory; messages say its name."""
+
+    def __init__(self, data: bytes, name: str) -> None:
+        super().__init__(data)
+        self.name = name
+
+
+def shipped_sample() -> bytes:
+    """A CL file with a contour, holes, and a wall that is cut with five axes."""
+    return files("trunnion.builder").joinpath("sample.cls").read_bytes()
+
+
+def sample_data(machine: Machine, cl: bytes | None, name: str, before: Sequence[str]) -> dict[str, Any]:
+    """Post and prove a CL file, and mark what differs from an earlier program.
+
+    Parameters
+    ----------
+    machine
+        The machine.
+    cl
+        The CL file; None: the shipped one.
+    name
+        Of the CL file, for messages.
+    before
+        Lines of the earlier program; none: nothing is marked.
+
+    Returns
+    -------
+    dict
+        ``lines``; ``changed``, the numbers of those that are new, from 0; ``removed``, how many are gone; ``checks``
+        and ``problems``; ``passed``.
+    """
+    try:
+        result = post(_NamedBytes(shipped_sample() if cl is None else cl, name or "sample.cls"), machine=machine)
+    except InputError as error:
+        problems = [_problem(each) for each in error.problems]
+        return {"lines": [], "changed": [], "removed": 0, "checks": [], "problems": problems, "passed": False, "all": 0}
+    lines = (result.text or "").splitlines()
+    changed, removed = _changes(before, lines)
+    return {
+        "lines": lines[:_MOST_LINES],
+        "all": len(lines),
+        "changed": changed,
+        "removed": removed,
+        "checks": [{"key": one.key, "passed": one.passed, "summary": one.summary} for one in result.checks],
+        "problems": [_problem(each) for each in result.problems],
+        "passed": result.passed,
+    }
+
+
+def _changes(before: Sequence[str], now: Sequence[str]) -> tuple[list[int], int]:
+    """Numbers of the lines that the earlier program did not have, and how many lines of it are gone.
+
+    Block numbers are left out of it: one more line changes all that follow.
+    """
+    if not before or max(len(before), len(now)) > _MOST_COMPARED:
+        return [], 0
+    old, new = ([_BLOCK_NUMBER.sub(r"\1", line) for line in lines] for lines in (before, now))
+    found = difflib.SequenceMatcher(None, old, new, autojunk=False).get_opcodes()
+    changed = [line for kind, _, _, first, end in found if kind in ("replace", "insert") for line in range(first, end)]
+    removed = sum(end - first for kind, first, end, _, _ in found if kind in ("replace", "delete"))
+    return changed, removed
+
+
+def _problem(problem: Problem) -> dict[str, Any]:
+    return {
+        "what": problem.what, "cure": problem.cure, "line": problem.line, "error": problem.severity is Severity.ERROR
+    }  # fmt: skip

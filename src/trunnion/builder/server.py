@@ -1,0 +1,67 @@
+"""The builder's page on this computer, and the requests that it makes.
+
+In:     a ``BuilderSession``.
+Out:    a Starlette application. Requests are JSON of bounded size, from this page alone.
+"""
+
+import json
+from typing import Any, Final
+
+from trunnion.builder.page import render_builder
+from trunnion.builder.session import MOST_CL_BYTES, BuilderSession, RequestError
+from trunnion.extras import import_extra
+from trunnion.viewer.serving import HEADERS, Access
+
+#: A CL file in base64, a definition and an earlier program.
+_MOST_BYTES: Final = MOST_CL_BYTES * 4 // 3 + 4_000_000
+
+
+def builder_application(session: BuilderSession, access: Access) -> Any:
+    """Make the application.
+
+    Parameters
+    ----------
+    session
+        What its page may ask for.
+    access
+        Who may see it.
+
+    Raises
+    ------
+    InputError
+        If Starlette is not installed, or the definition cannot be read.
+    """
+    responses, routing = (import_extra(f"starlette.{name}", "view") for name in ("responses", "routing"))
+    run_in_threadpool = import_extra("starlette.concurrency", "view").run_in_threadpool
+    session.start()
+
+    def plain(text: str, status: int) -> Any:
+        return responses.PlainTextResponse(text, status, HEADERS)
+
+    def show_page(_request: Any) -> Any:
+        return access.page(render_builder(session.start()))
+
+    async def answer(request: Any) -> Any:
+        # A form of another page cannot send JSON without being asked first.
+        if request.headers.get("content-type", "").partition(";")[0].strip() != "application/json":
+            return plain("send JSON", 415)
+        body = bytearray()
+        async for piece in request.stream():
+            body += piece
+            if len(body) > _MOST_BYTES:
+                return plain("the request is too large", 413)
+        try:
+            given = json.loads(bytes(body))
+            if not isinstance(given, dict):
+                raise RequestError
+            found = await run_in_threadpool(session.answer, request.path_params["what"], given)
+        except (RequestError, ValueError, RecursionError):
+            return plain("the page makes no such request", 400)
+        return None if found is None else responses.JSONResponse(found, headers=HEADERS)
+
+    return import_extra("starlette.applications", "view").Starlette(
+        routes=[
+            routing.Route("/", access.guarded(show_page)),
+            routing.Route("/{what}", access.guarded(answer), methods=["POST"]),
+        ]
+    )

@@ -1,0 +1,219 @@
+"""What the builder's page may ask for: a start, a change, a judgement, a sample program, and to save.
+
+In:     requests as JSON has them.
+Out:    answers of the same kind. Nothing is kept between two requests but the file that the builder was opened with,
+        and nothing is written but by ``save``.
+"""
+
+import base64
+import binascii
+import hashlib
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from trunnion.builder.chains import CHAINS, chain_text
+from trunnion.builder.document import (
+    FieldPath,
+    UnclearPlaceError,
+    Value,
+    with_table_moved,
+    with_value,
+    without_value,
+)
+from trunnion.builder.draft import MOST_LETTERS, Draft, draft_data, inherited_value, judge
+from trunnion.builder.sample import sample_data
+from trunnion.controls.loading import shipped_controls
+from trunnion.errors import InputError, Problem
+from trunnion.files import atomic_file
+from trunnion.machines import load_machine, shipped_machines
+
+#: A CL file for the sample program has so many bytes at most.
+MOST_CL_BYTES: Final = 4_000_000
+
+_FILE_NAME: Final = re.compile(r"[\w][\w .+-]{0,99}\.toml")
+
+
+class RequestError(ValueError):
+    """A request that the page does not make."""
+
+
+@dataclass(frozen=True, slots=True)
+class BuilderSession:
+    """A definition that is being built.
+
+    folder   where it is saved, and below which lies what it extends
+    name     of the file that the builder was opened with; empty: a new definition
+    """
+
+    folder: Path
+    name: str = ""
+
+    def start(self) -> dict[str, Any]:
+        """What the page begins with: the text of the file, and what a new definition can start from.
+
+        Raises
+        ------
+        InputError
+            If the file cannot be read.
+        """
+        text = _read(self.folder / self.name) if self.name else ""
+        return {
+            "title": self.name or "machine.toml",
+            "text": _plain_ends(text),
+            "seen": _digest(text) if self.name else "",
+            "machines": [{"key": key, "name": load_machine(key).name} for key in shipped_machines()],
+            "controls": shipped_controls(),
+            "chains": [{"key": key, "order": chain.order} for key, chain in CHAINS.items()],
+        }
+
+    def answer(self, what: str, given: Mapping[str, Any]) -> dict[str, Any] | None:
+        """Answer a request; None: there is no such request.
+
+        Raises
+        ------
+        RequestError
+            If it is not made as the page makes it.
+        """
+        match what:
+            case "begin":
+                return self._begin(given)
+            case "judge":
+                return self._judged(_text(given, "text"))
+            case "change":
+                return self._change(given)
+            case "sample":
+                return self._sample(given)
+            case "save":
+                return self._save(given)
+        return None
+
+    def _draft(self, text: str) -> Draft:
+        return judge(text, self.folder / (self.name or "machine.toml"))
+
+    def _judged(self, text: str) -> dict[str, Any]:
+        return {"text": text, **draft_data(self._draft(text))}
+
+    def _begin(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        """A new definition: one that extends a shipped machine, or one with an order of axes."""
+        name = _text(given, "name").strip() or "Our machine"
+        base, chain, control = (_text(given, key) for key in ("base", "chain", "control"))
+        if base:
+            if base not in shipped_machines():
+                raise RequestError
+            text = with_value(f'extends = "{base}"\n', ("name",), name)
+        else:
+            if control not in shipped_controls() or chain not in CHAINS:
+                raise RequestError
+            text = chain_text(chain, name, control)
+        return self._judged(text)
+
+    def _change(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        """The definition with a value set, taken out, or an axis moved; ``unclear`` where only the user can do that."""
+        text, draft = _text(given, "text"), self._draft(_text(given, "text"))
+        try:
+            if "move" in given:
+                by = given.get("by")
+                if by not in (-1, 1):
+                    raise RequestError
+                text = with_table_moved(text, "axis", _text(given, "move"), by)
+            else:
+                path, value = _path(given.get("path")), given.get("value")
+                if value is None or value == inherited_value(draft, path):
+                    text = without_value(text, path)
+                else:
+                    text = with_value(text, path, _value(value))
+        except (UnclearPlaceError, KeyError, TypeError, ValueError) as error:
+            if isinstance(error, RequestError):
+                raise
+            return {**self._judged(text), "unclear": True}
+        return self._judged(text)
+
+    def _sample(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        draft = self._draft(_text(given, "text"))
+        before = given.get("before", [])
+        if not isinstance(before, list) or not all(isinstance(line, str) for line in before):
+            raise RequestError
+        if draft.machine is None or draft.problems:
+            return {"lines": [], "changed": [], "removed": 0, "checks": [], "problems": [], "passed": False, "all": 0}
+        return sample_data(draft.machine, _cl(given.get("cl")), _text(given, "clName")[:200], before)
+
+    def _save(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        """Write the definition, unless another one would be lost that the user has not seen."""
+        text, name, seen = _text(given, "text"), _text(given, "name"), _text(given, "seen")
+        if not _FILE_NAME.fullmatch(name):
+            return {"saved": "", "why": "name"}
+        file = self.folder / name
+        old = ""
+        try:
+            old = _read(file) if file.exists() else ""
+            if file.exists() and _digest(old) != seen and given.get("replace") is not True:
+                return {"saved": "", "why": "changed" if name == self.name and seen else "exists"}
+            written = text.replace("\n", "\r\n") if "\r\n" in old else text
+            with atomic_file(file) as sink:
+                sink.write(written.encode())
+        except InputError as error:
+            return {"saved": "", "why": "cannot", "problems": [str(problem) for problem in error.problems]}
+        return {"saved": str(file), "seen": _digest(written), "mistakes": len(judge(text, file).problems)}
+
+
+def _read(file: Path) -> str:
+    try:
+        with file.open(encoding="utf-8-sig", newline="") as stream:
+            text = stream.read(MOST_LETTERS + 1)
+    except (OSError, UnicodeDecodeError) as error:
+        why = "is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else f"cannot be read: {error.strerror}"
+        raise InputError(Problem(str(file), 0, why, "choose the TOML file of a machine")) from None
+    if len(text) > MOST_LETTERS:
+        raise InputError(Problem(str(file), 0, f"has more than {MOST_LETTERS} letters", "edit the file itself"))
+    return text
+
+
+def _plain_ends(text: str) -> str:
+    return text.replace("\r\n", "\n")
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _text(given: Mapping[str, Any], key: str) -> str:
+    value = given.get(key, "")
+    if not isinstance(value, str):
+        raise RequestError
+    return value
+
+
+def _path(given: object) -> FieldPath:
+    if not isinstance(given, list) or not given or not isinstance(given[-1], str):
+        raise RequestError
+    path: FieldPath = ()
+    for step in given:
+        if isinstance(step, list) and len(step) == 1 and isinstance(step[0], str):
+            path = (*path, (step[0],))
+        elif isinstance(step, str):
+            path = (*path, step)
+        else:
+            raise RequestError
+    return path
+
+
+def _value(given: object) -> Value:
+    if isinstance(given, str | bool | int | float):
+        return given
+    if isinstance(given, list) and all(isinstance(item, int | float) and not isinstance(item, bool) for item in given):
+        return given
+    raise RequestError
+
+
+def _cl(given: object) -> bytes | None:
+    if given is None:
+        return None
+    if not isinstance(given, str) or len(given) > MOST_CL_BYTES * 4 // 3 + 4:
+        raise RequestError
+    try:
+        return base64.b64decode(given, validate=True)
+    except binascii.Error:
+        raise RequestError from None

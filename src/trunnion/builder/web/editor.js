@@ -1,0 +1,56 @@
+// The definition as text: numbered lines, marks at mistakes, and the line of the field that has the focus.
+
+export class Editor {
+  /** @param {HTMLTextAreaElement} area @param {HTMLElement} gutter @param {(text: string) => void} onInput after a rest */
+  constructor(area, gutter, onInput) {
+    this.area = area;
+    this.gutter = gutter;
+    this.timer = 0;
+    area.addEventListener("input", () => {
+      this.#number();
+      clearTimeout(this.timer);
+      this.timer = setTimeout(() => onInput(area.value), 350);
+    });
+    area.addEventListener("scroll", () => { gutter.scrollTop = area.scrollTop; });
+    /** @type {Map<number, string>} */
+    this.marks = new Map();
+  }
+
+  get text() { return this.area.value; }
+
+  /** Show a text that has been changed elsewhere. @param {string} text */
+  set(text) {
+    if (this.area.value === text) return;
+    const { scrollTop } = this.area;
+    this.area.value = text;
+    this.area.scrollTop = scrollTop;
+    this.#number();
+  }
+
+  /** Mark lines. @param {{line: number, what: string, cure: string}[]} problems */
+  mark(problems) {
+    this.marks = new Map(problems.filter((each) => each.line).map((each) => [each.line, `${each.what}; ${each.cure}`]));
+    this.#number();
+  }
+
+  /** Bring a line into sight, and show it for a moment. @param {number} line from 1 */
+  show(line) {
+    const height = parseFloat(getComputedStyle(this.area).lineHeight);
+    const top = (line - 1) * height;
+    if (top < this.area.scrollTop || top > this.area.scrollTop + this.area.clientHeight - 2 * height) this.area.scrollTop = Math.max(0, top - 4 * height);
+    this.gutter.querySelector(".here")?.classList.remove("here");
+    this.gutter.children[line - 1]?.classList.add("here");
+  }
+
+  #number() {
+    const count = this.area.value.split("\n").length;
+    const rows = Array.from({ length: count }, (_, k) => {
+      const row = Object.assign(document.createElement("div"), { textContent: String(k + 1) });
+      const what = this.marks.get(k + 1);
+      if (what) { row.className = "wrong"; row.title = what; }
+      return row;
+    });
+    this.gutter.replaceChildren(...rows);
+    this.gutter.scrollTop = this.area.scrollTop;
+  }
+}

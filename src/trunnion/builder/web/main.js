@@ -1,0 +1,288 @@
+// The page: fields, text, machine and sample are four views of one definition, which the server judges at every change.
+
+import { Editor } from "./editor.js";
+import { Form, covers } from "./form.js";
+import { Sample } from "./sample.js";
+import { COLOURS, Stage } from "./stage.js";
+import { say } from "./texts.js";
+
+/** @param {string} id @returns {any} */
+const element = (id) => document.getElementById(id);
+
+/** Pages whose names are other words of the page too. */
+const PAGE_NAMES = new Map([["home", "homePage"], ["control", "controlPage"]]);
+
+/** A CL file is not larger. */
+const MOST_CL = 4_000_000;
+
+class Builder {
+  /** @param {any} start */
+  constructor(start) {
+    this.start = start;
+    this.seen = start.seen;
+    this.saved = start.text;
+    this.page = "structure";
+    /** @type {any} */
+    this.data = null;
+    /** @type {{name: string, content: string} | null} */
+    this.cl = null;
+    this.asked = 0;
+    this.judged = 0;
+    this.sampled = 0;
+    this.stage = new Stage(element("space"));
+    this.form = new Form(element("form"), (path, value) => this.change({ path, value }), (from) => this.editor.show(Number(from.split(":").at(-1))));
+    this.editor = new Editor(element("text"), element("gutter"), (text) => this.ask("judge", { text }));
+    this.sample = new Sample(element("program"), element("verdict"));
+    this.#listen();
+  }
+
+  /** Post to the server; null: it is gone. @param {string} what @param {any} given */
+  async post(what, given) {
+    try {
+      const answer = await fetch(what, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(given) });
+      if (answer.ok) return await answer.json();
+      throw new Error(`${what}: ${answer.status}`);
+    } catch {
+      this.tell(say("lost"), true);
+      return null;
+    }
+  }
+
+  /** Ask for a judgement and show it, unless a later one has been asked for. @param {string} what @param {any} given */
+  async ask(what, given) {
+    const number = ++this.asked;
+    const data = await this.post(what, given);
+    if (data && number === this.asked) {
+      this.show(data);
+      this.judged = number;
+    }
+    return data;
+  }
+
+  /** @param {any} change */
+  change(change) { return this.ask("change", { text: this.editor.text, ...change }); }
+
+  /** @param {any} data */
+  show(data) {
+    this.data = data;
+    this.editor.set(data.text);
+    this.editor.mark(data.problems);
+    this.#showPages();
+    this.#showPage();
+    this.#showProblems();
+    if (data.machine) {
+      this.stage.show(data.machine, data.bodies);
+      this.#showJog();
+    }
+    this.tell(data.unclear ? say("unclear") : "", Boolean(data.unclear));
+    this.runSample();
+  }
+
+  /** The state of the file, or what has gone wrong. @param {string} what @param {boolean} bad */
+  tell(what, bad) {
+    element("state").textContent = what || (this.editor.text === this.saved ? "" : say("unsaved"));
+    element("state").className = bad ? "bad" : "";
+  }
+
+  #showPages() {
+    const { pages, problems } = this.data;
+    element("pages").replaceChildren(...Object.keys(pages).map((name) => {
+      const button = Object.assign(document.createElement("button"), { type: "button", textContent: say(PAGE_NAMES.get(name) ?? name) });
+      button.dataset.page = name;
+      if (name === this.page) button.setAttribute("aria-current", "page");
+      const wrong = problems.some((/** @type {any} */ each) => pages[name].some((/** @type {any} */ field) => covers(each.path, field.path)));
+      if (wrong) { button.className = "bad"; button.textContent += " ⚠"; }
+      button.addEventListener("click", () => this.goTo(name));
+      return button;
+    }));
+  }
+
+  /** @param {string} page */
+  goTo(page) {
+    this.page = page;
+    this.#showPages();
+    this.#showPage();
+    element("form").scrollTop = 0;
+    element("pages").querySelector(`[data-page="${page}"]`)?.focus();
+  }
+
+  #showPage() {
+    this.form.show(this.data.pages[this.page], this.data.problems, this.page === "structure" ? this.#order() : null);
+  }
+
+  /** The axes in their order, with the means to change it. */
+  #order() {
+    const box = document.createElement("div");
+    box.append(Object.assign(document.createElement("h3"), { textContent: say("order") }));
+    const list = Object.assign(document.createElement("ol"), { className: "order" });
+    this.data.axes.forEach((/** @type {string} */ name, /** @type {number} */ k) => {
+      const item = Object.assign(document.createElement("li"), { textContent: name });
+      if (!this.data.extends) {
+        for (const [by, sign, words] of /** @type {[number, string, string][]} */ ([[-1, "◀", "up"], [1, "▶", "down"]])) {
+          const button = Object.assign(document.createElement("button"), { type: "button", textContent: sign, title: `${name}: ${say(words)}` });
+          button.disabled = by < 0 ? k === 0 : k === this.data.axes.length - 1;
+          button.setAttribute("aria-label", button.title);
+          button.addEventListener("click", () => this.change({ move: name, by }));
+          item.append(button);
+        }
+      }
+      list.append(item);
+    });
+    box.append(list);
+    if (this.data.extends) box.append(Object.assign(document.createElement("p"), { className: "help", textContent: say("fixed") }));
+    for (const jog of this.data.jogs) box.append(Object.assign(document.createElement("p"), { className: "help", textContent: `${jog.axis}: ${jog.what}` }));
+    return box;
+  }
+
+  #showProblems() {
+    const { problems } = this.data;
+    element("mistakes").textContent = problems.length ? say(problems.length === 1 ? "mistake" : "mistakes", problems.length) : say("clean");
+    element("mistakes").className = problems.length ? "bad" : "good";
+    element("problems").replaceChildren(...problems.map((/** @type {any} */ each) => {
+      const item = document.createElement("li");
+      const where = each.line ? `${each.line}: ` : each.place ? `${each.place}: ` : "";
+      const button = Object.assign(document.createElement("button"), { type: "button", textContent: `${where}${each.what}; ${each.cure}` });
+      button.addEventListener("click", () => this.#goToProblem(each));
+      item.append(button);
+      return item;
+    }));
+  }
+
+  /** @param {any} problem */
+  #goToProblem(problem) {
+    const page = Object.keys(this.data.pages).find((name) => this.data.pages[name].some((/** @type {any} */ field) => covers(problem.path, field.path)));
+    if (page) { this.goTo(page); this.form.focus(problem.path); }
+    if (problem.line) this.editor.show(problem.line);
+  }
+
+  #showJog() {
+    const { machine } = this.data;
+    const box = element("jog");
+    const shape = machine.axes.map((/** @type {any} */ axis) => [axis.name, axis.low, axis.high].join()).join(";");
+    if (box.dataset.shape !== shape) {
+      box.dataset.shape = shape;
+      box.replaceChildren(...machine.axes.map((/** @type {any} */ axis, /** @type {number} */ k) => this.#slider(axis, k)));
+      const home = Object.assign(document.createElement("button"), { type: "button", textContent: say("home") });
+      home.addEventListener("click", () => this.jog(this.data.machine.homes));
+      box.append(home);
+    }
+    this.jog(this.stage.values);
+  }
+
+  /** @param {any} axis @param {number} k */
+  #slider(axis, k) {
+    const row = document.createElement("label");
+    const name = Object.assign(document.createElement("span"), { textContent: axis.name });
+    name.style.borderColor = COLOURS[k];
+    const wide = axis.rotary ? 360 : 500;
+    const range = Object.assign(document.createElement("input"), { type: "range", min: String(axis.low ?? -wide), max: String(axis.high ?? wide), step: "any" });
+    range.dataset.axis = axis.name;
+    range.setAttribute("aria-label", `${say("jog")} ${axis.name}`);
+    range.addEventListener("input", () => this.jog(this.stage.values.map((value, j) => (j === k ? Number(range.value) : value))));
+    const box = Object.assign(document.createElement("input"), { type: "text", inputMode: "decimal" });
+    box.setAttribute("aria-label", `${axis.name} ${axis.rotary ? "°" : "mm"}`);
+    box.addEventListener("change", () => {
+      const value = Number(box.value);
+      this.jog(this.stage.values.map((old, j) => (j === k && Number.isFinite(value) ? value : old)));
+    });
+    row.append(name, range, box);
+    return row;
+  }
+
+  /** Move the machine, and say where the tool is. @param {number[]} values */
+  jog(values) {
+    this.stage.jog(values);
+    const { machine } = this.data;
+    element("jog").querySelectorAll("label").forEach((/** @type {HTMLElement} */ row, /** @type {number} */ k) => {
+      const [range, box] = row.querySelectorAll("input");
+      range.value = String(values[k]);
+      box.value = values[k].toFixed(machine.axes[k].rotary ? 3 : 2);
+    });
+    const { tip, axis } = this.stage.tool();
+    const of = (/** @type {number[]} */ v, /** @type {number} */ digits) => v.map((x) => x.toFixed(digits)).join("  ");
+    element("pose").textContent = `${say("tip")} ${of(tip, 3)}   ${say("toolAxis")} ${of(axis, 6)}${machine.zero ? "" : `\n${say("zero")}`}${this.data.remark ? `\n${this.data.remark}` : ""}`;
+  }
+
+  /** Post and prove the sample again, unless there are mistakes. */
+  async runSample() {
+    element("cl-name").textContent = this.cl?.name ?? say("sampleFile");
+    const number = ++this.sampled;
+    if (this.data.problems.length) { this.sample.clear(say("waiting")); this.isSampled(); return; }
+    element("program").dataset.ready = "false";
+    const found = await this.post("sample", { text: this.editor.text, cl: this.cl?.content ?? null, clName: this.cl?.name ?? "", before: this.sample.lines.slice(0, 3000) });
+    if (found && number === this.sampled) { this.sample.show(found); this.isSampled(); }
+  }
+
+  isSampled() { element("program").dataset.ready = "true"; }
+
+  /** @param {boolean} replace */
+  async save(replace) {
+    const name = element("save-name").value.trim();
+    const { text } = this.editor;
+    const found = await this.post("save", { text, name, seen: this.seen, replace });
+    if (!found) return;
+    if (!found.saved) {
+      element("save-why").textContent = [say(found.why), ...(found.problems ?? [])].join("\n");
+      element("save-replace").hidden = found.why !== "exists" && found.why !== "changed";
+      return;
+    }
+    this.seen = found.seen;
+    this.saved = text;
+    element("title").textContent = name;
+    element("saving").close();
+    this.tell(found.mistakes ? say("savedBad", found.saved, found.mistakes) : say("saved", found.saved), found.mistakes > 0);
+  }
+
+  begin() {
+    const fill = (/** @type {string} */ id, /** @type {[string, string][]} */ options) => element(id).replaceChildren(...options.map(([value, text]) => new Option(text, value)));
+    fill("begin-base", this.start.machines.map((/** @type {any} */ each) => [each.key, `${each.key}: ${each.name}`]));
+    fill("begin-chain", this.start.chains.map((/** @type {any} */ each) => [each.key, each.order]));
+    fill("begin-control", this.start.controls.map((/** @type {string} */ each) => [each, each]));
+    element("begin").showModal();
+  }
+
+  #listen() {
+    element("title").textContent = this.start.title;
+    element("start").addEventListener("click", () => this.begin());
+    element("begin-cancel").addEventListener("click", () => element("begin").close());
+    element("begin-go").addEventListener("click", async () => {
+      const way = /** @type {HTMLInputElement} */ (document.querySelector("input[name=way]:checked")).value;
+      const given = { name: element("begin-name").value, base: way === "base" ? element("begin-base").value : "", chain: element("begin-chain").value, control: element("begin-control").value };
+      element("begin").close();
+      this.sample.lines = [];
+      await this.ask("begin", given);
+    });
+    element("save").addEventListener("click", () => {
+      element("save-why").textContent = "";
+      element("save-replace").hidden = true;
+      element("save-name").value = element("title").textContent;
+      element("saving").showModal();
+      element("save-name").focus();
+    });
+    element("save-go").addEventListener("click", () => this.save(false));
+    element("save-replace").addEventListener("click", () => this.save(true));
+    element("save-cancel").addEventListener("click", () => element("saving").close());
+    element("cl").addEventListener("change", async () => {
+      const file = element("cl").files[0];
+      if (!file) return;
+      if (file.size > MOST_CL) { this.tell(say("many"), true); return; }
+      const url = await new Promise((done) => { const reader = new FileReader(); reader.onload = () => done(reader.result); reader.readAsDataURL(file); });
+      this.cl = { name: file.name, content: String(url).split(",")[1] ?? "" };
+      this.sample.lines = [];
+      await this.runSample();
+    });
+    window.addEventListener("keydown", (event) => {
+      if (event.key === "s" && (event.ctrlKey || event.metaKey)) { event.preventDefault(); element("save").click(); }
+    });
+    window.addEventListener("beforeunload", (event) => { if (this.editor.text !== this.saved) event.preventDefault(); });
+  }
+}
+
+document.querySelectorAll("[data-say]").forEach((each) => { each.textContent = say(/** @type {HTMLElement} */ (each).dataset.say ?? ""); });
+document.querySelectorAll("[data-label]").forEach((each) => each.setAttribute("aria-label", say(/** @type {HTMLElement} */ (each).dataset.label ?? "")));
+document.documentElement.lang = (new URLSearchParams(location.search).get("lang") ?? navigator.language).slice(0, 2);
+const builder = new Builder(JSON.parse(element("scene").textContent));
+/** @type {any} */ (window).builder = builder;
+const ready = () => { document.documentElement.dataset.ready = "true"; };
+if (builder.start.text) builder.ask("judge", { text: builder.start.text }).then(ready);
+else { builder.begin(); ready(); }

@@ -1,0 +1,173 @@
+"""The builder in a real browser: from nothing to a saved machine whose program is proven."""
+
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import uvicorn
+from playwright.sync_api import Browser, Page
+
+from tests.support.browser import browser as browser
+from tests.support.browser import needs_browser, open_page
+from tests.support.pictures import check_picture
+from trunnion import load_machine, post
+from trunnion.api.settings import set_up_machine
+from trunnion.builder.sample import shipped_sample
+from trunnion.builder.server import builder_application
+from trunnion.builder.session import BuilderSession
+from trunnion.machines import forward
+from trunnion.viewer.serving import Access, listen
+
+pytestmark = needs_browser
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("builder")
+
+
+@pytest.fixture(scope="module")
+def address(folder: Path) -> Iterator[str]:
+    listening = listen("127.0.0.1", 0)
+    application = builder_application(BuilderSession(folder), Access(("127.0.0.1",)))
+    server = uvicorn.Server(uvicorn.Config(application, log_level="critical"))
+    thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
+    thread.start()
+    while not server.started:
+        time.sleep(0.01)
+    yield f"http://127.0.0.1:{listening.getsockname()[1]}/"
+    server.should_exit = True
+    thread.join()
+    listening.close()
+
+
+@pytest.fixture
+def page(address: str, browser: Browser) -> Iterator[Page]:
+    with open_page(browser, address, (1440, 900)) as (page, errors):
+        yield page
+        assert errors == []
+
+
+def wait(page: Page, what: str) -> None:
+    """Wait until an expression is true."""
+    page.wait_for_function(f"() => {what}", timeout=60_000)
+
+
+def begin(page: Page, base: str = "", chain: str = "", control: str = "sinumerik_840d") -> None:
+    page.locator("#begin-name").fill("Hall 2")
+    if base:
+        page.locator("#begin-base").select_option(base)
+    else:
+        page.locator("input[value=chain]").check()
+        page.locator("#begin-chain").select_option(chain)
+        page.locator("#begin-control").select_option(control)
+    page.locator("#begin-go").click()
+    wait(page, "builder.data && document.getElementById('program').dataset.ready === 'true'")
+
+
+def enter(page: Page, path: str, *values: str) -> None:
+    """Type values into a field, and wait until the definition has been judged with them."""
+    row = page.locator(f".field[data-path='{path}']")
+    for k, value in enumerate(values):
+        box = row.locator(".inputs > *").nth(k)
+        if box.input_value() == value:
+            continue
+        asked = page.evaluate("builder.asked")
+        box.fill(value)
+        page.keyboard.press("Tab")
+        wait(page, f"builder.asked > {asked} && builder.judged === builder.asked")
+
+
+def test_a_machine_is_built_from_nothing_and_saved(page: Page, folder: Path) -> None:
+    begin(page, chain="head_table_bc", control="heidenhain_tnc640")
+    assert page.locator("#verdict").inner_text().startswith("proven")
+    page.locator("[data-page=travels]").click()
+    enter(page, '["axis",["X"],"limits_mm"]', "-410.5", "390")
+    page.locator("[data-page=rotary]").click()
+    enter(page, '["axis",["B"],"point_mm"]', "0", "0", "212.75")
+    page.locator("[data-page=spindle]").click()
+    enter(page, '["spindle","max_rpm"]', "18000")
+    wait(page, "document.getElementById('program').dataset.ready === 'true'")
+    assert page.locator("#verdict").inner_text().startswith("proven")
+    page.keyboard.press("Control+s")
+    page.locator("#save-name").fill("hall2.toml")
+    page.locator("#save-go").click()
+    page.locator("#state:has-text('Saved as')").wait_for()
+    machine = load_machine(folder / "hall2.toml")
+    x = next(axis for axis in machine.axes if axis.name == "X")
+    assert (x.low, x.high, machine.spindle_max_rpm) == (-410.5, 390.0, 18000.0)
+    (folder / "sample.cls").write_bytes(shipped_sample())
+    assert post(folder / "sample.cls", machine=folder / "hall2.toml").passed
+    page.reload()
+    page.wait_for_selector("html[data-ready=true]", state="attached")
+
+
+def test_a_bad_value_is_told_at_its_field_and_its_line(page: Page) -> None:
+    begin(page, base="yl569")
+    page.locator("[data-page=rotary]").click()
+    enter(page, '["axis",["B"],"limits_deg"]', "5", "-5")
+    row = page.locator('.field[data-path=\'["axis",["B"],"limits_deg"]\']')
+    assert "low < high" in row.locator(".error").inner_text()
+    assert row.locator("input").first.get_attribute("aria-invalid") == "true"
+    assert page.locator("#gutter .wrong").inner_text() == "6"
+    assert "bad" in (page.locator("[data-page=rotary]").get_attribute("class") or "")
+    assert "waits" in page.locator("#verdict").inner_text()
+    enter(page, '["axis",["C"],"point_mm"]', "1,5")
+    page.locator("[data-page=head]").click()
+    page.locator("#problems button").first.click()
+    assert page.locator("[data-page=rotary]").get_attribute("aria-current") == "page"
+    row.locator(".reset").click()
+    wait(page, "builder.data.problems.length === 1")
+
+
+def test_text_and_fields_are_one_definition(page: Page) -> None:
+    begin(page, base="dmu65")
+    page.locator("#text").fill('# ours\nextends = "dmu65"\nname = "Typed"\n\n[spindle]\nmax_rpm = 7777 # plate\n')
+    wait(page, "builder.data.text.includes('7777')")
+    page.locator("[data-page=spindle]").click()
+    box = page.locator('.field[data-path=\'["spindle","max_rpm"]\'] input')
+    assert box.input_value() == "7777"
+    enter(page, '["spindle","max_rpm"]', "8888")
+    assert page.locator("#text").input_value().endswith("[spindle]\nmax_rpm = 8888 # plate\n")
+    box.focus()
+    assert page.locator("#gutter .here").inner_text() == "6"
+
+
+def test_a_change_is_marked_in_the_sample(page: Page) -> None:
+    begin(page, base="yl569")
+    page.locator("[data-page=tool_change]").click()
+    box = page.locator('.field[data-path=\'["control","templates","tool_change"]\'] textarea')
+    box.fill(box.input_value() + ";clamps checked\n")
+    page.keyboard.press("Tab")
+    page.locator("#program .new").first.wait_for()
+    assert page.locator("#program .new").all_inner_texts()[0].endswith(";clamps checked")
+
+
+def test_jogging_shows_where_the_tool_is(page: Page, browser: Browser) -> None:
+    begin(page, base="generic_nutated_b45_c")
+    machine = load_machine("generic_nutated_b45_c")
+    low = np.array([max(axis.low, -150.0) for axis in machine.axes])
+    high = np.array([min(axis.high, 150.0) for axis in machine.axes])
+    poses = np.random.default_rng(3).uniform(low, high, (20, 5))
+    found: Any = page.evaluate(
+        """poses => poses.map(values => { builder.jog(values);
+        const { tip, axis } = builder.stage.tool(); return [tip, axis]; })""",
+        poses.tolist(),
+    )
+    tip, axis = forward(set_up_machine(machine, None, 100.0), poses)
+    np.testing.assert_allclose(np.array(found)[:, 0], tip, atol=1e-4)
+    np.testing.assert_allclose(np.array(found)[:, 1], axis, atol=1e-6)
+
+
+def test_it_looks_like_the_picture_of_the_docs(page: Page, browser: Browser) -> None:
+    begin(page, base="yl569")
+    page.locator("[data-page=rotary]").click()
+    enter(page, '["axis",["B"],"limits_deg"]', "-5", "95")
+    wait(page, "document.getElementById('program').dataset.ready === 'true'")
+    page.evaluate("builder.jog([30, 40, 0, 0, 60])")
+    page.wait_for_timeout(300)
+    check_picture(browser, page.screenshot(), "builder.png")

@@ -1,0 +1,192 @@
+"""What the page asks for: a start, changes that are judged at their fields, a sample that is proven, and to save."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from trunnion import InputError, load_machine
+from trunnion.builder.chains import CHAINS
+from trunnion.builder.sample import shipped_sample
+from trunnion.builder.session import BuilderSession, RequestError
+from trunnion.machines.loading import shipped_machines
+
+
+@pytest.fixture
+def session(tmp_path: Path) -> BuilderSession:
+    return BuilderSession(tmp_path)
+
+
+def ask(session: BuilderSession, what: str, **given: Any) -> dict[str, Any]:
+    found = session.answer(what, given)
+    assert found is not None
+    return found
+
+
+def begun(session: BuilderSession, base: str = "yl569") -> str:
+    return str(ask(session, "begin", name="Ours", base=base)["text"])
+
+
+def field(data: dict[str, Any], *path: Any) -> dict[str, Any]:
+    wanted = [list(step) if isinstance(step, tuple) else step for step in path]
+    return next(each for page in data["pages"].values() for each in page if each["path"] == wanted)
+
+
+def test_a_definition_that_extends_says_only_what_differs(session: BuilderSession) -> None:
+    text = begun(session)
+    assert text == 'extends = "yl569"\nname = "Ours"\n'
+    limits = ["axis", ["B"], "limits_deg"]
+    changed = ask(session, "change", text=text, path=limits, value=[-5, 95])
+    assert changed["text"] == text + '\n[[axis]]\nname = "B"\nlimits_deg = [-5, 95]\n'
+    assert changed["problems"] == []
+    told = field(changed, "axis", ("B",), "limits_deg")
+    assert (told["value"], told["inherited"], told["own"]) == ([-5, 95], [-11, 100], True)
+    back = ask(session, "change", text=changed["text"], path=limits, value=[-11, 100])
+    assert back["text"] == text
+    assert not field(back, "axis", ("B",), "limits_deg")["own"]
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        (["axis", ["B"], "limits_deg"], [5, -5]),
+        (["axis", ["B"], "point_mm"], "1,5"),
+        (["axis", ["X"], "direction"], [0, 0, 0]),
+        (["spindle", "max_rpm"], -4),
+        (["control", "settings", "edge"], "0"),
+        (["control", "block_numbers", "step"], 0.5),
+        (["control", "templates", "program_start"], "{nothing}\n"),
+    ],
+)
+def test_a_bad_value_is_told_at_its_field(session: BuilderSession, path: list[Any], value: Any) -> None:
+    changed = ask(session, "change", text=begun(session), path=path, value=value)
+    wrong = [each for each in changed["problems"] if each["path"] == path]
+    assert wrong, changed["problems"]
+    assert wrong[0]["line"] > 2
+    assert wrong[0]["cure"]
+
+
+def test_a_text_that_is_not_toml_is_told_at_its_line(session: BuilderSession) -> None:
+    found = ask(session, "judge", text='name = "x"\naxis = [\n')
+    assert [each["line"] for each in found["problems"]] == [3]
+    assert found["machine"] is None
+    again = ask(session, "change", text='name = "x"\naxis = [\n', path=["name"], value="y")
+    assert again["unclear"]
+
+
+@pytest.mark.parametrize("chain", CHAINS)
+def test_every_order_of_axes_makes_a_machine_whose_sample_is_proven(session: BuilderSession, chain: str) -> None:
+    found = ask(session, "begin", name='Our "B"', chain=chain, control="heidenhain_tnc640")
+    assert found["problems"] == []
+    assert found["axes"] == CHAINS[chain].order.replace("|", " ").split()
+    sample = ask(session, "sample", text=found["text"])
+    assert sample["passed"], sample["problems"]
+    assert all(check["passed"] for check in sample["checks"])
+
+
+@pytest.mark.parametrize("name", shipped_machines())
+def test_the_shipped_sample_is_proven_on_every_machine(session: BuilderSession, name: str) -> None:
+    sample = ask(session, "sample", text=begun(session, name))
+    assert sample["passed"], sample["problems"]
+
+
+def test_axes_move_in_a_definition_of_its_own(session: BuilderSession) -> None:
+    text = ask(session, "begin", name="Ours", chain="table_table_bc", control="haas_ngc")["text"]
+    moved = ask(session, "change", text=text, move="X", by=1)
+    assert moved["axes"] == ["C", "B", "Y", "X", "Z"]
+    assert moved["problems"] == []
+
+
+def test_the_sample_marks_what_a_change_has_done(session: BuilderSession) -> None:
+    text = begun(session)
+    first = ask(session, "sample", text=text)
+    assert not first["changed"]
+    settings = ["control", "settings", "work_offset"]
+    changed = ask(session, "change", text=text, path=settings, value="G57")["text"]
+    second = ask(session, "sample", text=changed, before=first["lines"])
+    assert second["changed"]
+    assert all("G57" in second["lines"][line] for line in second["changed"])
+    assert second["removed"]
+
+
+def test_one_more_line_is_one_change_although_blocks_are_numbered(session: BuilderSession) -> None:
+    text = begun(session)
+    first = ask(session, "sample", text=text)
+    start = field(ask(session, "judge", text=text), "control", "templates", "program_start")
+    changed = ask(session, "change", text=text, path=start["path"], value=";one more\n" + start["value"])["text"]
+    second = ask(session, "sample", text=changed, before=first["lines"])
+    assert len(second["changed"]) == 1
+    assert second["removed"] == 0
+
+
+def test_a_cl_file_of_the_users_is_posted_or_refused_by_its_line(session: BuilderSession) -> None:
+    import base64
+
+    own = shipped_sample().replace(b"S4000", b"").replace(b"FEDRAT/MMPM,300.0000", b"FEDRAT/MMPM,WRONG")
+    content = base64.b64encode(own).decode()
+    found = ask(session, "sample", text=begun(session), cl=content, clName="own.cls")
+    assert not found["passed"]
+    line = own[: own.index(b"WRONG")].count(b"\n") + 1
+    assert line in [each["line"] for each in found["problems"]]
+
+
+def test_it_is_saved_only_where_nothing_is_lost(session: BuilderSession, tmp_path: Path) -> None:
+    text = begun(session)
+    saved = ask(session, "save", text=text, name="ours.toml", seen="")
+    assert Path(saved["saved"]) == tmp_path / "ours.toml"
+    assert load_machine(tmp_path / "ours.toml").name == "Ours"
+    assert ask(session, "save", text=text + "#\n", name="ours.toml", seen="")["why"] == "exists"
+    opened = BuilderSession(tmp_path, "ours.toml")
+    seen = opened.start()["seen"]
+    (tmp_path / "ours.toml").write_text(text + "# by hand\n", encoding="utf-8")
+    assert ask(opened, "save", text=text, name="ours.toml", seen=seen)["why"] == "changed"
+    assert (tmp_path / "ours.toml").read_text(encoding="utf-8") == text + "# by hand\n"
+    assert ask(opened, "save", text=text, name="ours.toml", seen=seen, replace=True)["saved"]
+    assert (tmp_path / "ours.toml").read_text(encoding="utf-8") == text
+
+
+def test_a_file_keeps_its_line_ends(tmp_path: Path) -> None:
+    (tmp_path / "ours.toml").write_bytes(b'extends = "yl569"\r\nname = "Ours"\r\n')
+    session = BuilderSession(tmp_path, "ours.toml")
+    start = session.start()
+    assert "\r" not in start["text"]
+    changed = ask(session, "change", text=start["text"], path=["description"], value="new")["text"]
+    assert ask(session, "save", text=changed, name="ours.toml", seen=start["seen"])["saved"]
+    assert (tmp_path / "ours.toml").read_bytes().count(b"\r\n") == 3
+
+
+@pytest.mark.parametrize("name", ["../ours.toml", "/tmp/ours.toml", "ours.py", "", "a/b.toml", "C:ours.toml", ".toml"])
+def test_nothing_is_saved_elsewhere(session: BuilderSession, tmp_path: Path, name: str) -> None:
+    assert ask(session, "save", text="", name=name, seen="")["why"] == "name"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_definition_reaches_only_what_lies_below_it(session: BuilderSession, tmp_path: Path) -> None:
+    (tmp_path.parent / "secret.toml").write_text('name = "secret"\n', encoding="utf-8")
+    found = ask(session, "judge", text='extends = "../secret.toml"\n')
+    assert found["problems"]
+    assert "secret.toml" not in str(found["pages"])
+    (tmp_path / "base.toml").write_text('extends = "yl569"\n', encoding="utf-8")
+    assert ask(session, "judge", text='extends = "base.toml"\nname = "x"\n')["problems"] == []
+
+
+def test_requests_that_the_page_does_not_make_are_refused(session: BuilderSession) -> None:
+    assert session.answer("shutdown", {}) is None
+    requests: list[tuple[str, dict[str, Any]]] = [
+        ("judge", {"text": 5}), ("change", {"text": "", "path": []}),
+        ("change", {"text": "", "path": [["a"]], "value": 1}),
+        ("change", {"text": "", "path": ["a"], "value": {"b": 1}}), ("change", {"text": "", "move": "X", "by": 7}),
+        ("begin", {"base": "../x"}), ("begin", {"chain": "x", "control": "haas_ngc"}),
+        ("sample", {"text": "", "before": "x"}), ("save", {"text": [], "name": "a.toml"}),
+    ]  # fmt: skip
+    for what, asked in requests:
+        with pytest.raises(RequestError):
+            session.answer(what, asked)
+
+
+def test_a_file_that_cannot_be_read_is_told_before_anything_is_served(tmp_path: Path) -> None:
+    with pytest.raises(InputError):
+        BuilderSession(tmp_path, "missing.toml").start()
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(InputError, match="UTF-8"):
+        BuilderSession(tmp_path, "binary.toml").start()
