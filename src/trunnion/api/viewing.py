@@ -8,6 +8,7 @@ from trunnion.api.arguments import check_path, check_paths
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.api.settings import set_up_machine
+from trunnion.api.simulation_result import NO_CALL
 from trunnion.api.targets import check_output_name
 from trunnion.api.verifying import rapid_feed_of, verify
 from trunnion.api.viewing_stock import view_simulation, with_stock
@@ -142,6 +143,9 @@ def write_view(
         libraries=libraries, unit=unit, near=near, cell=cell, accuracy=accuracy, zero=zero, tool_length=tool_length,
         observer=observer,
     )  # fmt: skip
+    if content.stock is not None:
+        with observer.progress("states of the stock", len(content.stock.page_states), "states") as tell:
+            content.stock.packed(tell)
     with atomic_file(place, inputs=list(map(Path, content.scene["files"]))) as sink:
         sink.writelines(render_view(content, embedded=True))
 
@@ -157,7 +161,7 @@ def _known_tools(
     found: dict[str, ToolShape] = {}
     for name in run.tools:
         try:
-            found |= choose_tools([name], stated, read, of_cl_files)
+            found[name] = choose_tools([name or NO_CALL], stated, read, of_cl_files)[name or NO_CALL]
         except InputError:
             continue  # drawn as a needle, which the page says
     return found

@@ -80,9 +80,10 @@ def _cutting(run: Run) -> set[str]:
 
 def _findings(found: SimulationResult, run: Run) -> Iterator[dict[str, Any]]:
     """What the simulation found, with its rows and places; errors that have no row stand at the first one."""
+    files = {Path(file).name: number for number, file in enumerate(run.files)}
     for each in found.remarks:
         if each.severity is Severity.ERROR:
-            here = np.flatnonzero(run.line >= each.line) if each.file in run.files else np.zeros(0, np.int64)
+            here = np.flatnonzero((run.line >= each.line) & (run.file == files.get(Path(each.file).name, -1)))
             yield _mark(run, "simulation", int(here[0]) if len(here) else 0, _short(each), None)
     shown = dict[str, int]()
     for one in sorted(found.findings, key=lambda finding: -finding.depth):

@@ -24,7 +24,7 @@ _STATES: Final = 64
 _FEWEST_ROWS: Final = 50
 
 #: Bytes that they may take together.
-_MOST_BYTES: Final = 500_000_000
+_MOST_BYTES: Final = 300_000_000
 
 
 class Replay:

@@ -181,7 +181,8 @@ def body_scene(body: Body, machine: Machine) -> dict[str, Any]:
     """Name, link, kind, tool and colour of a body."""
     own = next((each.colour for each in machine.bodies if each.name == body.name), None)
     colour = own if body.kind is BodyKind.MACHINE and own else _COLOURS.get(body.kind, "#9aa0a6")
-    return {"name": body.name, "link": body.link, "kind": str(body.kind), "tool": body.tool, "colour": colour}
+    tool = body.tool if body.kind in (BodyKind.CUTTER, BodyKind.SHANK, BodyKind.HOLDER) else None
+    return {"name": body.name, "link": body.link, "kind": str(body.kind), "tool": tool, "colour": colour}
 
 
 def _events(run: Run) -> list[dict[str, Any]]:

@@ -12,6 +12,7 @@ import math
 import threading
 import zlib
 from collections import OrderedDict
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, Final
 
@@ -65,6 +66,7 @@ class StockView:
         self._replay = Replay(replace(setup, cell=cell), job, simulation.stock if cell == setup.cell else None)
         self._frames: OrderedDict[int, BrickFrame] = OrderedDict()
         self._working, self._newest = threading.Lock(), 0
+        self._packed = b""
         self._finished = self._points()
         self._removed = np.zeros(len(job.run))
         for one in simulation.operations:
@@ -102,14 +104,23 @@ class StockView:
             "row-deviation": self._counted(_worst_of_rows(self._finished, len(self._job.run))),
         }
 
-    def packed(self) -> bytes:
-        """States for a page, deflated: as many as find room, each as a message that changes the one before it."""
-        frames = [self._frame(rows) for rows in _spread(np.flatnonzero(self._removed), self.rows)]
-        while True:
-            found = zlib.compress(b"".join(map(_with_length, _messages(frames))), COMPRESSION_LEVEL)
-            if len(found) <= _PAGE_BYTES or len(frames) <= 2:
-                return found
-            frames = [*frames[:-1:2], frames[-1]]
+    @property
+    def page_states(self) -> list[int]:
+        """Rows after which a page has the stock: evenly among those that took something, the start and the end."""
+        return _spread(np.flatnonzero(self._removed), self.rows)
+
+    def packed(self, tell: Callable[[int], None] = lambda _: None) -> bytes:
+        """States for a page, deflated: as many as find room, each as a message that changes the one before it.
+
+        ``tell`` is called with 1 for each of ``page_states``; what has been packed once is kept.
+        """
+        if not self._packed:
+            frames = []
+            for rows in self.page_states:
+                frames.append(self._frame(rows))
+                tell(1)
+            self._packed = _packed(frames)
+        return self._packed
 
     def answer(self, rows: int, before: int) -> bytes | None:
         """What makes the stock after some rows of that after others, which the browser has.
@@ -157,10 +168,18 @@ def _picture_cell(shape: StockShape, narrowest: float) -> float:
 
 
 def _spread(removing: Ints, rows: int) -> list[int]:
-    """Rows after which a page has the stock: evenly among those that took something, the start and the end."""
     steps = np.linspace(0, len(removing), _STATES)[1:].astype(np.int64)
     ends = removing[steps[steps > 0] - 1] + 1
     return sorted({0, rows, *ends.tolist()})
+
+
+def _packed(frames: list[BrickFrame]) -> bytes:
+    """Frames as messages, deflated; every second one goes while they take too much."""
+    while True:
+        found = zlib.compress(b"".join(map(_with_length, _messages(frames))), COMPRESSION_LEVEL)
+        if len(found) <= _PAGE_BYTES or len(frames) <= 2:
+            return found
+        frames = [*frames[:-1:2], frames[-1]]
 
 
 def _messages(frames: list[BrickFrame]) -> list[bytes]:

@@ -5,7 +5,7 @@
  *   rapid: number | null, placed: boolean, displayLow: number | null}} Axis
  * @typedef {{key: string, name: string, partAxes: number, zero: number[] | null, gauge: number[], spindle: number[], axes: Axis[]}} Machine
  * @typedef {{kind: string, row: number, line: number, file: number, text: string, place?: number[] | null}} Mark
- * @typedef {{title: string, machine: Machine, bodies: {name: string, link: string, kind: string, tool: string, colour: string}[],
+ * @typedef {{title: string, machine: Machine, bodies: {name: string, link: string, kind: string, tool: string | null, colour: string}[],
  *   tools: {name: string, length: number, known: boolean}[], files: string[], operations: {name: string, first: number, end: number}[],
  *   events: Mark[], findings: Mark[], timed: boolean, checks: {key: string, passed: boolean, summary: string}[],
  *   columns: Record<string, string>, stock?: import("./stock.js").StockData}} SceneData

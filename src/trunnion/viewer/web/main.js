@@ -245,7 +245,10 @@ class Page {
     save(this.space.canvas.toDataURL("image/png"), "view.png");
   }
 
-  #section() { this.space.section(element("section").value, Number(element("section-at").value)); }
+  #section() {
+    this.stock?.setOpen(element("section").value !== "");
+    this.space.section(element("section").value, Number(element("section-at").value));
+  }
 
   #pickAt(/** @type {PointerEvent} */ event) {
     const box = this.space.canvas.getBoundingClientRect();

@@ -200,7 +200,7 @@ export class Space {
     }
     const tool = scene.tools[this.program.rows ? this.program.tool[row] : 0]?.name ?? "";
     scene.bodies.forEach((body, k) => {
-      this.bodies[k].visible = !this.bodies[k].userData.hidden && (!body.tool || body.tool === tool);
+      this.bodies[k].visible = !this.bodies[k].userData.hidden && (body.tool === null || body.tool === tool);
     });
     this.#markCurrent(row);
     this.draw();

@@ -113,7 +113,7 @@ export class Stock {
     this.material = new THREE.MeshLambertMaterial({ color: STOCK, ...flat });
     this.coloured = new THREE.MeshLambertMaterial({ vertexColors: true, ...flat });
     // What a section opens is filled: behind it the inner sides are seen, which no light reaches.
-    this.inner = new THREE.MeshLambertMaterial({ color: 0, emissive: INNER, side: BACK_SIDE, ...flat });
+    this.inner = new THREE.MeshLambertMaterial({ color: 0, emissive: INNER, side: BACK_SIDE, visible: false, ...flat });
     this.mode = "cut";
     this.wanted = 0;
     this.shown = -1;
@@ -139,6 +139,9 @@ export class Stock {
       return { rows, bricks };
     });
   }
+
+  /** Show inner sides: whole, the stock has none. @param {boolean} on */
+  setOpen(on) { this.inner.visible = on; }
 
   /** @param {string} mode cut, deviation or off */
   setMode(mode) {

@@ -1,0 +1,58 @@
+"""What a view has of a simulation: its findings in their rows, its warnings, and a picture that is not too fine."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import trunnion
+from tests.support.simulating import HEAD, STOCK, TOOL, cuboid
+from tests.support.stepped_slot import write_slot
+from trunnion import InputError
+from trunnion.api.viewing import prepare_view
+from trunnion.simulation.meshes import save_mesh
+
+#: A slot on whose way one clamp stands and another one beside it, 3 mm from the tool; and a word of no control.
+PROGRAM = HEAD + "N50 G0 Z-5\nN60 G1 X70 F500\nN70 G0 Z20\nN80 G1 Q1\nN90 G0 X80\nM5\nM30\n"
+
+
+def test_the_findings_are_those_of_the_simulation(tmp_path: Path) -> None:
+    program, clamps = tmp_path / "part.ngc", [tmp_path / "hit.stl", tmp_path / "near.stl"]
+    program.write_text(PROGRAM, encoding="utf-8")
+    save_mesh(cuboid((60.0, -3.0, -8.0), (64.0, 3.0, -2.0)), clamps[0])
+    save_mesh(cuboid((52.0, 8.0, -8.0), (55.0, 10.0, -2.0)), clamps[1])
+    given: dict[str, Any] = {"machine": "xyzac_trt", "stock": STOCK, "fixtures": clamps, "tools": [TOOL]}
+    given |= {"cell": 1.0, "near": 6.0}
+    found = trunnion.simulate(program, **given)
+    content = prepare_view(program, **given)
+    marks = [mark for mark in content.scene["findings"] if mark.get("place")]
+    assert "collision" in {mark["kind"] for mark in marks}
+    assert "near" in {mark["kind"] for mark in marks}
+    wanted = sorted([(one.line, one.place) for one in found.findings] + [(one.line, one.place) for one in found.near])
+    assert sorted((mark["line"], mark["place"]) for mark in marks) == wanted
+    lines = content.columns["line"]
+    assert all(lines[mark["row"]] == mark["line"] for mark in marks)
+    assert any(mark["kind"] == "simulation" and "part.ngc" in mark["text"] for mark in content.scene["findings"])
+    keys = {check["key"]: check["passed"] for check in content.scene["checks"]}
+    assert keys["collision"] is False
+    assert content.scene["stock"]["rows"] < len(lines)  # the program has an error, and is cut up to there
+    assert any("not checked" in remark for remark in content.scene["stock"]["remarks"])
+
+
+def test_a_picture_is_coarser_than_the_finest_simulation(tmp_path: Path) -> None:
+    program, given = write_slot(tmp_path)
+    content = prepare_view(program, **{**given, "cell": 0.1})
+    stock = content.scene["stock"]
+    assert stock["simulated"] == 0.1
+    assert 0.1 < max(stock["cell"]) < 0.2
+    off = content.columns["stock-deviation"] * stock["deviation"]["unit"]
+    assert (off.min(), off.max()) == pytest.approx((-1.0, 1.0), abs=0.01)
+    assert np.count_nonzero(np.abs(off) > 0.99) > 1000
+
+
+def test_a_stock_that_no_picture_can_show_is_refused(tmp_path: Path) -> None:
+    program, given = write_slot(tmp_path)
+    given |= {"stock": "box:900,900,500,0,-450,-500", "tools": ["1=flat:4,length=600,flutes=550"], "cell": 2.0}
+    with pytest.raises(InputError, match="too large to be shown as it is cut with a tool of 4 mm"):
+        prepare_view(program, **{**given, "part": None})
