@@ -51,8 +51,18 @@ from trunnion.verification.comparison import compare
 
 
 def without_words(run: Run) -> Run:
-    """A run without the builder's words: each file says again which are in force where it begins."""
-    return replace(run, events=[event for event in run.events if event.kind != "known"])
+    """A run without the builder's words, and without M words that repeat the last one.
+
+    Each file says again what is in force where it begins: coolants with words of their own, and M29 before a thread.
+    """
+    last: object = None
+    kept = []
+    for event in run.events:
+        if event.kind == "m":
+            event, last = (None, last) if event.value == last else (event, event.value)
+        if event is not None and event.kind != "known":
+            kept.append(event)
+    return replace(run, events=kept)
 
 
 class Language(NamedTuple):

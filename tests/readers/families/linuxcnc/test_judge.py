@@ -147,12 +147,14 @@ class Writer:
 
     def offset(self) -> None:
         words = " ".join("XYZ"[axis] + number(self.value()) for axis in self.axes())
+        # What G92.3 would bring back from another program nobody knows: the reader refuses that.
+        kept = any(line.startswith(("G92 ", "G92.1", "G52")) for line in self.lines)
         self.lines.append(
             self.draw(
                 st.sampled_from(
                     [
-                        f"G92 {words}", "G92.1", "G92.2", "G92.3", f"G52 {words}", "G52 X0 Y0 Z0", "G54", "G55",
-                        "G59.3",
+                        f"G92 {words}", "G92.1", "G92.2", "G92.3" if kept else "G92.1", f"G52 {words}",
+                        "G52 X0 Y0 Z0", "G54", "G55", "G59.3",
                         f"G10 L2 P1 {words}", f"G10 L2 P0 {words} R30", f"G10 L2 P2 {words} R-12.5",
                         f"G10 L20 P1 {words}", f"G10 L20 P0 {words}", f"G10 L20 P9 {words}", "G10 L2 P0 R0",
                         "G92 A5", "G10 L2 P1 C12", "G10 L20 P0 A3 C4",
