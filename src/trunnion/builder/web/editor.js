@@ -1,7 +1,11 @@
 // The definition as text: numbered lines, marks at mistakes, and the line of the field that has the focus.
 
 export class Editor {
-  /** @param {HTMLTextAreaElement} area @param {HTMLElement} gutter @param {(text: string) => void} onInput after a rest */
+  /**
+   * @param {HTMLTextAreaElement} area
+   * @param {HTMLElement} gutter
+   * @param {(text: string) => void} onInput after a rest
+   */
   constructor(area, gutter, onInput) {
     this.area = area;
     this.gutter = gutter;
@@ -18,7 +22,10 @@ export class Editor {
 
   get text() { return this.area.value; }
 
-  /** Show a text that has been changed elsewhere. @param {string} text */
+  /**
+   * Show a text that has been changed elsewhere.
+   * @param {string} text
+   */
   set(text) {
     if (this.area.value === text) return;
     const { scrollTop } = this.area;
@@ -27,13 +34,19 @@ export class Editor {
     this.#number();
   }
 
-  /** Mark lines. @param {{line: number, what: string, cure: string}[]} problems */
+  /**
+   * Mark lines.
+   * @param {{line: number, what: string, cure: string}[]} problems
+   */
   mark(problems) {
     this.marks = new Map(problems.filter((each) => each.line).map((each) => [each.line, `${each.what}; ${each.cure}`]));
     this.#number();
   }
 
-  /** Bring a line into sight, and show it for a moment. @param {number} line from 1 */
+  /**
+   * Bring a line into sight, and show it for a moment.
+   * @param {number} line from 1
+   */
   show(line) {
     const height = parseFloat(getComputedStyle(this.area).lineHeight);
     const top = (line - 1) * height;

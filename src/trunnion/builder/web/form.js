@@ -12,7 +12,10 @@ import { fieldTexts, say } from "./texts.js";
 /** @param {Path} path */
 export const idOf = (path) => JSON.stringify(path);
 
-/** A path as a person reads it: axis B, limits_deg. @param {Path} path */
+/**
+ * A path as a person reads it: axis B, limits_deg.
+ * @param {Path} path
+ */
 export function pathText(path) {
   return path.map((step) => (Array.isArray(step) ? ` ${step[0]} ` : `.${step}`)).join("").replace(/^\./, "").replace(/ \./g, " · ");
 }
@@ -32,7 +35,12 @@ export class Form {
     this.rows = new Map();
   }
 
-  /** Show fields; those that are there already keep their place and the focus. @param {FieldData[]} fields @param {ProblemData[]} problems @param {HTMLElement | null} before */
+  /**
+   * Show fields; those that are there already keep their place and the focus.
+   * @param {FieldData[]} fields
+   * @param {ProblemData[]} problems
+   * @param {HTMLElement | null} before
+   */
   show(fields, problems, before) {
     const shape = fields.map((each) => idOf(each.path) + each.kind).join() + (before ? before.textContent : "");
     if (shape !== this.shape) this.#build(fields, before);
@@ -40,7 +48,10 @@ export class Form {
     for (const field of fields) this.#fill(field, problems.filter((each) => covers(each.path, field.path)));
   }
 
-  /** @param {FieldData[]} fields @param {HTMLElement | null} before */
+  /**
+   * @param {FieldData[]} fields
+   * @param {HTMLElement | null} before
+   */
   #build(fields, before) {
     const focus = document.activeElement?.id;
     this.rows.clear();
@@ -98,13 +109,19 @@ export class Form {
     return row;
   }
 
-  /** @param {FieldData} field @param {HTMLElement} row */
+  /**
+   * @param {FieldData} field
+   * @param {HTMLElement} row
+   */
   #send(field, row) {
     delete row.dataset.pending;
     this.onChange(field.path, readValue(field, row));
   }
 
-  /** @param {FieldData} field @param {ProblemData[]} problems */
+  /**
+   * @param {FieldData} field
+   * @param {ProblemData[]} problems
+   */
   #fill(field, problems) {
     const row = /** @type {HTMLElement} */ (this.rows.get(idOf(field.path)));
     const values = Array.isArray(field.value) ? field.value : [field.value];
@@ -125,7 +142,10 @@ export class Form {
     /** @type {HTMLElement} */ (row.querySelector(".error")).textContent = problems.map((each) => `${each.what}; ${each.cure}`).join("\n");
   }
 
-  /** Go to a field. @param {Path} path */
+  /**
+   * Go to a field.
+   * @param {Path} path
+   */
   focus(path) {
     const row = this.rows.get(idOf(path));
     row?.scrollIntoView({ block: "center" });
@@ -133,10 +153,17 @@ export class Form {
   }
 }
 
-/** Whether a problem at a path concerns a field: the field itself, or a table around it has nothing nearer. @param {Path} problem @param {Path} field */
+/**
+ * Whether a problem at a path concerns a field: the field itself, or a table around it has nothing nearer.
+ * @param {Path} problem
+ * @param {Path} field
+ */
 export function covers(problem, field) { return problem.length > 0 && idOf(problem) === idOf(field); }
 
-/** @param {FieldData} field @returns {HTMLInputElement[]} */
+/**
+ * @param {FieldData} field
+ * @returns {HTMLInputElement[]}
+ */
 function inputsOf(field) {
   const many = field.kind === "interval" ? 2 : field.size || 1;
   return Array.from({ length: many }, () => {
@@ -157,10 +184,17 @@ function selectOf(field) {
   return select;
 }
 
-/** What stands in the inputs of a row. @param {HTMLElement} row */
+/**
+ * What stands in the inputs of a row.
+ * @param {HTMLElement} row
+ */
 function texts(row) { return Array.from(row.querySelectorAll(".inputs > *"), (input) => /** @type {HTMLInputElement} */ (input).value); }
 
-/** What the user has entered; null: nothing. @param {FieldData} field @param {HTMLElement} row */
+/**
+ * What the user has entered; null: nothing.
+ * @param {FieldData} field
+ * @param {HTMLElement} row
+ */
 function readValue(field, row) {
   const entered = texts(row);
   if (entered.every((text) => text.trim() === "")) return field.kind === "text" && field.inherited ? "" : null;

@@ -6,7 +6,10 @@ import { Sample } from "./sample.js";
 import { COLOURS, Stage } from "./stage.js";
 import { say } from "./texts.js";
 
-/** @param {string} id @returns {any} */
+/**
+ * @param {string} id
+ * @returns {any}
+ */
 const element = (id) => document.getElementById(id);
 
 /** Pages whose names are other words of the page too. */
@@ -36,7 +39,11 @@ class Builder {
     this.#listen();
   }
 
-  /** Post to the server; null: it is gone. @param {string} what @param {any} given */
+  /**
+   * Post to the server; null: it is gone.
+   * @param {string} what
+   * @param {any} given
+   */
   async post(what, given) {
     try {
       const answer = await fetch(what, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(given) });
@@ -48,7 +55,11 @@ class Builder {
     }
   }
 
-  /** Ask for a judgement and show it, unless a later one has been asked for. @param {string} what @param {any} given */
+  /**
+   * Ask for a judgement and show it, unless a later one has been asked for.
+   * @param {string} what
+   * @param {any} given
+   */
   async ask(what, given) {
     const number = ++this.asked;
     const data = await this.post(what, given);
@@ -78,7 +89,11 @@ class Builder {
     this.runSample();
   }
 
-  /** The state of the file, or what has gone wrong. @param {string} what @param {boolean} bad */
+  /**
+   * The state of the file, or what has gone wrong.
+   * @param {string} what
+   * @param {boolean} bad
+   */
   tell(what, bad) {
     element("state").textContent = what || (this.editor.text === this.saved ? "" : say("unsaved"));
     element("state").className = bad ? "bad" : "";
@@ -169,7 +184,10 @@ class Builder {
     this.jog(this.stage.values);
   }
 
-  /** @param {any} axis @param {number} k */
+  /**
+   * @param {any} axis
+   * @param {number} k
+   */
   #slider(axis, k) {
     const row = document.createElement("label");
     const name = Object.assign(document.createElement("span"), { textContent: axis.name });
@@ -189,7 +207,10 @@ class Builder {
     return row;
   }
 
-  /** Move the machine, and say where the tool is. @param {number[]} values */
+  /**
+   * Move the machine, and say where the tool is.
+   * @param {number[]} values
+   */
   jog(values) {
     this.stage.jog(values);
     const { machine } = this.data;

@@ -3,7 +3,10 @@
 import { say } from "./texts.js";
 
 export class Sample {
-  /** @param {HTMLElement} list @param {HTMLElement} verdict */
+  /**
+   * @param {HTMLElement} list
+   * @param {HTMLElement} verdict
+   */
   constructor(list, verdict) {
     this.list = list;
     this.verdict = verdict;

@@ -1,6 +1,6 @@
 // The machine as it moves: its bodies, its axes as arrows and lines of rotation, and the tool, jogged by hand.
 
-import { jointMatrix, toolAt } from "./kinematics.js";
+import { jointMatrix, toolAt } from "../../viewer/web/kinematics.js";
 
 /** A tool of this length stands in the spindle, mm. */
 export const TOOL = 100;
@@ -34,7 +34,11 @@ export class Stage {
     this.resize();
   }
 
-  /** Show a machine. @param {any} machine @param {any[]} bodies */
+  /**
+   * Show a machine.
+   * @param {any} machine
+   * @param {any[]} bodies
+   */
   show(machine, bodies) {
     if (this.root) this.scene.remove(this.root);
     this.machine = machine;
@@ -85,7 +89,10 @@ export class Stage {
     return new THREE.Mesh(flat, material);
   }
 
-  /** Lines of rotation with a ring, slides as lines. @param {Map<string, any>} links */
+  /**
+   * Lines of rotation with a ring, slides as lines.
+   * @param {Map<string, any>} links
+   */
   #drawAxes(links) {
     this.machine.axes.forEach((/** @type {any} */ axis, /** @type {number} */ k) => {
       const d = axis.direction, p = axis.rotary ? axis.point : [0, 0, 0], reach = axis.rotary ? 130 : 180;
@@ -103,13 +110,19 @@ export class Stage {
     });
   }
 
-  /** @param {number[][]} points @param {string} colour */
+  /**
+   * @param {number[][]} points
+   * @param {string} colour
+   */
   #line(points, colour) {
     const geometry = new THREE.BufferGeometry().setFromPoints(points.map((p) => new THREE.Vector3(p[0], p[1], p[2])));
     return new THREE.Line(geometry, new THREE.LineBasicMaterial({ color: colour }));
   }
 
-  /** Move the axes. @param {number[]} values as the control displays them */
+  /**
+   * Move the axes.
+   * @param {number[]} values as the control displays them
+   */
   jog(values) {
     this.values = values.slice();
     this.joints.forEach((/** @type {any} */ group, /** @type {number} */ k) => group.matrix.fromArray(jointMatrix(this.machine, k, values[k])));

@@ -50,7 +50,10 @@ const WORDS = {
   },
 };
 
-/** Name and help of each field, by its key. @type {Record<string, Record<string, string[]>>} */
+/**
+ * Name and help of each field, by its key.
+ * @type {Record<string, Record<string, string[]>>}
+ */
 const FIELDS = {
   "name": { en: ["Name", "What the machine is called."], de: ["Name", "Wie die Maschine heißt."], zh: ["名称", "机床的名称。"] },
   "description": { en: ["Description", "One sentence about it."], de: ["Beschreibung", "Ein Satz dazu."], zh: ["说明", "一句话。"] },
@@ -129,7 +132,11 @@ export function say(key, ...values) {
   return values.reduce((/** @type {string} */ made, value, k) => made.replaceAll(`{${k}}`, String(value)), text);
 }
 
-/** Name and help of a field. @param {import("./form.js").FieldData} field @returns {[string, string]} */
+/**
+ * Name and help of a field.
+ * @param {import("./form.js").FieldData} field
+ * @returns {[string, string]}
+ */
 export function fieldTexts(field) {
   const last = /** @type {string} */ (field.path.at(-1));
   const group = FIELDS[field.key] ? field.key : field.key.slice(0, field.key.lastIndexOf("."));

@@ -15,7 +15,10 @@ export class Curves {
     this.strips = strips;
     this.range = [0, program.end || 1];
     this.cursor = 0;
-    /** times of findings @type {number[]} */
+    /**
+     * times of findings
+     * @type {number[]}
+     */
     this.marks = [];
     this.pointer = document.createElement("div");
     this.pointer.className = "pointer";
@@ -32,7 +35,10 @@ export class Curves {
     canvas.addEventListener("dblclick", () => { this.range = [0, program.end || 1]; this.redraw(); });
   }
 
-  /** Show less or more of the time, about the cursor. @param {number} factor */
+  /**
+   * Show less or more of the time, about the cursor.
+   * @param {number} factor
+   */
   zoom(factor) {
     const end = this.program.end || 1;
     const width = Math.min(Math.max((this.range[1] - this.range[0]) * factor, end * 1e-5), end);
@@ -53,7 +59,11 @@ export class Curves {
     } else this.#placePointer();
   }
 
-  /** Least and greatest value for each pixel across. @param {(piece: number) => number} at @param {number} width */
+  /**
+   * Least and greatest value for each pixel across.
+   * @param {(piece: number) => number} at
+   * @param {number} width
+   */
   #extents(at, width) {
     const { program, range } = this;
     const low = new Float64Array(width).fill(Infinity), high = new Float64Array(width).fill(-Infinity);

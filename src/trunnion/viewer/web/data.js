@@ -47,12 +47,18 @@ export async function readColumn(scene, name) {
   return scene.columns[name] === "f" ? new Float32Array(words) : new Int32Array(words);
 }
 
-/** The text of a file of the program. @param {number} number */
+/**
+ * The text of a file of the program.
+ * @param {number} number
+ */
 export async function readText(number) {
   return EMBEDDED ? inflated(`text-${number}`) : new Uint8Array(await fetched(`text/${number}`));
 }
 
-/** The states of the stock that the page holds, each a message; null: the server has them. @returns {Promise<Uint8Array[] | null>} */
+/**
+ * The states of the stock that the page holds, each a message; null: the server has them.
+ * @returns {Promise<Uint8Array[] | null>}
+ */
 export async function readStates() {
   if (!EMBEDDED) return null;
   const bytes = await inflated("stock-states"), view = new DataView(bytes.buffer);

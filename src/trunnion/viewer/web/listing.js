@@ -23,7 +23,10 @@ export class Listing {
     this.text = new Uint8Array(0);
     this.starts = new Uint32Array([0, 0]);
     this.current = 0;
-    /** lines to mark, by their class @type {Map<number, string>} */
+    /**
+     * lines to mark, by their class
+     * @type {Map<number, string>}
+     */
     this.marks = new Map();
     view.addEventListener("scroll", () => this.fill());
     new ResizeObserver(() => this.fill()).observe(view);
@@ -50,7 +53,10 @@ export class Listing {
     this.fill();
   }
 
-  /** A line's text, without its end. @param {number} line from 1 */
+  /**
+   * A line's text, without its end.
+   * @param {number} line from 1
+   */
   lineText(line) { return DECODER.decode(this.text.subarray(this.starts[line - 1], this.starts[line])).replace(/[\r\n]+$/, ""); }
 
   /** The line at the top, from 0; not whole while scrolling. */
@@ -78,7 +84,10 @@ export class Listing {
     this.space.replaceChildren(made);
   }
 
-  /** Mark a line as the current one, and bring it into sight. @param {number} line from 1 */
+  /**
+   * Mark a line as the current one, and bring it into sight.
+   * @param {number} line from 1
+   */
   show(line) {
     if (line === this.current) return;
     this.current = line;

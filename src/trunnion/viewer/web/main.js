@@ -11,7 +11,10 @@ import { say } from "./texts.js";
 /** Slowest and fastest play, times real time; the slider is their logarithm. */
 const SPEEDS = [0.1, 1000];
 
-/** @param {string} id @returns {any} */
+/**
+ * @param {string} id
+ * @returns {any}
+ */
 const element = (id) => document.getElementById(id);
 
 /** What a piece is coloured by: least and greatest become the ends of the scale. */
@@ -27,7 +30,12 @@ function scaled(share) {
 }
 
 class Page {
-  /** @param {Program} program @param {Space} space @param {Listing} listing @param {Stock | null} stock */
+  /**
+   * @param {Program} program
+   * @param {Space} space
+   * @param {Listing} listing
+   * @param {Stock | null} stock
+   */
   constructor(program, space, listing, stock) {
     this.program = program;
     this.scene = program.scene;
@@ -54,11 +62,17 @@ class Page {
       name: axis.name, unit: axis.rotary ? "°" : "mm", low: axis.placed ? axis.low : null, high: axis.placed ? axis.high : null,
       at: (/** @type {number} */ piece) => program.axes[k][piece + 1],
     }));
+    /** @type {any} */
     const feed = { name: "F", unit: "mm/min", low: null, high: null, at: (/** @type {number} */ piece) => program.feed[program.row[piece]] };
-    return [...axes, { name: "ω", unit: "°/min", low: null, high: null, at: (/** @type {number} */ piece) => this.rotarySpeed(piece) }, feed];
+    /** @type {any} */
+    const rotary = { name: "ω", unit: "°/min", low: null, high: null, at: (/** @type {number} */ piece) => this.rotarySpeed(piece) };
+    return [...axes, rotary, feed];
   }
 
-  /** Speed of the faster rotary axis, degrees a minute; 0 where no time is known. @param {number} piece */
+  /**
+   * Speed of the faster rotary axis, degrees a minute; 0 where no time is known.
+   * @param {number} piece
+   */
   rotarySpeed(piece) {
     const { program } = this;
     const takes = program.time[piece + 1] - program.time[piece];
@@ -108,21 +122,31 @@ class Page {
     return found < 0 ? PALETTE.length - 1 : found;
   }
 
-  /** Show a moment. @param {number} time */
+  /**
+   * Show a moment.
+   * @param {number} time
+   */
   goTo(time) {
     const { program } = this;
     const within = Math.min(Math.max(time, 0), program.end);
     this.#show(within, program.rowAt(within), program.valuesAt(within));
   }
 
-  /** Show the end of a row: times cannot tell it from rows after it that take none. @param {number} wanted */
+  /**
+   * Show the end of a row: times cannot tell it from rows after it that take none.
+   * @param {number} wanted
+   */
   goToRow(wanted) {
     const { program } = this;
     const row = Math.min(Math.max(wanted, 0), Math.max(program.rows - 1, 0));
     this.#show(program.timeOf(row), row, program.valuesAfter(row));
   }
 
-  /** @param {number} time @param {number} row @param {number[]} values of the five axes */
+  /**
+   * @param {number} time
+   * @param {number} row
+   * @param {number[]} values of the five axes
+   */
   #show(time, row, values) {
     this.time = time;
     this.row = row;
@@ -149,7 +173,10 @@ class Page {
     this.listing.show(this.program.line[this.row]);
   }
 
-  /** @param {number[]} values @param {number} row */
+  /**
+   * @param {number[]} values
+   * @param {number} row
+   */
   #readOut(values, row) {
     const { program } = this;
     const { tip, axis } = this.space.toolOf(values, row);
@@ -187,7 +214,11 @@ class Page {
     });
   }
 
-  /** Go to the next or the previous of some rows. @param {number[]} rows @param {number} step 1 or -1 */
+  /**
+   * Go to the next or the previous of some rows.
+   * @param {number[]} rows
+   * @param {number} step 1 or -1
+   */
   jump(rows, step) {
     const sorted = [...new Set(rows)].sort((a, b) => a - b);
     const found = step > 0 ? sorted.find((row) => row > this.row) : sorted.reverse().find((row) => row < this.row);
@@ -260,7 +291,7 @@ class Page {
     this.measuring = [...this.measuring, piece].slice(-2);
     if (this.measuring.length < 2) return;
     const { length, away } = this.space.measure(this.measuring[0], this.measuring[1]);
-    element("status").textContent = `${say("distance")} ${length.toFixed(4)} mm (${away.map((part) => part.toFixed(4)).join("  ")})`;
+    element("status").textContent = `${say("distance")} ${length.toFixed(4)} mm (${away.map((/** @type {number} */ part) => part.toFixed(4)).join("  ")})`;
     this.measuring = [];
   }
 
@@ -355,7 +386,10 @@ function clock(seconds) {
   return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}.${Math.floor((seconds - whole) * 10)}`;
 }
 
-/** @param {string} address @param {string} name */
+/**
+ * @param {string} address
+ * @param {string} name
+ */
 function save(address, name) {
   const link = document.createElement("a");
   link.href = address;
@@ -381,7 +415,10 @@ function remarksOf(scene) {
   return [...found, ...(scene.stock?.remarks ?? [])];
 }
 
-/** Read what the page holds of the stock, and show its controls. @param {Stock} stock */
+/**
+ * Read what the page holds of the stock, and show its controls.
+ * @param {Stock} stock
+ */
 async function openStock(stock) {
   await stock.open();
   element("stock-label").hidden = false;
@@ -401,9 +438,11 @@ async function start() {
   const space = new Space(element("space"), program, columns);
   const file = element("file");
   scene.files.forEach((name, k) => file.append(new Option(name.split(/[\\/]/).pop(), String(k))));
+  /** @type {Listing} */
   const listing = new Listing(element("listing"), (line) => page.goToLine(line));
   const stock = scene.stock ? new Stock(space, program, columns, element("stock-status")) : null;
   if (stock) await openStock(stock);
+  /** @type {Page} */
   const page = new Page(program, space, listing, stock);
   const paper = () => space.setBackground(getComputedStyle(document.body).getPropertyValue("--sky").trim());
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { paper(); page.curves.redraw(); });

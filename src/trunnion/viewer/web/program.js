@@ -12,9 +12,15 @@ export class Program {
   constructor(scene, columns) {
     this.scene = scene;
     this.machine = scene.machine;
-    /** axis values before the first piece and after each @type {Float64Array[]} */
+    /**
+     * axis values before the first piece and after each
+     * @type {Float64Array[]}
+     */
     this.axes = [0, 1, 2, 3, 4].map((k) => unwrapped(columns[`axis-${k}`], COUNT));
-    /** row of each piece @type {Int32Array} */
+    /**
+     * row of each piece
+     * @type {Int32Array}
+     */
     this.row = columns.row;
     this.known = columns.known;
     this.line = columns.line;
@@ -36,7 +42,10 @@ export class Program {
 
   get end() { return this.time[this.pieces]; }
 
-  /** The piece that runs at a time. @param {number} time */
+  /**
+   * The piece that runs at a time.
+   * @param {number} time
+   */
   pieceAt(time) {
     let low = 0, high = this.pieces - 1;
     while (low < high) {
@@ -60,30 +69,49 @@ export class Program {
     return this.axes.map((column) => column[piece] + share * (column[piece + 1] - column[piece]));
   }
 
-  /** Axis values at the end of a row. @param {number} row */
+  /**
+   * Axis values at the end of a row.
+   * @param {number} row
+   */
   valuesAfter(row) {
     const piece = this.rows ? this.last[row] + 1 : 0;
     return this.axes.map((column) => column[piece]);
   }
 
-  /** Time at the end of a row. @param {number} row */
+  /**
+   * Time at the end of a row.
+   * @param {number} row
+   */
   timeOf(row) {
     return this.pieces ? this.time[Math.max(this.last[Math.min(Math.max(row, 0), this.rows - 1)], -1) + 1] : 0;
   }
 
-  /** The row that runs at a time. @param {number} time */
+  /**
+   * The row that runs at a time.
+   * @param {number} time
+   */
   rowAt(time) { return this.pieces ? this.row[this.pieceAt(time)] : 0; }
 
-  /** Length of the tool of a row, mm. @param {number} row */
+  /**
+   * Length of the tool of a row, mm.
+   * @param {number} row
+   */
   lengthAt(row) { return this.scene.tools[this.rows ? this.tool[row] : 0]?.length ?? 0; }
 
-  /** The first row of a line or of the next one that moves. @param {number} file @param {number} line */
+  /**
+   * The first row of a line or of the next one that moves.
+   * @param {number} file
+   * @param {number} line
+   */
   rowOfLine(file, line) {
     for (let row = 0; row < this.rows; row++) if (this.file[row] === file && this.line[row] >= line) return row;
     return this.rows - 1;
   }
 
-  /** Tips (pieces + 1, 3) in the workpiece frame. @returns {Float32Array} */
+  /**
+   * Tips (pieces + 1, 3) in the workpiece frame.
+   * @returns {Float32Array}
+   */
   tips() {
     const found = new Float32Array(3 * (this.pieces + 1));
     const values = new Float64Array(5), p = new Float64Array(3);

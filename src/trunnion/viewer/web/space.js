@@ -117,7 +117,11 @@ export class Space {
   /** @param {number} piece */
   #isDrawn(piece) { return this.program.known[piece] !== 0; }
 
-  /** One chord for every few segments, for pictures in motion. @param {Float32Array} points @param {number} count */
+  /**
+   * One chord for every few segments, for pictures in motion.
+   * @param {Float32Array} points
+   * @param {number} count
+   */
   #coarseLines(points, count) {
     if (this.stride === 1) return null;
     const many = Math.floor(count / this.stride);
@@ -137,7 +141,10 @@ export class Space {
     return lines;
   }
 
-  /** Colour the path. @param {(piece: number) => number[]} colourOf red, green and blue of a piece, 0 to 255 */
+  /**
+   * Colour the path.
+   * @param {(piece: number) => number[]} colourOf red, green and blue of a piece, 0 to 255
+   */
   paint(colourOf) {
     const { segments, colours } = this;
     for (let n = 0; n < segments.length; n++) {
@@ -156,7 +163,10 @@ export class Space {
     this.draw();
   }
 
-  /** While pictures follow each other, a long path is drawn coarsely. @param {boolean} on */
+  /**
+   * While pictures follow each other, a long path is drawn coarsely.
+   * @param {boolean} on
+   */
   hurry(on) {
     if (!this.coarse) return;
     clearTimeout(this.resting);
@@ -184,7 +194,11 @@ export class Space {
     this.setPose(this.values, this.row);
   }
 
-  /** Move all links. @param {number[]} values of the five axes @param {number} row */
+  /**
+   * Move all links.
+   * @param {number[]} values of the five axes
+   * @param {number} row
+   */
   setPose(values, row) {
     this.values = values;
     this.row = row;
@@ -228,7 +242,11 @@ export class Space {
     return { tip: tip.toArray(), axis: axis.toArray() };
   }
 
-  /** Tip and tool axis by the formula, for axis values. @param {number[]} values @param {number} row */
+  /**
+   * Tip and tool axis by the formula, for axis values.
+   * @param {number[]} values
+   * @param {number} row
+   */
   toolOf(values, row) {
     const tip = new Float64Array(3), axis = new Float64Array(3);
     toolAt(this.program.machine, values, this.program.lengthAt(row), tip);
@@ -243,7 +261,11 @@ export class Space {
     this.look("iso");
   }
 
-  /** Show everything, or the part and its path. @param {string} from iso, top, front or right @param {boolean} near */
+  /**
+   * Show everything, or the part and its path.
+   * @param {string} from iso, top, front or right
+   * @param {boolean} near
+   */
   look(from, near = false) {
     this.root.updateMatrixWorld(true);
     const box = new THREE.Box3();
@@ -262,7 +284,11 @@ export class Space {
     this.draw();
   }
 
-  /** Cut the picture open. @param {string} axis x, y, z, or "" for no section @param {number} share from 0 to 1 of the path's box */
+  /**
+   * Cut the picture open.
+   * @param {string} axis x, y, z, or "" for no section
+   * @param {number} share from 0 to 1 of the path's box
+   */
   section(axis, share) {
     if (!axis) this.renderer.clippingPlanes = [];
     else {
@@ -298,7 +324,11 @@ export class Space {
     return found;
   }
 
-  /** The way between two points of the path, drawn; its length, mm. @param {number} first piece @param {number} second */
+  /**
+   * The way between two points of the path, drawn; its length, mm.
+   * @param {number} first piece
+   * @param {number} second
+   */
   measure(first, second) {
     const ends = [first, second].map((piece) => new THREE.Vector3().fromArray(this.tips, 3 * piece + 3));
     this.measured.geometry.setFromPoints(ends);

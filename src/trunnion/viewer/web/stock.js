@@ -23,7 +23,10 @@ const NEAR_PLACE = 10;
  *   deviation: {unit: number, limit: number} | null}} StockData
  */
 
-/** Bricks of a message by their numbers; a brick without bytes has no surface. @param {Uint8Array} bytes */
+/**
+ * Bricks of a message by their numbers; a brick without bytes has no surface.
+ * @param {Uint8Array} bytes
+ */
 export function readMessage(bytes) {
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
   const word = (/** @type {number} */ k) => view.getInt32(4 * k, true);
@@ -78,7 +81,13 @@ export function brickFacets(bytes, first, stock) {
   return { position, index };
 }
 
-/** The colour of a deviation. @param {number} off mm @param {number} limit mm @param {number} least @param {number} most */
+/**
+ * The colour of a deviation.
+ * @param {number} off mm
+ * @param {number} limit mm
+ * @param {number} least
+ * @param {number} most
+ */
 export function deviationColour(off, limit, least, most) {
   if (Math.abs(off) <= limit) return SOUND;
   const [little, full] = off < 0 ? MISSING : LEFT_OVER;
@@ -117,14 +126,20 @@ export class Stock {
     this.mode = "cut";
     this.wanted = 0;
     this.shown = -1;
-    /** bricks that are shown, and their meshes @type {Map<number, Uint8Array>} */
+    /**
+     * bricks that are shown, and their meshes
+     * @type {Map<number, Uint8Array>}
+     */
     this.bricks = new Map();
     /** @type {Map<number, any[]>} */
     this.meshes = new Map();
     this.asked = -1;
     this.askedAt = 0;
     this.abort = new AbortController();
-    /** states of a page that has no server @type {{rows: number, bricks: Map<number, Uint8Array>}[] | null} */
+    /**
+     * states of a page that has no server
+     * @type {{rows: number, bricks: Map<number, Uint8Array>}[] | null}
+     */
     this.states = null;
   }
 
@@ -156,7 +171,10 @@ export class Stock {
     this.show(this.wanted);
   }
 
-  /** Show the stock after some rows. @param {number} rows */
+  /**
+   * Show the stock after some rows.
+   * @param {number} rows
+   */
   show(rows) {
     this.wanted = Math.min(rows, this.data.rows);
     const goal = this.mode === "deviation" ? this.data.rows : this.wanted;
@@ -168,13 +186,20 @@ export class Stock {
     } else this.#ask(goal);
   }
 
-  /** The last state before or at some rows. @param {number} rows */
+  /**
+   * The last state before or at some rows.
+   * @param {number} rows
+   */
   #stateAt(rows) {
+    /** @type {any[]} */
     const states = this.states ?? [];
-    return states.findLast((state) => state.rows <= rows) ?? states[0];
+    return states.filter((state) => state.rows <= rows).pop() ?? states[0];
   }
 
-  /** Ask the server; while it answers, only the last wish is kept. @param {number} goal */
+  /**
+   * Ask the server; while it answers, only the last wish is kept.
+   * @param {number} goal
+   */
   async #ask(goal) {
     if (this.asked >= 0) {
       if (performance.now() - this.askedAt < PATIENCE || goal === this.asked) return;
@@ -204,7 +229,11 @@ export class Stock {
     else this.show(this.wanted);
   }
 
-  /** Show bricks; those that are shown already stay. @param {number} rows @param {Map<number, Uint8Array>} bricks */
+  /**
+   * Show bricks; those that are shown already stay.
+   * @param {number} rows
+   * @param {Map<number, Uint8Array>} bricks
+   */
   #put(rows, bricks) {
     for (const number of new Set([...this.bricks.keys(), ...bricks.keys()])) {
       if (this.bricks.get(number) === bricks.get(number)) continue;
@@ -223,7 +252,11 @@ export class Stock {
     this.space.setPose(this.space.values, this.space.row);
   }
 
-  /** @param {number} number @param {Uint8Array} bytes @param {number} before vertices of the bricks before it */
+  /**
+   * @param {number} number
+   * @param {Uint8Array} bytes
+   * @param {number} before vertices of the bricks before it
+   */
   #add(number, bytes, before) {
     const [, y, z] = this.many;
     const first = [Math.floor(number / (y * z)), Math.floor(number / z) % y, number % z].map((at) => BRICK * at - 1);
@@ -249,7 +282,10 @@ export class Stock {
   /** Whether nothing is taken away between the stock that is shown and the cursor. */
   #isExact() { return this.removed.subarray(this.shown, this.wanted).every((/** @type {number} */ volume) => volume === 0); }
 
-  /** The line of the last of some rows. @param {number} rows */
+  /**
+   * The line of the last of some rows.
+   * @param {number} rows
+   */
   #lineAfter(rows) { return rows ? this.program.line[rows - 1] : 0; }
 
   #tell() {
@@ -268,7 +304,11 @@ export class Stock {
     this.status.textContent = words.join(" ");
   }
 
-  /** Draw the scale of deviations. @param {HTMLCanvasElement} canvas @param {HTMLElement} text */
+  /**
+   * Draw the scale of deviations.
+   * @param {HTMLCanvasElement} canvas
+   * @param {HTMLElement} text
+   */
   drawScale(canvas, text) {
     const { least, most } = this, limit = this.data.deviation?.limit ?? 0;
     const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
@@ -285,7 +325,10 @@ export class Stock {
 
 /** Places of findings, as marks that a click finds. */
 export class Places {
-  /** @param {import("./space.js").Space} space @param {{place?: number[] | null}[]} findings */
+  /**
+   * @param {import("./space.js").Space} space
+   * @param {{place?: number[] | null}[]} findings
+   */
   constructor(space, findings) {
     this.space = space;
     /** their numbers in the list */
@@ -299,7 +342,11 @@ export class Places {
     space.place.add(this.marks);
   }
 
-  /** The number of the finding whose place is drawn there; -1 if none is. @param {number} x CSS pixels from the left of the canvas @param {number} y from its top */
+  /**
+   * The number of the finding whose place is drawn there; -1 if none is.
+   * @param {number} x CSS pixels from the left of the canvas
+   * @param {number} y from its top
+   */
   pick(x, y) {
     const { space, points } = this;
     space.root.updateMatrixWorld(true);
