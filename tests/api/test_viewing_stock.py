@@ -1,5 +1,6 @@
 """What a view has of a simulation: its findings in their rows, its warnings, and a picture that is not too fine."""
 
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from tests.support.stepped_slot import write_slot
 from trunnion import InputError
 from trunnion.api.viewing import prepare_view
 from trunnion.simulation.meshes import save_mesh
+from trunnion.viewer.content import ViewContent
 
 #: A slot on whose way one clamp stands and another one beside it, 3 mm from the tool; and a word of no control.
 PROGRAM = HEAD + "N50 G0 Z-5\nN60 G1 X70 F500\nN70 G0 Z20\nN80 G1 Q1\nN90 G0 X80\nM5\nM30\n"
@@ -56,3 +58,35 @@ def test_a_stock_that_no_picture_can_show_is_refused(tmp_path: Path) -> None:
     given |= {"stock": "box:900,900,500,0,-450,-500", "tools": ["1=flat:4,length=600,flutes=550"], "cell": 2.0}
     with pytest.raises(InputError, match="too large to be shown as it is cut with a tool of 4 mm"):
         prepare_view(program, **{**given, "part": None})
+
+
+def test_a_page_holds_as_many_states_as_find_room(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    program, given = write_slot(tmp_path)
+    content = prepare_view(program, **{**given, "cell": 1.0})
+    assert content.stock is not None
+    whole = page_states(content)
+    assert whole[0] == (0, -1)
+    assert [rows for rows, _ in whole] == content.stock.page_states
+    monkeypatch.setattr("trunnion.viewer.stock._PAGE_BYTES", len(content.stock.packed()) - 1)
+    told: list[int] = []
+    content = prepare_view(program, **{**given, "cell": 1.0})
+    assert content.stock is not None
+    content.stock.packed(told.append)
+    fewer = page_states(content)
+    assert len(told) == len(whole)
+    assert 2 <= len(fewer) < len(whole)
+    assert (fewer[0], fewer[-1][0]) == (whole[0], whole[-1][0])
+    for states in (whole, fewer):
+        assert [before for _, before in states[1:]] == [rows for rows, _ in states[:-1]]
+
+
+def page_states(content: ViewContent) -> list[tuple[int, int]]:
+    """Rows of the states that a page holds, and of those that they change."""
+    assert content.stock is not None
+    data, found = zlib.decompress(content.stock.packed()), []
+    while data:
+        length = int.from_bytes(data[:4], "little")
+        rows, before = np.frombuffer(data, "<i4", 2, 4).tolist()
+        found.append((rows, before))
+        data = data[4 + length :]
+    return found

@@ -5,7 +5,7 @@ import pytest
 
 import trunnion
 from tests.support.stepped_slot import write_slot
-from trunnion.simulation.replay import Replay
+from trunnion.simulation.replay import Replay, changed_box
 from trunnion.simulation.simulator import Job, Simulation
 from trunnion.simulation.stock.material import Stock
 
@@ -40,6 +40,24 @@ def test_any_row_in_any_order_is_that_of_a_simulation(found: Simulation) -> None
     assert replay.kept == (0, 50, 100, 150)
     assert replay.go_to(10**9)
     assert replay.done == found.jobs[0].end
+
+
+def test_the_box_of_what_changes_has_all_of_it_and_little_else(found: Simulation) -> None:
+    replay = Replay(found.setup, found.jobs[0])
+    replay.go_to(60)
+    before = replay.state()
+    assert changed_box(before, replay.state()) is None
+    replay.go_to(70)
+    box = changed_box(before, replay.state())
+    assert box is not None
+    tips = found.jobs[0].run.tip[59:70]
+    # A mill of 10 mm, 5 mm deep in stock that is 0 high; rays are half a cell from what they stand for.
+    np.testing.assert_array_less(tips.min(axis=0) - np.array([5.0, 5.0, 1e-6]), box[0])
+    np.testing.assert_array_less(box[1], tips.max(axis=0) + np.array([5.0, 5.0, 5.0]))
+    assert box[1, 0] == pytest.approx(tips[:, 0].max() + 5.0, abs=0.6)
+    assert box[1, 2] == pytest.approx(0.0, abs=1e-9)
+    back = changed_box(replay.state(), before)
+    np.testing.assert_array_equal(box, back)
 
 
 def test_states_stay_within_their_bound(found: Simulation) -> None:

@@ -1,12 +1,27 @@
 """Bricks: what changes makes one frame of another, and values stand where vertices do."""
 
+from pathlib import Path
+
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
+import trunnion
+from tests.support.stepped_slot import write_slot
 from tests.support.sweeps import block
+from trunnion.simulation.replay import Replay, changed_box
+from trunnion.simulation.stock.material import Tile
 from trunnion.simulation.stock.surface import surface_grid
-from trunnion.viewer.bricks import NOTHING, SIDE, BrickFrame, brick_frame, brick_values, message
+from trunnion.viewer.bricks import (
+    NOTHING,
+    SIDE,
+    BrickFrame,
+    BrickRange,
+    brick_frame,
+    brick_values,
+    changed_frame,
+    message,
+)
 
 CENTRE_BYTES = (SIDE + 2) ** 3 // 8
 
@@ -58,3 +73,33 @@ def test_nothing_is_no_brick() -> None:
     grid = surface_grid(stock)
     assert brick_frame(grid, stock.lattice.cell, 0).bricks == {}
     assert len(brick_values(grid, np.zeros(0))) == 0
+
+
+def test_what_changes_makes_the_same_bricks_as_the_whole(tmp_path: Path) -> None:
+    program, given = write_slot(tmp_path)
+    steps = "".join(f"G1 X{25 + 1.5 * k:.2f} Y{(-1) ** k * 0.4 * k:.2f} Z{-3 + 0.05 * k:.2f}\n" for k in range(25))
+    program.write_text(program.read_text().replace("N80 G1 X70\n", steps), encoding="utf-8")
+    found = trunnion.simulate(program, **{**given, "part": None, "cell": 0.3}).simulation
+    replay = Replay(found.setup, found.jobs[0])
+    lattice, frames = replay.stock.lattice, list[BrickFrame]()
+    tiles: tuple[Tile, ...] = ()
+    for rows in (3, 4, 8, 9, 16, 20, 12, 29):
+        replay.go_to(rows)
+        whole = brick_frame(surface_grid(replay.stock), lattice.cell, rows)
+        if frames:
+            box = changed_box(tiles, replay.state())
+            assert box is not None
+            low, high = np.floor((box - lattice.low) / lattice.cell).astype(np.int64)
+            own = BrickRange.around(low, high, lattice.counts)
+            assert (own.end - own.first < own.many).any()
+            first, end = own.cells(6, lattice.counts)
+            grid = surface_grid(replay.stock.part(first, end))
+            frame = changed_frame(frames[-1], grid, lattice.cell, rows, own, first)
+            assert frame.bricks.keys() == whole.bricks.keys()
+            for number, ours in frame.bricks.items():
+                theirs = whole.bricks[number]
+                assert ours[:CENTRE_BYTES] == theirs[:CENTRE_BYTES]
+                places = [np.frombuffer(each[CENTRE_BYTES:], np.uint8).astype(int) for each in (ours, theirs)]
+                assert np.abs(places[0] - places[1]).max() <= 1  # rounded from coordinates of another origin
+        frames.append(whole)
+        tiles = replay.state()

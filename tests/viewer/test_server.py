@@ -6,7 +6,7 @@ import threading
 import time
 import urllib.error
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 from urllib.parse import quote
@@ -21,6 +21,7 @@ from tests.support.locations import GOLDEN
 from tests.support.stepped_slot import write_slot
 from trunnion import InputError
 from trunnion.api.viewing import prepare_view
+from trunnion.simulation.replay import Replay
 from trunnion.viewer.content import ViewContent
 from trunnion.viewer.server import view_application
 from trunnion.viewer.serving import Access, listen
@@ -153,7 +154,33 @@ def test_whatever_is_asked_of_the_stock_is_answered(cut: ViewContent, rows: str,
     assert status == 404 or len(body) >= 12
 
 
-def test_many_questions_at_once_end_with_the_last_one(cut: ViewContent) -> None:
+def test_a_question_ends_when_a_later_one_comes(cut: ViewContent, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert cut.stock is not None
+    stock = cut.stock
+    cutting, later = threading.Event(), threading.Event()
+    go_to = Replay.go_to
+
+    def wait(replay: Replay, rows: int, go_on: Callable[[], bool] = lambda: True) -> bool:
+        """The first question is still being answered when the second one comes."""
+        if not cutting.is_set():
+            cutting.set()
+            later.wait(20)
+            while go_on():
+                time.sleep(0.001)
+        return go_to(replay, rows, go_on)
+
+    stock.answer(0, -1)
+    monkeypatch.setattr(Replay, "go_to", wait)
+    with ThreadPoolExecutor(2) as threads:
+        first = threads.submit(stock.answer, 4, -1)
+        assert cutting.wait(20)
+        second = threads.submit(stock.answer, 5, -1)
+        later.set()
+        assert first.result(20) is None
+        assert second.result(20) is not None
+
+
+def test_many_questions_at_once_leave_it_alive(cut: ViewContent) -> None:
     assert cut.stock is not None
     stock, rows = cut.stock, cut.stock.rows
     with ThreadPoolExecutor(8) as threads:

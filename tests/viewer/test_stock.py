@@ -140,8 +140,12 @@ def test_deviations_have_their_colours_and_a_scale(view: Page) -> None:
     np.testing.assert_allclose(left, (20, 77, 204), atol=3)
     assert sound == [196, 196, 196]
     assert re.fullmatch(r"missing (0\.99\d|1\.00\d) mm \| ± 0\.100 \| left (0\.99\d|1\.00\d) mm", legend(view))
-    view.locator("#stock").select_option("cut")
+    view.locator("#space").focus()
+    view.keyboard.press("s")
+    assert view.locator("#stock").input_value() == "off"
     assert not view.locator("#scale").is_visible()
+    view.keyboard.press("s")
+    assert view.locator("#stock").input_value() == "cut"
 
 
 def test_the_path_has_the_colours_of_what_it_left(view: Page) -> None:

@@ -9,19 +9,25 @@ more than their bound, every second one goes.
 """
 
 import bisect
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
+from trunnion.arrays import Floats
 from trunnion.simulation.cutting.removal import cut
 from trunnion.simulation.simulator import Job, Setup, tool_pieces
+from trunnion.simulation.stock.lattice import BUNDLE_AXES
 from trunnion.simulation.stock.material import Stock, Tile
 from trunnion.simulation.stock.solids import make_stock
 
 #: States that are kept of a long program at first, and rows between those of a short one.
 _STATES: Final = 64
 _FEWEST_ROWS: Final = 50
+
+#: More than any program has rows.
+_ROWS: Final = 2.0**32
 
 #: Bytes that they may take together.
 _MOST_BYTES: Final = 300_000_000
@@ -85,15 +91,18 @@ class Replay:
                 self._keep()
         return True
 
+    def state(self, before: Sequence[Tile] = ()) -> tuple[Tile, ...]:
+        """The present tiles, which nothing will change; those of an earlier state where nothing has cut them since."""
+        tiles = self._stock.tiles
+        if not before:
+            return tuple(map(_copy, tiles))
+        return tuple(old if _is_same(old, tile) else _copy(tile) for old, tile in zip(before, tiles, strict=True))
+
     def _keep(self) -> None:
         """Keep the present state."""
         at = self.kept
         place = bisect.bisect_right(at, self._done) - 1
-        before = self._kept[at[place]] if place >= 0 else (None,) * len(self._stock.tiles)
-        self._kept[self._done] = tuple(
-            old if old is not None and _is_same(old, tile) else _copy(tile)
-            for old, tile in zip(before, self._stock.tiles, strict=True)
-        )
+        self._kept[self._done] = self.state(self._kept[at[place]] if place >= 0 else ())
         while self._bytes() > self._bound and len(self._kept) > 2:
             self._step *= 2
             for row in self.kept[1::2]:
@@ -103,6 +112,33 @@ class Replay:
         """What all states take."""
         tiles = {id(tile): tile for state in self._kept.values() for tile in state}
         return sum(each.ends.nbytes + each.rows.nbytes + each.normals.nbytes for each in tiles.values())
+
+
+def changed_box(before: Sequence[Tile], after: Sequence[Tile]) -> Floats | None:
+    """The lowest and the highest place at which two states differ, (2, 3), mm; None: nowhere."""
+    boxes = [_changes(old, new) for old, new in zip(before, after, strict=True) if not _is_same(old, new)]
+    found = [box for box in boxes if box is not None]
+    if not found:
+        return None
+    return np.stack((np.min([box[0] for box in found], axis=0), np.max([box[1] for box in found], axis=0)))
+
+
+def _changes(old: Tile, new: Tile) -> Floats | None:
+    """The box of the ends of a tile that one of two states has only, (2, 3), mm; None without any."""
+    differ = np.setxor1d(_end_keys(old), _end_keys(new))
+    if not len(differ):
+        return None
+    ray = (differ.real // _ROWS).astype(np.int64)
+    u, v, w = new.u[ray // len(new.v)], new.v[ray % len(new.v)], differ.imag
+    box = np.empty((2, 3))
+    box[:, list(BUNDLE_AXES[new.bundle])] = np.column_stack([(own.min(), own.max()) for own in (u, v, w)])
+    return box
+
+
+def _end_keys(tile: Tile) -> NDArray[np.complex128]:
+    """Ray, row and place of each end as one number."""
+    ray, end = np.nonzero(np.arange(tile.ends.shape[1]) < 2 * tile.count[:, None])
+    return np.asarray(ray * _ROWS + tile.rows[ray, end] + 1 + 1j * tile.ends[ray, end])
 
 
 def _copy(tile: Tile) -> Tile:

@@ -15,9 +15,10 @@ it), the number of bricks; then number and length of each, and their bytes.
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.simulation.stock.surface import SurfaceGrid
@@ -37,15 +38,56 @@ class BrickFrame:
     bricks: Mapping[int, bytes]
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class BrickRange:
+    """Bricks from ``first`` to ``end`` (exclusive), and those in all, along X, Y and Z, (3,) each."""
+
+    first: Ints
+    end: Ints
+    many: Ints
+
+    @staticmethod
+    def whole(counts: tuple[int, int, int]) -> "BrickRange":
+        """All bricks of a lattice."""
+        many = -(-(np.array(counts) + 1) // SIDE)
+        return BrickRange(np.zeros(3, np.int64), many, many)
+
+    @staticmethod
+    def around(low: Ints, high: Ints, counts: tuple[int, int, int]) -> "BrickRange":
+        """The bricks whose bytes depend on the cells ``low`` to ``high`` (inclusive)."""
+        many = BrickRange.whole(counts).many
+        # A centre is a corner of the cubes before and after it; a cell is one of the four beside an edge that touches.
+        first = np.clip((low - 2) // SIDE, 0, many - 1)
+        return BrickRange(first, np.clip((high + 3) // SIDE + 1, first + 1, many), many)
+
+    def cells(self, beyond: int, counts: tuple[int, int, int]) -> tuple[Ints, Ints]:
+        """The cells that they take and so many beyond: from the first to the end (exclusive)."""
+        low, high = SIDE * self.first - 2 - beyond, SIDE * self.end + beyond
+        return np.clip(low, 0, counts), np.clip(high, 0, counts)
+
+
 def brick_frame(grid: SurfaceGrid, cell: Floats, rows: int) -> BrickFrame:
     """Put a surface into bricks."""
-    return BrickFrame(rows, {number: _bytes(*own) for number, own in _bricks(grid, cell)})
+    counts = np.array(grid.inside.shape) - 2
+    x, y, z = counts.tolist()
+    return BrickFrame(rows, dict(_bricks(grid, cell, BrickRange.whole((x, y, z)), np.zeros(3, np.int64))))
+
+
+def changed_frame(
+    before: BrickFrame, grid: SurfaceGrid, cell: Floats, rows: int, own: BrickRange, first: Ints
+) -> BrickFrame:
+    """A frame of which only some bricks differ from the one before; ``grid`` begins at the cell ``first``."""
+    new = dict(_bricks(grid, cell, own, first))
+    numbers = set(_numbers(own).tolist())
+    kept = {number: bytes_ for number, bytes_ in before.bricks.items() if number not in numbers}
+    return BrickFrame(rows, kept | new)
 
 
 def brick_values(grid: SurfaceGrid, values: Floats) -> Floats:
     """Values of vertices in the order in which the bricks have them; the last layers are in several."""
-    padded = _padded(grid)
-    found = [values[one] for _, one in _vertex_numbers(grid, padded) if len(one)]
+    x, y, z = (np.array(grid.inside.shape) - 2).tolist()
+    numbers = _vertex_numbers(grid, BrickRange.whole((x, y, z)), np.zeros(3, np.int64))
+    found = [values[one] for _, one in numbers if len(one)]
     return np.concatenate(found) if found else np.zeros(0)
 
 
@@ -60,40 +102,44 @@ def message(frame: BrickFrame, before: BrickFrame | None) -> bytes:
     return words.tobytes() + b"".join(new[number] for number in numbers)
 
 
-def _padded(grid: SurfaceGrid) -> Flags:
-    """The centres with a layer before and as many after as the bricks need."""
-    cubes = np.array(grid.inside.shape) - 1
-    padded = np.zeros(tuple(SIDE * -(-cubes // SIDE) + 2), np.bool_)
-    x, y, z = grid.inside.shape
-    padded[1 : x + 1, 1 : y + 1, 1 : z + 1] = grid.inside
-    return padded
+def _numbers(own: BrickRange) -> Ints:
+    """The numbers of bricks, Z fastest."""
+    i, j, k = (np.arange(first, end) for first, end in zip(own.first, own.end, strict=True))
+    _, y, z = own.many.tolist()
+    return np.asarray(((i[:, None, None] * y + j[:, None]) * z + k).ravel())
 
 
-def _vertex_numbers(grid: SurfaceGrid, padded: Flags) -> Iterator[tuple[int, Ints]]:
-    """The number of each brick, and those of its vertices."""
+def _placed(values: NDArray[Any], own: BrickRange, first: Ints, blank: int, size: int) -> NDArray[Any]:
+    """Centres or cubes of a grid that begins at the cell ``first``, in an array that begins where the bricks do."""
+    shape = SIDE * (own.end - own.first) + size
+    at = first - SIDE * own.first + 1
+    low, high = np.maximum(at, 0), np.minimum(at + values.shape, shape)
+    found = np.full(tuple(shape), blank, values.dtype)
+    into = tuple(slice(one, end) for one, end in zip(low, high, strict=True))
+    found[into] = values[tuple(slice(one, end) for one, end in zip(low - at, high - at, strict=True))]
+    return found
+
+
+def _vertex_numbers(grid: SurfaceGrid, own: BrickRange, first: Ints) -> Iterator[tuple[tuple[slice, ...], Ints]]:
+    """For each brick, where its cubes are in an array of all, and the numbers of its vertices."""
     sizes = np.array(grid.inside.shape) - 1
-    vertex = np.full(tuple(np.array(padded.shape) - 1), -1, np.int32)
-    x, y, z = sizes
-    own = np.full(x * y * z, -1, np.int32)
-    own[grid.cubes] = np.arange(len(grid.cubes), dtype=np.int32)
-    vertex[1 : x + 1, 1 : y + 1, 1 : z + 1] = own.reshape(x, y, z)
-    many = (np.array(padded.shape) - 2) // SIDE
-    for number, (i, j, k) in enumerate(np.ndindex(*many.tolist())):
-        part = tuple(slice(SIDE * at, SIDE * at + SIDE + 1) for at in (i, j, k))
-        inner = vertex[part].ravel()
-        yield number, inner[inner >= 0].astype(np.int64)
+    vertex = np.full(int(sizes.prod()), -1, np.int64)
+    vertex[grid.cubes] = np.arange(len(grid.cubes))
+    placed = _placed(vertex.reshape(tuple(sizes)), own, first, -1, 1)
+    for at in np.ndindex(*(own.end - own.first).tolist()):
+        part = tuple(slice(SIDE * k, SIDE * k + SIDE + 1) for k in at)
+        inner = placed[part].ravel()
+        yield part, inner[inner >= 0]
 
 
-def _bricks(grid: SurfaceGrid, cell: Floats) -> Iterator[tuple[int, tuple[Flags, Codes]]]:
-    """Number, centres and places of vertices, (3, m), of each brick that has any."""
-    padded = _padded(grid)
+def _bricks(grid: SurfaceGrid, cell: Floats, own: BrickRange, first: Ints) -> Iterator[tuple[int, bytes]]:
+    """Number and bytes of each brick that has a surface."""
+    centres = _placed(grid.inside, own, first, 0, 2)
     places = np.round(254.0 * (grid.vertices - grid.lows) / cell).clip(0, 254).astype(np.uint8)
-    many = (np.array(padded.shape) - 2) // SIDE
-    for number, vertices in _vertex_numbers(grid, padded):
+    for number, (part, vertices) in zip(_numbers(own).tolist(), _vertex_numbers(grid, own, first), strict=True):
         if len(vertices):
-            at = np.unravel_index(number, many)
-            part = tuple(slice(SIDE * int(k), SIDE * int(k) + SIDE + 2) for k in at)
-            yield number, (padded[part], places[vertices].T)
+            around = tuple(slice(each.start, each.stop + 1) for each in part)
+            yield number, _bytes(centres[around], places[vertices].T)
 
 
 def _bytes(centres: Flags, places: Codes) -> bytes:

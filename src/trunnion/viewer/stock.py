@@ -22,14 +22,15 @@ from numpy.typing import NDArray
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, argument_problem
 from trunnion.reporting.column_encoding import COMPRESSION_LEVEL
-from trunnion.simulation.replay import Replay
+from trunnion.simulation.replay import Replay, changed_box
 from trunnion.simulation.simulator import Simulation
 from trunnion.simulation.stock.lattice import Lattice
+from trunnion.simulation.stock.material import Tile
 from trunnion.simulation.stock.solids import StockShape
 from trunnion.simulation.stock.surface import surface_grid
 from trunnion.simulation.stock.surface_points import SurfacePoints, surface_points
 from trunnion.simulation.stock.vertex_deviation import vertex_deviation
-from trunnion.viewer.bricks import BrickFrame, brick_frame, brick_values, message
+from trunnion.viewer.bricks import BrickFrame, BrickRange, brick_frame, brick_values, changed_frame, message
 
 #: Cubes that the surface of the stock's box may pass, in a picture.
 _MOST_CUBES: Final = 400_000
@@ -40,6 +41,13 @@ _PAGE_BYTES: Final = 4_000_000
 
 #: Surfaces that the server remembers, so that it sends what has changed only.
 _REMEMBERED: Final = 6
+
+#: Cells beyond bricks that are taken along where only some are made anew: cells that touch along edges are filled, and
+#: that may ask for others beside them.
+_BEYOND: Final = 6
+
+#: Part of the stock's box from which on all of it is made anew.
+_MOST_ANEW: Final = 0.6
 
 #: Deviations are told in this part of what is not told at all.
 _PART_OF_LIMIT: Final = 16.0
@@ -67,6 +75,7 @@ class StockView:
         self._frames: OrderedDict[int, BrickFrame] = OrderedDict()
         self._working, self._newest = threading.Lock(), 0
         self._packed = b""
+        self._last: tuple[BrickFrame, tuple[Tile, ...]] | None = None
         self._finished = self._points()
         self._removed = np.zeros(len(job.run))
         for one in simulation.operations:
@@ -141,11 +150,32 @@ class StockView:
         """The surface after some rows."""
         if rows not in self._frames:
             self._replay.go_to(rows)
-            self._frames[rows] = brick_frame(surface_grid(self._replay.stock), self._lattice.cell, rows)
+            self._frames[rows] = self._made(rows)
             while len(self._frames) > _REMEMBERED:
                 self._frames.popitem(last=False)
         self._frames.move_to_end(rows)
         return self._frames[rows]
+
+    def _made(self, rows: int) -> BrickFrame:
+        """The surface of the present stock: of the last one what is the same, and the rest anew."""
+        cell, counts, stock = self._lattice.cell, self._lattice.counts, self._replay.stock
+        before, tiles = self._last if self._last is not None else (None, ())
+        state = self._replay.state(tiles)
+        box = changed_box(tiles, state) if before is not None else None
+        if before is not None and box is None:
+            frame = BrickFrame(rows, before.bricks)
+        else:
+            own = BrickRange.whole(counts)
+            if box is not None:
+                low, high = np.floor((box - self._lattice.low) / cell).astype(np.int64)
+                own = BrickRange.around(low, high, counts)
+            first, end = own.cells(_BEYOND, counts)
+            if before is None or int((end - first).prod()) > _MOST_ANEW * math.prod(counts):
+                frame = brick_frame(surface_grid(stock), cell, rows)
+            else:
+                frame = changed_frame(before, surface_grid(stock.part(first, end)), cell, rows, own, first)
+        self._last = (frame, state)
+        return frame
 
     def _points(self) -> SurfacePoints:
         part, stock = self._simulation.setup.part, self._simulation.stock

@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.arrays import Floats, Lines
+from trunnion.arrays import Floats, Ints, Lines
 from trunnion.simulation.stock.lattice import BUNDLE_AXES, Lattice
 from trunnion.simulation.stock.spans import Spans
 
@@ -90,6 +90,18 @@ class Stock:
     def bundle(self, bundle: int) -> Iterator[Tile]:
         """The tiles of one bundle."""
         return (tile for tile in self.tiles if tile.bundle == bundle)
+
+    def part(self, first: Ints, end: Ints) -> "Stock":
+        """The stock along the rays through some cells only: from ``first`` to ``end`` (exclusive) along X, Y and Z."""
+        lattice, cell = self.lattice, self.lattice.cell
+        x, y, z = (end - first).tolist()
+        own = Lattice(lattice.low + first * cell, lattice.low + end * cell, (x, y, z))
+        spans = []
+        for bundle in range(3):
+            u, v, _ = BUNDLE_AXES[bundle]
+            rays = np.arange(first[u], end[u])[:, None] * lattice.counts[v] + np.arange(first[v], end[v])
+            spans.append(self.spans(bundle).at(rays.ravel()))
+        return Stock.of_spans(own, (spans[0], spans[1], spans[2]))
 
     def cell_area(self, bundle: int) -> float:
         """Area that a ray of a bundle stands for, mm²."""

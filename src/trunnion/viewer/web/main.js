@@ -276,6 +276,18 @@ class Page {
     save(this.space.canvas.toDataURL("image/png"), "view.png");
   }
 
+  #showStock() {
+    this.stock?.setMode(element("stock").value);
+    this.#scale();
+  }
+
+  /** Show the stock otherwise. */
+  #nextStock() {
+    const values = Array.from(element("stock").options).filter((each) => !each.disabled).map((each) => each.value);
+    element("stock").value = values[(values.indexOf(element("stock").value) + 1) % values.length];
+    this.#showStock();
+  }
+
   #section() {
     this.stock?.setOpen(element("section").value !== "");
     this.space.section(element("section").value, Number(element("section-at").value));
@@ -314,7 +326,7 @@ class Page {
     on("scrub", "change", () => this.space.hurry(false));
     on("speed", "input", () => this.#tellSpeed());
     on("colour", "change", () => this.paint());
-    on("stock", "change", (event) => { this.stock?.setMode(event.target.value); this.#scale(); });
+    on("stock", "change", () => this.#showStock());
     on("view", "change", (event) => this.space.look(event.target.value, true));
     on("frame", "change", (event) => this.space.setFrame(event.target.value));
     on("section", "change", () => this.#section());
@@ -356,6 +368,7 @@ class Page {
       o: () => this.jump(this.scene.operations.map((one) => one.first), 1), O: () => this.jump(this.scene.operations.map((one) => one.first), -1),
       1: () => this.space.look("iso"), 2: () => this.space.look("top", true), 3: () => this.space.look("front", true), 4: () => this.space.look("right", true),
       f: () => { const other = element("frame").value === "part" ? "machine" : "part"; element("frame").value = other; this.space.setFrame(/** @type {any} */ (other)); },
+      s: () => this.#nextStock(),
       "/": () => element("search").focus(), m: () => this.#measure(), p: () => this.picture(), "?": () => element("keys").showModal(),
     };
     if (!keys[event.key]) return;
