@@ -169,7 +169,6 @@ def test_a_question_ends_when_a_later_one_comes(cut: ViewContent, monkeypatch: p
                 time.sleep(0.001)
         return go_to(replay, rows, go_on)
 
-    stock.answer(0, -1)
     monkeypatch.setattr(Replay, "go_to", wait)
     with ThreadPoolExecutor(2) as threads:
         first = threads.submit(stock.answer, 4, -1)
@@ -178,6 +177,24 @@ def test_a_question_ends_when_a_later_one_comes(cut: ViewContent, monkeypatch: p
         later.set()
         assert first.result(20) is None
         assert second.result(20) is not None
+        cutting.clear()
+        last = threads.submit(stock.answer, 4, -1)
+        assert cutting.wait(20)
+        end_of(view_application(cut, Access(NAMES)))
+        assert last.result(20) is None
+
+
+def end_of(application: Any) -> None:
+    """Start and end an application, as its server does."""
+    told = iter(("lifespan.startup", "lifespan.shutdown"))
+
+    async def receive() -> dict[str, Any]:
+        return {"type": next(told)}
+
+    async def send(_message: dict[str, Any]) -> None:
+        pass
+
+    asyncio.run(application({"type": "lifespan"}, receive, send))
 
 
 def test_many_questions_at_once_leave_it_alive(cut: ViewContent) -> None:

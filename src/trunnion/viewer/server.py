@@ -6,6 +6,8 @@ Out:    a Starlette application. Nothing is read from disk.
 
 import asyncio
 import re
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
 from typing import Any, Final
 
 from trunnion.extras import import_extra
@@ -61,11 +63,18 @@ def view_application(content: ViewContent, access: Access) -> Any:
             return responses.PlainTextResponse("another state was asked for meanwhile", 409, HEADERS)
         return responses.Response(found, 200, HEADERS, _BYTES)
 
+    @asynccontextmanager
+    async def until_the_end(_application: Any) -> AsyncIterator[None]:
+        yield
+        if content.stock is not None:
+            content.stock.leave()
+
     return applications.Starlette(
+        lifespan=until_the_end,
         routes=[
             routing.Route("/", access.guarded(show_page)),
             routing.Route("/data/column/{name}", access.guarded(give_column)),
             routing.Route("/data/text/{number:int}", access.guarded(give_text)),
             routing.Route("/data/stock/{rows:int}", access.guarded(give_stock)),
-        ]
+        ],
     )

@@ -146,6 +146,10 @@ class StockView:
             known = self._frames.get(before)
             return message(self._frame(rows), known)
 
+    def leave(self) -> None:
+        """End what is being answered: nobody waits for it any more."""
+        self._newest += 1
+
     def _frame(self, rows: int) -> BrickFrame:
         """The surface after some rows."""
         if rows not in self._frames:
