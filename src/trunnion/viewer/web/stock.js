@@ -291,7 +291,7 @@ export class Stock {
   #tell() {
     const { shown, states, mode } = this;
     if (mode === "off") { this.status.textContent = ""; return; }
-    const cells = `${this.data.cell.map((width) => Number(width.toPrecision(3))).join(" × ")} mm`;
+    const cells = `${[...new Set(this.data.cell.map((width) => Number(width.toPrecision(3))))].join(" × ")} mm`;
     const words = [say("stockCells", cells)];
     if (this.asked >= 0) words.unshift(say("stockCutting", this.#lineAfter(this.asked)));
     else if (mode === "deviation") words.unshift(say("stockFinished"));
