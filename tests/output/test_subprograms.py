@@ -58,9 +58,10 @@ def without_words(run: Run) -> Run:
     last: object = None
     kept = []
     for event in run.events:
+        repeated = event.kind == "m" and event.value == last
         if event.kind == "m":
-            event, last = (None, last) if event.value == last else (event, event.value)
-        if event is not None and event.kind != "known":
+            last = event.value
+        if event.kind != "known" and not repeated:
             kept.append(event)
     return replace(run, events=kept)
 
