@@ -58,10 +58,9 @@ def without_words(run: Run) -> Run:
     last: object = None
     kept = []
     for event in run.events:
-        repeated = event.kind == "m" and event.value == last
-        if event.kind == "m":
-            last = event.value
-        if event.kind != "known" and not repeated:
+        repeats = event.kind == "m" and event.value == last
+        last = event.value if event.kind == "m" else last
+        if event.kind != "known" and not repeats:
             kept.append(event)
     return replace(run, events=kept)
 

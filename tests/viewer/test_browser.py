@@ -10,6 +10,7 @@ from playwright.sync_api import Browser, Page
 from tests.support.browser import browser as browser
 from tests.support.browser import needs_browser, open_file, open_page
 from tests.support.locations import GOLDEN
+from tests.support.pictures import check_picture
 from trunnion import post, read_program, write_view
 from trunnion.machines import forward
 from trunnion.machines.loading import shipped_machines
@@ -35,7 +36,7 @@ def view(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterator
 
 def shown(page: Page) -> str:
     """The text of the current line."""
-    return str(page.locator(".line.current").inner_text())
+    return str(page.locator("#listing .line.current").inner_text())
 
 
 @pytest.mark.parametrize("name", shipped_machines())
@@ -167,4 +168,70 @@ def test_a_finding_leads_to_its_line(tmp_path: Path, browser: Browser) -> None:
         assert "X36.72781" in shown(page)
         page.locator("#findings button").first.click()
         assert "X36.72781" in shown(page)
+        assert errors == []
+
+
+def test_it_looks_like_the_picture_of_the_docs(view: Page, browser: Browser) -> None:
+    view.evaluate("page.goToRow(80); page.space.setFrame('machine'); page.space.look('iso'); page.space.drawNow()")
+    view.locator("#frame").select_option("machine")
+    view.wait_for_timeout(300)
+    check_picture(browser, view.screenshot(), "viewer.png")
+
+
+def test_two_machines_go_along_one_tool_path(tmp_path: Path, browser: Browser) -> None:
+    out = tmp_path / "view.html"
+    write_view(CL, machine="yl569", against=CL, against_machine="generic_head_head_ca", output=out)
+    with open_page(browser, open_file(out), (1440, 800)) as (page, errors):
+        rows = page.evaluate("Array.from(page.twin.ones).filter((_, k) => k % 20 === 7)")
+        assert len(rows) > 3
+        poses = page.evaluate(
+            """rows => rows.map(row => { page.goToRow(row); return [page.space, page.twin.space].map(space => {
+            const { tip, axis } = space.shownTool(); return [tip, axis]; }); })""",
+            rows,
+        )
+        found = np.array(poses)
+        np.testing.assert_allclose(found[:, 0], found[:, 1], atol=2e-3)
+        assert page.locator("#listing-b .line.current").count() == 1
+        page.locator("#scrub").evaluate("it => { it.value = 0.4; it.dispatchEvent(new Event('input')); }")
+        tips = page.evaluate("[page.space, page.twin.space].map(space => space.shownTool().tip)")
+        assert np.linalg.norm(np.subtract(*tips)) < 1.0
+        line = page.evaluate("page.twin.program.line[page.twin.twos[40]]")
+        page.evaluate("line => page.twin.onLine(line)", line)
+        assert page.evaluate("page.row === page.twin.ones[40] && page.twin.row === page.twin.twos[40]")
+        check_picture(browser, page.screenshot(), "viewer-against.png")
+        assert errors == []
+
+
+def test_what_two_programs_do_otherwise_is_marked_in_both(tmp_path: Path, browser: Browser) -> None:
+    program, other, out = (tmp_path / name for name in ("one.mpf", "two.mpf", "view.html"))
+    text = CL.with_name("3_blade_finish.expected.mpf").read_text(encoding="utf-8")
+    program.write_text(text, encoding="utf-8")
+    other.write_text(text.replace("X35.72781", "X36.72781"), encoding="utf-8")
+    write_view(program, machine="yl569", against=other, output=out)
+    with open_page(browser, open_file(out)) as (page, errors):
+        page.locator("#space").focus()
+        page.keyboard.press("n")
+        assert "X35.72781" in shown(page)
+        assert "X36.72781" in page.locator("#listing-b .line.current").inner_text()
+        assert page.locator("#listing-b .line.finding").count() == 1
+        assert errors == []
+
+
+def test_rewinds_and_limits_are_shown(tmp_path: Path, browser: Browser) -> None:
+    program, out = tmp_path / "turns.mpf", tmp_path / "view.html"
+    program.write_text(
+        "G54 G90 G0 X0 Y0 Z50\nTRAORI\nG0 A20 C0\nG1 X1 F500 C150\nX2 C300\nG0 Z80\nG0 C0\nG1 X3 F500\nTRAFOOF\nM30\n"
+    )
+    write_view(program, machine="generic_head_head_ca", zero=(0, 0, 0), tool_length=100, output=out)
+    with open_page(browser, open_file(out)) as (page, errors):
+        page.locator("#space").focus()
+        page.keyboard.press("Home")
+        page.keyboard.press("r")
+        assert "C0" in shown(page)
+        assert page.evaluate("page.row") > 4
+        strip = page.evaluate("page.curves.strips.at(-1).name")
+        assert strip == "limits"
+        header = page.evaluate("page.curves.csv().split('\\n')[0]")
+        assert header.startswith("seconds,line,X mm,Y mm,Z mm,C °,A °")
+        assert header.endswith("limits %")
         assert errors == []

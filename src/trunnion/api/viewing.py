@@ -1,29 +1,30 @@
 """A program on its machine, as a page for a browser."""
 
+import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from trunnion.api.arguments import check_path, check_paths
 from trunnion.api.observer import SILENT, Observer
-from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
-from trunnion.api.settings import set_up_machine
+from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
+from trunnion.api.settings import Settings, set_up_machine
+from trunnion.api.simulation_project import is_project
 from trunnion.api.simulation_result import NO_CALL
 from trunnion.api.targets import check_output_name
-from trunnion.api.verifying import rapid_feed_of, verify
+from trunnion.api.viewing_inputs import of_project, view_program
 from trunnion.api.viewing_stock import view_simulation, with_stock
-from trunnion.errors import InputError
+from trunnion.errors import InputError, argument_problem
 from trunnion.files import OutputPlace, atomic_file
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
-from trunnion.readers.program.source_text import decode
 from trunnion.simulation.meshes import load_mesh
 from trunnion.simulation.tools.choice import choose_tools, tools_of_toolpaths
 from trunnion.simulation.tools.library import read_tools
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.text import parse_tool
-from trunnion.verification import restore_rapids
-from trunnion.viewer.content import ViewContent, view_content
+from trunnion.verification.comparison import align
+from trunnion.viewer.content import ViewContent, side_by_side, view_content
 from trunnion.viewer.page import render_view
 
 
@@ -39,9 +40,13 @@ def check_view_name(file: FilePath) -> OutputPlace:
 
 
 def prepare_view(
-    nc: FilePath,
+    nc: FilePath | Sequence[FilePath],
     *,
-    machine: MachineLike,
+    machine: MachineLike | None = None,
+    against: FilePath | Sequence[FilePath] | None = None,
+    against_machine: MachineLike | None = None,
+    setup: str | None = None,
+    settings: Settings | None = None,
     cl: ToolpathLike | Iterable[ToolpathLike] = (),
     subprograms: Sequence[FilePath] = (),
     stock: FilePath | None = None,
@@ -64,28 +69,64 @@ def prepare_view(
     InputError
         When a file or an argument cannot be used, or no reader knows the control.
     """
-    place, others = check_path("nc", nc), check_paths("subprograms", subprograms)
-    placed = set_up_machine(as_machine(machine), zero, tool_length)
-    simulated = view_simulation(
-        placed, stock=stock, part=part, fixtures=fixtures, tools=tools, libraries=libraries, unit=unit, near=near,
-        cell=cell, accuracy=accuracy,
-    )  # fmt: skip
-    run = restore_rapids(as_run(place, placed, others), rapid_feed_of(placed))
-    toolpaths = as_toolpaths(cl, None, False, observer)
-    verification = verify(run, machine=placed, cl=toolpaths, observer=observer)
-    around = [load_mesh(mesh, name=f"fixture {k}") for k, mesh in enumerate(check_paths("fixtures", fixtures), 1)]
-    design = None if part is None else load_mesh(check_path("part", part), name="part")
-    bodies = _known_tools(run, tools, libraries, unit, toolpaths)
-    texts = [decode(Path(file).read_bytes()) for file in run.files]
-    content = view_content(verification, texts, bodies, design, around)
-    return content if simulated is None else with_stock(content, simulated, run, toolpaths, observer)
+    given: dict[str, Any] = {
+        "machine": machine, "cl": cl, "subprograms": subprograms, "stock": stock, "part": part, "fixtures": fixtures,
+        "tools": tools, "libraries": libraries, "unit": unit, "near": near, "cell": cell, "accuracy": accuracy,
+        "zero": zero, "tool_length": tool_length,
+    }  # fmt: skip
+    files = [check_path("nc", nc)] if isinstance(nc, str | os.PathLike) else check_paths("nc", nc)
+    if files and is_project(files[0]):
+        given = of_project(files[0], setup, given)
+        files = check_paths("nc", given.pop("nc"))
+    elif setup is not None:
+        raise InputError(argument_problem("setup", "belongs to a project", "leave it out, or give the project"))
+    content, run = _prepared(files, settings, observer, **given)
+    if against is None:
+        if against_machine is not None:
+            raise InputError(argument_problem("against_machine", "belongs to a second program", "name that, too"))
+        return content
+    alone = isinstance(against, str | os.PathLike)
+    beside = [check_path("against", against)] if alone else check_paths("against", against)
+    other = given | dict.fromkeys(("stock", "near", "cell", "accuracy")) | {"cl": (), "subprograms": ()}
+    if against_machine is not None:  # where the part lies is not the same there
+        other |= {"machine": against_machine, "zero": None, "tool_length": None}
+    second, other_run = _prepared(beside, settings, observer, **other)
+    return side_by_side(content, second, align(run, other_run))
+
+
+def _prepared(
+    files: Sequence[Path], settings: Settings | None, observer: Observer, **given: Any
+) -> tuple[ViewContent, Run]:
+    """Put together what a page shows of one program, when no project states arguments any more; and its run."""
+    if not files:
+        raise InputError(argument_problem("nc", "is empty", "name a program, CL files or a project"))
+    if given["machine"] is None:
+        raise InputError(argument_problem("machine", "is missing", "say on which machine the program runs"))
+    placed = set_up_machine(as_machine(given["machine"]), given["zero"], given["tool_length"])
+    of_stock = ("stock", "part", "fixtures", "tools", "libraries", "unit", "near", "cell", "accuracy")
+    simulated = view_simulation(placed, **{name: given[name] for name in of_stock})
+    others = check_paths("subprograms", given["subprograms"])
+    viewed = view_program(files, placed, cl=given["cl"], subprograms=others, settings=settings, observer=observer)
+    fixtures = check_paths("fixtures", given["fixtures"])
+    around = [load_mesh(mesh, name=f"fixture {k}") for k, mesh in enumerate(fixtures, 1)]
+    design = None if given["part"] is None else load_mesh(check_path("part", given["part"]), name="part")
+    run = viewed.verification.run
+    bodies = _known_tools(run, given["tools"], given["libraries"], given["unit"], viewed.toolpaths)
+    content = view_content(viewed.verification, viewed.texts, bodies, design, around)
+    if simulated is not None:
+        content = with_stock(content, simulated, run, viewed.toolpaths, observer)
+    return content, run
 
 
 def write_view(
-    nc: FilePath,
+    nc: FilePath | Sequence[FilePath],
     *,
-    machine: MachineLike,
     output: FilePath,
+    machine: MachineLike | None = None,
+    against: FilePath | Sequence[FilePath] | None = None,
+    against_machine: MachineLike | None = None,
+    setup: str | None = None,
+    settings: Settings | None = None,
     cl: ToolpathLike | Iterable[ToolpathLike] = (),
     subprograms: Sequence[FilePath] = (),
     stock: FilePath | None = None,
@@ -106,11 +147,19 @@ def write_view(
     Parameters
     ----------
     nc
-        The program.
-    machine
-        The machine that runs it: a name, a path or a ``Machine``.
+        The program, also with the files of its subprograms behind it; or CL files, which are posted as one program,
+        also where it must not run; or a project (.toml), which states the arguments that are not given here.
     output
         The page, ``.html``. An older file is replaced when the new one is complete.
+    machine
+        The machine that runs it: a name, a path or a ``Machine``. Only a project may state it instead.
+    against, against_machine
+        A second program, or CL files, which go along the same tool path beside the first, and the machine that runs
+        it if it is another. What differs is marked, as ``trunnion.diff`` compares programs.
+    setup
+        Name or number of a project's set-up, if it has several.
+    settings
+        For CL files, as for ``post``.
     cl
         Its CL files: the page then names the CL line of each block, and what the proof finds.
     subprograms
@@ -139,15 +188,21 @@ def write_view(
     """
     place = check_view_name(output)
     content = prepare_view(
-        nc, machine=machine, cl=cl, subprograms=subprograms, stock=stock, part=part, fixtures=fixtures, tools=tools,
-        libraries=libraries, unit=unit, near=near, cell=cell, accuracy=accuracy, zero=zero, tool_length=tool_length,
-        observer=observer,
+        nc, machine=machine, against=against, against_machine=against_machine, setup=setup, settings=settings, cl=cl,
+        subprograms=subprograms, stock=stock, part=part,
+        fixtures=fixtures, tools=tools, libraries=libraries, unit=unit, near=near, cell=cell, accuracy=accuracy,
+        zero=zero, tool_length=tool_length, observer=observer,
     )  # fmt: skip
     if content.stock is not None:
         with observer.progress("states of the stock", len(content.stock.page_states), "states") as tell:
             content.stock.packed(tell)
-    with atomic_file(place, inputs=list(map(Path, content.scene["files"]))) as sink:
+    with atomic_file(place, inputs=_shown_files(content)) as sink:
         sink.writelines(render_view(content, embedded=True))
+
+
+def _shown_files(content: ViewContent) -> list[Path]:
+    scenes = (content.scene, content.scene.get("against", {}))
+    return [Path(file) for scene in scenes for file in scene.get("files", ())]
 
 
 def _known_tools(

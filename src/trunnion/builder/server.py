@@ -59,9 +59,11 @@ def builder_application(session: BuilderSession, access: Access) -> Any:
             return plain("the page makes no such request", 400)
         return None if found is None else responses.JSONResponse(found, headers=HEADERS)
 
-    return import_extra("starlette.applications", "view").Starlette(
+    application = import_extra("starlette.applications", "view").Starlette(
         routes=[
             routing.Route("/", access.guarded(show_page)),
             routing.Route("/{what}", access.guarded(answer), methods=["POST"]),
         ]
     )
+    application.router.redirect_slashes = False
+    return application

@@ -4,7 +4,7 @@ from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.dialects import DIALECTS
 from trunnion.cl.read import read_cl, read_cl_files
 from trunnion.cl.scan import fill_modal_axes, scan
-from trunnion.cl.sources import not_one_file
+from trunnion.cl.sources import is_cl_file, not_one_file
 from trunnion.cl.systems import other_system
 from trunnion.cl.unknown import (
     statement_words,
@@ -23,6 +23,7 @@ __all__ = [
     "StatementError",
     "can_be_unknown",
     "events_of",
+    "is_cl_file",
     "not_one_file",
     "other_system",
     "read_cl",

@@ -94,6 +94,17 @@ class ClSource:
     remarks: tuple[Problem, ...] = ()
 
 
+def is_cl_file(path: Path) -> bool:
+    """Whether a file holds CL data, by its content: an archive, or lines of a dialect; False if it cannot be read."""
+    try:
+        with path.open("rb") as stream:
+            head = stream.read(_HEAD)
+    except (OSError, ValueError):
+        return False
+    packed = head.startswith((_GZIP, _BZIP2, *_ZIP))
+    return packed or recognize_dialect(head).marked or _MOTION.search(head) is not None
+
+
 def cl_sources(file: Path | BinaryIO, name: str = "stdin") -> list[ClSource]:
     """The CL files in a file or a stream: several in a ZIP archive, in the order of their names.
 

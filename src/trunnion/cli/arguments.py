@@ -96,8 +96,6 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
     Ends the process with exit code 2 and a usage line when they cannot be understood.
     """
     parser, commands = _parsers()
-    if not argv:
-        parser.error("name a command; trunnion --help lists them")
     if argv and argv[0] in commands:  # before argparse, which first tells what is missing
         command = commands[argv[0]]
         if wrong := _unknown_option(argv[1:], command):
@@ -114,7 +112,7 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
 
 def _unknown_option(words: Sequence[str], command: argparse.ArgumentParser) -> str:
     """The first word that looks like an option and is none, nor the beginning of one; empty if there is none."""
-    known = ["--help", *_OPTION.findall(command.format_usage())]  # usage writes the first one as -h
+    known = _OPTION.findall(command.format_usage())
     for word in words:
         name = word.partition("=")[0]
         if name == "--":
@@ -286,8 +284,18 @@ def _add_stock(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_view(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("files", nargs=1, metavar="NC", help="NC program")
-    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs it")
+    parser.add_argument(
+        "files", nargs="+", metavar="NC|CL|PROJECT",
+        help="NC program, with its subprograms behind it; CL files, which are posted; or a project (.toml)",
+    )  # fmt: skip
+    parser.add_argument("--machine", metavar="NAME_OR_FILE", help="machine that runs it; a project may state it")
+    parser.add_argument("--against", metavar="NC|CL", help="a second program, beside it on the same tool path")
+    parser.add_argument("--against-machine", metavar="NAME_OR_FILE", help="machine of that, if it is another")
+    parser.add_argument("--setup", metavar="NAME", help="set-up of a project, if it has several: its name or number")
+    parser.add_argument(
+        "--set", action=_Setting, type=_key_value, default=[], metavar="KEY=VALUE", dest="settings",
+        help="for CL files, as post has it; may be repeated",
+    )  # fmt: skip
     parser.add_argument("--cl", action="append", default=[], metavar="CL", help="CL file that it was made from")
     _add_subprograms(parser, "it")
     _add_stock(parser)
@@ -369,11 +377,7 @@ def _add_impeller(parser: argparse.ArgumentParser) -> None:
         help="model: a closed mesh of it; cut: CL files and a proven program",
     )
     parser.add_argument("file", metavar="IMPELLER", help="definition of the impeller (.toml)")
-    parser.add_argument(
-        "--output",
-        metavar="FILE|FOLDER",
-        help="the mesh (.stl, .ply, .3mf or .glb) or a picture of it (.png); folder of a cut",
-    )
+    parser.add_argument("--output", metavar="FILE|FOLDER", help="the mesh (.stl, .ply, .3mf or .glb); folder of a cut")
     parser.add_argument("--tolerance", type=_tolerance, metavar="MM", help="model: how far facets may be off; 0.01")
     parser.add_argument("--machine", metavar="NAME_OR_FILE", help="cut: machine that runs the program")
     parser.add_argument(

@@ -2,6 +2,7 @@
 
 import argparse
 
+from trunnion.api.simulation_project import project_files
 from trunnion.api.viewing import check_view_name, prepare_view, write_view
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.serving import announce
@@ -13,22 +14,25 @@ from trunnion.viewer.serving import listen, serve
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the page, or serve it until the user ends it."""
-    (nc,) = arguments.files
-    read = [nc, *arguments.subprograms, *named_files(arguments.cl), *arguments.libraries, *arguments.fixtures]
-    read += [mesh for mesh in (arguments.part, arguments.stock) if mesh is not None]
+    files = arguments.files
+    read = [*files, *project_files(files, ("machine", "stock")), *arguments.subprograms, *named_files(arguments.cl)]
+    read += [*arguments.libraries, *arguments.fixtures]
+    read += [file for file in (arguments.part, arguments.stock, arguments.against) if file is not None]
     given = {
-        "machine": arguments.machine, "cl": cl_inputs(arguments.cl), "subprograms": arguments.subprograms,
-        "stock": arguments.stock, "part": arguments.part, "fixtures": arguments.fixtures, "near": arguments.near,
-        "tools": arguments.tools, "libraries": arguments.libraries, "unit": arguments.unit, "cell": arguments.cell,
+        "machine": arguments.machine, "against": arguments.against, "against_machine": arguments.against_machine,
+        "setup": arguments.setup, "settings": dict(arguments.settings) or None,
+        "cl": cl_inputs(arguments.cl), "subprograms": arguments.subprograms, "stock": arguments.stock,
+        "part": arguments.part, "fixtures": arguments.fixtures, "near": arguments.near, "tools": arguments.tools,
+        "libraries": arguments.libraries, "unit": arguments.unit, "cell": arguments.cell,
         "accuracy": arguments.accuracy, "zero": arguments.zero or None, "tool_length": arguments.tool_length or None,
     }  # fmt: skip
     if arguments.output is not None:
         check_view_name(arguments.output)
         check_outputs([arguments.output], read)
-        write_view(nc, output=arguments.output, observer=Terminal(), **given)
+        write_view(files, output=arguments.output, observer=Terminal(), **given)
         return 0
 
     with listen(arguments.host, arguments.port) as listening:
-        content = prepare_view(nc, observer=Terminal(), **given)
+        content = prepare_view(files, observer=Terminal(), **given)
         serve(lambda access: view_application(content, access), listening, announce(browser=arguments.browser))
     return 0

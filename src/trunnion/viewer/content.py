@@ -7,7 +7,7 @@ Units:  mm, degrees, seconds, mm/min.
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
@@ -16,10 +16,12 @@ from numpy.typing import NDArray
 from trunnion.machines import Machine
 from trunnion.machines.links import link_chain
 from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
 from trunnion.simulation.collisions.bodies import Body, BodyKind, fixture_body, machine_bodies, part_body, tool_bodies
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.text import parse_tool
+from trunnion.verification.comparison import Alignment
 from trunnion.verification.results import Check, Verification, durations
 from trunnion.viewer.motion import motion_columns
 from trunnion.viewer.stock import StockView
@@ -28,6 +30,9 @@ Column = NDArray[np.float32] | NDArray[np.int32]
 
 #: Of a check, so many places are shown at most.
 _MOST_PLACES: Final = 50
+
+#: A rotary axis that turns further in one rapid rewinds, degrees.
+_REWIND: Final = 180.0
 
 #: Names by which programs empty the spindle.
 _NO_TOOL: Final = ("", "0")
@@ -118,12 +123,48 @@ def view_content(
         ],
         "files": list(run.files),
         "operations": [{"name": one.name, "first": one.first, "end": one.end} for one in verification.operations],
-        "events": _events(run),
+        "events": [*_events(run), *_rewinds(run)],
         "findings": [*_findings(verification.checks, run), *_diagnostics(run)],
         "timed": bool(len(seconds)),
         "checks": [{"key": one.key, "passed": one.passed, "summary": one.summary} for one in verification.checks],
     }
     return ViewContent(scene, columns, tuple(text.encode() for text in texts))
+
+
+def side_by_side(first: ViewContent, second: ViewContent, alignment: Alignment) -> ViewContent:
+    """Put a second program beside the first, where both go along the same tool path.
+
+    Parameters
+    ----------
+    first, second
+        What a page would show of each alone; the stock is that of the first.
+    alignment
+        Of their runs. Columns of the second begin with ``b-``; ``pair-one`` and ``pair-two`` are rows that go together.
+    """
+    differences = [
+        {"kind": "difference", "row": each.one, "text": each.text} | _place(first, each.one)
+        for each in alignment.differences
+    ]
+    columns = {f"b-{name}": column for name, column in second.columns.items()}
+    columns |= {"pair-one": alignment.pairs[:, 0].astype(np.int32), "pair-two": alignment.pairs[:, 1].astype(np.int32)}
+    against = {
+        **second.scene,
+        "firstText": len(first.texts),
+        "differing": [each.two for each in alignment.differences],
+        "pairs": len(alignment.pairs),
+    }
+    scene = {
+        **first.scene,
+        "title": f"{first.scene['title']} | {second.scene['title']}",
+        "findings": [*first.scene["findings"], *differences],
+        "against": against,
+    }
+    return replace(first, scene=scene, columns={**first.columns, **columns}, texts=(*first.texts, *second.texts))
+
+
+def _place(content: ViewContent, row: int) -> dict[str, int]:
+    """File and line of a row."""
+    return {name: int(content.columns[name][row]) if len(content.columns[name]) else 0 for name in ("file", "line")}
 
 
 def _tip_feeds(verification: Verification) -> NDArray[np.float32]:
@@ -192,6 +233,17 @@ def _events(run: Run) -> list[dict[str, Any]]:
         {"kind": event.kind, "row": event.before_row, "line": event.line, "file": event.file, "text": str(event.value)}
         for event in run.events if event.kind in kinds
     ]  # fmt: skip
+
+
+def _rewinds(run: Run) -> list[dict[str, Any]]:
+    """Rapids in which a rotary axis turns by more than half a turn: the way back of one that has wound itself up."""
+    joints = np.vstack([run.start[None], run.joints])
+    turned = np.abs(np.diff(joints[:, list(run.machine.rotary)], axis=0)).max(axis=1, initial=0.0)
+    rows = np.flatnonzero((turned > _REWIND) & (run.kind == Kind.RAPID))
+    return [
+        {"kind": "rewind", "row": row, "line": int(run.line[row]), "file": int(run.file[row]), "text": ""}
+        for row in rows.tolist()
+    ]
 
 
 def _findings(checks: Sequence[Check], run: Run) -> list[dict[str, Any]]:

@@ -69,7 +69,7 @@ def view_application(content: ViewContent, access: Access) -> Any:
         if content.stock is not None:
             content.stock.leave()
 
-    return applications.Starlette(
+    application = applications.Starlette(
         lifespan=until_the_end,
         routes=[
             routing.Route("/", access.guarded(show_page)),
@@ -78,3 +78,5 @@ def view_application(content: ViewContent, access: Access) -> Any:
             routing.Route("/data/stock/{rows:int}", access.guarded(give_stock)),
         ],
     )
+    application.router.redirect_slashes = False
+    return application

@@ -1,6 +1,6 @@
 """Two programs side by side: whether they make the tool do the same."""
 
-from trunnion.verification.comparison.comparison import compare
-from trunnion.verification.comparison.result import Comparison, Difference
+from trunnion.verification.comparison.comparison import align, compare
+from trunnion.verification.comparison.result import Alignment, Comparison, Difference
 
-__all__ = ["Comparison", "Difference", "compare"]
+__all__ = ["Alignment", "Comparison", "Difference", "align", "compare"]

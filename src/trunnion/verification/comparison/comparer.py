@@ -11,7 +11,7 @@ from trunnion.model.toolpath import Kind
 from trunnion.verification.comparison.moving_rows import MovingRows
 from trunnion.verification.comparison.on_path import PointTolerances, ends_on_path
 from trunnion.verification.comparison.path_events import PathEvents
-from trunnion.verification.comparison.result import Comparison, Difference
+from trunnion.verification.comparison.result import Alignment, Comparison, Difference, DifferentRows
 from trunnion.verification.comparison.row_states import compared_states
 from trunnion.verification.comparison.states import DifferentStretch, StateComparison
 from trunnion.verification.matching.resync import find_resync
@@ -29,6 +29,9 @@ _MAX_DIFFERENCES: Final = 1000
 
 #: What most diagnostics of unknown words begin with.
 _UNKNOWN: Final = "not understood: "
+
+#: Differences that are kept with their places.
+_MOST_NOTED: Final = 2000
 
 _KINDS: Final = {Kind.RAPID: "rapid", Kind.LINEAR: "line", Kind.ARC: "circle"}
 
@@ -51,6 +54,23 @@ class Comparer:
         self._count = self._path_count = 0
         self._first: _Place | DifferentStretch | None = None
         self._worst: _Place | None = None
+        # Kept by ``follow`` only: motions that go together, and the differences in the order of finding.
+        self._together: list[tuple[int, int, int]] | None = None
+        self._noted: list[_Place | DifferentStretch] = []
+
+    def follow(self) -> "Alignment":
+        """Compare both programs to their ends, and return where they go together and where they differ."""
+        self._together = []
+        self.compare()
+        one, two = self._one, self._two
+        spans = [np.zeros((0, 2), np.int64)]
+        for i, j, count in self._together:
+            spans.append(np.column_stack([one.rows[i : i + count], two.rows[j : j + count]]))
+        found = []
+        for each in self._noted:
+            rows = (_row(one, each.i), _row(two, each.j))
+            found.append(DifferentRows(*rows, each.text))
+        return Alignment(np.concatenate(spans), tuple(found), self._count)
 
     def compare(self) -> Comparison:
         """Compare both programs to their ends."""
@@ -113,6 +133,8 @@ class Comparer:
     def _go_together(self, i: int, j: int, count: int) -> None:
         """Take ``count`` motions that go to the same points, and compare what holds there."""
         one, two = self._one, self._two
+        if count and self._together is not None:
+            self._together.append((i, j, count))
         a, b = one.rows[i : i + count], two.rows[j : j + count]
         self._points += int(np.count_nonzero(one.in_machine(a) == two.in_machine(b)))
         self._compare_states(i, j, count)
@@ -211,6 +233,8 @@ class Comparer:
             self._worst = place
 
     def _note_first(self, found: "_Place | DifferentStretch") -> None:
+        if self._together is not None and len(self._noted) < _MOST_NOTED:
+            self._noted.append(found)
         if self._first is None or (found.i, found.j) < (self._first.i, self._first.j):
             self._first = found
 
@@ -234,6 +258,11 @@ class _Place:
     j: int
     value: float
     text: str
+
+
+def _row(program: MovingRows, motion: int) -> int:
+    """The row of a motion; the last one if the program has ended."""
+    return int(program.rows[motion]) if motion < len(program) else max(len(program.run) - 1, 0)
 
 
 def _unknown_words(one: Run, two: Run) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ additional points on the path of the other. Motions in the machine frame count i
 
 from trunnion.model.run import Run
 from trunnion.verification.comparison.comparer import Comparer
-from trunnion.verification.comparison.result import Comparison
+from trunnion.verification.comparison.result import Alignment, Comparison
 
 
 def compare(
@@ -28,3 +28,14 @@ def compare(
         Compare only where the tool goes, and whether at rapid; not feed, spindle, tool, coolant, stops and dwells.
     """
     return Comparer(one, two, tolerance, tolerance if axis_tolerance is None else axis_tolerance, path).compare()
+
+
+def align(one: Run, two: Run, tolerance: float = 0.001) -> Alignment:
+    """Follow two runs together, and return which of their rows go to the same points, and where they differ.
+
+    Parameters
+    ----------
+    tolerance
+        How far tips, mm, and tool axes, degrees, may be apart.
+    """
+    return Comparer(one, two, tolerance, tolerance, False).follow()

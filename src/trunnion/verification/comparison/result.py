@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
+from trunnion.arrays import Ints
 from trunnion.wording import counted
 
 #: Words that are not understood which a result names one by one.
@@ -24,6 +25,29 @@ class Difference:
     two: str
     value: float
     text: str
+
+
+@dataclass(frozen=True, slots=True)
+class DifferentRows:
+    """A difference, at a row of each program."""
+
+    one: int
+    two: int
+    text: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Alignment:
+    """Where two programs go together, and where they differ.
+
+    pairs        (k, 2) int64, rows of both that go the same way to the same point, in their order
+    differences  the first ones, up to a limit, in the order in which they were found
+    count        how many there are, as ``Comparison`` counts them
+    """
+
+    pairs: Ints
+    differences: tuple[DifferentRows, ...]
+    count: int
 
 
 @dataclass(frozen=True, slots=True)

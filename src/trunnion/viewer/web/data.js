@@ -8,7 +8,7 @@
  * @typedef {{title: string, machine: Machine, bodies: {name: string, link: string, kind: string, tool: string | null, colour: string}[],
  *   tools: {name: string, length: number, known: boolean}[], files: string[], operations: {name: string, first: number, end: number}[],
  *   events: Mark[], findings: Mark[], timed: boolean, checks: {key: string, passed: boolean, summary: string}[],
- *   columns: Record<string, string>, stock?: import("./stock.js").StockData}} SceneData
+ *   against?: any, columns: Record<string, string>, stock?: import("./stock.js").StockData}} SceneData
  */
 
 const EMBEDDED = document.documentElement.dataset.embedded === "true";

@@ -7,6 +7,7 @@ import { Program } from "./program.js";
 import { Space } from "./space.js";
 import { Places, Stock } from "./stock.js";
 import { say } from "./texts.js";
+import { Twin } from "./twin.js";
 
 /** Slowest and fastest play, times real time; the slider is their logarithm. */
 const SPEEDS = [0.1, 1000];
@@ -35,13 +36,17 @@ class Page {
    * @param {Space} space
    * @param {Listing} listing
    * @param {Stock | null} stock
+   * @param {Twin | null} twin
    */
-  constructor(program, space, listing, stock) {
+  constructor(program, space, listing, stock, twin) {
     this.program = program;
     this.scene = program.scene;
     this.space = space;
     this.listing = listing;
     this.stock = stock;
+    this.twin = twin;
+    this.spaces = twin ? [space, twin.space] : [space];
+    if (twin) twin.onRow = (row) => this.goToRow(row);
     this.places = new Places(space, program.scene.findings);
     this.time = 0;
     this.playing = false;
@@ -66,7 +71,9 @@ class Page {
     const feed = { name: "F", unit: "mm/min", low: null, high: null, at: (/** @type {number} */ piece) => program.feed[program.row[piece]] };
     /** @type {any} */
     const rotary = { name: "ω", unit: "°/min", low: null, high: null, at: (/** @type {number} */ piece) => this.rotarySpeed(piece) };
-    return [...axes, rotary, feed];
+    /** @type {any} */
+    const room = { name: say("limits"), unit: "%", low: 0, high: null, at: (/** @type {number} */ piece) => this.room(piece) };
+    return [...axes, rotary, feed, ...(axes.some((axis) => axis.low !== null && axis.high !== null) ? [room] : [])];
   }
 
   /**
@@ -82,6 +89,21 @@ class Page {
       if (axis.rotary) most = Math.max(most, Math.abs(program.axes[k][piece + 1] - program.axes[k][piece]));
     });
     return (60 * most) / takes;
+  }
+
+  /**
+   * How far the axis that is nearest to a limit is from it, in parts of a hundred of its travel.
+   * @param {number} piece
+   */
+  room(piece) {
+    const { program } = this;
+    let least = 100;
+    program.machine.axes.forEach((axis, k) => {
+      if (!axis.placed || axis.low === null || axis.high === null) return;
+      const value = program.axes[k][piece + 1];
+      least = Math.min(least, (100 * Math.min(value - axis.low, axis.high - value)) / (axis.high - axis.low));
+    });
+    return least;
   }
 
   /** Colour the path by what is chosen. */
@@ -151,7 +173,9 @@ class Page {
     this.time = time;
     this.row = row;
     this.space.setPose(values, row);
-    this.stock?.show(time >= this.program.timeOf(row) ? row + 1 : row);
+    const atEnd = time >= this.program.timeOf(row);
+    this.stock?.show(atEnd ? row + 1 : row);
+    this.twin?.show(time, row, atEnd);
     this.curves.setCursor(time);
     element("scrub").value = String(this.program.end ? time / this.program.end : 0);
     this.#readOut(values, row);
@@ -288,9 +312,18 @@ class Page {
     this.#showStock();
   }
 
+  /**
+   * @param {string} from
+   * @param {boolean} near
+   */
+  #look(from, near = false) { for (const space of this.spaces) space.look(from, near); }
+
+  /** @param {any} frame */
+  #setFrame(frame) { for (const space of this.spaces) space.setFrame(frame); }
+
   #section() {
     this.stock?.setOpen(element("section").value !== "");
-    this.space.section(element("section").value, Number(element("section-at").value));
+    for (const space of this.spaces) space.section(element("section").value, Number(element("section-at").value));
   }
 
   #pickAt(/** @type {PointerEvent} */ event) {
@@ -327,12 +360,12 @@ class Page {
     on("speed", "input", () => this.#tellSpeed());
     on("colour", "change", () => this.paint());
     on("stock", "change", () => this.#showStock());
-    on("view", "change", (event) => this.space.look(event.target.value, true));
-    on("frame", "change", (event) => this.space.setFrame(event.target.value));
+    on("view", "change", (event) => this.#look(event.target.value, true));
+    on("frame", "change", (event) => this.#setFrame(event.target.value));
     on("section", "change", () => this.#section());
     on("section-at", "input", () => this.#section());
-    on("bodies", "change", (event) => this.space.showMachine(event.target.checked));
-    on("path", "change", (event) => this.space.showPath(event.target.checked));
+    on("bodies", "change", (event) => this.spaces.forEach((space) => space.showMachine(event.target.checked)));
+    on("path", "change", (event) => this.spaces.forEach((space) => space.showPath(event.target.checked)));
     on("file", "change", async (event) => this.#chooseFile(Number(event.target.value)));
     on("search", "keydown", (event) => { if (event.key === "Enter") this.search(event.shiftKey); });
     on("measure", "click", () => this.#measure());
@@ -366,8 +399,9 @@ class Page {
       n: () => this.jump(this.scene.findings.map((each) => each.row), 1), N: () => this.jump(this.scene.findings.map((each) => each.row), -1),
       t: () => this.jump(rows("tool"), 1), T: () => this.jump(rows("tool"), -1),
       o: () => this.jump(this.scene.operations.map((one) => one.first), 1), O: () => this.jump(this.scene.operations.map((one) => one.first), -1),
-      1: () => this.space.look("iso"), 2: () => this.space.look("top", true), 3: () => this.space.look("front", true), 4: () => this.space.look("right", true),
-      f: () => { const other = element("frame").value === "part" ? "machine" : "part"; element("frame").value = other; this.space.setFrame(/** @type {any} */ (other)); },
+      r: () => this.jump(rows("rewind"), 1), R: () => this.jump(rows("rewind"), -1),
+      1: () => this.#look("iso"), 2: () => this.#look("top", true), 3: () => this.#look("front", true), 4: () => this.#look("right", true),
+      f: () => { const other = element("frame").value === "part" ? "machine" : "part"; element("frame").value = other; this.#setFrame(other); },
       s: () => this.#nextStock(),
       "/": () => element("search").focus(), m: () => this.#measure(), p: () => this.picture(), "?": () => element("keys").showModal(),
     };
@@ -425,6 +459,7 @@ function remarksOf(scene) {
   const found = scene.tools.filter((tool) => !tool.known).map((tool) => say("toolForm", tool.name));
   if (!scene.machine.zero) found.unshift(say("zero"));
   if (!scene.timed) found.push(say("untimed"));
+  if (scene.against?.pairs === 0) found.push(say("apart"));
   return [...found, ...(scene.stock?.remarks ?? [])];
 }
 
@@ -439,6 +474,19 @@ async function openStock(stock) {
     const lacks = !stock.data.deviation;
     Object.assign(option, { hidden: lacks, disabled: lacks });
   }
+}
+
+/**
+ * The second program, if there is one, with what the page has for it.
+ * @param {import("./data.js").SceneData} scene
+ * @param {Record<string, any>} columns
+ * @param {Program} program
+ */
+function openTwin(scene, columns, program) {
+  if (!scene.against) return null;
+  document.body.classList.add("twin");
+  for (const id of ["space-b", "listing-b"]) element(id).hidden = false;
+  return new Twin(element("space-b"), element("listing-b"), scene, columns, program, readTextOnce);
 }
 
 async function start() {
@@ -456,13 +504,13 @@ async function start() {
   const stock = scene.stock ? new Stock(space, program, columns, element("stock-status")) : null;
   if (stock) await openStock(stock);
   /** @type {Page} */
-  const page = new Page(program, space, listing, stock);
-  const paper = () => space.setBackground(getComputedStyle(document.body).getPropertyValue("--sky").trim());
+  const page = new Page(program, space, listing, stock, openTwin(scene, columns, program));
+  const paper = () => page.spaces.forEach((each) => each.setBackground(getComputedStyle(document.body).getPropertyValue("--sky").trim()));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { paper(); page.curves.redraw(); });
   paper();
   page.goToRow(0);
   stock?.setMode("cut");
-  space.look("iso");
+  page.spaces.forEach((each) => each.look("iso"));
   element("remarks").textContent = remarksOf(scene).join(" ");
   element("status").textContent = "";
   Object.assign(window, { page });

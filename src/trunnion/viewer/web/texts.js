@@ -3,6 +3,7 @@
 /** @type {Record<string, Record<string, string>>} */
 export const TEXTS = {
   en: {
+    apart: "The programs go together nowhere.", limits: "limits", rewind: "rewind",
     all: "whole part", axisValue: "limit", against: "Time", back: "previous", block: "Block", bodies: "machine", cl: "CL line",
     close: "Close", colour: "Colour by", copied: "Saved", csv: "Curves as CSV", deviation: "deviation", distance: "Distance", end: "Last block", feed: "feed",
     file: "File", finding: "finding", findings: "Findings", first: "First block", fixture: "fixture", frame: "Stand",
@@ -19,6 +20,7 @@ export const TEXTS = {
     zero: "No workpiece zero is known: the part is drawn at the machine's zero.", notFound: "Not found", measureHint: "Click two points of the path.",
   },
   de: {
+    apart: "Die Programme gehen nirgends gemeinsam.", limits: "Grenzen", rewind: "Rückdrehung",
     all: "ganzes Teil", against: "Zeit", back: "zurück", block: "Satz", bodies: "Maschine", cl: "CL-Zeile", close: "Schließen",
     colour: "Farbe nach", csv: "Kurven als CSV", deviation: "Abweichung", distance: "Abstand", end: "Letzter Satz", feed: "Vorschub", file: "Datei", finding: "Befund",
     findings: "Befunde", first: "Erster Satz", fixture: "Spannmittel", frame: "Standort", frameMachine: "vor der Maschine",
@@ -35,6 +37,7 @@ export const TEXTS = {
     zero: "Der Werkstücknullpunkt ist nicht bekannt: das Teil ist im Maschinennullpunkt gezeichnet.", measureHint: "Zwei Punkte der Bahn anklicken.",
   },
   zh: {
+    apart: "两个程序没有共同的轨迹。", limits: "极限", rewind: "回转",
     all: "整个零件", against: "时间", back: "上一个", block: "程序段", bodies: "机床", cl: "CL 行", close: "关闭", colour: "着色", csv: "曲线导出 CSV",
     deviation: "偏差", gouge: "过切", left: "余量", stock: "毛坯", stockAfter: "第 {0} 行之后的毛坯。", stockCells: "显示单元 {0}。", stockCut: "切削状态",
     stockBetween: "第 {0} 行之后的毛坯；本页 {2} 个状态中的下一个在第 {1} 行之后。", stockCutting: "正在切削到第 {0} 行…",
