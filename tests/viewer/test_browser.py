@@ -116,6 +116,31 @@ def test_the_curves_show_and_set_the_cursor(view: Page) -> None:
     assert float(view.locator("#scrub").input_value()) == pytest.approx(0.5, abs=0.01)
 
 
+@pytest.mark.parametrize("size", [(320, 256), (640, 450)], ids=["at 400 %", "at 200 %"])
+def test_a_page_made_large_scrolls_down_only(size: tuple[int, int], view: Page) -> None:
+    """WCAG 1.4.10: nothing is cut off, and no part is squeezed to nothing."""
+    before = view.viewport_size
+    assert before is not None
+    view.set_viewport_size({"width": size[0], "height": size[1]})
+    assert view.evaluate("document.documentElement.scrollWidth") <= size[0]
+    for part in ("#space", "#curves", "#listing"):
+        box = view.locator(part).bounding_box()
+        assert box is not None
+        assert box["width"] >= size[0] - 2
+        assert box["height"] >= 200
+    view.set_viewport_size(before)
+
+
+def test_all_that_takes_the_focus_has_a_name(view: Page) -> None:
+    assert view.get_by_role("img", name="3_blade_finish.expected.mpf", exact=True).get_attribute("id") == "space"
+    assert view.get_by_role("img", name="3_blade_finish.expected.mpf Curves as CSV").get_attribute("id") == "curves"
+    assert view.get_by_role("region", name="3_blade_finish.expected.mpf").get_attribute("id") == "listing"
+    named = "each.ariaLabel || each.textContent.trim() || each.labels?.length"
+    controls = view.locator("button, select, input")
+    unnamed = controls.evaluate_all(f"all => all.filter(each => !({named})).map(each => each.id)")
+    assert unnamed == []
+
+
 def test_search_goes_round(view: Page) -> None:
     view.evaluate("page.goToRow(0)")
     view.locator("#search").fill("retract move")

@@ -5,6 +5,7 @@ Out:    UTF-8 HTML, piece by piece.
 """
 
 import base64
+import re
 import zlib
 from collections.abc import Iterator
 from importlib.resources import files
@@ -42,7 +43,8 @@ def render_view(content: ViewContent, *, embedded: bool) -> Iterator[bytes]:
 
 
 def _body(title: str) -> str:
-    return _read("body.html").replace('id="title"></h1>', f'id="title">{escape(title)}</h1>')
+    names = " | ".join(re.split(r"[\\/]", one)[-1] for one in title.split(" | "))  # ends, which long paths would hide
+    return _read("body.html").replace('id="title"></h1>', f'id="title" title="{escape(title)}">{escape(names)}</h1>')
 
 
 def _script() -> str:
