@@ -108,6 +108,39 @@ def test_keys_step_through_the_program(view: Page) -> None:
     assert not view.locator("#keys").is_visible()
 
 
+def test_controls_keep_their_own_keys(view: Page) -> None:
+    view.evaluate("page.goToRow(20)")
+    box = view.locator("#bodies")
+    box.focus()
+    view.keyboard.press(" ")
+    assert not box.is_checked()
+    view.keyboard.press(" ")
+    assert box.is_checked()
+    slider = view.locator("#speed")
+    slider.focus()
+    before = float(slider.input_value())
+    view.keyboard.press("ArrowLeft")
+    assert float(slider.input_value()) < before
+    assert view.evaluate("page.row") == 20
+    assert not view.evaluate("page.playing")
+
+
+def test_colours_are_told(view: Page) -> None:
+    view.locator("#colour").select_option("kind")
+    assert view.locator("#legend .entry").all_inner_texts() == ["Rapid", "line", "circle"]
+    view.locator("#colour").select_option("feed")
+    assert view.locator("#legend .entry").last.inner_text().endswith("mm/min")
+    view.locator("#colour").select_option("kind")
+
+
+@pytest.mark.parametrize(("wanted", "language"), [("de", "de"), ("zh", "zh"), ("fr", "en")])
+def test_the_page_says_its_language(wanted: str, language: str, tmp_path: Path, browser: Browser) -> None:
+    write_view(CL.with_name("3_blade_finish.expected.mpf"), machine="yl569", output=tmp_path / "view.html")
+    with open_page(browser, f"{open_file(tmp_path / 'view.html')}?lang={wanted}") as (page, errors):
+        assert page.locator("html").get_attribute("lang") == language
+        assert errors == []
+
+
 def test_the_curves_show_and_set_the_cursor(view: Page) -> None:
     box = view.locator("#curves").bounding_box()
     assert box is not None
@@ -153,6 +186,7 @@ def test_search_goes_round(view: Page) -> None:
 
 def test_a_section_cuts_the_picture_open(view: Page) -> None:
     picture = "() => { page.space.drawNow(); return page.space.canvas.toDataURL(); }"
+    view.wait_for_function("() => !page.space.isMoving")
     view.evaluate("page.goToRow(20); page.space.look('iso')")
     whole = view.evaluate(picture)
     view.locator("#section").select_option("x")

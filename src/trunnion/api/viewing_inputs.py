@@ -17,6 +17,7 @@ from trunnion.api.simulation_project import read_project
 from trunnion.api.simulation_setups import SetupInput
 from trunnion.api.verifying import rapid_feed_of, verify
 from trunnion.cl import is_cl_file
+from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Toolpath
@@ -100,9 +101,10 @@ def _posted(
     if result.verification is None or text is None:
         what, cure = "no reader knows the control, so that its motion is not known", "view it on another machine"
         raise InputError(Problem(str(files[0]), 0, what, cure))
-    name = f"{files[0].stem}.nc"
-    verification = replace(result.verification, program=name)
-    more = tuple(decode(Path(file).read_bytes()) for file in verification.run.files[1:])
+    name = f"{files[0].stem}{load_control(machine.control).extension}"
+    run = result.verification.run
+    verification = replace(result.verification, program=name, run=replace(run, files=(name, *run.files[1:])))
+    more = tuple(decode(Path(file).read_bytes()) for file in run.files[1:])
     return ViewedProgram(verification, (text, *more), result.toolpaths)
 
 

@@ -1,15 +1,18 @@
 """``trunnion view``: a program on its machine, in a browser."""
 
 import argparse
+import sys
 
 from trunnion.api.simulation_project import project_files
 from trunnion.api.viewing import check_view_name, prepare_view, write_view
 from trunnion.cli.cl_files import cl_inputs, named_files
+from trunnion.cli.results import print_result
 from trunnion.cli.serving import announce
 from trunnion.cli.terminal import Terminal
 from trunnion.files import check_outputs
 from trunnion.viewer.server import view_application
 from trunnion.viewer.serving import listen, serve
+from trunnion.wording import counted
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -30,9 +33,11 @@ def run(arguments: argparse.Namespace) -> int:
         check_view_name(arguments.output)
         check_outputs([arguments.output], read)
         write_view(files, output=arguments.output, observer=Terminal(), **given)
+        print_result(f"{arguments.output}: written")
         return 0
 
     with listen(arguments.host, arguments.port) as listening:
         content = prepare_view(files, observer=Terminal(), **given)
+        print(counted(len(content.scene["findings"]), "finding"), file=sys.stderr)
         serve(lambda access: view_application(content, access), listening, announce(browser=arguments.browser))
     return 0

@@ -155,7 +155,7 @@ def side_by_side(first: ViewContent, second: ViewContent, alignment: Alignment) 
     }
     scene = {
         **first.scene,
-        "title": f"{first.scene['title']} | {second.scene['title']}",
+        "title": " | ".join(f"{each.scene['title']} ({each.scene['machine']['key']})" for each in (first, second)),
         "findings": [*first.scene["findings"], *differences],
         "against": against,
     }

@@ -6,11 +6,14 @@ import { Listing } from "./listing.js";
 import { Program } from "./program.js";
 import { Space } from "./space.js";
 import { Places, Stock } from "./stock.js";
-import { say } from "./texts.js";
+import { LANGUAGE, say } from "./texts.js";
 import { Twin } from "./twin.js";
 
 /** Slowest and fastest play, times real time; the slider is their logarithm. */
 const SPEEDS = [0.1, 1000];
+
+/** Keys that a slider or a text that has the focus takes itself. */
+const OF_SLIDERS = new Set(["ArrowLeft", "ArrowRight", "Home", "End"]);
 
 /**
  * @param {string} id
@@ -22,6 +25,8 @@ const element = (id) => document.getElementById(id);
 const SCALE = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
 const KINDS = [[200, 120, 40], [30, 110, 200], [20, 150, 130]];
 const PALETTE = [[31, 119, 180], [255, 127, 14], [44, 160, 44], [214, 39, 40], [148, 103, 189], [140, 86, 75], [227, 119, 194], [23, 190, 207]];
+/** Colours that the legend tells at most. */
+const MOST_ENTRIES = 6;
 const FINDING = [220, 30, 40], QUIET = [150, 160, 170];
 
 /** @param {number} share from 0 to 1 */
@@ -110,25 +115,45 @@ class Page {
   paint() {
     const { program } = this;
     const by = element("colour").value;
-    if (by === "kind") this.space.paint((piece) => KINDS[program.kind[program.row[piece]]] ?? QUIET);
-    else if (by === "tool") this.space.paint((piece) => PALETTE[program.tool[program.row[piece]] % PALETTE.length]);
-    else if (by === "operation") this.space.paint((piece) => PALETTE[this.#operationOf(program.row[piece]) % PALETTE.length] ?? QUIET);
-    else if (by === "finding") {
+    if (by === "kind") {
+      this.space.paint((piece) => KINDS[program.kind[program.row[piece]]] ?? QUIET);
+      this.#legend(["rapid", "straight", "circle"].map((kind, k) => [say(kind), KINDS[k]]));
+    } else if (by === "tool") {
+      this.space.paint((piece) => PALETTE[program.tool[program.row[piece]] % PALETTE.length]);
+      this.#legend(this.scene.tools.map((tool, k) => [tool.name || "0", PALETTE[k % PALETTE.length]]));
+    } else if (by === "operation") {
+      this.space.paint((piece) => PALETTE[this.#operationOf(program.row[piece]) % PALETTE.length] ?? QUIET);
+      this.#legend(this.scene.operations.map((one, k) => [one.name, PALETTE[k % PALETTE.length]]));
+    } else if (by === "finding") {
       const rows = new Set(this.scene.findings.map((each) => each.row));
       this.space.paint((piece) => (rows.has(program.row[piece]) ? FINDING : QUIET));
+      this.#legend([[say("finding"), FINDING]]);
     } else if (by === "deviation" && this.stock) {
       const { stock } = this;
       this.space.paint((piece) => stock.colourOf(stock.rowOff[program.row[piece]]));
+      this.#legend([]);
     } else {
       const value = by === "feed" ? (/** @type {number} */ piece) => program.feed[program.row[piece]] : (/** @type {number} */ piece) => this.rotarySpeed(piece);
       let most = 0;
       for (let i = 0; i < program.pieces; i++) if (program.kind[program.row[i]] !== 0) most = Math.max(most, value(i));
       this.space.paint((piece) => scaled(value(piece) / (most || 1)));
-      element("legend").textContent = `0 … ${most.toFixed(0)} ${by === "feed" ? "mm/min" : "°/min"}`;
-      return;
+      const unit = by === "feed" ? "mm/min" : "°/min";
+      this.#legend(SCALE.map((colour, k) => [`${((most * k) / (SCALE.length - 1)).toFixed(0)}${k === SCALE.length - 1 ? ` ${unit}` : ""}`, colour]));
     }
-    element("legend").textContent = "";
     this.#scale();
+  }
+
+  /**
+   * What the colours of the path mean, the first of them.
+   * @param {(string | number[])[][]} entries name and colour
+   */
+  #legend(entries) {
+    element("legend").replaceChildren(...entries.slice(0, MOST_ENTRIES).map(([name, colour]) => {
+      const entry = Object.assign(document.createElement("span"), { className: "entry", textContent: String(name) });
+      entry.style.borderColor = `rgb(${/** @type {number[]} */ (colour).join()})`;
+      return entry;
+    }));
+    if (entries.length > MOST_ENTRIES) element("legend").append("…");
   }
 
   /** The scale of deviations stands where something is coloured by them. */
@@ -388,8 +413,11 @@ class Page {
 
   /** @param {KeyboardEvent} event */
   #key(event) {
-    const typing = /** @type {HTMLElement} */ (event.target).matches("input[type=search], select");
-    if (event.ctrlKey || event.metaKey || event.altKey || typing || element("keys").open) return;
+    const target = /** @type {HTMLElement} */ (event.target);
+    if (event.ctrlKey || event.metaKey || event.altKey || target.matches("input[type=search], select") || element("keys").open) return;
+    // Controls keep the keys that are theirs: the space bar presses and ticks, arrows move a slider, Home scrolls a text.
+    if (event.key === " " && target.matches("button, input")) return;
+    if (OF_SLIDERS.has(event.key) && target.matches("input[type=range], #listing, #listing-b")) return;
     const rows = (/** @type {string} */ kind) => this.scene.events.filter((each) => each.kind.startsWith(kind)).map((each) => each.row);
     /** @type {Record<string, () => void>} */
     const keys = {
@@ -446,6 +474,7 @@ function save(address, name) {
 
 /** Put the words of the language where the page has keys for them. */
 function putTexts() {
+  document.documentElement.lang = LANGUAGE;
   document.querySelectorAll("[data-say]").forEach((each) => { each.textContent = say(/** @type {HTMLElement} */ (each).dataset.say ?? ""); });
   document.querySelectorAll("[data-label]").forEach((each) => {
     const text = say(/** @type {HTMLElement} */ (each).dataset.label ?? "");

@@ -5,6 +5,9 @@ import { jointMatrix, toolAt } from "./kinematics.js";
 /** Segments that are drawn while the picture moves; the rest follows when it rests. */
 const FAST_SEGMENTS = 8_000;
 
+/** Pictures that take longer lose detail while something moves, milliseconds. */
+const SLOW = 25;
+
 /** A click this near to a point of the path means it, CSS pixels. */
 const NEAR = 12;
 
@@ -38,6 +41,10 @@ export class Space {
     this.#pathLines();
     this.pending = 0;
     this.resting = 0;
+    this.isMoving = false;
+    this.detail = 1;
+    this.drawn = 0;
+    this.pace = 0;
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.resize();
   }
@@ -168,14 +175,43 @@ export class Space {
    * @param {boolean} on
    */
   hurry(on) {
-    if (!this.coarse) return;
     clearTimeout(this.resting);
-    if (on) this.#show(true);
-    else this.resting = window.setTimeout(() => { this.#show(false); this.draw(); }, 250);
+    if (on) {
+      if (!this.isMoving) this.pace = 0;
+      this.isMoving = true;
+      this.#show(true);
+    } else {
+      this.resting = window.setTimeout(() => {
+        this.isMoving = false;
+        this.#show(false);
+        this.#setDetail(1);
+        this.draw();
+      }, 250);
+    }
+  }
+
+  /**
+   * Draw with fewer points of the screen, or with all.
+   * @param {number} detail 1 for all of them
+   */
+  #setDetail(detail) {
+    if (this.detail === detail) return;
+    this.detail = detail;
+    this.resize();
+  }
+
+  /** While something moves, fewer points make up for a slow computer. */
+  #keepPace() {
+    const now = performance.now(), took = now - this.drawn;
+    this.drawn = now;
+    if (!this.isMoving || took > 500) return;
+    this.pace = this.pace ? 0.7 * this.pace + 0.3 * took : took;
+    if (this.pace > SLOW) this.#setDetail(0.5);
   }
 
   /** @param {boolean} coarse */
   #show(coarse) {
+    if (!this.coarse) return;
     this.coarse.visible = coarse && this.pathIsShown !== false;
     this.lines.visible = !coarse && this.pathIsShown !== false;
   }
@@ -341,7 +377,7 @@ export class Space {
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!width || !height) return;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2) * this.detail);
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
@@ -354,7 +390,7 @@ export class Space {
   /** Draw once, before the next picture of the screen. */
   draw() {
     if (this.pending) return;
-    this.pending = requestAnimationFrame(() => { this.pending = 0; this.renderer.render(this.scene, this.camera); });
+    this.pending = requestAnimationFrame(() => { this.pending = 0; this.renderer.render(this.scene, this.camera); this.#keepPace(); });
   }
 
   drawNow() { this.renderer.render(this.scene, this.camera); }

@@ -3,6 +3,7 @@
 /** @type {Record<string, Record<string, string>>} */
 export const TEXTS = {
   en: {
+    circle: "circle", straight: "line",
     apart: "The programs go together nowhere.", limits: "limits", rewind: "rewind",
     all: "whole part", axisValue: "limit", against: "Time", back: "previous", block: "Block", bodies: "machine", cl: "CL line",
     close: "Close", colour: "Colour by", copied: "Saved", csv: "Curves as CSV", deviation: "deviation", distance: "Distance", end: "Last block", feed: "feed",
@@ -20,6 +21,7 @@ export const TEXTS = {
     zero: "No workpiece zero is known: the part is drawn at the machine's zero.", notFound: "Not found", measureHint: "Click two points of the path.",
   },
   de: {
+    circle: "Kreis", straight: "Gerade",
     apart: "Die Programme gehen nirgends gemeinsam.", limits: "Grenzen", rewind: "Rückdrehung",
     all: "ganzes Teil", against: "Zeit", back: "zurück", block: "Satz", bodies: "Maschine", cl: "CL-Zeile", close: "Schließen",
     colour: "Farbe nach", csv: "Kurven als CSV", deviation: "Abweichung", distance: "Abstand", end: "Letzter Satz", feed: "Vorschub", file: "Datei", finding: "Befund",
@@ -37,6 +39,7 @@ export const TEXTS = {
     zero: "Der Werkstücknullpunkt ist nicht bekannt: das Teil ist im Maschinennullpunkt gezeichnet.", measureHint: "Zwei Punkte der Bahn anklicken.",
   },
   zh: {
+    circle: "圆弧", straight: "直线",
     apart: "两个程序没有共同的轨迹。", limits: "极限", rewind: "回转",
     all: "整个零件", against: "时间", back: "上一个", block: "程序段", bodies: "机床", cl: "CL 行", close: "关闭", colour: "着色", csv: "曲线导出 CSV",
     deviation: "偏差", gouge: "过切", left: "余量", stock: "毛坯", stockAfter: "第 {0} 行之后的毛坯。", stockCells: "显示单元 {0}。", stockCut: "切削状态",
@@ -52,7 +55,10 @@ export const TEXTS = {
   },
 };
 
-const LANGUAGE = (new URLSearchParams(location.search).get("lang") ?? navigator.language).slice(0, 2);
+const WANTED = (new URLSearchParams(location.search).get("lang") ?? navigator.language).slice(0, 2);
+
+/** The language of the page. */
+export const LANGUAGE = WANTED in TEXTS ? WANTED : "en";
 
 /**
  * A text in the language of the browser, or of ?lang= in the address.
