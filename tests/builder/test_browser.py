@@ -106,6 +106,19 @@ def test_a_machine_is_built_from_nothing_and_saved(page: Page, folder: Path) -> 
     page.wait_for_selector("html[data-ready=true]", state="attached")
 
 
+def test_a_page_made_large_scrolls_down_only(page: Page) -> None:
+    """WCAG 1.4.10, at 200 and 400 %: nothing is cut off, and no part is squeezed to nothing."""
+    begin(page, base="yl569")
+    for width, height in ((640, 450), (320, 256)):
+        page.set_viewport_size({"width": width, "height": height})
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        for part in ("#form", "#text", "#space", "#program"):
+            box = page.locator(part).bounding_box()
+            assert box is not None
+            assert box["width"] >= 0.8 * width
+            assert box["height"] >= 80
+
+
 def test_a_bad_value_is_told_at_its_field_and_its_line(page: Page) -> None:
     begin(page, base="yl569")
     page.locator("[data-page=rotary]").click()
