@@ -176,6 +176,19 @@ def test_a_block_before_which_it_ends_may_stand_before_what_runs_earlier(tmp_pat
     assert found.removed == pytest.approx(2500.0, rel=1e-3)
 
 
+def test_an_operation_of_a_subprogram_is_told_in_its_file(tmp_path: Path) -> None:
+    main, slot = tmp_path / "main.h", tmp_path / "slot.h"
+    main.write_text("0 BEGIN PGM MAIN MM\n1 CALL PGM slot.h\n2 M30\n3 END PGM MAIN MM\n")
+    slot.write_text(
+        "0 BEGIN PGM SLOT MM\n1 TOOL CALL 1 Z S3000\n2 L X-20 Y+0 R0 FMAX M3\n3 L Z+20 FMAX\n4 L Z-5 FMAX\n"
+        "5 L X+70 F500\n6 L Z+20 FMAX\n7 END PGM SLOT MM\n"
+    )
+    found = trunnion.simulate(main, machine="dmu65", stock=STOCK, tools=[TOOL], subprograms=[slot], cell=0.5)
+    (operation,) = found.operations
+    assert operation.removed == pytest.approx(2500.0, rel=1e-3)
+    assert (operation.file, operation.line, operation.last_line) == (str(slot), 3, 7)
+
+
 def test_several_programs_cut_the_same_stock(tmp_path: Path) -> None:
     one, two = tmp_path / "one.ngc", tmp_path / "two.ngc"
     one.write_text(SLOT)

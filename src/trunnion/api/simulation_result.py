@@ -98,7 +98,7 @@ class AirCut:
 class BlockRemoval:
     """What each block removed that removed anything.
 
-    line     (n,) of the program
+    line     (n,) of each block in its own file
     removed  (n,) mm³ of the stock
     rate     (n,) mm³/min, at the programmed feeds; NaN where the block takes no time
     """
@@ -112,6 +112,9 @@ class BlockRemoval:
 class SimulatedOperation:
     """Consecutive blocks with one tool.
 
+    file      of the first block: the program, or a subprogram
+    line      of the first block
+    last_line of the last block, in its own file
     removed   mm³ of the stock
     gouged    mm³ of the design
     seconds   at the programmed feeds
@@ -302,7 +305,8 @@ def _operation(
     blocks: BlockRemoval,
 ) -> SimulatedOperation:
     tool, removed = one.tool or NO_CALL, float(one.removed.sum())
-    return SimulatedOperation(run.files[0], tool, *lines, removed, one.gouged, seconds, air, count, blocks)
+    file = run.files[int(run.file[one.first])]  # line 21 may be that of a subprogram
+    return SimulatedOperation(file, tool, *lines, removed, one.gouged, seconds, air, count, blocks)
 
 
 def _blocks(run: Run, one: OperationCut, at: Floats) -> BlockRemoval:
