@@ -30,7 +30,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("builder")
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def address(folder: Path) -> Iterator[str]:
     listening = listen("127.0.0.1", 0)
     application = builder_application(BuilderSession(folder), Access(("127.0.0.1",)))
@@ -102,8 +102,12 @@ def test_a_machine_is_built_from_nothing_and_saved(page: Page, folder: Path) -> 
     assert (x.low, x.high, machine.spindle_max_rpm) == (-410.5, 390.0, 18000.0)
     (folder / "sample.cls").write_bytes(shipped_sample())
     assert post(folder / "sample.cls", machine=folder / "hall2.toml").passed
+    saved = (folder / "hall2.toml").read_text(encoding="utf-8")
     page.reload()
     page.wait_for_selector("html[data-ready=true]", state="attached")
+    assert page.locator("#text").input_value() == saved
+    assert page.locator("#title").inner_text() == "hall2.toml"
+    assert page.locator("#mistakes").inner_text() == "no mistakes"
 
 
 def test_a_page_made_large_scrolls_down_only(page: Page) -> None:

@@ -1,8 +1,8 @@
 """What the builder's page may ask for: a start, a change, a judgement, a sample program, and to save.
 
 In:     requests as JSON has them.
-Out:    answers of the same kind. Nothing is kept between two requests but the file that the builder was opened with,
-        and nothing is written but by ``save``.
+Out:    answers of the same kind. Nothing is kept between two requests but the name of the file, and nothing is written
+        but by ``save``.
 """
 
 import base64
@@ -40,12 +40,12 @@ class RequestError(ValueError):
     """A request that the page does not make."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class BuilderSession:
     """A definition that is being built.
 
     folder   where it is saved, and below which lies what it extends
-    name     of the file that the builder was opened with; empty: a new definition
+    name     of the file that the builder was opened with, or that was saved last; empty: a new definition
     """
 
     folder: Path
@@ -156,6 +156,7 @@ class BuilderSession:
                 sink.write(written.encode())
         except InputError as error:
             return {"saved": "", "why": "cannot", "problems": [str(problem) for problem in error.problems]}
+        self.name = name
         return {"saved": str(file), "seen": _digest(written), "mistakes": len(judge(text, file).problems)}
 
 

@@ -539,7 +539,7 @@ async function start() {
   paper();
   page.goToRow(0);
   stock?.setMode("cut");
-  page.spaces.forEach((each) => each.look("iso"));
+  for (const each of page.spaces) { each.look("iso"); each.drawNow(); each.tryPace(); }
   element("remarks").textContent = remarksOf(scene).join(" ");
   element("status").textContent = "";
   Object.assign(window, { page });

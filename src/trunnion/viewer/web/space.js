@@ -42,6 +42,7 @@ export class Space {
     this.pending = 0;
     this.resting = 0;
     this.isMoving = false;
+    this.isSlow = false;
     this.detail = 1;
     this.drawn = 0;
     this.pace = 0;
@@ -179,6 +180,7 @@ export class Space {
     if (on) {
       if (!this.isMoving) this.pace = 0;
       this.isMoving = true;
+      if (this.isSlow && this.detail === 1) this.#setDetail(0.5);
       this.#show(true);
     } else {
       this.resting = window.setTimeout(() => {
@@ -206,7 +208,18 @@ export class Space {
     this.drawn = now;
     if (!this.isMoving || took > 500) return;
     this.pace = this.pace ? 0.7 * this.pace + 0.3 * took : took;
-    if (this.pace > SLOW) this.#setDetail(0.5);
+    if (this.pace <= SLOW) return;
+    this.isSlow = true;
+    this.pace = 0;
+    this.#setDetail(this.detail > 0.5 ? 0.5 : 0.35);
+  }
+
+  /** Draw once to the end, and see whether that takes too long to be done for every picture. */
+  tryPace() {
+    const start = performance.now(), gl = this.renderer.getContext();
+    this.drawNow();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+    this.isSlow = performance.now() - start > SLOW / 2;
   }
 
   /** @param {boolean} coarse */
