@@ -1,5 +1,6 @@
 """What the page asks for: a start, changes that are judged at their fields, a sample that is proven, and to save."""
 
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -7,9 +8,10 @@ import pytest
 
 from trunnion import InputError, load_machine
 from trunnion.builder.chains import CHAINS
+from trunnion.builder.document import with_value, without_value
 from trunnion.builder.sample import shipped_sample
 from trunnion.builder.session import BuilderSession, RequestError
-from trunnion.machines.loading import shipped_machines
+from trunnion.machines.loading import machine_library, shipped_machines
 
 
 @pytest.fixture
@@ -190,3 +192,36 @@ def test_a_file_that_cannot_be_read_is_told_before_anything_is_served(tmp_path: 
     (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(InputError, match="UTF-8"):
         BuilderSession(tmp_path, "binary.toml").start()
+
+
+#: Of each kind of field, a value that no definition has.
+OTHERS: dict[str, Any] = {
+    "text": "zz", "lines": ";one\n", "number": 12.5, "whole": 7, "vector": [1, 2, 3], "interval": [-1.5, 2.5],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("base", ["dmu65", ""])
+def test_every_field_can_be_set_and_taken_back(session: BuilderSession, base: str) -> None:
+    """In a definition that extends and in a whole one: each change shows in its field, and leaves no trace."""
+    whole = machine_library().joinpath("matsuura_mx330.toml").read_text(encoding="utf-8")
+    text = f'extends = "{base}"\nname = "x"\n' if base else whole
+    fields = [each for page in ask(session, "judge", text=text)["pages"].values() for each in page]
+    assert len(fields) > 100
+    for each in fields[:: 1 if base else 3]:
+        value = OTHERS.get(each["kind"], not each["value"])
+        if each["kind"] == "choice":
+            value = next(choice for choice in each["choices"] if choice != each["value"])
+        if each["path"] in (["control", "extends"], ["name"]):
+            continue
+        path = [(step[0],) if isinstance(step, list) else step for step in each["path"]]
+        changed = with_value(text, tuple(path), value)
+        assert value_of(changed, each["path"]) == value
+        back = with_value(changed, tuple(path), each["value"]) if each["own"] else without_value(changed, tuple(path))
+        assert back == text
+
+
+def value_of(text: str, path: list[Any]) -> Any:
+    found: Any = tomllib.loads(text)
+    for step in path:
+        found = next(item for item in found if item["name"] == step[0]) if isinstance(step, list) else found[step]
+    return found

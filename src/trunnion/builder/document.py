@@ -96,7 +96,7 @@ def _with_new_value(text: str, found: Layout, path: FieldPath, value: Value) -> 
         return _joined(text[:at], line, text[at:])
     table = _located(tomllib.loads(text), path[:-1])
     if table is not None and any(header == table for _, header in found.headers):
-        at = _end_of_lines(text, *_block(text, found, table))
+        at = _end_of_lines(text, *_block(text, found, table, within=False))
         return _joined(text[:at], line, text[at:])
     if table is not None and table in found.values:
         place = found.values[table]
@@ -167,10 +167,10 @@ def _plain(path: KeyPath) -> KeyPath:
     return tuple(step for step in path if isinstance(step, str))
 
 
-def _block(text: str, found: Layout, table: KeyPath) -> tuple[int, int]:
-    """Begin and end of a table in the text, with those within it and the comments that belong to it."""
+def _block(text: str, found: Layout, table: KeyPath, *, within: bool = True) -> tuple[int, int]:
+    """Begin and end of a table in the text, with the comments that belong to it, and the tables ``within`` it."""
     at = next(k for k, (_, header) in enumerate(found.headers) if header == table)
-    later = (k for k in range(at + 1, len(found.headers)) if found.headers[k][1][: len(table)] != table)
+    later = (k for k in range(at + 1, len(found.headers)) if not within or found.headers[k][1][: len(table)] != table)
     following = next(later, None)
     return _begin(text, found, at), len(text) if following is None else _begin(text, found, following)
 

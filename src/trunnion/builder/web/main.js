@@ -4,7 +4,7 @@ import { Editor } from "./editor.js";
 import { Form, covers } from "./form.js";
 import { Sample } from "./sample.js";
 import { COLOURS, Stage } from "./stage.js";
-import { say } from "./texts.js";
+import { LANGUAGE, say } from "./texts.js";
 
 /**
  * @param {string} id
@@ -301,7 +301,7 @@ class Builder {
 
 document.querySelectorAll("[data-say]").forEach((each) => { each.textContent = say(/** @type {HTMLElement} */ (each).dataset.say ?? ""); });
 document.querySelectorAll("[data-label]").forEach((each) => each.setAttribute("aria-label", say(/** @type {HTMLElement} */ (each).dataset.label ?? "")));
-document.documentElement.lang = (new URLSearchParams(location.search).get("lang") ?? navigator.language).slice(0, 2);
+document.documentElement.lang = LANGUAGE;
 const builder = new Builder(JSON.parse(element("scene").textContent));
 /** @type {any} */ (window).builder = builder;
 const ready = () => { document.documentElement.dataset.ready = "true"; };

@@ -120,7 +120,10 @@ const FIELDS = {
   "control.settings": { en: ["", ""] },
 };
 
-const LANGUAGE = (new URLSearchParams(location.search).get("lang") ?? navigator.language).slice(0, 2);
+const WANTED = (new URLSearchParams(location.search).get("lang") ?? navigator.language).slice(0, 2);
+
+/** The language of the page. */
+export const LANGUAGE = WANTED in WORDS ? WANTED : "en";
 
 /**
  * A text in the language of the browser, or of ?lang= in the address.
