@@ -4,6 +4,7 @@ import math
 
 from trunnion.api.arguments import check_path, wrong_argument
 from trunnion.api.reading import FilePath
+from trunnion.extras import import_extra
 from trunnion.impeller.definition import read_impeller
 from trunnion.impeller.impeller import Impeller, build_impeller
 from trunnion.impeller.model import ImpellerModel, impeller_model
@@ -34,7 +35,9 @@ def load_impeller(impeller: FilePath) -> Impeller:
     >>> len(list(impeller.blades()))
     6
     """
-    return build_impeller(read_impeller(check_path("impeller", impeller)))
+    path = check_path("impeller", impeller)
+    import_extra("scipy", "impeller")  # by the name of this extra: curves, which come first, have one of their own
+    return build_impeller(read_impeller(path))
 
 
 def model_impeller(impeller: Impeller | FilePath, *, tolerance: float = 0.01) -> ImpellerModel:

@@ -111,8 +111,7 @@ def _step_line(step: CutStep) -> str:
     parts = [f"{step.step.name}: {counted(step.points, 'point')}, {f'{count} x ' if count > 1 else ''}{time}"]
     if step.step.published_minutes:
         parts.append(f"published {format_duration(60.0 * step.step.published_minutes)}")
-    for one in step.clearance:
-        parts.append(f"{one.part} {one.distance:.3f} mm from {one.body}")
+    parts += map(str, step.clearance)
     for over, under in step.flanks:
         parts.append(f"a flank {over:.4f} mm too deep and {under:.4f} mm left at most")
     return ", ".join(parts)

@@ -13,8 +13,8 @@ from trunnion.impeller.paths.cells import STEPS, cell_tree, joined
 from trunnion.impeller.paths.clearance import Obstacles, obstacles_of
 from trunnion.impeller.paths.clearance_kernel import BodyData
 from trunnion.impeller.paths.passes import Pass, PassFamily, Way
-from trunnion.impeller.paths.tool_axes import ToolAxes, Wanted, choose_axes
-from trunnion.simulation.tools.profile import ToolShape
+from trunnion.impeller.paths.tool_axes import PartClearance, ToolAxes, Wanted, choose_axes
+from trunnion.simulation.tools.profile import Role, ToolShape
 from trunnion.simulation.tools.shapes import BodyPiece, ball
 
 PUBLISHED = Path(__file__).resolve().parents[3] / "examples" / "impeller" / "impeller.toml"
@@ -236,3 +236,11 @@ def test_a_tool_too_short_for_the_published_impeller_is_refused(published: tuple
     stub = ball(6.0, flute_length=6.0, length=8.0, holder=(BodyPiece(20, 24, 30), BodyPiece(40, 40, 20)))
     with pytest.raises(InputError, match=r"holder and .* do not clear each other at .* along, .* across \(radius"):
         choose_axes(on_the_hub(impeller), stub, obstacles)
+
+
+@pytest.mark.parametrize(
+    ("distance", "words"),
+    [(2.5, "holder 2.500 mm from blade 1"), (10.0, "holder 10 mm or more from all blades and the hub")],
+)
+def test_a_clearance_beyond_what_is_measured_is_told_as_such(distance: float, words: str) -> None:
+    assert str(PartClearance(Role.HOLDER, "blade 1", distance, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))) == words

@@ -83,7 +83,7 @@ class Wanted:
 class PartClearance:
     """The least distance of a part of the tool to a body, mm, and where: the ball's centre, and the tool axis there.
 
-    The cutter counts from one radius above its ball's centre on.
+    The cutter counts from one radius above its ball's centre on. Distances are measured up to 10 mm.
     """
 
     part: Role
@@ -91,6 +91,12 @@ class PartClearance:
     distance: float
     centre: tuple[float, float, float]
     axis: tuple[float, float, float]
+
+    def __str__(self) -> str:
+        """Return the distance in words, such as ``shank 2.500 mm from blade 1``."""
+        if self.distance >= _FAR:
+            return f"{self.part} {_FAR:g} mm or more from all blades and the hub"
+        return f"{self.part} {self.distance:.3f} mm from {self.body}"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
