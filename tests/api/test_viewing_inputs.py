@@ -5,9 +5,10 @@ from pathlib import Path
 import pytest
 
 from tests.support.locations import GOLDEN, ROOT
-from trunnion import InputError, post
+from trunnion import InputError, post, read_cl
 from trunnion.api.viewing import prepare_view
 from trunnion.cl import is_cl_file
+from trunnion.model.toolpath import Phase
 
 CL = GOLDEN / "yl569" / "3_blade_finish.cls"
 NC = GOLDEN / "yl569" / "3_blade_finish.expected.mpf"
@@ -66,3 +67,14 @@ def test_what_a_view_cannot_show_is_told() -> None:
         prepare_view(NC, machine="yl569", setup="top")
     with pytest.raises(InputError, match='has no set-up "3"'):
         prepare_view(PLATE, setup="3")
+
+
+def test_phases_are_those_of_the_cl_file() -> None:
+    content = prepare_view(CL, machine="yl569")
+    phase, line = content.columns["phase"], content.columns["cl"]
+    moves = read_cl(CL).operations[0].moves
+    for row in range(0, len(phase), 5):
+        at = [k for k in range(len(moves)) if moves.line[k] == line[row]]
+        assert phase[row] == (moves.phase[at[0]] if at else -1)
+    assert set(phase.tolist()) > {-1, int(Phase.CUT)}
+    assert "phase" not in prepare_view(NC, machine="yl569").columns

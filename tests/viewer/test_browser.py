@@ -128,6 +128,8 @@ def test_controls_keep_their_own_keys(view: Page) -> None:
 def test_colours_are_told(view: Page) -> None:
     view.locator("#colour").select_option("kind")
     assert view.locator("#legend .entry").all_inner_texts() == ["Rapid", "line", "circle"]
+    view.locator("#colour").select_option("phase")
+    assert "cut" in view.locator("#legend .entry").all_inner_texts()
     view.locator("#colour").select_option("feed")
     assert view.locator("#legend .entry").last.inner_text().endswith("mm/min")
     view.locator("#colour").select_option("kind")
@@ -207,7 +209,7 @@ def test_the_part_stands_still_in_its_own_frame(view: Page) -> None:
 
 
 def test_each_colouring_paints_each_segment(view: Page) -> None:
-    for colour in ("operation", "tool", "feed", "rotary", "finding", "kind"):
+    for colour in ("phase", "operation", "tool", "feed", "rotary", "finding", "kind"):
         view.locator("#colour").select_option(colour)
         colours = view.evaluate("Array.from(page.space.colours)")
         assert len(colours) == 6 * view.evaluate("page.space.segments.length")

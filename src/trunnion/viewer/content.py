@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from trunnion.machines import Machine
 from trunnion.machines.links import link_chain
 from trunnion.model.run import Run
-from trunnion.model.toolpath import Kind
+from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.simulation.collisions.bodies import Body, BodyKind, fixture_body, machine_bodies, part_body, tool_bodies
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.tools.profile import ToolShape
@@ -68,6 +68,7 @@ def view_content(
     tools: Mapping[str, ToolShape],
     part: TriangleMesh | None = None,
     fixtures: Iterable[TriangleMesh] = (),
+    toolpaths: Sequence[Toolpath] = (),
 ) -> ViewContent:
     """Put together what a page shows.
 
@@ -81,6 +82,8 @@ def view_content(
         Bodies of tools by their names in the program; others are drawn as needles.
     part, fixtures
         Meshes in the workpiece frame.
+    toolpaths
+        That the program was made from: they know the phases of its motions.
 
     Raises
     ------
@@ -108,6 +111,8 @@ def view_content(
         "feed": _tip_feeds(verification),
         "cl": verification.cl_line.astype(np.int32),
     }
+    if toolpaths:
+        columns["phase"] = _phases(verification, toolpaths)
     for k in range(5):
         columns[f"axis-{k}"] = motion.joints[:, k].astype(np.uint32).view(np.int32)
     for k, body in enumerate(bodies):
@@ -165,6 +170,23 @@ def side_by_side(first: ViewContent, second: ViewContent, alignment: Alignment) 
 def _place(content: ViewContent, row: int) -> dict[str, int]:
     """File and line of a row."""
     return {name: int(content.columns[name][row]) if len(content.columns[name]) else 0 for name in ("file", "line")}
+
+
+def _phases(verification: Verification, toolpaths: Sequence[Toolpath]) -> NDArray[np.int32]:
+    """The ``Phase`` of each row, (n,), as the CL line has it that the row belongs to; -1 for none."""
+    found = np.full(len(verification.run), -1, np.int32)
+    if not len(verification.cl_line):
+        return found
+    for toolpath in toolpaths:
+        line = np.concatenate([operation.moves.line for operation in toolpath.operations])
+        phase = np.concatenate([operation.moves.phase.astype(np.int32) for operation in toolpath.operations])
+        order = np.argsort(line, kind="stable")
+        line, phase = line[order], phase[order]
+        for rows in (slice(one.first, one.end) for one in verification.operations if one.cl_file == toolpath.file):
+            wanted = verification.cl_line[rows]
+            at = np.minimum(np.searchsorted(line, wanted), len(line) - 1)
+            found[rows] = np.where(line[at] == wanted, phase[at], -1)
+    return found
 
 
 def _tip_feeds(verification: Verification) -> NDArray[np.float32]:

@@ -25,8 +25,10 @@ const element = (id) => document.getElementById(id);
 const SCALE = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
 const KINDS = [[200, 120, 40], [30, 110, 200], [20, 150, 130]];
 const PALETTE = [[31, 119, 180], [255, 127, 14], [44, 160, 44], [214, 39, 40], [148, 103, 189], [140, 86, 75], [227, 119, 194], [23, 190, 207]];
+/** Phases of motions, from 1, as trunnion.model.toolpath has them. */
+const PHASES = ["rapid", "approach", "engage", "cut", "stepover", "retract", "departure", "traverse"];
 /** Colours that the legend tells at most. */
-const MOST_ENTRIES = 6;
+const MOST_ENTRIES = 8;
 const FINDING = [220, 30, 40], QUIET = [150, 160, 170];
 
 /** @param {number} share from 0 to 1 */
@@ -61,6 +63,7 @@ class Page {
     this.isMeasuring = false;
     this.curves = new Curves(element("curves"), program, this.#strips(), (time) => this.goTo(time));
     this.curves.marks = this.scene.findings.map((each) => program.timeOf(each.row));
+    if (!program.phase) document.querySelector("#colour option[value=phase]")?.remove();
     this.paint();
     this.#listen();
     this.#fillFindings();
@@ -118,6 +121,10 @@ class Page {
     if (by === "kind") {
       this.space.paint((piece) => KINDS[program.kind[program.row[piece]]] ?? QUIET);
       this.#legend(["rapid", "straight", "circle"].map((kind, k) => [say(kind), KINDS[k]]));
+    } else if (by === "phase") {
+      this.space.paint((piece) => PALETTE[program.phase[program.row[piece]] - 1] ?? QUIET);
+      const there = new Set(program.phase);
+      this.#legend(PHASES.map((name, k) => [say(name), PALETTE[k]]).filter((_, k) => there.has(k + 1)));
     } else if (by === "tool") {
       this.space.paint((piece) => PALETTE[program.tool[program.row[piece]] % PALETTE.length]);
       this.#legend(this.scene.tools.map((tool, k) => [tool.name || "0", PALETTE[k % PALETTE.length]]));

@@ -29,6 +29,8 @@ export class Program {
     this.tool = columns.tool;
     this.feed = columns.feed;
     this.cl = columns.cl;
+    /** phase of each row, -1 for none; not there without CL files */
+    this.phase = columns.phase;
     this.pieces = this.row.length;
     this.rows = this.line.length;
     /** seconds at which pieces begin, and the end */
