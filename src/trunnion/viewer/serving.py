@@ -112,4 +112,8 @@ def serve(make: Callable[[Access], Any], listening: socket.socket, ready: Callab
     application = make(Access(hosts, token))
     config = uvicorn.Config(application, log_level="warning", access_log=False, timeout_graceful_shutdown=1)
     ready(f"http://{host}:{port}/" + (f"?token={token}" if token else ""))
-    uvicorn.Server(config).run(sockets=[listening])
+    try:
+        uvicorn.Server(config).run(sockets=[listening])
+    except KeyboardInterrupt as end:
+        if type(end) is not KeyboardInterrupt:  # another signal than Ctrl-C, which is how serving ends
+            raise
