@@ -198,7 +198,7 @@ def test_a_cut_at_a_position_that_follows_from_the_machine_is_refused(
 ) -> None:
     found = sinumerik(tmp_path, *lines)
     assert [(error.line, error.cure) for error in found.errors] == [
-        (line, "give zero and tool_length of the program's machine")
+        (line, "give the workpiece zero and the tool length of the program's machine")
     ]
     assert sinumerik(tmp_path, *lines, **KNOWN).errors == ()
 

@@ -129,9 +129,11 @@ def _lengths(runs: Sequence[Run], shapes: Mapping[str, ToolShape]) -> list[Probl
 def _unknown_ways(runs: Sequence[Run], stock: StockShape) -> list[Problem]:
     """Motions near the stock whose way is not known: across the tool axis to machine positions, and swivels."""
     across = "goes to a machine position across the tool axis, and the tool is no higher than the stock"
-    first = "retract along the tool axis first, or give zero and tool_length, so that the way is known"
+    first = (
+        "retract along the tool axis first, or give the workpiece zero and the tool length, so that the way is known"
+    )
     swivel = "turns rotary axes without TCP beside the stock, and nobody knows about which place"
-    known = "retract to a machine position first, or give zero and tool_length"
+    known = "retract to a machine position first, or give the workpiece zero and the tool length"
     found = []
     for run in runs:
         for rows, what, cure in (
@@ -167,7 +169,7 @@ def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]
         is_placed = run.machine.workpiece_zero is not None and run.machine.tool_length is not None
         if not is_placed and bool(run.state.machine_frame.values.any()):
             what = f"machine positions are taken as retracts along the tool axis: the {missing} is not known"
-            cure = "give zero and tool_length"
+            cure = "give the workpiece zero and the tool length"
             found.append(Problem(run.files[0], 0, what, cure, Severity.WARNING))
     return found
 
@@ -177,14 +179,14 @@ def _unjudged(run: Run) -> list[Problem]:
     tips, found = StatedTips.of(run), []
     if len(tips.lost_feeds):
         what = f"{counted(len(tips.lost_feeds), 'block')} at feed, from here on, where nobody knows where the tool is"
-        cure = "give zero and tool_length, or state X, Y and Z in workpiece coordinates before"
+        cure = "give the workpiece zero and the tool length, or state X, Y and Z in workpiece coordinates before"
         row = int(tips.lost_feeds[0])
         found.append(Problem(file_of_row(run, row), int(run.line[row]), f"{what}: they are not cut", cure))
     if len(tips.unjudged) > len(tips.lost_feeds):
         row = int(np.setdiff1d(tips.unjudged, tips.lost_feeds)[0])
         count = len(tips.unjudged) - len(tips.lost_feeds)
         what = f"{counted(count, 'motion')} before all coordinates of the tool are stated, from here on: not judged"
-        cure = "give zero and tool_length"
+        cure = "give the workpiece zero and the tool length"
         found.append(Problem(file_of_row(run, row), int(run.line[row]), what, cure, Severity.WARNING))
     return found
 

@@ -222,7 +222,7 @@ def _bodies(
         bodies += machine_bodies(machine, of_machine.append)
     elif number == 0 and machine.bodies:
         what = "the bodies of the machine are not checked: workpiece zero and tool lengths are not known"
-        cure = "give zero, and tool_length or a tool with its holder"
+        cure = "give the workpiece zero, and the tool length or a tool with its holder"
         remarks.append(Problem(job.run.files[0], 0, what, cure, Severity.WARNING))
     return bodies
 

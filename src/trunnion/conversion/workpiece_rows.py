@@ -128,7 +128,12 @@ def _refuse_unknown(run: Run, row: int, warn: Warnings) -> None:
     what = (
         "cuts where the tip follows from positions of the machine, and the workpiece zero or tool length is not known"
     )
-    warn.refuse(int(run.line[row]), what, "give zero and tool_length of the program's machine", int(run.file[row]))
+    warn.refuse(
+        int(run.line[row]),
+        what,
+        "give the workpiece zero and the tool length of the program's machine",
+        int(run.file[row]),
+    )
 
 
 def _refuse_machine_cuts(run: Run, rows: Ints, warn: Warnings) -> None:
