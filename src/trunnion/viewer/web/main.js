@@ -327,10 +327,7 @@ class Page {
     this.listing.show(line);
   }
 
-  picture() {
-    this.space.drawNow();
-    save(this.space.canvas.toDataURL("image/png"), "view.png");
-  }
+  picture() { save(this.space.picture(), "view.png"); }
 
   #showStock() {
     this.stock?.setMode(element("stock").value);

@@ -110,13 +110,18 @@ export class Space {
     this.place.add(this.lines);
     this.stride = Math.max(1, Math.ceil(count / FAST_SEGMENTS));
     this.coarse = this.#coarseLines(points, count);
+    // The current block is a range of the path: no picture has points of its own to send.
     const now = new THREE.BufferGeometry();
-    now.setAttribute("position", new THREE.BufferAttribute(new Float32Array(6), 3));
+    now.setAttribute("position", geometry.getAttribute("position"));
+    now.setDrawRange(0, 0);
     this.current = new THREE.LineSegments(now, new THREE.LineBasicMaterial({ color: 0xff2da0, depthTest: false }));
     this.current.frustumCulled = false;
     this.current.renderOrder = 2;
     this.place.add(this.current);
-    this.measured = new THREE.Line(new THREE.BufferGeometry(), new THREE.LineBasicMaterial({ color: 0x12a594, depthTest: false }));
+    const way = new THREE.BufferGeometry();
+    way.setAttribute("position", new THREE.BufferAttribute(new Float32Array(6), 3));
+    way.setDrawRange(0, 0);
+    this.measured = new THREE.Line(way, new THREE.LineBasicMaterial({ color: 0x12a594, depthTest: false }));
     this.measured.frustumCulled = false;
     this.measured.renderOrder = 3;
     this.place.add(this.measured);
@@ -271,13 +276,26 @@ export class Space {
 
   /** @param {number} row */
   #markCurrent(row) {
-    const { program, tips } = this;
+    const { program } = this;
     const last = program.rows ? program.last[row] : -1;
     let first = last;
     while (first > 0 && program.row[first - 1] === row) first--;
-    const points = [];
-    for (let i = Math.max(first, 0); i <= last; i++) if (this.#isDrawn(i)) points.push(...tips.subarray(3 * i, 3 * i + 6));
-    this.current.geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(points), 3));
+    const from = this.#segmentFrom(first), to = this.#segmentFrom(last + 1);
+    this.current.geometry.setDrawRange(2 * from, 2 * (to - from));
+  }
+
+  /**
+   * The first segment of a piece, or of the next that is drawn.
+   * @param {number} piece
+   */
+  #segmentFrom(piece) {
+    let low = 0, high = this.segments.length;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.segments[middle] < piece) low = middle + 1;
+      else high = middle;
+    }
+    return low;
   }
 
   /** Tip and tool axis of the pose that is shown, as the scene has them, in the workpiece frame. */
@@ -380,12 +398,12 @@ export class Space {
    */
   measure(first, second) {
     const ends = [first, second].map((piece) => new THREE.Vector3().fromArray(this.tips, 3 * piece + 3));
-    this.measured.geometry.setFromPoints(ends);
+    this.measured.geometry.setFromPoints(ends).setDrawRange(0, 2);
     this.draw();
     return { length: ends[0].distanceTo(ends[1]), away: ends[1].clone().sub(ends[0]).toArray() };
   }
 
-  clearMeasure() { this.measured.geometry.setFromPoints([]); this.draw(); }
+  clearMeasure() { this.measured.geometry.setDrawRange(0, 0); this.draw(); }
 
   resize() {
     const { clientWidth: width, clientHeight: height } = this.canvas;
@@ -404,6 +422,18 @@ export class Space {
   draw() {
     if (this.pending) return;
     this.pending = requestAnimationFrame(() => { this.pending = 0; this.renderer.render(this.scene, this.camera); this.#keepPace(); });
+  }
+
+  /** What is shown, in full detail also while it moves: the address of a PNG. */
+  picture() {
+    const { detail, isMoving } = this;
+    this.#show(false);
+    this.#setDetail(1);
+    this.drawNow();
+    const picture = this.canvas.toDataURL("image/png");
+    this.#show(isMoving);
+    this.#setDetail(detail);
+    return picture;
   }
 
   drawNow() { this.renderer.render(this.scene, this.camera); }
