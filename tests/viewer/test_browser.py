@@ -292,7 +292,9 @@ def test_rewinds_and_limits_are_shown(tmp_path: Path, browser: Browser) -> None:
         assert page.evaluate("page.row") > 4
         strip = page.evaluate("page.curves.strips.at(-1).name")
         assert strip == "limits"
-        header = page.evaluate("page.curves.csv().split('\\n')[0]")
+        header, *lines = page.evaluate("page.curves.csv().trim().split('\\n')")
         assert header.startswith("seconds,line,X mm,Y mm,Z mm,C °,A °")
-        assert header.endswith("limits %")
+        assert header.split(",")[-5:] == [f"limits {axis} %" for axis in ("X", "Y", "Z", "C", "A")]
+        rooms = {tuple(map(float, line.split(",")[-2:])) for line in lines if line.split(",")[1] in ("4", "5")}
+        assert (round(100 * 60 / 720, 5), round(100 * 90 / 220, 5)) in rooms  # C300 of -360 to 360, A20 of -110 to 110
         assert errors == []

@@ -2,11 +2,20 @@
 
 const LEFT = 64, RIGHT = 10, GAP = 6;
 
+/** Colours of the second curve of a strip and of those after it; readable on light and on dark. */
+const MORE = ["#b06a00", "#7d55c7", "#0f8a6d", "#c2417a"];
+
+/**
+ * @typedef {{name: string, at: (piece: number) => number}} Curve
+ * @typedef {{name: string, unit: string, low: number | null, high: number | null, at?: (piece: number) => number, curves?: Curve[]}} Strip
+ *   one curve, ``at``, or several with names of their own
+ */
+
 export class Curves {
   /**
    * @param {HTMLCanvasElement} canvas
    * @param {import("./program.js").Program} program
-   * @param {{name: string, unit: string, at: (piece: number) => number, low: number | null, high: number | null}[]} strips
+   * @param {Strip[]} strips
    * @param {(time: number) => void} onTime a time was chosen
    */
   constructor(canvas, program, strips, onTime) {
@@ -95,8 +104,8 @@ export class Curves {
     pen.font = "11px system-ui, sans-serif";
     this.strips.forEach((strip, k) => {
       const top = GAP + k * (tall + GAP);
-      const { low, high } = this.#extents(strip.at, across);
-      let least = Math.min(...low), most = Math.max(...high);
+      const drawn = curvesOf(strip).map((curve) => ({ name: curve.name, ...this.#extents(curve.at, across) }));
+      let least = Math.min(...drawn.map(({ low }) => Math.min(...low))), most = Math.max(...drawn.map(({ high }) => Math.max(...high)));
       if (!Number.isFinite(least)) [least, most] = [0, 1];
       const room = Math.max((most - least) * 0.08, 1e-3);
       const y = (/** @type {number} */ value) => top + tall - ((value - least + room) / (most - least + 2 * room)) * tall;
@@ -107,19 +116,24 @@ export class Curves {
         pen.strokeStyle = style.getPropertyValue("--bad");
         pen.beginPath(); pen.moveTo(LEFT, y(limit)); pen.lineTo(LEFT + across, y(limit)); pen.stroke();
       }
-      pen.strokeStyle = style.getPropertyValue("--line-1");
-      pen.beginPath();
-      for (let x = 0; x < across; x++) {
-        if (low[x] > high[x]) continue;
-        pen.moveTo(LEFT + x + 0.5, y(low[x]) + 0.5);
-        pen.lineTo(LEFT + x + 0.5, y(high[x]) - 0.5);
-      }
-      pen.stroke();
+      drawn.forEach(({ name, low, high }, number) => {
+        const colour = number ? MORE[(number - 1) % MORE.length] : style.getPropertyValue("--line-1");
+        pen.strokeStyle = pen.fillStyle = colour;
+        pen.beginPath();
+        for (let x = 0; x < across; x++) {
+          if (low[x] > high[x]) continue;
+          pen.moveTo(LEFT + x + 0.5, y(low[x]) + 0.5);
+          pen.lineTo(LEFT + x + 0.5, y(high[x]) - 0.5);
+        }
+        pen.stroke();
+        pen.textAlign = "right";
+        if (drawn.length > 1) pen.fillText(name, LEFT - 6 - 11 * (drawn.length - 1 - number), top + tall / 2 + 11);
+      });
       pen.fillStyle = style.getPropertyValue("--ink");
       pen.textAlign = "right";
-      pen.fillText(`${strip.name} ${strip.unit}`, LEFT - 6, top + tall / 2 + 4);
+      pen.fillText(`${strip.name} ${strip.unit}`, LEFT - 6, top + tall / 2 + (drawn.length > 1 ? -2 : 4));
       pen.fillStyle = style.getPropertyValue("--soft");
-      if (tall > 34) {
+      if (tall > (drawn.length > 1 ? 58 : 34)) {
         pen.fillText(most.toPrecision(5), LEFT - 6, top + 10);
         pen.fillText(least.toPrecision(5), LEFT - 6, top + tall - 2);
       }
@@ -140,12 +154,19 @@ export class Curves {
 
   /** All curves, one line for each piece. */
   csv() {
-    const rows = [["seconds", "line", ...this.strips.map((strip) => `${strip.name} ${strip.unit}`.trim())].join(",")];
+    const curves = this.strips.flatMap((strip) => curvesOf(strip).map(({ name, at }) => ({ name: strip.curves ? `${strip.name} ${name}` : name, unit: strip.unit, at })));
+    const rows = [["seconds", "line", ...curves.map(({ name, unit }) => `${name} ${unit}`)].join(",")];
     const { program } = this;
     for (let i = 0; i < program.pieces; i++) {
-      const values = this.strips.map((strip) => Number(strip.at(i).toFixed(5)));
+      const values = curves.map(({ at }) => Number(at(i).toFixed(5)));
       rows.push([program.time[i + 1].toFixed(4), program.line[program.row[i]], ...values].join(","));
     }
     return `${rows.join("\n")}\n`;
   }
 }
+
+/**
+ * @param {Strip} strip
+ * @returns {Curve[]}
+ */
+function curvesOf(strip) { return strip.curves ?? [{ name: strip.name, at: strip.at }]; }

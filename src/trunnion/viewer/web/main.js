@@ -79,9 +79,13 @@ class Page {
     const feed = { name: "F", unit: "mm/min", low: null, high: null, at: (/** @type {number} */ piece) => program.feed[program.row[piece]] };
     /** @type {any} */
     const rotary = { name: "ω", unit: "°/min", low: null, high: null, at: (/** @type {number} */ piece) => this.rotarySpeed(piece) };
+    const limited = program.machine.axes.flatMap((axis, k) => (axis.placed && axis.low !== null && axis.high !== null ? [k] : []));
     /** @type {any} */
-    const room = { name: say("limits"), unit: "%", low: 0, high: null, at: (/** @type {number} */ piece) => this.room(piece) };
-    return [...axes, rotary, feed, ...(axes.some((axis) => axis.low !== null && axis.high !== null) ? [room] : [])];
+    const room = {
+      name: say("limits"), unit: "%", low: 0, high: null,
+      curves: limited.map((k) => ({ name: program.machine.axes[k].name, at: (/** @type {number} */ piece) => this.room(k, piece) })),
+    };
+    return [...axes, rotary, feed, ...(limited.length ? [room] : [])];
   }
 
   /**
@@ -100,18 +104,13 @@ class Page {
   }
 
   /**
-   * How far the axis that is nearest to a limit is from it, in parts of a hundred of its travel.
+   * How far an axis is from the nearer of its limits, in parts of a hundred of its travel.
+   * @param {number} k number of the axis
    * @param {number} piece
    */
-  room(piece) {
-    const { program } = this;
-    let least = 100;
-    program.machine.axes.forEach((axis, k) => {
-      if (!axis.placed || axis.low === null || axis.high === null) return;
-      const value = program.axes[k][piece + 1];
-      least = Math.min(least, (100 * Math.min(value - axis.low, axis.high - value)) / (axis.high - axis.low));
-    });
-    return least;
+  room(k, piece) {
+    const { low, high } = this.program.machine.axes[k], value = this.program.axes[k][piece + 1];
+    return (100 * Math.min(value - low, high - value)) / (high - low);
   }
 
   /** Colour the path by what is chosen. */
