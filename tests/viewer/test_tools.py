@@ -147,3 +147,14 @@ def test_moving_on_makes_no_new_buffers(view: Page) -> None:
         gl.createBuffer = create; return made; }"""
     )
     assert made <= 3
+
+
+def test_the_whole_of_a_long_path_follows_its_first_picture(tmp_path: Path, browser: Browser) -> None:
+    program, out = tmp_path / "long.mpf", tmp_path / "view.html"
+    lines = (f"X{k % 100} Y{k / 100}" for k in range(9000))
+    program.write_text("\n".join(["G54 G90 G0 X0 Y0 Z50", "G1 F500 X1", *lines, "M30", ""]), encoding="ascii")
+    write_view(program, machine=MACHINE, output=out)
+    with open_page(browser, open_file(out)) as (page, errors):
+        page.wait_for_function("() => page.space.lines.visible && !page.space.coarse.visible")
+        assert page.evaluate("page.space.segments.length") >= 9000
+        assert errors == []

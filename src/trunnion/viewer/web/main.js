@@ -542,7 +542,7 @@ async function start() {
   paper();
   page.goToRow(0);
   stock?.setMode("cut");
-  for (const each of page.spaces) { each.look("iso"); each.drawNow(); each.tryPace(); }
+  for (const each of page.spaces) { each.look("iso"); each.tryPace(); }
   element("remarks").textContent = remarksOf(scene).join(" ");
   element("status").textContent = "";
   Object.assign(window, { page });
