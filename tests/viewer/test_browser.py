@@ -298,3 +298,25 @@ def test_rewinds_and_limits_are_shown(tmp_path: Path, browser: Browser) -> None:
         rooms = {tuple(map(float, line.split(",")[-2:])) for line in lines if line.split(",")[1] in ("4", "5")}
         assert (round(100 * 60 / 720, 5), round(100 * 90 / 220, 5)) in rooms  # C300 of -360 to 360, A20 of -110 to 110
         assert errors == []
+
+
+def test_the_path_has_the_colours_that_the_legend_tells(tmp_path: Path, browser: Browser) -> None:
+    program, out = tmp_path / "frame.mpf", tmp_path / "view.html"
+    lines = ["G54 G90 G17 G0 X0 Y0 Z5 S1000 M3", *(f"G1 X{k % 2 * 40} Y{k} F500" for k in range(40)), "G0 Z50", "M30"]
+    program.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    write_view(program, machine="yl569", zero=(0, 0, 0), tool_length=100, output=out)
+    with open_page(browser, open_file(out)) as (page, errors):
+        page.locator("#bodies").uncheck()
+        page.evaluate("page.goToRow(0); page.space.look('top', true)")
+        pixels = page.evaluate(
+            """() => { page.space.drawNow(); const gl = page.space.renderer.getContext();
+            const [wide, high] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
+            const found = new Uint8Array(4 * wide * high);
+            gl.readPixels(0, 0, wide, high, gl.RGBA, gl.UNSIGNED_BYTE, found);
+            return Array.from(found); }"""
+        )
+        shown = np.array(pixels, np.int64).reshape(-1, 4)[:, :3]
+        legend = page.locator("#legend .entry").nth(1).evaluate("it => getComputedStyle(it).borderLeftColor")
+        told = [int(part) for part in legend.removeprefix("rgb(").removesuffix(")").split(",")]
+        assert np.abs(shown - told).max(axis=1).min() <= 4
+        assert errors == []

@@ -11,6 +11,9 @@ const SLOW = 25;
 /** A click this near to a point of the path means it, CSS pixels. */
 const NEAR = 12;
 
+/** What a vertex has to say for a colour of the screen to come out: three.js takes it as linear light. */
+export const LINEAR = Uint8Array.from({ length: 256 }, (_, k) => Math.round(255 * (k <= 10 ? k / 255 / 12.92 : ((k / 255 + 0.055) / 1.055) ** 2.4)));
+
 export class Space {
   /**
    * @param {HTMLCanvasElement} canvas
@@ -162,7 +165,7 @@ export class Space {
     const { segments, colours } = this;
     for (let n = 0; n < segments.length; n++) {
       const colour = colourOf(segments[n]);
-      for (let k = 0; k < 3; k++) colours[6 * n + k] = colours[6 * n + 3 + k] = colour[k];
+      for (let k = 0; k < 3; k++) colours[6 * n + k] = colours[6 * n + 3 + k] = LINEAR[colour[k]];
     }
     this.lines.geometry.attributes.color.needsUpdate = true;
     if (this.coarse) {

@@ -1,6 +1,7 @@
 // The stock as it is cut: bricks of its surface, from states in the page or from the server, and its colours.
 
 import { askStock, readStates } from "./data.js";
+import { LINEAR } from "./space.js";
 import { say } from "./texts.js";
 
 /** Cubes of a brick a side; each takes along the last layer of those before it, and the centres around them. */
@@ -269,7 +270,7 @@ export class Stock {
     geometry.setIndex(new THREE.BufferAttribute(Uint32Array.from(index), 1));
     if (this.mode === "deviation") {
       const colours = new Uint8Array(position.length);
-      for (let n = 0; 3 * n < colours.length; n++) colours.set(this.colourOf(this.off[before + n]), 3 * n);
+      for (let n = 0; 3 * n < colours.length; n++) colours.set(this.colourOf(this.off[before + n]).map((part) => LINEAR[Math.round(part)]), 3 * n);
       geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3, true));
     }
     const meshes = [new THREE.Mesh(geometry, this.mode === "deviation" ? this.coloured : this.material), new THREE.Mesh(geometry, this.inner)];
