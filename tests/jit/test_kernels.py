@@ -179,6 +179,9 @@ def test_a_second_process_compiles_from_the_back(folder: Path) -> None:
     third = modules[modules.index('@kernel(writes="out")\ndef fold') :].replace("def fold", "def fold_again")
     (folder / "some_kernels.py").write_text(modules + "\n\n" + third, encoding="utf-8")
     script = """
+import sys, warnings
+warnings.simplefilter("error", ResourceWarning)
+sys.unraisablehook = lambda told: print("a process is forgotten:", told.exc_value)
 import some_kernels as k
 from trunnion.jit import compile_ahead
 compile_ahead([k.double, k.fold, k.fold_again])

@@ -17,6 +17,9 @@ from trunnion.jit.store import cache_folder
 
 _log = logging.getLogger("trunnion.jit")
 
+#: Processes that compile: Python warns of one that is forgotten while it runs, and nobody waits for these.
+_compiling: list[subprocess.Popen[bytes]] = []
+
 #: Missing kernels from which on a second process is worth its start.
 _WORTH_A_PROCESS = 3
 
@@ -55,8 +58,9 @@ def _start(folder: Path, names: Sequence[str]) -> None:
     package = str(Path(__file__).parents[2])
     path = os.pathsep.join(filter(None, (package, os.environ.get("PYTHONPATH"))))
     call = f"from {__name__} import compile_named; compile_named()"
+    _compiling[:] = [process for process in _compiling if process.poll() is None]
     try:
-        subprocess.Popen(
+        started = subprocess.Popen(
             [sys.executable, "-c", call, str(folder.parent), *names],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
@@ -65,6 +69,8 @@ def _start(folder: Path, names: Sequence[str]) -> None:
         )
     except OSError as error:
         _log.debug("no second process: %s", error)
+    else:
+        _compiling.append(started)
 
 
 def compile_named() -> None:
