@@ -23,13 +23,18 @@ ROWS = 200
 
 
 @pytest.fixture(scope="module")
-def view(tmp_path_factory: pytest.TempPathFactory, browser: Browser) -> Iterator[Page]:
-    folder = tmp_path_factory.mktemp("view")
+def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("view") / "view.html"
     write_view(
-        CL.with_name("3_blade_finish.expected.mpf"), machine="yl569", cl=CL, tools=[TOOL], output=folder / "view.html",
+        CL.with_name("3_blade_finish.expected.mpf"), machine="yl569", cl=CL, tools=[TOOL], output=file,
         zero=(0.0, 0.0, -20.0), tool_length=110.0,
     )  # fmt: skip
-    with open_page(browser, open_file(folder / "view.html")) as (page, errors):
+    return file
+
+
+@pytest.fixture(scope="module")
+def view(file: Path, browser: Browser) -> Iterator[Page]:
+    with open_page(browser, open_file(file)) as (page, errors):
         yield page
         assert errors == []
 
@@ -232,11 +237,13 @@ def test_a_finding_leads_to_its_line(tmp_path: Path, browser: Browser) -> None:
         assert errors == []
 
 
-def test_it_looks_like_the_picture_of_the_docs(view: Page, browser: Browser) -> None:
-    view.evaluate("page.goToRow(80); page.space.setFrame('machine'); page.space.look('iso'); page.space.drawNow()")
-    view.locator("#frame").select_option("machine")
-    view.wait_for_timeout(300)
-    check_picture(browser, view.screenshot(), "viewer.png")
+def test_it_looks_like_the_picture_of_the_docs(file: Path, browser: Browser) -> None:
+    with open_page(browser, open_file(file)) as (page, errors):
+        page.wait_for_function("() => !page.space.isMoving")
+        page.evaluate("page.goToRow(80); page.space.drawNow()")
+        page.wait_for_function("() => page.listing.current === page.program.line[80]")
+        check_picture(browser, page.screenshot(), "viewer.png")
+        assert errors == []
 
 
 def test_two_machines_go_along_one_tool_path(tmp_path: Path, browser: Browser) -> None:
