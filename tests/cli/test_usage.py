@@ -1,5 +1,6 @@
 """Arguments that cannot be understood: usage of the command, what is wrong, and the cure."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,9 @@ from trunnion.controls.loading import shipped_controls
 
 PROGRAM = str(YL569 / "2_hub_rough.expected.mpf")
 VERIFY = ["verify", PROGRAM, "--machine", "yl569"]
+
+#: Commands that the page of them explains.
+COMMANDS = re.findall(r"^## trunnion (\w+)$", (DOCS / "commands.md").read_text(encoding="utf-8"), re.MULTILINE)
 
 
 def error_of(command: list[str], capsys: pytest.CaptureFixture[str]) -> str:
@@ -50,6 +54,16 @@ def test_a_misspelt_option_is_named_before_those_that_are_missing(capsys: pytest
     said = error_of(["post", PROGRAM, "--mashine", "yl569"], capsys)
     assert "trunnion post: error: --mashine is no option of this command" in said
     assert "required: --machine" in error_of(["post", PROGRAM, "--out", "x.mpf"], capsys)
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_has_help(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main([name, "--help"])
+    assert stop.value.code == 0
+    told = capsys.readouterr()
+    assert told.out.startswith(f"usage: trunnion {name} ")
+    assert told.err == ""
 
 
 def test_check_takes_every_shipped_control(capsys: pytest.CaptureFixture[str]) -> None:

@@ -112,7 +112,7 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
 
 def _unknown_option(words: Sequence[str], command: argparse.ArgumentParser) -> str:
     """The first word that looks like an option and is none, nor the beginning of one; empty if there is none."""
-    known = _OPTION.findall(command.format_usage())
+    known = ["--help", *_OPTION.findall(command.format_usage())]  # usage writes the first one as -h
     for word in words:
         name = word.partition("=")[0]
         if name == "--":
