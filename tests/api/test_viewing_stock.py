@@ -1,5 +1,6 @@
 """What a view has of a simulation: its findings in their rows, its warnings, and a picture that is not too fine."""
 
+import re
 import zlib
 from pathlib import Path
 from typing import Any
@@ -90,3 +91,16 @@ def page_states(content: ViewContent) -> list[tuple[int, int]]:
         found.append((rows, before))
         data = data[4 + length :]
     return found
+
+
+def test_more_findings_than_are_shown_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("trunnion.api.viewing_stock._MOST", 2)
+    program, given = write_slot(tmp_path)
+    plunges = "".join(f"G0 Y{12 * (-1) ** k} Z20\nG0 Z-{4 + k}\nG0 Z20\n" for k in range(3))
+    program.write_text(program.read_text().replace("N95 G0 X80\n", f"G0 X25\n{plunges}"), encoding="utf-8")
+    content = prepare_view(program, **{**given, "part": None, "cell": 1.0})
+    shown = [mark for mark in content.scene["findings"] if mark["kind"] == "rapid through stock"]
+    assert len(shown) == 2
+    assert any(
+        re.fullmatch(r"rapid through stock: 2 of \d are shown", one) for one in content.scene["stock"]["remarks"]
+    )

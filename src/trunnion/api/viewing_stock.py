@@ -5,6 +5,7 @@ Out:    ``ViewContent`` with stock, deviations and findings.
 """
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -61,6 +62,7 @@ def with_stock(
     widths = [cutting_width(job.tools[name]) for name in _cutting(run) if name in job.tools]
     stock = StockView(found.simulation, min(widths, default=math.inf))
     warnings = [_short(each) for each in found.remarks if each.severity is not Severity.ERROR]
+    warnings += [f"{kind}: {_MOST} of {count} are shown" for kind, count in _counts(found) if count > _MOST]
     checks = [
         {"key": one.key, "passed": one.passed, "summary": one.summary} for one in simulation_checks(found)
     ]  # fmt: skip
@@ -78,6 +80,12 @@ def _cutting(run: Run) -> set[str]:
     return {run.tools[int(index)] for index in run.state.tool.distinct()}
 
 
+def _counts(found: SimulationResult) -> Iterator[tuple[str, int]]:
+    """How many findings there are of each kind, and near misses."""
+    yield from Counter(one.kind for one in found.findings).items()
+    yield "near", len(found.near)
+
+
 def _findings(found: SimulationResult, run: Run) -> Iterator[dict[str, Any]]:
     """What the simulation found, with its rows and places; errors that have no row stand at the first one."""
     files = {Path(file).name: number for number, file in enumerate(run.files)}
@@ -85,9 +93,9 @@ def _findings(found: SimulationResult, run: Run) -> Iterator[dict[str, Any]]:
         if each.severity is Severity.ERROR:
             here = np.flatnonzero((run.line >= each.line) & (run.file == files.get(Path(each.file).name, -1)))
             yield _mark(run, "simulation", int(here[0]) if len(here) else 0, _short(each), None)
-    shown = dict[str, int]()
+    shown = Counter[str]()
     for one in sorted(found.findings, key=lambda finding: -finding.depth):
-        shown[one.kind] = shown.get(one.kind, 0) + 1
+        shown[one.kind] += 1
         if shown[one.kind] <= _MOST:
             yield _mark(run, one.kind, one.row, f"{one.kind}: {_between(one)}, {one.depth:.3f} mm deep", one.place)
     for miss in sorted(found.near, key=lambda miss: miss.distance)[:_MOST]:

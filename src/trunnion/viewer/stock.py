@@ -35,9 +35,9 @@ from trunnion.viewer.bricks import BrickFrame, BrickRange, brick_frame, brick_va
 #: Cubes that the surface of the stock's box may pass, in a picture.
 _MOST_CUBES: Final = 400_000
 
-#: States that a page holds at most, and the bytes that they take there, packed, before base64.
+#: States that a page holds besides the first, at most, and the bytes that they take there, packed: 4 MB in base64.
 _STATES: Final = 24
-_PAGE_BYTES: Final = 4_000_000
+_PAGE_BYTES: Final = 3_000_000
 
 #: Surfaces that the server remembers, so that it sends what has changed only.
 _REMEMBERED: Final = 6

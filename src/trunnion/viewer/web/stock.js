@@ -287,10 +287,15 @@ export class Stock {
   #isExact() { return this.removed.subarray(this.shown, this.wanted).every((/** @type {number} */ volume) => volume === 0); }
 
   /**
-   * The line of the last of some rows.
+   * The line of the last of some rows, with its file where there are several.
    * @param {number} rows
    */
-  #lineAfter(rows) { return rows ? this.program.line[rows - 1] : 0; }
+  #lineAfter(rows) {
+    const { program } = this, { files } = program.scene;
+    if (!rows) return 0;
+    const line = program.line[rows - 1];
+    return files.length > 1 ? `${line} (${files[program.file[rows - 1]].split(/[\\/]/).pop()})` : line;
+  }
 
   #tell() {
     const { shown, states, mode } = this;
