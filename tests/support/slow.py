@@ -3,8 +3,8 @@
 #: Files that take more than some three seconds of processor time, and folders of them: whole matrices, judges, fuzzing,
 #: and long property tests.
 SLOW = (
-    "api/test_impeller_cutting.py", "api/test_same_as_command.py", "cl/test_scan.py", "cl/test_surface_normals.py",
-    "builder/test_browser.py", "cl/test_write.py",
+    "api/test_impeller_cutting.py", "api/test_same_as_command.py", "api/test_viewing_stock.py",
+    "builder/test_browser.py", "cl/test_scan.py", "cl/test_surface_normals.py", "cl/test_write.py",
     "conversion/test_angles.py", "conversion/test_leaving_the_part.py", "conversion/test_pairs.py",
     "conversion/test_round_trip.py", "conversion/test_settings_by_operation.py", "examples", "fuzz",
     "impeller/flank",
@@ -32,5 +32,6 @@ SLOW = (
     "readers/test_time.py", "reporting/test_plot_series.py", "reporting/test_write.py",
     "verification/test_declared_deviations.py", "verification/test_declared_deviations_random.py",
     "verification/test_events.py", "verification/test_matching.py", "verification/test_mutations.py",
-    "verification/test_turns.py", "viewer/test_browser.py", "viewer/test_stock.py", "viewer/test_tools.py",
+    "verification/test_turns.py", "viewer/test_bricks.py", "viewer/test_browser.py", "viewer/test_stock.py",
+    "viewer/test_tools.py",
 )  # fmt: skip
