@@ -142,7 +142,13 @@ def test_directions_are_reachable_within_the_travel_of_the_rotary_axes() -> None
         (["HUB"], TEXT, "operations: error: has 'HUB', which is none; the definition has STOCK_ROUGHING, "),
         ("HUB_FINISH", TEXT, "operations: error: is 'HUB_FINISH'"),
         ([], TEXT.partition("[[tool]]")[0], "impeller: error: has no operations"),
+        (
+            ["BLADE_FINISH"],
+            TEXT.replace("rpm = 8000", "rpm = 10000"),
+            "part.toml: error: operation BLADE_FINISH: S10000 is above the greatest speed of the spindle, 9000 rev/min",
+        ),
     ],
+    ids=["no such operation", "a text", "no operations", "speed"],
 )
 def test_what_cannot_be_made_is_told_and_writes_nothing(
     operations: list[str], text: str, what: str, tmp_path: Path
@@ -152,3 +158,15 @@ def test_what_cannot_be_made_is_told_and_writes_nothing(
         trunnion.cut_impeller(path, machine="yl569", output=tmp_path / "nc", operations=operations)
     assert what in str(error.value)
     assert not (tmp_path / "nc").exists()
+
+
+def test_a_refusal_offers_nothing_that_a_cut_does_not_have(tmp_path: Path) -> None:
+    text = TEXT.replace("step_down_mm = 1.5", "step_down_mm = 15")
+    with pytest.raises(trunnion.RefusedError) as error:
+        trunnion.cut_impeller(
+            definition(tmp_path, text), machine="yl569", output=tmp_path / "nc", operations=["STOCK_ROUGHING"],
+            settings={"zero": (5000, 0, 0)},
+        )  # fmt: skip
+    assert "no program is written" in str(error.value)
+    assert "force" not in str(error.value)
+    assert [path.name for path in (tmp_path / "nc").iterdir()] == ["IMPELLER.html"]

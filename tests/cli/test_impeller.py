@@ -29,7 +29,12 @@ def test_a_model_is_written_and_described(tmp_path: Path, capfd: Capture) -> Non
             'ends in ".step", a format that is not written; end it in one of .stl, .ply, .3mf, .glb',
         ),
         ([IMPELLER, "--tolerance", "5"], "--tolerance: error: is 5.0; give a number from 0.0001 to 1"),
-        (["none.toml"], "none.toml: error: file not found"),
+        (["none.toml"], "none.toml: error: file not found; give the path of an impeller definition\n"),
+        (["none"], "none: error: file not found; give the path of an impeller definition, whose name ends in .toml\n"),
+        (
+            [__file__],
+            "is not an impeller definition, whose name ends in .toml; give the path of an impeller definition\n",
+        ),
     ],
 )
 def test_what_cannot_be_used_is_told(arguments: list[str], what: str, capfd: Capture) -> None:

@@ -56,6 +56,10 @@ def test_a_misspelt_option_is_named_before_those_that_are_missing(capsys: pytest
     assert "required: --machine" in error_of(["post", PROGRAM, "--out", "x.mpf"], capsys)
 
 
+def test_a_line_without_a_command_is_told_where_they_are(capsys: pytest.CaptureFixture[str]) -> None:
+    assert "trunnion: error: name a command; trunnion --help lists them" in error_of([], capsys)
+
+
 @pytest.mark.parametrize("name", COMMANDS)
 def test_every_command_has_help(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as stop:

@@ -25,7 +25,7 @@ from trunnion.api.targets import open_target
 from trunnion.arrays import Flags, Floats
 from trunnion.cl.writers import WRITERS
 from trunnion.controls import load_control
-from trunnion.errors import InputError, argument_problem
+from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.files.places import cannot_write
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.machining import StepPaths, step_paths
@@ -35,6 +35,7 @@ from trunnion.impeller.steps import MachiningStep
 from trunnion.jit import compile_ahead
 from trunnion.machines import Machine
 from trunnion.machines.inverse import inverse
+from trunnion.machines.spindle_range import spindle_speed_fault
 from trunnion.model.toolpath import Operation, Tool, Toolpath
 from trunnion.simulation.meshes import save_mesh
 from trunnion.simulation.stock.surface import stock_surface
@@ -137,8 +138,8 @@ def cut_impeller(
     Raises
     ------
     InputError
-        As ``load_impeller``; if the definition has no operations or none of a name; or a step cannot be made, with the
-        place and what helps.
+        As ``load_impeller``; if the definition has no operations or none of a name; if the spindle does not have their
+        speeds; or a step cannot be made, with the place and what helps.
     RefusedError
         As ``post``: when the program must not run. Nothing is written.
 
@@ -156,6 +157,7 @@ def cut_impeller(
     definition = found.definition
     chosen = _chosen(found, operations)
     loaded = as_machine(machine)
+    _check_speeds(found, chosen, loaded)
     control = load_control(loaded.control)
     own: dict[str, SettingValue] = {"title": definition.name}
     if control.subprograms is not None:
@@ -166,7 +168,7 @@ def cut_impeller(
     folder = _folder(output)
     stem = _file_stem(definition.name)
     report = folder / f"{stem}.html"
-    job = replace(job, report=report)
+    job = replace(job, report=report, forcing="")
     read = [definition.file, *(table.file for table in definition.sections), *definition_files(machine, loaded)]
     with open_target(folder / f"{stem}{control.extension}", report=report, inputs=read) as target:
         compile_ahead(kernels.POSTING)
@@ -210,6 +212,15 @@ def _chosen(impeller: Impeller, names: Sequence[str]) -> list[str]:
         cure = f"the definition has {', '.join(known)}"
         raise InputError([argument_problem("operations", f"has {name!r}, which is none", cure) for name in unknown])
     return [name for name in known if name in names or not names]
+
+
+def _check_speeds(impeller: Impeller, chosen: Sequence[str], machine: Machine) -> None:
+    """Raise ``InputError`` for spindle speeds that the machine does not have, before minutes go into paths."""
+    definition = impeller.definition
+    faults = [(step.name, spindle_speed_fault(machine, step.rpm)) for step in definition.steps if step.name in chosen]
+    cure = "give it an rpm that the machine has"
+    if problems := [Problem(definition.file, 0, f"operation {name}: {fault}", cure) for name, fault in faults if fault]:
+        raise InputError(problems)
 
 
 def _folder(output: object) -> Path:

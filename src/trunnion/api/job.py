@@ -59,6 +59,7 @@ class PostJob:
     columns       work out the columns of the verification
     beside        files of subprograms that exist already and that templates call
     simulation    stock and all else that the program is simulated with; None: it is not
+    forcing       what a refusal says of ``force``; empty where it cannot be asked for
     """
 
     machine: Machine
@@ -72,6 +73,7 @@ class PostJob:
     own_settings: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     beside: tuple[Path, ...] = ()
     simulation: "SimulationInput | None" = None
+    forcing: str = "force=True writes it"
 
     @property
     def printed(self) -> dict[str, str]:

@@ -186,7 +186,7 @@ def plan_program(
     found = [*merge_repeated(planned.problems), *conflicts, *insert_problems(program)]
     blocking = [problem for problem in found if problem.severity is Severity.ERROR] + unproven
     if blocking and not job.force:
-        refused = Problem(file, 0, "no program is written", "force=True writes it")
+        refused = Problem(file, 0, "no program is written", job.forcing)
         raise RefusedError((*found, *unproven, refused))
     observer.problems(found)
     notices = [f"{FORCED_NOTICE}, written by --force: {problem.what}" for problem in blocking]

@@ -207,7 +207,7 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
     if proof.failed and not job.force:
         if job.report is not None:
             result.write_report(job.report)
-        raise _proof_failed(result)
+        raise _proof_failed(result, job.forcing)
     if program.has_time_tokens:
         write_times(target.files, program, times)
     if target.report is not None and verification is not None:
@@ -252,9 +252,10 @@ def _nothing_checked(job: PostJob, target: Target) -> Problem:
     return Problem(target.name, 0, f"{what}{lost}", severity=Severity.WARNING)
 
 
-def _proof_failed(result: PostResult) -> ProofFailedError:
+def _proof_failed(result: PostResult, forcing: str) -> ProofFailedError:
     """The error for a program that fails its proof."""
     failed = "; ".join(f"{check.summary} ({check.key})" for check in result.checks if not check.passed)
     what = f"the program fails its proof: {failed}"
-    problem = Problem(result.toolpaths[0].file, 0, what, "no program is written; force=True writes it")
+    cure = "; ".join(filter(None, ("no program is written", forcing)))
+    problem = Problem(result.toolpaths[0].file, 0, what, cure)
     return ProofFailedError(problem, result)

@@ -96,6 +96,8 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
     Ends the process with exit code 2 and a usage line when they cannot be understood.
     """
     parser, commands = _parsers()
+    if not argv:
+        parser.error("name a command; trunnion --help lists them")
     if argv and argv[0] in commands:  # before argparse, which first tells what is missing
         command = commands[argv[0]]
         if wrong := _unknown_option(argv[1:], command):
@@ -377,7 +379,11 @@ def _add_impeller(parser: argparse.ArgumentParser) -> None:
         help="model: a closed mesh of it; cut: CL files and a proven program",
     )
     parser.add_argument("file", metavar="IMPELLER", help="definition of the impeller (.toml)")
-    parser.add_argument("--output", metavar="FILE|FOLDER", help="the mesh (.stl, .ply, .3mf or .glb); folder of a cut")
+    parser.add_argument(
+        "--output",
+        metavar="FILE|FOLDER",
+        help="the mesh (.stl, .ply, .3mf or .glb) or a picture of it (.png); folder of a cut",
+    )
     parser.add_argument("--tolerance", type=_tolerance, metavar="MM", help="model: how far facets may be off; 0.01")
     parser.add_argument("--machine", metavar="NAME_OR_FILE", help="cut: machine that runs the program")
     parser.add_argument(

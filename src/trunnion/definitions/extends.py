@@ -60,11 +60,17 @@ def _shipped(name: str, library: Library) -> _DefinitionFile:
     return _DefinitionFile(location, str(location), None)
 
 
-def _read(source: _DefinitionFile) -> LocatedValue:
+def _with_article(kind: str) -> str:
+    """A kind of definition as messages name one."""
+    what = kind if kind == "definition" else f"{kind} definition"
+    return f"{'an' if what[0] in 'aeiou' else 'a'} {what}"
+
+
+def _read(source: _DefinitionFile, kind: str = "machine") -> LocatedValue:
     """Read and parse one file, without following its ``extends``."""
     label = source.label
     try:
-        unusable = unusable_file(source.location, "a machine definition") if isinstance(source.location, Path) else None
+        unusable = unusable_file(source.location, _with_article(kind)) if isinstance(source.location, Path) else None
         if unusable:
             raise InputError(replace(unusable, file=label))
         with source.location.open("rb") as stream:
@@ -233,14 +239,17 @@ def load_table(
     else:
         source = _shipped(text, library)
         if not _NAME.fullmatch(text) or not _is_file(source.location):
-            _check_is_name(text, kind)
             names = definition_names(library)
+            _check_is_name(text, kind, has_shipped=bool(names))
+            if not names:
+                cure = f"give the path of {_with_article(kind)}, whose name ends in .toml"
+                raise InputError(Problem(text, 0, "file not found", cure))
             near = did_you_mean(text, names)
             cure = f"{near} " if near else ""
             cure += f"write the path of a .toml file, or one of {', '.join(names)}"
             raise InputError(Problem(text, 0, f"there is no shipped {kind} of this name", cure))
     problems: list[Problem] = []
-    root = _merge_ancestors(_read(source), source, library, problems)
+    root = _merge_ancestors(_read(source, kind), source, library, problems)
     if overrides:
         root = merge(root, locate_values(dict(overrides), "overrides", {}), "", problems)
     return Table(root, "", problems)
@@ -280,18 +289,18 @@ def own_keys(path: Path) -> frozenset[str]:
     return frozenset(content) if isinstance(content, dict) else frozenset()
 
 
-def _check_is_name(text: str, kind: str) -> None:
+def _check_is_name(text: str, kind: str, *, has_shipped: bool) -> None:
     """Raise ``InputError`` for the path of a folder or of a file of another kind, which is no name."""
     try:
         path = Path(text)
         is_folder, is_file = path.is_dir(), path.is_file()
     except (OSError, ValueError):
         return
-    cure = f"give the path of a {kind}'s .toml file, or the name of a shipped {kind}"
+    cure = f"give the path of {_with_article(kind)}" + (f", or the name of a shipped {kind}" if has_shipped else "")
     if is_folder:
-        raise InputError(Problem(text, 0, f"is a folder, not a {kind} definition", cure))
+        raise InputError(Problem(text, 0, f"is a folder, not {_with_article(kind)}", cure))
     if is_file:
-        what = f"is not a {kind} definition, whose name ends in .toml"
+        what = f"is not {_with_article(kind)}, whose name ends in .toml"
         what += ", in small letters" if text.casefold().endswith(".toml") else ""
         raise InputError(Problem(text, 0, what, cure))
 
