@@ -93,6 +93,18 @@ def test_a_line_leads_to_its_pose_and_a_pose_to_its_line(view: Page) -> None:
     assert shown(view).split()[0].startswith(str(line))
 
 
+def test_the_statement_of_the_cl_file_stands_beside_its_block(view: Page) -> None:
+    statements = CL.read_text(encoding="utf-8").splitlines()
+    for row in (20, 60, 100):
+        view.evaluate(f"page.goToRow({row})")
+        line = view.evaluate(f"page.program.cl[{row}]")
+        assert line > 0
+        view.wait_for_function(
+            "text => document.getElementById('cl').textContent.endsWith(text)", arg=statements[line - 1]
+        )
+        assert view.locator("#cl").inner_text() == f"CL line {line}: {statements[line - 1]}"
+
+
 def test_play_moves_and_stops_at_the_end(view: Page) -> None:
     view.evaluate("page.goToRow(0); document.getElementById('speed').value = 1")
     view.locator("#play").click()

@@ -6,8 +6,10 @@ import threading
 import time
 import urllib.error
 import urllib.request
+import zipfile
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
@@ -68,6 +70,19 @@ def test_it_gives_the_page_its_columns_and_its_texts(content: ViewContent) -> No
         status, body, _ = ask(application, f"/data/column/{name}", {"Host": "localhost:8000"})
         assert (status, body) == (200, column.tobytes())
     assert ask(application, "/data/text/0", {"Host": "localhost"})[1] == PROGRAM.read_bytes()
+
+
+def test_it_gives_single_lines_of_cl_files(tmp_path: Path) -> None:
+    cl = tmp_path / "archive.zip"
+    with zipfile.ZipFile(cl, "w") as archive:
+        archive.write(PROGRAM.with_name("3_blade_finish.cls"), "blade.cls")
+    application = view_application(prepare_view(PROGRAM, machine="yl569", cl=cl), Access(NAMES))
+    lines = PROGRAM.with_name("3_blade_finish.cls").read_bytes().splitlines(keepends=True)
+    for number in (1, 40, len(lines)):
+        assert ask(application, f"/data/text/1/{number}", {"Host": "localhost"})[:2] == (200, lines[number - 1])
+    for beyond in (0, len(lines) + 2, 10**9):
+        assert ask(application, f"/data/text/1/{beyond}", {"Host": "localhost"})[0] == 404
+    assert ask(application, "/data/text/2/1", {"Host": "localhost"})[0] == 404
 
 
 @pytest.mark.parametrize(

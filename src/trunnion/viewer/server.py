@@ -8,7 +8,10 @@ import asyncio
 import re
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from functools import cache
 from typing import Any, Final
+
+import numpy as np
 
 from trunnion.extras import import_extra
 from trunnion.viewer.bricks import NOTHING
@@ -17,6 +20,7 @@ from trunnion.viewer.page import render_view
 from trunnion.viewer.serving import HEADERS, Access
 
 _BYTES: Final = "application/octet-stream"
+_NEW_LINE: Final = 10
 
 #: Rows, in an address.
 _NUMBER: Final = re.compile(r"\d{1,9}", re.ASCII)
@@ -52,6 +56,19 @@ def view_application(content: ViewContent, access: Access) -> Any:
         number = request.path_params["number"]
         return responses.Response(content.texts[number], 200, HEADERS, _BYTES) if number < len(content.texts) else None
 
+    @cache
+    def line_starts(number: int) -> list[int]:
+        text = content.texts[number]
+        ends = np.flatnonzero(np.frombuffer(text, np.uint8) == _NEW_LINE) + 1
+        return [0, *ends.tolist(), len(text)]
+
+    def give_line(request: Any) -> Any:
+        number, line = request.path_params["number"], request.path_params["line"]
+        if number >= len(content.texts) or not 0 < line < len(line_starts(number)):
+            return None
+        first, end = line_starts(number)[line - 1 : line + 1]
+        return responses.Response(content.texts[number][first:end], 200, HEADERS, _BYTES)
+
     async def give_stock(request: Any) -> Any:
         stock, rows = content.stock, request.path_params["rows"]
         if stock is None or rows > stock.rows:
@@ -75,6 +92,7 @@ def view_application(content: ViewContent, access: Access) -> Any:
             routing.Route("/", access.guarded(show_page)),
             routing.Route("/data/column/{name}", access.guarded(give_column)),
             routing.Route("/data/text/{number:int}", access.guarded(give_text)),
+            routing.Route("/data/text/{number:int}/{line:int}", access.guarded(give_line)),
             routing.Route("/data/stock/{rows:int}", access.guarded(give_stock)),
         ],
     )

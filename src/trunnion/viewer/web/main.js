@@ -1,6 +1,6 @@
 // The page: what its controls do, and how time, picture, text and curves follow one another.
 
-import { readColumn, readScene, readText } from "./data.js";
+import { readColumn, readLine, readScene, readText } from "./data.js";
 import { Curves } from "./curves.js";
 import { Listing } from "./listing.js";
 import { Program } from "./program.js";
@@ -11,6 +11,9 @@ import { Twin } from "./twin.js";
 
 /** Slowest and fastest play, times real time; the slider is their logarithm. */
 const SPEEDS = [0.1, 1000];
+
+/** A cursor that has not moved for so long rests, ms. */
+const RESTS = 80;
 
 /** Keys that a slider or a text that has the focus takes itself. */
 const OF_SLIDERS = new Set(["ArrowLeft", "ArrowRight", "Home", "End"]);
@@ -61,6 +64,9 @@ class Page {
     /** @type {number[]} */
     this.measuring = [];
     this.isMeasuring = false;
+    /** File and line of the CL statement that is shown. */
+    this.clLine = "";
+    this.clTimer = 0;
     this.curves = new Curves(element("curves"), program, this.#strips(), (time) => this.goTo(time));
     this.curves.marks = this.scene.findings.map((each) => program.timeOf(each.row));
     if (!program.phase) document.querySelector("#colour option[value=phase]")?.remove();
@@ -229,6 +235,26 @@ class Page {
   }
 
   /**
+   * The line of the CL file that a row comes from; its text follows where the cursor rests.
+   * @param {number} row
+   */
+  #showClLine(row) {
+    const line = this.program.rows ? this.program.cl[row] : 0;
+    const file = this.scene.operations.find((one) => row >= one.first && row < one.end)?.cl ?? -1;
+    const wanted = `${file}:${line}`;
+    if (wanted === this.clLine) return;
+    this.clLine = wanted;
+    const several = this.scene.clFiles.length > 1 && file >= 0 ? `${this.scene.clFiles[file].split(/[\\/]/).pop()}:` : "";
+    element("cl").textContent = line > 0 ? `${say("cl")} ${several}${line}` : "";
+    clearTimeout(this.clTimer);
+    if (!(line > 0) || file < 0) return;
+    this.clTimer = setTimeout(async () => {
+      const text = await readLine(this.scene.clText + file, line);
+      if (this.clLine === wanted) element("cl").textContent += `: ${text}`;
+    }, RESTS);
+  }
+
+  /**
    * @param {number[]} values
    * @param {number} row
    */
@@ -246,8 +272,8 @@ class Page {
       [say("tip"), three(tip, 4)], [say("toolAxis"), three(axis, 5)], ["F", program.rows ? program.feed[row].toFixed(0) : ""], [say("tool"), tool],
       [say("against"), `${clock(this.time)} / ${clock(program.end)}`],
     ];
-    if (program.rows && program.cl[row] > 0) rows.push([say("cl"), String(program.cl[row])]);
     element("values").innerHTML = shown.join("") + rows.map(([name, value]) => `<dt>${escaped(name)}</dt><dd>${escaped(value)}</dd>`).join("");
+    this.#showClLine(row);
   }
 
   #fillFindings() {
