@@ -90,7 +90,9 @@ def test_it_gives_single_lines_of_cl_files(tmp_path: Path) -> None:
     [
         {"Host": "evil.example"}, {"Host": "127.0.0.1.evil.example:80"}, {},
         {"Host": "127.0.0.1:80", "Origin": "http://evil.example"}, {"Host": "127.0.0.1:80", "Origin": "null"},
-        {"Host": "localhost@evil.example"},
+        {"Host": "localhost@evil.example"}, {"Host": "localhost:evil.example"},
+        {"Host": "127.0.0.1:80", "Origin": "http://127.0.0.1:81"}, {"Host": "127.0.0.1:80", "Origin": "https://127.0.0.1:80"},
+        {"Host": "127.0.0.1:80", "Origin": "http://localhost:80"},
     ],
 )  # fmt: skip
 def test_another_host_or_origin_gets_nothing(content: ViewContent, headers: dict[str, str]) -> None:
@@ -100,8 +102,8 @@ def test_another_host_or_origin_gets_nothing(content: ViewContent, headers: dict
 
 
 def test_off_this_computer_a_token_is_asked_for(content: ViewContent) -> None:
-    application = view_application(content, Access((*NAMES, "10.0.0.5"), "secret"))
-    host = {"Host": "10.0.0.5:80"}
+    application = view_application(content, Access(NAMES, "secret", 80))
+    host = {"Host": "shop-pc:80"}  # by whatever name: 0.0.0.0 stands for all addresses of this computer
     for path in ("/", "/?token=", "/?token=Secret", "/data/text/0", "/?token=%FF"):
         assert ask(application, path, host)[0] == 403
     status, _, headers = ask(application, "/?token=secret", host)
@@ -109,7 +111,30 @@ def test_off_this_computer_a_token_is_asked_for(content: ViewContent) -> None:
     cookie = headers["set-cookie"]
     assert "HttpOnly" in cookie
     assert "samesite=strict" in cookie.lower()
-    assert ask(application, "/data/text/0", {**host, "Cookie": cookie.partition(";")[0]})[0] == 200
+    known = {**host, "Cookie": cookie.partition(";")[0]}
+    assert ask(application, "/data/text/0", known)[0] == 200
+    assert ask(application, "/data/text/0", {**known, "Origin": "http://evil.example"})[0] == 403
+
+
+def test_servers_on_two_ports_do_not_take_each_others_cookies(content: ViewContent) -> None:
+    cookies = []
+    for port in (80, 81):
+        _, _, headers = ask(
+            view_application(content, Access(NAMES, f"secret-{port}", port)), f"/?token=secret-{port}", {"Host": "pc"}
+        )
+        cookies.append(headers["set-cookie"].partition(";")[0])
+    both = {"Host": "pc", "Cookie": "; ".join(cookies)}
+    for port in (80, 81):
+        application = view_application(content, Access(NAMES, f"secret-{port}", port))
+        assert ask(application, "/data/text/0", both)[0] == 200
+
+
+@pytest.mark.parametrize(("path", "method"), [("/", "GET"), ("/nothing", "GET"), ("/data/text/0", "DELETE")])
+def test_no_answer_can_be_framed_or_guessed_at(content: ViewContent, path: str, method: str) -> None:
+    _, _, headers = ask(view_application(content, Access(NAMES)), path, {"Host": "LocalHost:1"}, method)
+    assert headers["x-frame-options"] == "DENY"
+    assert headers["content-security-policy"] == "frame-ancestors 'none'"
+    assert headers["x-content-type-options"] == "nosniff"
 
 
 @pytest.mark.parametrize(

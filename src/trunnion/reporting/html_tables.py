@@ -96,7 +96,7 @@ def _worst_places(checks: Sequence[Check]) -> str:
 def _check_places(check: Check) -> str:
     rows = [
         f"<tr><td class=n>{format_number(place.value)}</td>"
-        f"<td class=n>{_number(place.number)}</td><td class=n>{place.nc_line or ''}</td>"
+        f"<td class=n>{_number(place.number)}</td><td class=n>{_nc_line(place)}</td>"
         f"<td class=n>{_cl_line(place)}</td>"
         f"<td>{escape(place.text)}</td>"
         f"<td class=go>{_plot_button(place)}</td></tr>"
@@ -115,7 +115,15 @@ def _plot_button(place: Place) -> str:
     """The button that zooms to a place, unless it has no block."""
     if not place.nc_line:
         return ""
-    return f'<button type=button data-line="{place.nc_line}" data-cl="{place.cl_line}">plot</button>'
+    file = f' data-file="{escape(place.nc_file)}"' if place.nc_file else ""
+    return f'<button type=button data-line="{place.nc_line}" data-cl="{place.cl_line}"{file}>plot</button>'
+
+
+def _nc_line(place: Place) -> str:
+    """The line of a block, with the subprogram in which it is."""
+    if not place.nc_file:
+        return str(place.nc_line or "")
+    return f"{escape(place.nc_file)}:{place.nc_line}"
 
 
 def _cl_line(place: Place) -> str:

@@ -280,17 +280,27 @@ def _rewinds(run: Run) -> list[dict[str, Any]]:
 
 def _findings(checks: Sequence[Check], run: Run) -> list[dict[str, Any]]:
     """The places of the checks that have not passed, as rows."""
-    if all(check.passed for check in checks) or not len(run):
-        return []
-    order = np.argsort(run.line, kind="stable")
-    lines = run.line[order]
+    numbers = {name: k for k, name in enumerate(run.files)}
     found = []
     for check in checks:
         for place in () if check.passed else check.places[:_MOST_PLACES]:
-            at = int(np.searchsorted(lines, place.nc_line))
-            row = int(order[min(at, len(order) - 1)])
-            found.append({"kind": check.key, "row": row, "line": place.nc_line, "file": 0, "text": place.text})
+            file = numbers.get(place.nc_file, 0)
+            row = place.row if place.row >= 0 else _row_of(run, file, place.nc_line)
+            found.append({"kind": check.key, "row": row, "line": place.nc_line, "file": file, "text": place.text})
     return found
+
+
+def _row_of(run: Run, file: int, line: int) -> int:
+    """The row at a line: the first one of that line, else of the nearest line after it that moves, else before it.
+
+    Rows are in the order in which the program runs, which is not that of lines where there are subprograms and jumps.
+    """
+    rows = np.flatnonzero(run.file == file)
+    if not len(rows):
+        return max(len(run) - 1, 0)
+    lines = run.line[rows]
+    after = lines[lines >= line]
+    return int(rows[np.argmax(lines == (after.min() if len(after) else lines.max()))])
 
 
 def _diagnostics(run: Run) -> list[dict[str, Any]]:
@@ -299,7 +309,6 @@ def _diagnostics(run: Run) -> list[dict[str, Any]]:
     found = []
     for each in run.errors:
         file = numbers.get(each.file, 0)
-        at = np.flatnonzero((run.line >= each.line) & (run.file == file))
-        row = int(at[0]) if len(at) else max(len(run) - 1, 0)
+        row = _row_of(run, file, each.line)
         found.append({"kind": "word", "row": row, "line": each.line, "file": file, "text": each.text})
     return found

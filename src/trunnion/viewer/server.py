@@ -17,7 +17,7 @@ from trunnion.extras import import_extra
 from trunnion.viewer.bricks import NOTHING
 from trunnion.viewer.content import ViewContent
 from trunnion.viewer.page import render_view
-from trunnion.viewer.serving import HEADERS, Access
+from trunnion.viewer.serving import HEADERS, Access, application_of
 
 _BYTES: Final = "application/octet-stream"
 _NEW_LINE: Final = 10
@@ -42,7 +42,6 @@ def view_application(content: ViewContent, access: Access) -> Any:
         If Starlette is not installed.
     """
     responses, routing = (import_extra(f"starlette.{name}", "view") for name in ("responses", "routing"))
-    applications = import_extra("starlette.applications", "view")
     page = b"".join(render_view(content, embedded=False))
 
     def show_page(_request: Any) -> Any:
@@ -86,15 +85,13 @@ def view_application(content: ViewContent, access: Access) -> Any:
         if content.stock is not None:
             content.stock.leave()
 
-    application = applications.Starlette(
-        lifespan=until_the_end,
-        routes=[
+    return application_of(
+        [
             routing.Route("/", access.guarded(show_page)),
             routing.Route("/data/column/{name}", access.guarded(give_column)),
             routing.Route("/data/text/{number:int}", access.guarded(give_text)),
             routing.Route("/data/text/{number:int}/{line:int}", access.guarded(give_line)),
             routing.Route("/data/stock/{rows:int}", access.guarded(give_stock)),
         ],
+        lifespan=until_the_end,
     )
-    application.router.redirect_slashes = False
-    return application

@@ -61,6 +61,8 @@ class Page {
     this.time = 0;
     this.playing = false;
     this.shownFile = -1;
+    /** Whether the text of that file is there, and still wanted. */
+    this.opening = Promise.resolve(true);
     /** @type {number[]} */
     this.measuring = [];
     this.isMeasuring = false;
@@ -221,17 +223,39 @@ class Page {
 
   /** @param {number} row */
   async #showLine(row) {
-    if (!this.program.rows) return;
-    const file = this.program.file[row];
+    if (!this.program.rows) await this.#showFile(Math.max(this.shownFile, 0));
+    else if (await this.#showFile(this.program.file[row])) this.listing.show(this.program.line[this.row]);
+  }
+
+  /**
+   * Show the text of a file of the program; whether it is still the one that is wanted when it is there.
+   * @param {number} file
+   */
+  #showFile(file) {
     if (file !== this.shownFile) {
       this.shownFile = file;
       element("file").value = String(file);
-      const text = await readTextOnce(file);
-      if (this.shownFile !== file) return;
-      this.listing.marks = new Map(this.scene.findings.filter((each) => each.file === file).map((each) => [each.line, "finding"]));
-      this.listing.setText(text);
+      this.opening = this.#open(file);
     }
-    this.listing.show(this.program.line[this.row]);
+    return this.opening;
+  }
+
+  /** @param {number} file */
+  async #open(file) {
+    const text = await readTextOnce(file);
+    if (this.shownFile !== file) return false;
+    this.listing.marks = new Map(this.scene.findings.filter((each) => each.file === file).map((each) => [each.line, "finding"]));
+    this.listing.setText(text);
+    return true;
+  }
+
+  /**
+   * Go to what was found: to its block, and to its line where no block moves.
+   * @param {import("./data.js").Mark} finding
+   */
+  async goToFinding(finding) {
+    this.goToRow(finding.row);
+    if (finding.line > 0 && await this.#showFile(finding.file)) this.listing.show(finding.line);
   }
 
   /**
@@ -289,7 +313,7 @@ class Page {
       const line = document.createElement("li"), button = document.createElement("button");
       button.type = "button";
       button.textContent = `${say("line")} ${each.line}: ${each.text}`;
-      button.addEventListener("click", () => this.goToRow(each.row));
+      button.addEventListener("click", () => this.goToFinding(each));
       line.append(button);
       list.append(line);
     });
@@ -347,7 +371,7 @@ class Page {
 
   /** @param {number} line of the file that is shown, from 1 */
   goToLine(line) {
-    const row = this.program.rowOfLine(this.shownFile, line);
+    const row = this.program.rowOfLine(this.shownFile, line, this.row);
     this.goToRow(row);
     this.listing.show(line);
   }
@@ -383,7 +407,7 @@ class Page {
   #pickAt(/** @type {PointerEvent} */ event) {
     const box = this.space.canvas.getBoundingClientRect();
     const finding = this.isMeasuring ? -1 : this.places.pick(event.clientX - box.left, event.clientY - box.top);
-    if (finding >= 0) { this.goToRow(this.scene.findings[finding].row); return; }
+    if (finding >= 0) { this.goToFinding(this.scene.findings[finding]); return; }
     const piece = this.space.pick(event.clientX - box.left, event.clientY - box.top);
     if (piece < 0) return;
     if (!this.isMeasuring) { this.goToRow(this.program.row[piece]); return; }
@@ -420,7 +444,7 @@ class Page {
     on("section-at", "input", () => this.#section());
     on("bodies", "change", (event) => this.spaces.forEach((space) => space.showMachine(event.target.checked)));
     on("path", "change", (event) => this.spaces.forEach((space) => space.showPath(event.target.checked)));
-    on("file", "change", async (event) => this.#chooseFile(Number(event.target.value)));
+    on("file", "change", (event) => this.#chooseFile(Number(event.target.value)));
     on("search", "keydown", (event) => { if (event.key === "Enter") this.search(event.shiftKey); });
     on("measure", "click", () => this.#measure());
     on("picture", "click", () => this.picture());
@@ -435,9 +459,10 @@ class Page {
   }
 
   /** @param {number} file */
-  async #chooseFile(file) {
+  #chooseFile(file) {
     const row = this.program.rowOfLine(file, 0);
-    if (this.program.file[row] === file) this.goToRow(row);
+    if (this.program.rows && this.program.file[row] === file) this.goToRow(row);
+    else this.#showFile(file);
   }
 
   /** @param {KeyboardEvent} event */
