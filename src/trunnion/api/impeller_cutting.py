@@ -154,6 +154,7 @@ def cut_impeller(
     """
     check_observer(observer)
     found = impeller if isinstance(impeller, Impeller) else load_impeller(impeller)
+    observer.problems(found.remarks)
     definition = found.definition
     chosen = _chosen(found, operations)
     loaded = as_machine(machine)

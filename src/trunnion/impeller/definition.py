@@ -4,13 +4,14 @@ In:     the path of a definition; tables of points beside it.
 Out:    ``ImpellerDefinition``, every value checked by itself.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from importlib.resources import files
 from pathlib import Path
 from typing import Final
 
 from trunnion.definitions import Table, load_table
-from trunnion.errors import InputError
+from trunnion.errors import InputError, Problem
 from trunnion.geometry.parameters import PARAMETERIZATIONS
 from trunnion.geometry.point_tables import PointTable, read_point_table, scaled
 from trunnion.impeller.steps import MachiningStep, read_steps
@@ -51,6 +52,7 @@ class ImpellerDefinition:
     splitter          share of the blade's length at which its splitters begin; None: it has none
     fillet            radius between blade and hub, mm
     tools, steps      with which it is machined, in their order; none where the definition has none
+    places            file and line of each key, by its path, such as ``stock.height_mm``
     """
 
     file: str
@@ -66,6 +68,13 @@ class ImpellerDefinition:
     stock: StockSize
     tools: tuple[LibraryTool, ...] = ()
     steps: tuple[MachiningStep, ...] = ()
+    places: Mapping[str, tuple[str, int]] = field(default_factory=dict)
+
+    def problem(self, key: str, what: str, cure: str) -> Problem:
+        """A mistake that a key makes; it is told at the line of its table where the key is not written."""
+        table = key.rpartition(".")[0]
+        file, line = self.places.get(key) or self.places.get(table) or (self.file, 0)
+        return Problem(file, line, what, cure, key=key)
 
 
 def read_impeller(path: Path) -> ImpellerDefinition:
@@ -95,11 +104,17 @@ def read_impeller(path: Path) -> ImpellerDefinition:
         stock=_stock(stock),
         tools=tools,
         steps=read_steps(root, tools),
+        places=_places(root, blade, hub, stock),
     )
     for table in (root, blade, hub, stock):
         table.report_unread_keys()
     root.raise_problems()
     return found
+
+
+def _places(*tables: Table) -> dict[str, tuple[str, int]]:
+    """File and line of each key of some tables, by its path."""
+    return {table.key_path(key): table.location(key) for table in tables for key in [*table.keys()]}
 
 
 def _edges(blade: Table) -> str:
