@@ -13,7 +13,7 @@ from trunnion.errors import InputError
 from trunnion.impeller.definition import read_impeller
 from trunnion.impeller.impeller import build_impeller
 from trunnion.impeller.meshing import solid
-from trunnion.impeller.model import ImpellerModel, impeller_model
+from trunnion.impeller.model import ImpellerModel, impeller_model, is_closed
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples" / "impeller"
 TEXT = (FOLDER / "impeller.toml").read_text("utf-8")
@@ -93,6 +93,29 @@ def test_the_blade_of_others_is_where_its_published_flanks_are() -> None:
     assert np.max(off) < 0.06
 
 
+def test_facets_are_as_fine_as_a_small_fillet_wants(tmp_path: Path) -> None:
+    found = modelled(written(tmp_path, ("fillet_mm = 2.0", "fillet_mm = 0.05")), 0.3)
+    assert found.volume == pytest.approx(83_210.0, abs=40.0)  # its fillets are half a mm³
+    assert trimesh.Trimesh(found.mesh.vertices.astype("f4"), found.mesh.faces).is_watertight
+
+
+def test_a_model_that_misses_its_tolerance_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("trunnion.impeller.model._SHARE", 8.0)
+    with pytest.raises(InputError, match=r"mm off the exact surfaces, and 0\.1 mm are asked for"):
+        modelled(FOLDER / "impeller.toml", 0.1)
+
+
+def test_a_mesh_is_closed_where_each_edge_has_two_facets_that_go_along_it_both_ways() -> None:
+    faces = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+    assert is_closed(faces)
+    assert not is_closed(faces[:3])
+    assert not is_closed(faces[[0, 1, 2, 2]])
+    assert not is_closed(np.vstack((faces[:3], faces[3:, ::-1])))
+    two = np.vstack((faces, np.array([0, 1, 4, 5])[faces]))
+    assert not is_closed(two)  # they share an edge
+    assert not is_closed(faces[:0])
+
+
 def mistakes(path: Path) -> list[tuple[int, str]]:
     with pytest.raises(InputError) as raised:
         modelled(path)
@@ -103,6 +126,7 @@ def mistakes(path: Path) -> list[tuple[int, str]]:
     ("old", "new", "what"),
     [
         ("fillet_mm = 2.0", "fillet_mm = 9.0", "has no room between two blades near this point|finds no place"),
+        ("fillet_mm = 2.0", "fillet_mm = 0.01", "hub.fillet_mm is 0.01"),
         ("number = 6", "number = 40", "blades overlap by"),
         ('["hub", "tip"]', '["tip", "hub"]', "the curve hub is 18.* mm below the curve tip, which is named before it"),
         ('["hub", "tip"]', '["hub", "shroud"]', "names 'shroud', which blade_points.csv has not"),

@@ -24,6 +24,9 @@ _GREATEST: Final = 10_000.0
 
 _MOST_BLADES: Final = 60
 
+#: No ball mills a smaller fillet, mm, and facets get as small as it.
+_LEAST_FILLET: Final = 0.05
+
 
 @dataclass(frozen=True, slots=True)
 class StockSize:
@@ -100,7 +103,7 @@ def read_impeller(path: Path) -> ImpellerDefinition:
         tip_thickness=blade.number("tip_thickness_mm", above=0.0, at_most=_GREATEST),
         trailing_edge=_edges(blade),
         splitter=blade.number("splitter_start", None, at_least=0.05, at_most=0.95),
-        fillet=hub.number("fillet_mm", above=0.0, at_most=_GREATEST),
+        fillet=hub.number("fillet_mm", at_least=_LEAST_FILLET, at_most=_GREATEST),
         stock=_stock(stock),
         tools=tools,
         steps=read_steps(root, tools),
