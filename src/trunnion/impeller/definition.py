@@ -14,7 +14,7 @@ from trunnion.definitions import Table, load_table
 from trunnion.errors import InputError, Problem
 from trunnion.geometry.parameters import PARAMETERIZATIONS
 from trunnion.geometry.point_tables import PointTable, read_point_table, scaled
-from trunnion.impeller.steps import MachiningStep, read_steps
+from trunnion.impeller.steps import MachiningStep, read_name, read_steps
 from trunnion.simulation.tools.library.library import LibraryTool
 from trunnion.simulation.tools.library.toml_library import read_tool_tables
 
@@ -89,10 +89,10 @@ def read_impeller(path: Path) -> ImpellerDefinition:
         If a file cannot be read, with every mistake and its line.
     """
     root = load_table(path, files(__package__), kind="impeller")
-    name = root.text("name", path.stem)
+    name = read_name(root, path.stem)
     blade, hub, stock = (root.table(key, required=True) for key in ("blade", "hub", "stock"))
     sections = _sections(blade, path)
-    tools = read_tool_tables(root) if "operation" in root or "tool" in root else ()
+    tools = _tools(root) if "operation" in root or "tool" in root else ()
     found = ImpellerDefinition(
         file=str(path),
         name=name,
@@ -113,6 +113,14 @@ def read_impeller(path: Path) -> ImpellerDefinition:
         table.report_unread_keys()
     root.raise_problems()
     return found
+
+
+def _tools(root: Table) -> tuple[LibraryTool, ...]:
+    """The tools; their names stand in CL files and programs."""
+    tools = read_tool_tables(root)
+    for table in root.tables("tool"):
+        read_name(table, "tool")
+    return tools
 
 
 def _places(*tables: Table) -> dict[str, tuple[str, int]]:

@@ -100,7 +100,7 @@ def step_paths(impeller: Impeller, reachable: Reachable | None, names: Sequence[
         except InputError as error:
             raise InputError(
                 [
-                    Problem(definition.file, 0, f"{step.name}: {each.what}", each.cure, each.severity)
+                    Problem(definition.file, step.line, f"{step.name}: {each.what}", each.cure, each.severity)
                     for each in error.problems
                 ]
             ) from None
@@ -255,12 +255,23 @@ def _climbing(flank: BladeFlank) -> tuple[Pass, Floats]:
     return (one.backwards(), axis[::-1]) if flank.side > 0.0 else (one, axis)
 
 
+def operation_names(impeller: Impeller, step: MachiningStep) -> tuple[str, ...]:
+    """The names of the operations of a step: one for each blade or channel, or one round the part."""
+    if step.kind in ROUND_STEPS:
+        return (step.name,)
+    return _copy_names(step, impeller.definition.number * len(_kinds_of_blades(impeller)))
+
+
+def _copy_names(step: MachiningStep, count: int) -> tuple[str, ...]:
+    return tuple(f"{step.name}_{k}" for k in range(1, count + 1))
+
+
 def _named(
     step: MachiningStep, copies: list[tuple[float, LinkedPath]]
 ) -> tuple[tuple[str, ...], tuple[LinkedPath, ...]]:
     """Names and paths of the copies of a step, by their angles about Z."""
     paths = tuple(path for _, path in sorted(copies, key=lambda each: each[0]))
-    return tuple(f"{step.name}_{k}" for k in range(1, len(paths) + 1)), paths
+    return _copy_names(step, len(paths)), paths
 
 
 def _links(step: MachiningStep) -> Links:
