@@ -56,8 +56,8 @@ class CutStep:
     toolpath   its operations, one for each blade or channel, as the CL file says them
     points     of all of them
     seconds    of each operation on the machine, with what leads to it
-    clearance  of each part of the tool, the least that it has to a blade or the hub; none where the step goes round
-               the part or mills flanks
+    clearance  of each part of the tool, the least that it has to a blade or the hub, where the step goes round the part
+               to the stock; none where the step mills flanks
     flanks     of flank milling: overcut and undercut of each side, mm
     """
 
@@ -120,7 +120,8 @@ def cut_impeller(
         As for ``trunnion.post``. Tool axes keep to what its rotary axes reach.
     output
         Folder, made if there is none: it takes a CL file for each operation of the definition, the main program with
-        its subprograms, the report of the proof, and what the simulation makes. All of them appear together, or none.
+        its subprograms, the report of the proof, and what is made of the simulation. They appear together, or not at
+        all.
     operations
         Names of operations, to make these only; by default all.
     settings
@@ -301,10 +302,9 @@ def _steps(made: Sequence[StepPaths], toolpaths: Sequence[Toolpath], result: Pos
     for paths, toolpath in zip(made, toolpaths, strict=True):
         points = sum(len(operation.moves) for operation in toolpath.operations)
         clearance: dict[str, PartClearance] = {}
-        for axes in paths.axes:
-            for one in axes.clearance:
-                if one.part not in clearance or one.distance < clearance[one.part].distance:
-                    clearance[one.part] = one
+        for one in (*paths.clearance, *(one for axes in paths.axes for one in axes.clearance)):
+            if one.part not in clearance or one.distance < clearance[one.part].distance:
+                clearance[one.part] = one
         own = tuple(next(of_operation) for _ in toolpath.operations)
         flanks = tuple((one.cut.left.overcut, one.cut.left.undercut) for one in paths.flanks)
         yield CutStep(paths.step, toolpath, points, own, tuple(clearance.values()), flanks)

@@ -14,7 +14,7 @@ from trunnion.definitions.messages import as_written
 from trunnion.impeller.paths.passes import Stepover, Way
 from trunnion.output.subprograms import DEVICE_NAME
 from trunnion.simulation.tools.library.library import LibraryTool
-from trunnion.simulation.tools.sizes import ToolKind
+from trunnion.simulation.tools.sizes import ToolKind, ToolSizes
 
 _GREATEST: Final = 1000.0
 
@@ -182,8 +182,21 @@ def _read_step(table: Table, tools: Mapping[int | None, LibraryTool]) -> Machini
         published_minutes=table.number("published_min", 0.0, at_least=0.0),
         line=table.line,
     )
+    if tool in tools:
+        _check_reach(table, step, tools[tool].sizes)
     table.report_unread_keys()
     return step
+
+
+def _check_reach(table: Table, step: MachiningStep, sizes: ToolSizes) -> None:
+    """Add what a tool cannot take at once: deeper than its flutes are long, or wider than the mill is."""
+    flutes = sizes.flute_length or sizes.length
+    if 0.0 < flutes < step.step_down:
+        what = f"is {step.step_down:g}, and the flutes of tool {step.tool} are {flutes:g} mm long"
+        table.add_problem("step_down_mm", what, "let it be less, or take longer flutes")
+    if step.kind is StepKind.STOCK_ROUGHING and step.stepover.distance > sizes.diameter:
+        what = f"is {step.stepover.distance:g}, and tool {step.tool} is {sizes.diameter:g} mm wide: a wall would stay"
+        table.add_problem("stepover_mm", what, "let it be the diameter at most")
 
 
 def _read_stepover(table: Table) -> Stepover:
