@@ -1,6 +1,7 @@
 """Impellers, machined: CL files, one proven program, and what it leaves."""
 
 from pathlib import Path
+from typing import Never
 
 import numpy as np
 import pytest
@@ -134,6 +135,64 @@ def test_directions_are_reachable_within_the_travel_of_the_rotary_axes() -> None
     axes = np.stack(np.broadcast_arrays(np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)), axis=2)
     found = reachable(axes.reshape(-1, 3)).reshape(9, 5)
     np.testing.assert_array_equal(found, np.broadcast_to([True, True, True, False, False], (9, 5)))
+
+
+ROUGHING = (
+    TEXT.partition("[[operation]]")[0]
+    + """
+[[operation]]
+kind = "stock roughing"
+name = "ROUGH"
+tool = 1
+stepover_mm = 20
+step_down_mm = 15
+rpm = 2000
+feed_mm_min = 500
+"""
+)
+
+
+def test_files_of_others_are_found_before_any_work_and_all_of_them_are_told(tmp_path: Path) -> None:
+    path, folder = definition(tmp_path, ROUGHING), tmp_path / "nc"
+    folder.mkdir()
+
+    def refused(*names: str) -> None:
+        for name in names:
+            (folder / name).write_text("mine", encoding="utf-8")
+        with pytest.raises(trunnion.InputError) as error:
+            trunnion.cut_impeller(path, machine="yl569", output=folder, cell=2.0, observer=Watching())
+        assert {Path(problem.file).name for problem in error.value.problems} == set(names)
+        for name in names:
+            assert (folder / name).read_text("utf-8") == "mine"
+            (folder / name).unlink()
+
+    class Watching(trunnion.Observer):
+        def progress(self, stage: str, total: int, unit: str) -> Never:
+            pytest.fail(f"{stage} has begun")
+
+    refused("IMPELLER.mpf", "IMPELLER.html")
+    refused("IMPELLER_ROUGH.cls", "ROUGH.spf", "IMPELLER_simulation.html", "IMPELLER_stock.png")
+
+
+def test_a_simulation_that_fails_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def failing(*_: object, **__: object) -> Never:
+        raise trunnion.InputError([])
+
+    monkeypatch.setattr("trunnion.api.impeller_cutting.simulate", failing)
+    path = definition(tmp_path, ROUGHING)
+    with pytest.raises(trunnion.InputError):
+        trunnion.cut_impeller(path, machine="yl569", output=tmp_path / "new" / "nc", cell=2.0)
+    assert not (tmp_path / "new").exists()
+
+
+def test_a_cut_is_made_again_over_its_own_files(tmp_path: Path) -> None:
+    path, folder = definition(tmp_path, ROUGHING), tmp_path / "nc"
+    for _ in range(2):
+        assert trunnion.cut_impeller(path, machine="yl569", output=folder, cell=4.0).simulation is not None
+    assert {file.name for file in folder.iterdir()} == {
+        "IMPELLER.mpf", "IMPELLER.html", "IMPELLER_ROUGH.cls", "ROUGH.spf", "IMPELLER_simulation.html",
+        "IMPELLER_stock.png",
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize(

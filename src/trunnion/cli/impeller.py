@@ -42,6 +42,7 @@ def model(arguments: argparse.Namespace) -> int:
         check_mesh_name(arguments.output)
     tolerance = _TOLERANCE if arguments.tolerance is None else arguments.tolerance
     impeller = load_impeller(arguments.file)
+    Terminal().problems(impeller.remarks)
     definition = impeller.definition
     found = model_impeller(impeller, tolerance=tolerance)
     if arguments.output is not None:

@@ -28,7 +28,8 @@ from trunnion.impeller.paths.linking import FreeSpace, IsClear, LinkedPath, Link
 from trunnion.impeller.paths.passes import Pass, PassFamily
 from trunnion.impeller.paths.root_blend import RootBlend, root_blend
 from trunnion.impeller.paths.shroud import shroud_finish, shroud_form, stock_roughing
-from trunnion.impeller.paths.tool_axes import ToolAxes, Wanted, choose_axes
+from trunnion.impeller.paths.stock_clearance import rough_before, stock_before, stock_clearances
+from trunnion.impeller.paths.tool_axes import PartClearance, ToolAxes, Wanted, choose_axes
 from trunnion.impeller.steps import ROUND_STEPS, MachiningStep, StepKind
 from trunnion.simulation.tools.library.library import LibraryTool
 from trunnion.simulation.tools.profile import ToolShape
@@ -57,6 +58,7 @@ class StepPaths:
     families      its passes, once for all blades that are alike; none of steps round the part
     axes          of these families, with what was proven of them
     flanks        of flank milling: both sides of the blade, and of the splitter, with what is left of them
+    clearance     of a step round the part: shank and holder to the stock, where they are near
     left          what a step round the part leaves besides its allowance, where the tool's side would cut too much
     """
 
@@ -68,6 +70,7 @@ class StepPaths:
     families: tuple[PassFamily, ...] = ()
     axes: tuple[ToolAxes, ...] = ()
     flanks: tuple[BladeFlank, ...] = ()
+    clearance: tuple[PartClearance, ...] = ()
     left: float = 0.0
 
 
@@ -100,7 +103,7 @@ def step_paths(impeller: Impeller, reachable: Reachable | None, names: Sequence[
         except InputError as error:
             raise InputError(
                 [
-                    Problem(definition.file, 0, f"{step.name}: {each.what}", each.cure, each.severity)
+                    Problem(definition.file, step.line, f"{step.name}: {each.what}", each.cure, each.severity)
                     for each in error.problems
                 ]
             ) from None
@@ -132,8 +135,12 @@ class _StepMaker:
             radius = half
         space = self._space(step, tool.shape(), half, radius, turned.axes)
         check = _outside(impeller, radius)
+        before = stock_before(impeller, step, step.stepover.on(half))
+        slotting = step.tilt > 0.0 and rough_before(impeller.definition, step) is None
+        passes = list(zip(turned.passes, turned.axes, strict=True))
+        clearance = stock_clearances(tool.shape(), radius, 0.0 if slotting else half, passes, before)
         path = link_passes(turned.passes, turned.axes, space, _links(step), radius, check, step.name)
-        return StepPaths(step, tool, radius, (step.name,), (path,), left=turned.left)
+        return StepPaths(step, tool, radius, (step.name,), (path,), clearance=clearance, left=turned.left)
 
     def _space(
         self, step: MachiningStep, shape: ToolShape, half: float, radius: float, axes: Sequence[Floats]
@@ -255,12 +262,23 @@ def _climbing(flank: BladeFlank) -> tuple[Pass, Floats]:
     return (one.backwards(), axis[::-1]) if flank.side > 0.0 else (one, axis)
 
 
+def operation_names(impeller: Impeller, step: MachiningStep) -> tuple[str, ...]:
+    """The names of the operations of a step: one for each blade or channel, or one round the part."""
+    if step.kind in ROUND_STEPS:
+        return (step.name,)
+    return _copy_names(step, impeller.definition.number * len(_kinds_of_blades(impeller)))
+
+
+def _copy_names(step: MachiningStep, count: int) -> tuple[str, ...]:
+    return tuple(f"{step.name}_{k}" for k in range(1, count + 1))
+
+
 def _named(
     step: MachiningStep, copies: list[tuple[float, LinkedPath]]
 ) -> tuple[tuple[str, ...], tuple[LinkedPath, ...]]:
     """Names and paths of the copies of a step, by their angles about Z."""
     paths = tuple(path for _, path in sorted(copies, key=lambda each: each[0]))
-    return tuple(f"{step.name}_{k}" for k in range(1, len(paths) + 1)), paths
+    return _copy_names(step, len(paths)), paths
 
 
 def _links(step: MachiningStep) -> Links:
