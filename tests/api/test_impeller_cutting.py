@@ -1,5 +1,6 @@
 """Impellers, machined: CL files, one proven program, and what it leaves."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -60,6 +61,7 @@ def roots(coarse: trunnion.ImpellerCut) -> Fillets:
 
 def test_all_files_are_there_and_the_program_is_proven(coarse: trunnion.ImpellerCut) -> None:
     assert coarse.passed
+    assert coarse.remarks == ()
     assert [len(step.seconds) for step in coarse.steps] == [1, 1, 6, 6, 6, 6]
     output = coarse.result.output
     assert output is not None
@@ -222,3 +224,28 @@ def test_a_refusal_offers_nothing_that_a_cut_does_not_have(tmp_path: Path) -> No
     assert "no program is written" in str(error.value)
     assert "force" not in str(error.value)
     assert [path.name for path in (tmp_path / "nc").iterdir()] == ["IMPELLER.html"]
+
+
+def test_a_step_whose_metal_nobody_took_is_a_warning_and_may_have_been_taken_elsewhere(tmp_path: Path) -> None:
+    head, _, rest = TEXT.partition('[[operation]]\nkind = "stock roughing"')
+    text = head + rest[rest.index("[[operation]]") :].replace("stepover_mm = 0.5", "stepover_mm = 5")
+    told: list[trunnion.Problem] = []
+
+    class Collector(trunnion.Observer):
+        def problems(self, problems: Sequence[trunnion.Problem]) -> None:
+            told.extend(problems)
+
+    def cut(text: str, folder: str) -> trunnion.ImpellerCut:
+        return trunnion.cut_impeller(
+            definition(tmp_path, text), machine="yl569", output=tmp_path / folder, operations=["STOCK_FINISHING"],
+            observer=Collector(),
+        )  # fmt: skip
+
+    found = cut(text, "nc")
+    assert found.passed
+    (remark,) = found.remarks
+    assert remark in told
+    assert 'stock.premachined = ["stock roughing"]' in str(remark)
+    assert found.steps[0].before.form > 10.0
+    elsewhere = text.replace("height_mm = 35.0", 'height_mm = 35.0\npremachined = ["stock roughing"]')
+    assert cut(elsewhere, "other").remarks == ()

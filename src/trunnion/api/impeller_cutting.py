@@ -29,6 +29,7 @@ from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.files.places import cannot_write
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.machining import StepPaths, step_paths
+from trunnion.impeller.material import Material, material_before, order_problems, side_problems
 from trunnion.impeller.paths.tool_axes import PartClearance
 from trunnion.impeller.paths.toolpaths import CuttingData, operation_of
 from trunnion.impeller.steps import MachiningStep
@@ -57,6 +58,7 @@ class CutStep:
     clearance  of each part of the tool, the least that it has to a blade or the hub; none where the step goes round
                the part or mills flanks
     flanks     of flank milling: overcut and undercut of each side, mm
+    before     what metal stands before it, an estimate
     """
 
     step: MachiningStep
@@ -64,6 +66,7 @@ class CutStep:
     points: int
     seconds: tuple[float, ...]
     clearance: tuple[PartClearance, ...]
+    before: Material
     flanks: tuple[tuple[float, float], ...] = ()
 
     @property
@@ -77,6 +80,7 @@ class ImpellerCut:
     """An impeller as it is machined.
 
     steps       in their order
+    remarks     warnings: steps that find more metal than they can take, by an estimate
     result      of the post: the program, its proof and its files
     cl_files    one for each step
     simulation  what the program leaves of the stock, against the model; None: it was not simulated
@@ -87,6 +91,7 @@ class ImpellerCut:
     result: PostResult
     cl_files: tuple[Path, ...]
     simulation: SimulationResult | None
+    remarks: tuple[Problem, ...] = ()
 
     def __repr__(self) -> str:
         """Return what matters in a notebook."""
@@ -158,6 +163,8 @@ def cut_impeller(
     chosen = _chosen(found, operations)
     loaded = as_machine(machine)
     _check_speeds(found, chosen, loaded)
+    remarks = tuple(order_problems(found, chosen))
+    observer.problems(remarks)
     control = load_control(loaded.control)
     own: dict[str, SettingValue] = {"title": definition.name}
     if control.subprograms is not None:
@@ -175,7 +182,7 @@ def cut_impeller(
         job.subprograms(target.files, target.path)
         made, texts, toolpaths = [], [], []
         with observer.progress("tool paths", len(chosen), "steps") as advance:
-            for paths in step_paths(found, reachable_axes(loaded), chosen):
+            for paths in step_paths(found, reachable_axes(loaded), chosen, observer.progress):
                 file = folder / f"{stem}_{_file_stem(paths.step.name)}.cls"
                 text = cl_text(step_toolpath(paths, definition.name, str(file)))
                 made.append(paths)
@@ -185,13 +192,15 @@ def cut_impeller(
         result = post_toolpaths(toolpaths, job, target, observer)
         for file, text in texts:
             target.files.add_file(file.name).write(text)
-    steps = tuple(_steps(made, toolpaths, result))
+    steps = tuple(_steps(found, made, toolpaths, result))
+    beside = [fault for one in steps for fault in side_problems(definition.file, one.step, one.before, one.clearance)]
+    observer.problems(beside)
     simulated = None
     if cell is not None:
         simulated = _simulated(found, loaded, steps, result, cell, observer)
         simulated.write_report(folder / f"{stem}_simulation.html")
         save_mesh(stock_surface(simulated.simulation.stock), folder / f"{stem}_stock.png", inputs=read)
-    return ImpellerCut(found, steps, result, tuple(file for file, _ in texts), simulated)
+    return ImpellerCut(found, steps, result, tuple(file for file, _ in texts), simulated, (*remarks, *beside))
 
 
 def _chosen(impeller: Impeller, names: Sequence[str]) -> list[str]:
@@ -289,8 +298,13 @@ def cl_text(toolpath: Toolpath) -> bytes:
     return sink.getvalue()
 
 
-def _steps(made: Sequence[StepPaths], toolpaths: Sequence[Toolpath], result: PostResult) -> Iterator[CutStep]:
+def _steps(
+    impeller: Impeller, made: Sequence[StepPaths], toolpaths: Sequence[Toolpath], result: PostResult
+) -> Iterator[CutStep]:
     """The steps with the times of their operations."""
+    before = {
+        step.name: stands for step, stands in zip(impeller.definition.steps, material_before(impeller), strict=False)
+    }
     assert result.verification is not None
     seconds, _ = durations(result.verification)
     of_operation = iter([float(seconds[rows.first : rows.end].sum()) for rows in result.verification.operations])
@@ -303,7 +317,7 @@ def _steps(made: Sequence[StepPaths], toolpaths: Sequence[Toolpath], result: Pos
                     clearance[one.part] = one
         own = tuple(next(of_operation) for _ in toolpath.operations)
         flanks = tuple((one.cut.left.overcut, one.cut.left.undercut) for one in paths.flanks)
-        yield CutStep(paths.step, toolpath, points, own, tuple(clearance.values()), flanks)
+        yield CutStep(paths.step, toolpath, points, own, tuple(clearance.values()), before[paths.step.name], flanks)
 
 
 def _simulated(

@@ -29,6 +29,7 @@ from trunnion.impeller.paths.passes import Pass, PassFamily
 from trunnion.impeller.paths.root_blend import RootBlend, root_blend
 from trunnion.impeller.paths.shroud import shroud_finish, shroud_form, stock_roughing
 from trunnion.impeller.paths.tool_axes import ToolAxes, Wanted, choose_axes
+from trunnion.impeller.progress import Progress, silent
 from trunnion.impeller.steps import ROUND_STEPS, MachiningStep, StepKind
 from trunnion.simulation.tools.library.library import LibraryTool
 from trunnion.simulation.tools.profile import ToolShape
@@ -71,7 +72,9 @@ class StepPaths:
     left: float = 0.0
 
 
-def step_paths(impeller: Impeller, reachable: Reachable | None, names: Sequence[str] = ()) -> Iterator[StepPaths]:
+def step_paths(
+    impeller: Impeller, reachable: Reachable | None, names: Sequence[str] = (), progress: Progress = silent
+) -> Iterator[StepPaths]:
     """Yield the paths of the steps of an impeller, one after another.
 
     Parameters
@@ -82,6 +85,8 @@ def step_paths(impeller: Impeller, reachable: Reachable | None, names: Sequence[
         None: every tool axis can be had.
     names
         Of the steps to make; none: all of them.
+    progress
+        Accompanies the work within each step.
 
     Raises
     ------
@@ -91,7 +96,7 @@ def step_paths(impeller: Impeller, reachable: Reachable | None, names: Sequence[
     definition = impeller.definition
     if not definition.steps:
         raise InputError(Problem(definition.file, 0, "has no [[operation]]", "describe the machining steps"))
-    makers = _StepMaker(impeller, reachable)
+    makers = _StepMaker(impeller, reachable, progress)
     for step in definition.steps:
         if names and step.name not in names:
             continue
@@ -109,8 +114,8 @@ def step_paths(impeller: Impeller, reachable: Reachable | None, names: Sequence[
 class _StepMaker:
     """Makes steps, with what they share: the bodies that tools keep clear of."""
 
-    def __init__(self, impeller: Impeller, reachable: Reachable | None) -> None:
-        self._impeller, self._reachable = impeller, reachable
+    def __init__(self, impeller: Impeller, reachable: Reachable | None, progress: Progress) -> None:
+        self._impeller, self._reachable, self._progress = impeller, reachable, progress
         self._obstacles: Obstacles | None = None
 
     def make(self, step: MachiningStep) -> StepPaths:
@@ -131,8 +136,8 @@ class _StepMaker:
             turned = shroud_finish(impeller, half, step.stepover, step.tilt, step.allowance, chord)
             radius = half
         space = self._space(step, tool.shape(), half, radius, turned.axes)
-        check = _outside(impeller, radius)
-        path = link_passes(turned.passes, turned.axes, space, _links(step), radius, check, step.name)
+        check, progress = _outside(impeller, radius), self._within(step)
+        path = link_passes(turned.passes, turned.axes, space, _links(step), radius, check, step.name, progress)
         return StepPaths(step, tool, radius, (step.name,), (path,), left=turned.left)
 
     def _space(
@@ -151,16 +156,20 @@ class _StepMaker:
         wanted = Wanted(cutter=cutter, shank=shank, holder=holder, tilt=step.tilt)
         is_clear = pose_check(obstacles, shape, radius, step.tolerance)
         copies: list[tuple[float, LinkedPath]] = []
-        families, fields = [], []
+        families, fields, progress = [], [], self._within(step)
         for family, angles in self._families(step, radius):
-            found = choose_axes(family, shape, obstacles, wanted, self._everywhere(angles))
+            found = choose_axes(family, shape, obstacles, wanted, self._everywhere(angles), progress)
             space = self._space(step, shape, radius, radius, found.axes)
-            path = link_passes(family.passes, found.axes, space, _links(step), radius, is_clear, step.name)
+            path = link_passes(family.passes, found.axes, space, _links(step), radius, is_clear, step.name, progress)
             copies += [(angle, path.turned(angle)) for angle in angles]
             families.append(family)
             fields.append(found)
         names, paths = _named(step, copies)
         return StepPaths(step, tool, radius, names, paths, tuple(families), tuple(fields))
+
+    def _within(self, step: MachiningStep) -> Progress:
+        """Progress within a step, which its stages do not name."""
+        return lambda stage, total, unit: self._progress(f"{step.name}: {stage}", total, unit)
 
     def _bodies(self) -> Obstacles:
         if self._obstacles is None:
@@ -176,14 +185,15 @@ class _StepMaker:
         is_clear = pose_check(obstacles, shape, radius, step.overcut, step.overcut + SLACK)
         copies: list[tuple[float, LinkedPath]] = []
         flanks: list[BladeFlank] = []
+        within = self._within(step)
         for blade in _kinds_of_blades(impeller):
             first, *rest = (angle for each, angle in impeller.blades() if each is blade)
-            sides = [mill_blade_flank(impeller, blade, side, cutter, step.overcut) for side in (1.0, -1.0)]
+            sides = [mill_blade_flank(impeller, blade, side, cutter, step.overcut, within) for side in (1.0, -1.0)]
             found = [_climbing(one) for one in sides]
             family = PassFamily(tuple(one for one, _ in found), radius, step.way).turned(first)
             turned = [rotated(axis, first) for _, axis in found]
             space = self._space(step, shape, radius, radius, turned)
-            path = link_passes(family.passes, turned, space, _links(step), radius, is_clear, step.name)
+            path = link_passes(family.passes, turned, space, _links(step), radius, is_clear, step.name, within)
             copies += [(angle, path.turned(angle - first)) for angle in (first, *rest)]
             flanks += sides
         names, paths = _named(step, copies)
@@ -195,13 +205,11 @@ class _StepMaker:
         if reachable is None:
             return None
 
+        turns = np.array([[[np.cos(a), np.sin(a), 0.0], [-np.sin(a), np.cos(a), 0.0], [0.0, 0.0, 1.0]] for a in angles])
+
         def in_all(axes: Floats) -> Flags:
-            found = np.ones(len(axes), np.bool_)
-            for angle in angles:
-                cosine, sine = np.cos(angle), np.sin(angle)
-                turned = axes @ np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
-                found[found] = reachable(turned[found])
-            return found
+            found = reachable((axes @ turns).reshape(-1, 3))
+            return np.asarray(found.reshape(len(angles), -1).all(axis=0))
 
         return in_all
 
@@ -214,12 +222,12 @@ class _StepMaker:
                 if step.kind is StepKind.CHANNEL_ROUGHING:
                     family = channel_roughing(
                         channel, radius, step.stepover, step.step_down, tolerance=chord,
-                        blade_allowance=step.allowance, hub_allowance=step.hub_allowance,
+                        blade_allowance=step.allowance, hub_allowance=step.hub_allowance, progress=self._within(step),
                     )  # fmt: skip
                 else:
                     family = hub_finish(
                         channel, radius, step.stepover, tolerance=chord, blade_allowance=step.allowance,
-                        hub_allowance=step.hub_allowance,
+                        hub_allowance=step.hub_allowance, progress=self._within(step),
                     )  # fmt: skip
                 yield family, [k * pitch for k in range(impeller.definition.number)]
             return

@@ -73,6 +73,7 @@ class MachiningStep:
     tolerance        of the ball's centre
     coolant          a CL word; empty: none
     published_minutes  for one blade or channel, to compare with; 0: none
+    line             of the definition
     """
 
     kind: StepKind
@@ -93,6 +94,7 @@ class MachiningStep:
     tolerance: float
     coolant: str
     published_minutes: float
+    line: int
 
 
 def read_steps(root: Table, tools: Sequence[LibraryTool]) -> tuple[MachiningStep, ...]:
@@ -146,6 +148,7 @@ def _read_step(table: Table, tools: Mapping[int | None, LibraryTool]) -> Machini
         tolerance=table.number("tolerance_mm", 0.01, at_least=0.0005, at_most=1.0),
         coolant=table.text("coolant", "", one_of=("", "ON", "FLOOD", "MIST", "THRU", "AIR")),
         published_minutes=table.number("published_min", 0.0, at_least=0.0),
+        line=table.line,
     )
     table.report_unread_keys()
     return step

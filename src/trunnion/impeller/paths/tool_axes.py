@@ -22,6 +22,7 @@ from trunnion.impeller.paths.axis_regions import Margin, Regions, climb, grow_re
 from trunnion.impeller.paths.clearance import Margins, Obstacles, ToolBody, distances_of, margins_of, tool_body
 from trunnion.impeller.paths.clearance_kernel import ToolData
 from trunnion.impeller.paths.passes import PassFamily, Way
+from trunnion.impeller.progress import Advance, Progress, silent
 from trunnion.simulation.tools.profile import Role, ToolShape
 
 #: Places from which the search begins.
@@ -49,6 +50,12 @@ _DIRECTIONS: Final = 2000
 
 #: Places in the way of a field at which the reason is sought.
 _ASKED: Final = 8
+
+#: One of so many poses is looked at before all of them are.
+_SOME: Final = 16
+
+#: What tells a least distance from those that are only known to be no less, mm.
+_MORE: Final = 1e-6
 
 #: Clearances are told up to this, mm.
 _FAR: Final = 10.0
@@ -122,6 +129,7 @@ def choose_axes(
     obstacles: Obstacles,
     wanted: Wanted = Wanted(),
     reachable: Callable[[Floats], Flags] | None = None,
+    progress: Progress = silent,
 ) -> ToolAxes:
     """Choose the tool axes of a family of passes.
 
@@ -135,13 +143,15 @@ def choose_axes(
         Clearances; where they cannot be had everywhere, a smaller share of all of them is tried.
     reachable
         Tells of directions (n, 3) which the machine reaches, (n,).
+    progress
+        Accompanies the work.
 
     Raises
     ------
     InputError
         If there is no such field: with the place, what is in the way of which part of the tool, and what helps.
     """
-    search = _Search(family, obstacles, wanted.tilt, reachable)
+    search = _Search(family, obstacles, wanted.tilt, reachable, progress)
     for share in _SHARES:
         body = tool_body(tool, family.radius, wanted.margins(share))
         field = search.field(body)
@@ -156,13 +166,18 @@ class _Search:
     """The search for a field, with one tool and one set of clearances after another."""
 
     def __init__(
-        self, family: PassFamily, obstacles: Obstacles, tilt: float, reachable: Callable[[Floats], Flags] | None
+        self,
+        family: PassFamily,
+        obstacles: Obstacles,
+        tilt: float,
+        reachable: Callable[[Floats], Flags] | None,
+        progress: Progress,
     ) -> None:
         self.centres, self.places = family.centres(), family.places()
         self._obstacles = obstacles
         self._lowest = math.cos(math.radians(tilt)) - 1e-12
         self._tilt = tilt
-        self._reachable = reachable
+        self._reachable, self._progress = reachable, progress
         self._is_closed = family.way is Way.SPIRAL
         self._lengths = _lengths(family)
         self._nodes = _nodes(self.places, self._lengths)
@@ -171,7 +186,8 @@ class _Search:
     def field(self, body: ToolBody) -> AxisField | None:
         """A field that keeps a tool clear everywhere; None if none is found."""
         nodes = self._nodes
-        regions = grow_regions(self._apart(self.places[nodes]), self._margin_at(body.wide, nodes))
+        with self._progress("tool axes", len(nodes), "places") as advance:
+            regions = grow_regions(self._apart(self.places[nodes]), self._margin_at(body.wide, nodes), advance)
         nowhere = np.flatnonzero(np.isnan(regions.middle[:, 0]))
         if len(nowhere):
             self._bad = nodes[nowhere]
@@ -188,6 +204,12 @@ class _Search:
 
     def _checked(self, body: ToolBody, nodes: Ints, regions: Regions, spans: tuple[int, ...]) -> AxisField | None:
         """The field with so many spans, after as many rounds of checking as it takes; None: that does not end."""
+        with self._progress("field of tool axes", _ROUNDS, "rounds") as advance:
+            return self._rounds(body, nodes, regions, spans, advance)
+
+    def _rounds(
+        self, body: ToolBody, nodes: Ints, regions: Regions, spans: tuple[int, ...], advance: Advance
+    ) -> AxisField | None:
         for _ in range(_ROUNDS):
             fit = self._fit(nodes, regions, spans)
             if fit.outside > _NEAR:
@@ -207,6 +229,7 @@ class _Search:
                 self._bad = added[nowhere]
                 return None
             nodes, regions = np.r_[nodes, added], regions.joined(more)
+            advance(1)
         return None
 
     def _fit(self, nodes: Ints, regions: Regions, spans: tuple[int, ...]) -> FieldFit:
@@ -323,8 +346,7 @@ def _nodes(places: Floats, lengths: Floats) -> Ints:
     low, high = 0.01, float(lengths.max())
     for _ in range(40):
         size = math.sqrt(low * high)
-        cells = np.floor(np.clip(places, 0.0, 1.0 - 1e-12) * np.maximum(np.round(lengths / size), 1.0))
-        if len(np.unique(cells, axis=0)) > _NODES:
+        if len(np.unique(_cells(places, np.maximum(np.round(lengths / size), 1.0)))) > _NODES:
             low = size
         else:
             high = size
@@ -332,8 +354,17 @@ def _nodes(places: Floats, lengths: Floats) -> Ints:
     scaled = np.clip(places, 0.0, 1.0 - 1e-12) * counts
     away = np.linalg.norm(scaled - np.floor(scaled) - 0.5, axis=1)
     order = np.argsort(away, kind="stable")
-    _, first = np.unique(np.floor(scaled)[order], axis=0, return_index=True)
+    _, first = np.unique(_cells(places, counts)[order], return_index=True)
     return np.asarray(order[first])
+
+
+def _cells(places: Floats, counts: Floats) -> Ints:
+    """Numbers (n,) of the cells in which places (n, k) are, with so many of them (k,) along each parameter."""
+    found = np.zeros(len(places), np.int64)
+    for k, count in enumerate(counts.astype(np.int64).tolist()):
+        found *= count
+        found += (np.clip(places[:, k], 0.0, 1.0 - 1e-12) * count).astype(np.int64)
+    return found
 
 
 def _nearest(places: Floats, asked: Floats) -> Ints:
@@ -343,10 +374,13 @@ def _nearest(places: Floats, asked: Floats) -> Ints:
 
 def _least(obstacles: Obstacles, body: ToolBody, centres: Floats, axes: Floats) -> tuple[PartClearance, ...]:
     """For each part of a tool, the least of its distances, the nearest part first."""
-    distances = distances_of(obstacles, body.real, centres, axes, _FAR)
     found = []
     for role in dict.fromkeys(body.roles):
-        own = distances[:, [k for k, one in enumerate(body.roles) if one is role]].min(axis=1)
+        pieces = body.part(role)
+        # What some poses have is no less than the least: what is farther away than that need not be known.
+        some = distances_of(obstacles, pieces, centres[::_SOME], axes[::_SOME], _FAR)
+        enough = min(float(some.min()) + _MORE, _FAR)
+        own = distances_of(obstacles, pieces, centres, axes, enough).min(axis=1)
         row, number = np.unravel_index(int(own.argmin()), own.shape)
         centre, axis = ((float(x), float(y), float(z)) for x, y, z in (centres[row], axes[row]))
         found.append(PartClearance(role, obstacles.names[number], float(own[row, number]), centre, axis))
