@@ -14,6 +14,7 @@ from trunnion.impeller.flank.fit import Limits
 from trunnion.impeller.impeller import Impeller, rotated
 from trunnion.impeller.machining import step_paths
 from trunnion.model.toolpath import Kind, Phase
+from trunnion.simulation.tools.profile import Role
 
 EXAMPLE = ROOT / "examples" / "impeller"
 
@@ -151,6 +152,26 @@ def test_flanks_are_milled_from_both_sides_with_the_blade_on_the_right(
             touching += 1
     assert touching > 4
     assert gaps(impeller, path.centre).min() > 2.0 - 0.05
+    least = {one.part: one for one in found.clearance}
+    assert list(least) == [Role.CUTTER, Role.SHANK]
+    assert least[Role.CUTTER].body != "blade 1"  # that one it cuts
+    assert found.share == 1.0
+    # Balls in the cutter by exact distances: hub and blades go on beyond the stock there, so that less may be found, and
+    # the cutter counts from one radius above its lowest ball on, so that the next balls reach below that.
+    cuts = path.phase == Phase.CUT
+    lower, higher = (
+        np.concatenate([path.centre[cuts] + up * path.axis[cuts] for up in np.linspace(first, 22.0, 41)])
+        for first in (2.0, 4.0)
+    )
+    apart = [impeller.blade.distances(rotated(lower, angle))[0].min() for angle in (np.pi / 3.0, -np.pi / 3.0)]
+    assert least[Role.CUTTER].distance > min(*apart, impeller.hub.distances(lower)[0].min()) - 2.0 - 0.01
+    higher = higher[np.hypot(higher[:, 0], higher[:, 1]) < 40.0]
+    assert least[Role.CUTTER].distance < impeller.hub.distances(higher)[0].min() - 2.0 + 0.01
+    short = "diameter_mm = 4\nflute_length_mm = 24\nlength_mm = "
+    fat = tools.replace(f"{short}60", f"{short}25\nholder = [{{ diameter_mm = 60, height_mm = 40 }}]")
+    file.write_text(file.read_text(encoding="utf-8").replace(tools, fat), encoding="utf-8")
+    with pytest.raises(InputError, match=r"FLANK_MILLING: holder and .* do not clear each other"):
+        list(step_paths(load_impeller(file), up_to_tilt))
 
 
 @pytest.mark.parametrize(

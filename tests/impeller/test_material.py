@@ -14,7 +14,7 @@ from trunnion import InputError, load_impeller
 from trunnion.errors import Severity
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.material import material_before, order_problems, side_problems
-from trunnion.impeller.paths.tool_axes import PartClearance
+from trunnion.impeller.paths.least_clearances import PartClearance
 from trunnion.impeller.steps import StepKind
 from trunnion.simulation.tools.profile import Role
 

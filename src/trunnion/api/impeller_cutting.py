@@ -25,12 +25,12 @@ from trunnion.api.targets import open_target
 from trunnion.arrays import Flags, Floats
 from trunnion.cl.writers import WRITERS
 from trunnion.controls import load_control
-from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.files.places import cannot_write
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.machining import StepPaths, step_paths
 from trunnion.impeller.material import Material, material_before, order_problems, side_problems
-from trunnion.impeller.paths.tool_axes import PartClearance
+from trunnion.impeller.paths.least_clearances import PartClearance
 from trunnion.impeller.paths.toolpaths import CuttingData, operation_of
 from trunnion.impeller.steps import MachiningStep
 from trunnion.jit import compile_ahead
@@ -56,7 +56,7 @@ class CutStep:
     points     of all of them
     seconds    of each operation on the machine, with what leads to it
     clearance  of each part of the tool, the least that it has to a blade or the hub; none where the step goes round
-               the part or mills flanks
+               the part. In flank milling the cutter's is that to the hub and to other blades
     flanks     of flank milling: overcut and undercut of each side, mm
     before     what metal stands before it, an estimate
     """
@@ -194,6 +194,7 @@ def cut_impeller(
             target.files.add_file(file.name).write(text)
     steps = tuple(_steps(found, made, toolpaths, result))
     beside = [fault for one in steps for fault in side_problems(definition.file, one.step, one.before, one.clearance)]
+    beside += [_shared(definition.file, one) for one in made if one.share < 1.0]
     observer.problems(beside)
     simulated = None
     if cell is not None:
@@ -311,13 +312,20 @@ def _steps(
     for paths, toolpath in zip(made, toolpaths, strict=True):
         points = sum(len(operation.moves) for operation in toolpath.operations)
         clearance: dict[str, PartClearance] = {}
-        for axes in paths.axes:
-            for one in axes.clearance:
-                if one.part not in clearance or one.distance < clearance[one.part].distance:
-                    clearance[one.part] = one
+        for one in (*paths.clearance, *(one for axes in paths.axes for one in axes.clearance)):
+            if one.part not in clearance or one.distance < clearance[one.part].distance:
+                clearance[one.part] = one
         own = tuple(next(of_operation) for _ in toolpath.operations)
         flanks = tuple((one.cut.left.overcut, one.cut.left.undercut) for one in paths.flanks)
         yield CutStep(paths.step, toolpath, points, own, tuple(clearance.values()), before[paths.step.name], flanks)
+
+
+def _shared(file: str, paths: StepPaths) -> Problem:
+    """The warning about a step that keeps only a share of its clearances."""
+    cutter, shank, holder, _ = paths.step.clearance
+    wanted = f"{cutter:g}, {shank:g} and {holder:g} mm are wanted of cutter, shank and holder"
+    what = f"{paths.step.name}: keeps only {paths.share:.0%} of its clearances: {wanted}"
+    return Problem(file, paths.step.line, what, "choose a thinner or longer tool, or want less", Severity.WARNING)
 
 
 def _simulated(

@@ -22,17 +22,18 @@ from trunnion.impeller.paths.blade_finish import BladeFinish, blade_finish
 from trunnion.impeller.paths.channel import channels_of
 from trunnion.impeller.paths.channel_roughing import channel_roughing
 from trunnion.impeller.paths.clear_poses import pose_check
-from trunnion.impeller.paths.clearance import SLACK, Obstacles, obstacles_of
+from trunnion.impeller.paths.clearance import SLACK, Margins, Obstacles, obstacles_of, tool_body
 from trunnion.impeller.paths.hub_finish import hub_finish
+from trunnion.impeller.paths.least_clearances import PartClearance, least_clearances
 from trunnion.impeller.paths.linking import FreeSpace, IsClear, LinkedPath, Links, link_passes
 from trunnion.impeller.paths.passes import Pass, PassFamily
 from trunnion.impeller.paths.root_blend import RootBlend, root_blend
 from trunnion.impeller.paths.shroud import shroud_finish, shroud_form, stock_roughing
-from trunnion.impeller.paths.tool_axes import ToolAxes, Wanted, choose_axes
+from trunnion.impeller.paths.tool_axes import SHARES, ToolAxes, Wanted, choose_axes
 from trunnion.impeller.progress import Progress, silent
 from trunnion.impeller.steps import ROUND_STEPS, MachiningStep, StepKind
 from trunnion.simulation.tools.library.library import LibraryTool
-from trunnion.simulation.tools.profile import ToolShape
+from trunnion.simulation.tools.profile import Role, ToolShape
 
 #: Which tool axes (n, 3) a machine reaches, (n,).
 Reachable = Callable[[Floats], Flags]
@@ -44,6 +45,13 @@ _THINNING_SHARE: Final = 0.5
 #: A direct link is as long as so many step-overs at most, or this long, mm.
 _LINK_STEPS: Final = 4.0
 _LINK: Final = 3.0
+
+#: What helps a part of a tool that mills flanks.
+_FLANK_CURES: Final = {
+    Role.CUTTER: "take a thinner or shorter cutter, or blade finish by points",
+    Role.SHANK: "take longer flutes or a thinner neck, or blade finish by points",
+    Role.HOLDER: "take a longer tool or a thinner holder, or blade finish by points",
+}
 
 #: A ball this far in the form of the shroud still touches it only, mm.
 _NEAR: Final = 0.01
@@ -58,6 +66,8 @@ class StepPaths:
     families      its passes, once for all blades that are alike; none of steps round the part
     axes          of these families, with what was proven of them
     flanks        of flank milling: both sides of the blade, and of the splitter, with what is left of them
+    clearance     of flank milling: the least of each part of the tool, that of the cutter to what it does not mill
+    share         of the wanted clearances that is kept
     left          what a step round the part leaves besides its allowance, where the tool's side would cut too much
     """
 
@@ -69,6 +79,8 @@ class StepPaths:
     families: tuple[PassFamily, ...] = ()
     axes: tuple[ToolAxes, ...] = ()
     flanks: tuple[BladeFlank, ...] = ()
+    clearance: tuple[PartClearance, ...] = ()
+    share: float = 1.0
     left: float = 0.0
 
 
@@ -165,7 +177,8 @@ class _StepMaker:
             families.append(family)
             fields.append(found)
         names, paths = _named(step, copies)
-        return StepPaths(step, tool, radius, names, paths, tuple(families), tuple(fields))
+        share = min(one.share for one in fields)
+        return StepPaths(step, tool, radius, names, paths, tuple(families), tuple(fields), share=share)
 
     def _within(self, step: MachiningStep) -> Progress:
         """Progress within a step, which its stages do not name."""
@@ -185,6 +198,8 @@ class _StepMaker:
         is_clear = pose_check(obstacles, shape, radius, step.overcut, step.overcut + SLACK)
         copies: list[tuple[float, LinkedPath]] = []
         flanks: list[BladeFlank] = []
+        clearance, share = list[PartClearance](), 1.0
+        body = tool_body(shape, radius, Margins(0.0, 0.0, 0.0, 1.0))
         within = self._within(step)
         for blade in _kinds_of_blades(impeller):
             first, *rest = (angle for each, angle in impeller.blades() if each is blade)
@@ -192,12 +207,17 @@ class _StepMaker:
             found = [_climbing(one) for one in sides]
             family = PassFamily(tuple(one for one, _ in found), radius, step.way).turned(first)
             turned = [rotated(axis, first) for _, axis in found]
+            own = "blade 1" if blade is impeller.blade else "splitter 1"
+            clearance += least_clearances(obstacles, body, family.centres(), np.concatenate(turned), [own])
+            share = min(share, _kept(step, tool, clearance))
             space = self._space(step, shape, radius, radius, turned)
             path = link_passes(family.passes, turned, space, _links(step), radius, is_clear, step.name, within)
             copies += [(angle, path.turned(angle - first)) for angle in (first, *rest)]
             flanks += sides
         names, paths = _named(step, copies)
-        return StepPaths(step, tool, radius, names, paths, flanks=tuple(flanks))
+        return StepPaths(
+            step, tool, radius, names, paths, flanks=tuple(flanks), clearance=tuple(clearance), share=share
+        )
 
     def _everywhere(self, angles: Sequence[float]) -> Reachable | None:
         """Which tool axes a machine reaches in all copies of a family."""
@@ -269,6 +289,33 @@ def _named(
     """Names and paths of the copies of a step, by their angles about Z."""
     paths = tuple(path for _, path in sorted(copies, key=lambda each: each[0]))
     return tuple(f"{step.name}_{k}" for k in range(1, len(paths) + 1)), paths
+
+
+def _kept(step: MachiningStep, tool: LibraryTool, clearance: Sequence[PartClearance]) -> float:
+    """The share of the wanted clearances that is kept.
+
+    Raises
+    ------
+    InputError
+        If not even the least is: with the place, what is in the way of which part of the tool, and what helps.
+    """
+    cutter, shank, holder, _ = step.clearance
+    wanted = Wanted(cutter=cutter, shank=shank, holder=holder)
+    for share in SHARES:
+        margins = wanted.margins(share)
+        least = {Role.CUTTER: margins.cutter, Role.SHANK: margins.shank, Role.HOLDER: margins.holder}
+        missing = [one for one in clearance if one.distance < least[one.part]]
+        if not missing:
+            return share
+    problems = []
+    for one in missing:
+        x, y, z = one.centre
+        what = (
+            f"{one.part} and {one.body} do not clear each other with the ball's centre at ({x:.2f}, {y:.2f}, {z:.2f}): "
+            f"{one.distance:.3f} mm are between them, and {least[one.part]:g} are the least"
+        )
+        problems.append(Problem(tool.name, 0, what, _FLANK_CURES[one.part]))
+    raise InputError(problems)
 
 
 def _links(step: MachiningStep) -> Links:

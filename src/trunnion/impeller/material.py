@@ -17,8 +17,8 @@ import numpy as np
 
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.impeller.impeller import Impeller
+from trunnion.impeller.paths.least_clearances import PartClearance
 from trunnion.impeller.paths.shroud import shroud_form
-from trunnion.impeller.paths.tool_axes import PartClearance
 from trunnion.impeller.steps import ROUND_STEPS, MachiningStep, StepKind
 from trunnion.simulation.tools.profile import Role
 

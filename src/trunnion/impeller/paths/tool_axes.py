@@ -21,6 +21,7 @@ from trunnion.impeller.paths.axis_field import AxisField, FieldFit, fit_field
 from trunnion.impeller.paths.axis_regions import Margin, Regions, climb, grow_regions, regions_about, sphere
 from trunnion.impeller.paths.clearance import Margins, Obstacles, ToolBody, distances_of, margins_of, tool_body
 from trunnion.impeller.paths.clearance_kernel import ToolData
+from trunnion.impeller.paths.least_clearances import FAR, PartClearance, least_clearances
 from trunnion.impeller.paths.passes import PassFamily, Way
 from trunnion.impeller.progress import Advance, Progress, silent
 from trunnion.simulation.tools.profile import Role, ToolShape
@@ -39,8 +40,8 @@ _LEAST_WIDTH: Final = 0.25
 _ROUNDS: Final = 8
 _ADDED: Final = 60
 
-#: Parts of the wanted clearances that are tried.
-_SHARES: Final = (1.0, 0.5, 0.25, 0.0)
+#: Parts of the wanted clearances that are tried, from all of them to the least.
+SHARES: Final = (1.0, 0.5, 0.25, 0.0)
 
 #: The cutter leans away from the surface at least so much beside its ball, degrees.
 _LEAST_LEAN: Final = 0.2
@@ -50,15 +51,6 @@ _DIRECTIONS: Final = 2000
 
 #: Places in the way of a field at which the reason is sought.
 _ASKED: Final = 8
-
-#: One of so many poses is looked at before all of them are.
-_SOME: Final = 16
-
-#: What tells a least distance from those that are only known to be no less, mm.
-_MORE: Final = 1e-6
-
-#: Clearances are told up to this, mm.
-_FAR: Final = 10.0
 
 #: A field that is out of a cone by less than this is in it.
 _NEAR: Final = 1e-6
@@ -84,26 +76,6 @@ class Wanted:
         """What is asked for if only a share of the clearances can be had."""
         shank, holder = (max(share * value, min(self.least, value)) for value in (self.shank, self.holder))
         return Margins(share * self.cutter, shank, holder, max(share * self.lean, min(_LEAST_LEAN, self.lean)))
-
-
-@dataclass(frozen=True, slots=True)
-class PartClearance:
-    """The least distance of a part of the tool to a body, mm, and where: the ball's centre, and the tool axis there.
-
-    The cutter counts from one radius above its ball's centre on. Distances are measured up to 10 mm.
-    """
-
-    part: Role
-    body: str
-    distance: float
-    centre: tuple[float, float, float]
-    axis: tuple[float, float, float]
-
-    def __str__(self) -> str:
-        """Return the distance in words, such as ``shank 2.500 mm from blade 1``."""
-        if self.distance >= _FAR:
-            return f"{self.part} {_FAR:g} mm or more from all blades and the hub"
-        return f"{self.part} {self.distance:.3f} mm from {self.body}"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -152,12 +124,12 @@ def choose_axes(
         If there is no such field: with the place, what is in the way of which part of the tool, and what helps.
     """
     search = _Search(family, obstacles, wanted.tilt, reachable, progress)
-    for share in _SHARES:
+    for share in SHARES:
         body = tool_body(tool, family.radius, wanted.margins(share))
         field = search.field(body)
         if field is not None:
             axes = tuple(field.axes(one.place) for one in family.passes)
-            clearance = _least(obstacles, body, search.centres, np.concatenate(axes))
+            clearance = least_clearances(obstacles, body, search.centres, np.concatenate(axes))
             return ToolAxes(field, axes, clearance, share, _turning(family, axes))
     raise InputError(search.fault(tool, body))
 
@@ -307,7 +279,7 @@ class _Search:
 
     def _missing(self, pieces: ToolData, point: Ints, axis: Floats) -> tuple[float, str]:
         """How much pieces of a tool miss at a point with an axis, and the body that is in their way."""
-        distances = distances_of(self._obstacles, pieces, self.centres[point], axis, _FAR)[0] - pieces.wanted[:, None]
+        distances = distances_of(self._obstacles, pieces, self.centres[point], axis, FAR)[0] - pieces.wanted[:, None]
         _, number = np.unravel_index(int(distances.argmin()), distances.shape)
         return -float(distances.min()), self._obstacles.names[number]
 
@@ -370,21 +342,6 @@ def _cells(places: Floats, counts: Floats) -> Ints:
 def _nearest(places: Floats, asked: Floats) -> Ints:
     """Rows of places that are nearest to those asked."""
     return np.array([int(np.linalg.norm(places - one, axis=1).argmin()) for one in asked])
-
-
-def _least(obstacles: Obstacles, body: ToolBody, centres: Floats, axes: Floats) -> tuple[PartClearance, ...]:
-    """For each part of a tool, the least of its distances, the nearest part first."""
-    found = []
-    for role in dict.fromkeys(body.roles):
-        pieces = body.part(role)
-        # What some poses have is no less than the least: what is farther away than that need not be known.
-        some = distances_of(obstacles, pieces, centres[::_SOME], axes[::_SOME], _FAR)
-        enough = min(float(some.min()) + _MORE, _FAR)
-        own = distances_of(obstacles, pieces, centres, axes, enough).min(axis=1)
-        row, number = np.unravel_index(int(own.argmin()), own.shape)
-        centre, axis = ((float(x), float(y), float(z)) for x, y, z in (centres[row], axes[row]))
-        found.append(PartClearance(role, obstacles.names[number], float(own[row, number]), centre, axis))
-    return tuple(sorted(found, key=lambda one: one.distance))
 
 
 def _turning(family: PassFamily, axes: Sequence[Floats]) -> float:
