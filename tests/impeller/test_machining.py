@@ -156,8 +156,8 @@ def test_flanks_are_milled_from_both_sides_with_the_blade_on_the_right(
     assert list(least) == [Role.CUTTER, Role.SHANK]
     assert least[Role.CUTTER].body != "blade 1"  # that one it cuts
     assert found.share == 1.0
-    # Balls in the cutter by exact distances: hub and blades go on beyond the stock there, so that less may be found, and
-    # the cutter counts from one radius above its lowest ball on, so that the next balls reach below that.
+    # Balls in the cutter by exact distances: hub and blades go on beyond the stock there, so that less may be found,
+    # and the cutter counts from one radius above its lowest ball on, so that the next balls reach below that.
     cuts = path.phase == Phase.CUT
     lower, higher = (
         np.concatenate([path.centre[cuts] + up * path.axis[cuts] for up in np.linspace(first, 22.0, 41)])
