@@ -32,6 +32,10 @@ _ADDED: Final = 2
 _WORST: Final = 500
 _ROUNDS: Final = 12
 
+#: A start that cuts so many times deeper than the limit of overcut is fitted without that limit first: kept to it from
+#: the beginning, the fit ends at paths that leave far more.
+_DEEPER: Final = 4.0
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FlankCut:
@@ -77,8 +81,12 @@ def mill_flank(
     points = flank.flat()
     start = start_path(flank, cutter, control_points, below, lead)
     with progress("fit of a flank", limits.rounds + _ADDED * _ROUNDS, "rounds") as advance:
-        fit = fit_path(start, points, limits, floor, advance)
-        rounds = len(fit.history) - 1
+        rounds, begun = 0, start
+        if limits.overcut is not None and deviations_of(start, points)[0].min() < -_DEEPER * limits.overcut:
+            fit = fit_path(start, points, replace(limits, overcut=None), floor, advance)
+            rounds, begun = len(fit.history) - 1, fit.path
+        fit = fit_path(begun, points, limits, floor, advance)
+        rounds += len(fit.history) - 1
         for _ in range(_ADDED):
             left = deviations_of(fit.path, dense)[0][:, 0]
             worse = _worse(left, fit, limits)
