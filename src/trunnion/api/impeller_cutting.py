@@ -27,10 +27,11 @@ from trunnion.api.targets import open_target
 from trunnion.arrays import Flags, Floats
 from trunnion.cl.writers import WRITERS
 from trunnion.controls import load_control
-from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.machining import StepPaths, step_paths
-from trunnion.impeller.paths.tool_axes import PartClearance
+from trunnion.impeller.material import Material, material_before, order_problems, side_problems
+from trunnion.impeller.paths.least_clearances import PartClearance
 from trunnion.impeller.paths.toolpaths import CuttingData, operation_of
 from trunnion.impeller.steps import MachiningStep, file_stem
 from trunnion.jit import compile_ahead
@@ -56,9 +57,10 @@ class CutStep:
     toolpath   its operations, one for each blade or channel, as the CL file says them
     points     of all of them
     seconds    of each operation on the machine, with what leads to it
-    clearance  of each part of the tool, the least that it has to a blade or the hub, where the step goes round the part
-               to the stock; none where the step mills flanks
+    clearance  of each part of the tool, the least that it has to a blade or the hub, or to the stock where the step goes
+               round the part. In flank milling the cutter's is that to the hub and to other blades
     flanks     of flank milling: overcut and undercut of each side, mm
+    before     what metal stands before it, an estimate
     """
 
     step: MachiningStep
@@ -66,6 +68,7 @@ class CutStep:
     points: int
     seconds: tuple[float, ...]
     clearance: tuple[PartClearance, ...]
+    before: Material
     flanks: tuple[tuple[float, float], ...] = ()
 
     @property
@@ -79,6 +82,7 @@ class ImpellerCut:
     """An impeller as it is machined.
 
     steps       in their order
+    remarks     warnings: steps that find more metal than they can take, by an estimate
     result      of the post: the program, its proof and its files
     cl_files    one for each step
     simulation  what the program leaves of the stock, against the model; None: it was not simulated
@@ -89,6 +93,7 @@ class ImpellerCut:
     result: PostResult
     cl_files: tuple[Path, ...]
     simulation: SimulationResult | None
+    remarks: tuple[Problem, ...] = ()
 
     def __repr__(self) -> str:
         """Return what matters in a notebook."""
@@ -163,6 +168,8 @@ def cut_impeller(
     chosen = _chosen(found, operations)
     loaded = as_machine(machine)
     _check_speeds(found, chosen, loaded)
+    remarks = tuple(order_problems(found, chosen))
+    observer.problems(remarks)
     control = load_control(loaded.control)
     own: dict[str, SettingValue] = {"title": definition.name}
     if control.subprograms is not None:
@@ -175,7 +182,8 @@ def cut_impeller(
         files = ImpellerFiles(folder, file_stem(definition.name), control.extension)
         files.check_own()
         try:
-            return _cut(found, chosen, loaded, job, files, read, cell, observer)
+            cut = _cut(found, chosen, loaded, job, files, read, cell, observer)
+            return replace(cut, remarks=(*remarks, *cut.remarks))
         finally:
             files.remember_report()
 
@@ -194,7 +202,7 @@ def _cut(
         compile_ahead(kernels.POSTING)
         made, texts, toolpaths = [], [], []
         with observer.progress("tool paths", len(chosen), "steps") as advance:
-            for paths in step_paths(found, reachable_axes(machine), chosen):
+            for paths in step_paths(found, reachable_axes(machine), chosen, observer.progress):
                 file = files.cl_file(paths.step)
                 text = cl_text(step_toolpath(paths, definition.name, str(file)))
                 made.append(paths)
@@ -204,14 +212,17 @@ def _cut(
         result = post_toolpaths(toolpaths, job, target, observer)
         for file, text in texts:
             target.files.add_file(file.name).write(text)
-        cut = tuple(_steps(made, toolpaths, result))
+        cut = tuple(_steps(found, made, toolpaths, result))
+        beside = [each for one in cut for each in side_problems(definition.file, one.step, one.before, one.clearance)]
+        beside += [_shared(definition.file, one) for one in made if one.share < 1.0]
+        observer.problems(beside)
         simulated = None
         if cell is not None:
             simulated = _simulated(found, machine, cut, result, cell, observer)
             page = render_simulation_page(simulation_content(simulated))
             target.files.add_file(files.simulation.name).writelines(page)
             target.files.add_file(files.picture.name).write(picture(stock_surface(simulated.simulation.stock)))
-    return ImpellerCut(found, cut, result, tuple(file for file, _ in texts), simulated)
+    return ImpellerCut(found, cut, result, tuple(file for file, _ in texts), simulated, tuple(beside))
 
 
 def _chosen(impeller: Impeller, names: Sequence[str]) -> list[str]:
@@ -294,8 +305,13 @@ def cl_text(toolpath: Toolpath) -> bytes:
     return sink.getvalue()
 
 
-def _steps(made: Sequence[StepPaths], toolpaths: Sequence[Toolpath], result: PostResult) -> Iterator[CutStep]:
+def _steps(
+    impeller: Impeller, made: Sequence[StepPaths], toolpaths: Sequence[Toolpath], result: PostResult
+) -> Iterator[CutStep]:
     """The steps with the times of their operations."""
+    before = {
+        step.name: stands for step, stands in zip(impeller.definition.steps, material_before(impeller), strict=False)
+    }
     assert result.verification is not None
     seconds, _ = durations(result.verification)
     of_operation = iter([float(seconds[rows.first : rows.end].sum()) for rows in result.verification.operations])
@@ -307,7 +323,15 @@ def _steps(made: Sequence[StepPaths], toolpaths: Sequence[Toolpath], result: Pos
                 clearance[one.part] = one
         own = tuple(next(of_operation) for _ in toolpath.operations)
         flanks = tuple((one.cut.left.overcut, one.cut.left.undercut) for one in paths.flanks)
-        yield CutStep(paths.step, toolpath, points, own, tuple(clearance.values()), flanks)
+        yield CutStep(paths.step, toolpath, points, own, tuple(clearance.values()), before[paths.step.name], flanks)
+
+
+def _shared(file: str, paths: StepPaths) -> Problem:
+    """The warning about a step that keeps only a share of its clearances."""
+    cutter, shank, holder, _ = paths.step.clearance
+    wanted = f"{cutter:g}, {shank:g} and {holder:g} mm are wanted of cutter, shank and holder"
+    what = f"{paths.step.name}: keeps only {paths.share:.0%} of its clearances: {wanted}"
+    return Problem(file, paths.step.line, what, "choose a thinner or longer tool, or want less", Severity.WARNING)
 
 
 def _simulated(

@@ -139,6 +139,11 @@ def _cut_data(found: ImpellerCut) -> dict[str, object]:
                     {"part": one.part, "body": one.body, "mm": round(one.distance, _DECIMALS), "at": one.centre}
                     for one in step.clearance
                 ],
+                "before": {
+                    "form_mm": round(step.before.form, _DECIMALS),
+                    "hub_mm": round(step.before.hub, _DECIMALS),
+                    "blades_mm": None if step.before.blades is None else round(step.before.blades, _DECIMALS),
+                },
                 "flanks": [
                     {"overcut_mm": round(over, _DECIMALS), "undercut_mm": round(under, _DECIMALS)}
                     for over, under in step.flanks
@@ -146,6 +151,7 @@ def _cut_data(found: ImpellerCut) -> dict[str, object]:
             }
             for step in found.steps
         ],
+        "remarks": [{"file": r.file, "line": r.line, "what": r.what, "cure": r.cure} for r in found.remarks],
         "checks": {check.key: check.passed for check in found.result.checks},
         "simulation": None if found.simulation is None else simulation_data(found.simulation),
     }

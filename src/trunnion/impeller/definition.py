@@ -14,7 +14,7 @@ from trunnion.definitions import Table, load_table
 from trunnion.errors import InputError, Problem
 from trunnion.geometry.parameters import PARAMETERIZATIONS
 from trunnion.geometry.point_tables import PointTable, read_point_table, scaled
-from trunnion.impeller.steps import MachiningStep, read_name, read_steps
+from trunnion.impeller.steps import MachiningStep, StepKind, read_name, read_steps
 from trunnion.simulation.tools.library.library import LibraryTool
 from trunnion.simulation.tools.library.toml_library import read_tool_tables
 
@@ -55,6 +55,7 @@ class ImpellerDefinition:
     splitter          share of the blade's length at which its splitters begin; None: it has none
     fillet            radius between blade and hub, mm
     tools, steps      with which it is machined, in their order; none where the definition has none
+    premachined       what was made elsewhere before these steps
     places            file and line of each key, by its path, such as ``stock.height_mm``
     """
 
@@ -71,6 +72,7 @@ class ImpellerDefinition:
     stock: StockSize
     tools: tuple[LibraryTool, ...] = ()
     steps: tuple[MachiningStep, ...] = ()
+    premachined: tuple[StepKind, ...] = ()
     places: Mapping[str, tuple[str, int]] = field(default_factory=dict)
 
     def problem(self, key: str, what: str, cure: str) -> Problem:
@@ -107,6 +109,7 @@ def read_impeller(path: Path) -> ImpellerDefinition:
         stock=_stock(stock),
         tools=tools,
         steps=read_steps(root, tools),
+        premachined=_premachined(stock),
         places=_places(root, blade, hub, stock),
     )
     for table in (root, blade, hub, stock):
@@ -141,6 +144,17 @@ def _stock(table: Table) -> StockSize:
     if diameter and bore >= diameter:
         table.add_problem("bore_mm", f"is {bore:g}, not less than the diameter", "make it smaller")
     return StockSize(diameter, height, table.number("bottom_mm", 0.0, at_least=-_GREATEST, at_most=_GREATEST), bore)
+
+
+def _premachined(stock: Table) -> tuple[StepKind, ...]:
+    """Kinds of steps that were made elsewhere."""
+    words = stock.texts("premachined", ())
+    kinds = list(StepKind)
+    for word in words:
+        if word not in kinds:
+            what = f"names {word!r}, which is no kind of operation"
+            stock.add_problem("premachined", what, f"name {', '.join(kinds)}")
+    return tuple(StepKind(word) for word in words if word in kinds)
 
 
 def _sections(blade: Table, path: Path) -> tuple[PointTable, ...]:

@@ -18,9 +18,9 @@ from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
 from trunnion.impeller.definition import ImpellerDefinition
 from trunnion.impeller.impeller import Impeller
+from trunnion.impeller.paths.least_clearances import PartClearance
 from trunnion.impeller.paths.passes import Pass
 from trunnion.impeller.paths.shroud import shroud_form
-from trunnion.impeller.paths.tool_axes import PartClearance
 from trunnion.impeller.steps import MachiningStep, StepKind
 from trunnion.simulation.tools.profile import Role, ToolShape
 
