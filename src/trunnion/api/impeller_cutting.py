@@ -57,8 +57,8 @@ class CutStep:
     toolpath   its operations, one for each blade or channel, as the CL file says them
     points     of all of them
     seconds    of each operation on the machine, with what leads to it
-    clearance  of each part of the tool, the least that it has to a blade or the hub, or to the stock where the step goes
-               round the part. In flank milling the cutter's is that to the hub and to other blades
+    clearance  of each part of the tool, the least that it has to a blade or the hub, or to the stock where the step
+               goes round the part. In flank milling the cutter's is that to the hub and to other blades
     flanks     of flank milling: overcut and undercut of each side, mm
     before     what metal stands before it, an estimate
     """

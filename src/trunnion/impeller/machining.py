@@ -67,8 +67,8 @@ class StepPaths:
     families      its passes, once for all blades that are alike; none of steps round the part
     axes          of these families, with what was proven of them
     flanks        of flank milling: both sides of the blade, and of the splitter, with what is left of them
-    clearance     of a step round the part: shank and holder to the stock, where they are near; of flank milling: each part
-                  of the tool, the cutter to what it does not mill
+    clearance     of a step round the part: shank and holder to the stock, where they are near; of flank milling: each
+                  part of the tool, the cutter to what it does not mill
     share         of the wanted clearances that is kept
     left          what a step round the part leaves besides its allowance, where the tool's side would cut too much
     """
