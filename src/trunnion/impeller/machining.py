@@ -29,7 +29,7 @@ from trunnion.impeller.paths.linking import FreeSpace, IsClear, LinkedPath, Link
 from trunnion.impeller.paths.passes import Pass, PassFamily
 from trunnion.impeller.paths.root_blend import RootBlend, root_blend
 from trunnion.impeller.paths.shroud import shroud_finish, shroud_form, stock_roughing
-from trunnion.impeller.paths.stock_clearance import rough_before, stock_before, stock_clearances
+from trunnion.impeller.paths.stock_clearance import is_roughed, stock_before, stock_clearances
 from trunnion.impeller.paths.tool_axes import SHARES, ToolAxes, Wanted, choose_axes
 from trunnion.impeller.progress import Progress, silent
 from trunnion.impeller.steps import ROUND_STEPS, MachiningStep, StepKind
@@ -152,7 +152,7 @@ class _StepMaker:
         space = self._space(step, tool.shape(), half, radius, turned.axes)
         check, progress = _outside(impeller, radius), self._within(step)
         before = stock_before(impeller, step, step.stepover.on(half))
-        slotting = step.tilt > 0.0 and rough_before(impeller.definition, step) is None
+        slotting = step.tilt > 0.0 and not is_roughed(impeller.definition, step)
         passes = list(zip(turned.passes, turned.axes, strict=True))
         clearance = stock_clearances(tool.shape(), radius, 0.0 if slotting else half, passes, before)
         path = link_passes(turned.passes, turned.axes, space, _links(step), radius, check, step.name, progress)

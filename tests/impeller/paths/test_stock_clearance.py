@@ -12,7 +12,7 @@ from trunnion.impeller.definition import read_impeller
 from trunnion.impeller.impeller import build_impeller
 from trunnion.impeller.machining import StepPaths, step_paths
 from trunnion.impeller.paths.passes import Pass
-from trunnion.impeller.paths.stock_clearance import filled, stock_clearances
+from trunnion.impeller.paths.stock_clearance import filled, stock_before, stock_clearances
 from trunnion.simulation.tools.shapes import tool_shape
 from trunnion.simulation.tools.sizes import BodyPiece, ToolKind, ToolSizes
 
@@ -48,6 +48,22 @@ def test_a_holder_that_stays_above_the_stock_is_told(tmp_path: Path) -> None:
     assert (holder.part, holder.body) == ("holder", "the stock")
     assert holder.distance == pytest.approx(lowest + 25.0 - 35.0 - 0.25, abs=1e-3)
     assert finish.clearance == ()
+
+
+def test_a_form_that_was_turned_elsewhere_is_the_stock(tmp_path: Path) -> None:
+    head, _, rest = TEXT.partition('[[operation]]\nkind = "stock roughing"')
+    text = head + rest[rest.index("[[operation]]") :]
+    (tmp_path / "blade_points.csv").write_bytes((FOLDER / "blade_points.csv").read_bytes())
+    wide = []
+    for told in ("", 'premachined = ["stock roughing"]\n'):
+        path = tmp_path / "part.toml"
+        path.write_text(text.replace("[stock]\n", f"[stock]\n{told}"), "utf-8")
+        impeller = build_impeller(read_impeller(path))
+        (finish,) = impeller.definition.steps
+        outline = stock_before(impeller, finish, 1.0)(Pass(np.zeros((2, 3)), np.zeros((2, 3)), np.zeros((2, 1))))
+        wide.append(float(outline[outline[:, 1] > 20.0, 0].max()))
+    assert wide[0] == pytest.approx(45.0)
+    assert wide[1] < 40.0
 
 
 @pytest.mark.parametrize(

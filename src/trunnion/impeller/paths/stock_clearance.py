@@ -101,16 +101,22 @@ def stock_before(impeller: Impeller, step: MachiningStep, width: float) -> Calla
     if step.kind is StepKind.STOCK_ROUGHING:
         return lambda one: _dense(np.column_stack((np.full(2, outside - width * one.layer), ends)))
     rough = rough_before(definition, step)
-    if rough is None:
+    if not is_roughed(definition, step):
         side = np.column_stack((np.full(2, outside), ends))
     else:
-        heights, form = shroud_form(impeller, rough.allowance)
+        allowance, step_down = (rough.allowance, rough.step_down) if rough else (0.0, 0.0)
+        heights, form = shroud_form(impeller, allowance)
         limit = np.maximum.accumulate(form[::-1])[::-1]
         # A flat mill leaves at a height what its end has left by one turn below.
-        turned = np.interp(heights - rough.step_down, heights, limit)
+        turned = np.interp(heights - step_down, heights, limit)
         side = np.column_stack((np.minimum(turned, outside), heights))[::-1]
     outline = _dense(side)
     return lambda _: outline
+
+
+def is_roughed(definition: ImpellerDefinition, step: MachiningStep) -> bool:
+    """Whether the stock has the form of the shroud before a step: by stock roughing, here or elsewhere."""
+    return StepKind.STOCK_ROUGHING in definition.premachined or rough_before(definition, step) is not None
 
 
 def rough_before(definition: ImpellerDefinition, step: MachiningStep) -> MachiningStep | None:
