@@ -21,9 +21,9 @@ from trunnion.machines import Machine, forward, kinematic_parameters
 from trunnion.machines.links import link_chain
 from trunnion.model.axis_positions import RotaryWords, joints_from_rows, resolve_angles
 from trunnion.model.run import CHUNK_ROWS, Orientation, ProgrammedWord, Run
+from trunnion.model.stated_tips import StatedTips, turns_without_tcp
 from trunnion.model.subdivision import circle_points, slerp
 from trunnion.model.toolpath import Kind
-from trunnion.simulation.stated_tips import StatedTips, turns_without_tcp
 
 #: How far an axis may be from where the control has it within a piece, mm; rotary axes count at ``_REACH`` mm.
 SAG: Final = 0.02
