@@ -52,7 +52,7 @@ def test_before_the_start_and_after_the_end_the_machine_stands(run: Run) -> None
 
 
 def test_the_spindle_turns_with_its_rows(tmp_path: Path) -> None:
-    (tmp_path / "a.mpf").write_text(PROGRAM.replace("M3", "M4"), encoding="utf-8")
+    (tmp_path / "a.mpf").write_text(PROGRAM.replace("M3\n", "M4\n"), encoding="utf-8")
     timed = time_run(run_program(tmp_path / "a.mpf", load_machine("yl569")))
     state = timed.at(timed.ends)
     assert state.rpm.tolist() == [-3000.0, -3000.0, -3000.0]

@@ -47,7 +47,7 @@ class RowFeeds:
         run, state = self._run, self._run.state
         tcp = state.tcp.part(first, end)
         feeds = np.empty((4, end - first))
-        _fill_feeds(
+        fill_feeds(
             first, positions.joints, positions.tip, run.kind[first:end], tcp, state.feed.part(first, end),
             state.feed_mode.part(first, end), state.rpm.part(first, end), self._lengths(first, end, positions, tcp),
             self._rotary, run.arcs.row, self._arc_length, feeds,
@@ -87,7 +87,7 @@ def arc_lengths(run: Run) -> Floats:
 
 
 @kernel(writes="feeds")
-def _fill_feeds(
+def fill_feeds(
     first: int,
     joints: Floats2,
     tip: Floats2,
