@@ -125,6 +125,6 @@ def test_a_stronger_machine_is_no_slower(path: list[tuple[float, ...]], feed: fl
     steps = np.array(path)
     axes = (replace(axis, acceleration=(axis.acceleration or 0.0) * factor) for axis in BC.axes)
     stronger = replace(BC, axes=tuple(axes))
-    path = path_of(steps, np.linalg.norm(steps, axis=1), feed, np.zeros(len(steps), bool))
-    ours, theirs = (piece_seconds(path, AxisDynamics.of(each)).sum() for each in (BC, stronger))
+    given_ = path_of(steps, np.linalg.norm(steps, axis=1), feed, np.zeros(len(steps), bool))
+    ours, theirs = (piece_seconds(given_, AxisDynamics.of(each)).sum() for each in (BC, stronger))
     assert theirs <= ours * (1.0 + 1e-9)

@@ -132,9 +132,9 @@ class MachineFacts:
     spindle_power_kw: float | None = None
     spindle_torque_nm: float | None = None
     spindle_acceleration_rpm_s: float | None = None
+    tool_change_s: float | None = None
     tool_holder: str | None = None
     tool_pockets: int | None = None
-    tool_change_s: float | None = None
     table_size_mm: tuple[float, float] | None = None
     table_diameter_mm: float | None = None
     table_load_kg: float | None = None

@@ -1,11 +1,13 @@
 """The run of a path under jerks of its axes as well: its speed goes from one speed to the next by S-curves.
 
 A path is a row of stretches, each with a greatest speed, acceleration and jerk along it, and of the nodes between them.
-From a node that is passed at a speed v without acceleration, no node at the distance d is passed faster than by one
-S-curve over d, with the least acceleration and jerk of the stretches between. Nodes are taken in the order of what they
-allow: one that no S-curve from a slower node has lowered is passed at the speed that it allows, without acceleration,
-and lowers those around it. Between two nodes of this kind the path is run by the seven phases of the textbook: up by an
-S-curve, evenly, and down by one. So jerk and acceleration along the path are within the least limits between the two.
+From a node that is passed at a speed v without acceleration, no node at the distance d is passed without acceleration
+faster than by one S-curve over d, with the least acceleration and jerk of the stretches between. Nodes are taken in the
+order of what they allow: one that no S-curve from a slower node has lowered is passed at the speed that it allows,
+without acceleration, and lowers those around it. Between two nodes of this kind the path is run by the seven phases of
+the textbook: up by an S-curve, evenly, and down by one. So jerk and acceleration along the path are within the least
+limits between the two. Where such a curve goes through another node faster than that allows (``check_nodes``), the node
+is to be passed without acceleration too, and all is done again.
 
 In a corner the direction changes by d over its length 2 h as fast as a triangle rises and falls, which departs from it
 by d h / 6 and needs the acceleration d v^2 / h and the jerk d v^3 / h^2. Where a ramp leads through a corner, its third
@@ -218,16 +220,21 @@ def _corner(
 
 
 @kernel(writes="caps passed")
-def lower_nodes(stretch: Floats2, caps: Floats, passed: Flags) -> None:
+def lower_nodes(stretch: Floats2, must: Flags, caps: Floats, passed: Flags) -> None:
     """Lower the ``caps`` (s + 1,) of nodes to what S-curves from slower ones leave, and fill ``passed``.
 
-    passed  (s + 1,)  nodes that are passed without acceleration
+    must    (s + 1,)  nodes that are to be passed without acceleration
+    passed  (s + 1,)  nodes that are
     """
-    allowed, fastest = caps.copy(), 0.0
+    allowed, least = caps.copy(), np.array([0.0, np.inf, np.inf])
+    for k in range(stretch.shape[0]):
+        least[1], least[2] = min(least[1], stretch[k, 2]), min(least[2], stretch[k, 3])
     waiting = [(caps[node], node) for node in range(caps.shape[0])]
     for node in range(caps.shape[0]):
-        fastest = max(fastest, caps[node])
+        least[0] = max(least[0], caps[node])
         passed[node] = False
+        if must[node]:
+            allowed[node] = -1.0
     heapify(waiting)
     while len(waiting) > 0:
         speed, node = heappop(waiting)
@@ -235,15 +242,18 @@ def lower_nodes(stretch: Floats2, caps: Floats, passed: Flags) -> None:
             continue
         passed[node] = True
         for way in range(-1, 2, 2):
-            end = _lower(stretch, caps, passed, allowed, node, way, fastest)
+            end = _lower(stretch, caps, passed, allowed, node, way, least)
             if end >= 0:
                 allowed[end] = -1.0
                 heappush(waiting, (caps[end], end))
 
 
 @inner
-def _lower(stretch: Floats2, caps: Floats, passed: Flags, allowed: Floats, node: int, way: int, fastest: float) -> int:
-    """Lower what is around a node, one way; returns where it has not come to an end, or -1."""
+def _lower(stretch: Floats2, caps: Floats, passed: Flags, allowed: Floats, node: int, way: int, least: Floats) -> int:
+    """Lower what is around a node, one way; returns a node that is to be passed without acceleration, or -1.
+
+    ``least``: the greatest speed of all, and the least acceleration and jerk.
+    """
     distance, acceleration, jerk = 0.0, np.inf, np.inf
     at, count = node, 0
     while 0 <= at + way < caps.shape[0]:
@@ -251,13 +261,12 @@ def _lower(stretch: Floats2, caps: Floats, passed: Flags, allowed: Floats, node:
         at += way
         distance += stretch[between, 0]
         acceleration, jerk = min(acceleration, stretch[between, 2]), min(jerk, stretch[between, 3])
-        reached = reach(caps[node], distance, acceleration, jerk)
         if passed[at]:
             return -1
-        caps[at] = min(caps[at], reached)
-        if reached >= fastest:
-            return -1
+        caps[at] = min(caps[at], reach(caps[node], distance, acceleration, jerk))
         count += 1
-        if count == 500 or allowed[at] < 0.0:  # a hostile path: there it is passed without acceleration
+        if count == 500 or allowed[at] < 0.0:
             return at
+        if reach(caps[node], distance, least[1], least[2]) >= least[0]:
+            return -1
     return -1

@@ -57,6 +57,38 @@ def run_stretches(stretch: Floats2, piece: Ints, caps: Floats, passed: Flags, se
     return count
 
 
+@kernel(writes="must")
+def check_nodes(stretch: Floats2, caps: Floats, passed: Flags, allowed: Floats, every: bool, must: Flags) -> int:
+    """Mark nodes that are passed faster than is ``allowed`` (s + 1,), in each curve the worst; returns how many.
+
+    every   all nodes within a curve that goes too fast are marked
+    """
+    curve = np.empty((7, 4))
+    marked, first = 0, 0
+    for node in range(1, caps.shape[0]):
+        if not passed[node]:
+            continue
+        worst, greatest = -1, 1.0 + 1e-9
+        parts = _curve(stretch, first, node, caps[first], caps[node], curve) if node > first + 1 else 0
+        part, done, distance = 0, 0.0, 0.0
+        for k in range(first + 1, node if parts > 0 else first):
+            distance += stretch[k - 1, 0]
+            way = way_of(curve[part, 0], curve[part, 1], curve[part, 2], curve[part, 3])
+            while part < parts - 1 and done + way < distance:
+                done, part = done + way, part + 1
+                way = way_of(curve[part, 0], curve[part, 1], curve[part, 2], curve[part, 3])
+            time = time_of(max(distance - done, 0.0), curve[part, 0], curve[part, 1], curve[part, 2], curve[part, 3])
+            speed = curve[part, 1] + time * (curve[part, 2] + 0.5 * time * curve[part, 3])
+            if speed > greatest * allowed[k]:
+                worst, greatest = k, speed / allowed[k] if allowed[k] > 0.0 else np.inf
+        if worst >= 0:
+            for k in range(first + 1 if every else worst, node if every else worst + 1):
+                must[k] = True
+                marked += 1
+        first = node
+    return marked
+
+
 @inner
 def _curve(stretch: Floats2, first: int, node: int, begin: float, end: float, curve: Floats2) -> int:
     """Fill the seven phases between two nodes; returns how many there are."""

@@ -5,6 +5,7 @@ Units: mm and degrees, seconds.
 """
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -12,8 +13,11 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.timing.dynamics import AxisDynamics
 from trunnion.timing.jerk_kernel import fill_stretches, lower_nodes
 from trunnion.timing.path import Path
-from trunnion.timing.phase_kernel import run_stretches
+from trunnion.timing.phase_kernel import check_nodes, run_stretches
 from trunnion.timing.speed_kernel import ACCELERATION, BEGIN, CORNER, END, TOP, plan_speeds
+
+#: After so many looks for nodes that are passed too fast all nodes of such curves are passed without acceleration.
+_MOST_ATTEMPTS: Final = 6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,10 +87,14 @@ def _stretches(path: Path, limits: Floats, reached: Floats) -> tuple[Floats, Int
         path.steps, path.length, path.rate / 60.0, path.tolerance, path.stops_after, limits, reached, stretch, piece,
         caps,
     )  # fmt: skip
-    caps = caps[: count + 1].copy()
-    passed = np.zeros(count + 1, np.bool_)
-    lower_nodes(stretch[:count], caps, passed)
-    return stretch[:count], piece[:count], caps, passed
+    stretch, allowed = stretch[:count], caps[: count + 1]
+    passed, must = np.zeros(count + 1, np.bool_), np.zeros(count + 1, np.bool_)
+    for attempt in range(_MOST_ATTEMPTS + 1):
+        caps = allowed.copy()
+        lower_nodes(stretch, must, caps, passed)
+        if not check_nodes(stretch, caps, passed, allowed, attempt >= _MOST_ATTEMPTS - 1, must):
+            break
+    return stretch, piece[:count], caps, passed
 
 
 def _even_phases(length: Floats, columns: Floats) -> Phases:
