@@ -12,9 +12,8 @@ from trunnion.cli.results import as_json, print_result
 from trunnion.cli.simulate import simulation_lines
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import InputError, argument_problem
-from trunnion.machines.motion_time import format_duration
 from trunnion.simulation.meshes import check_mesh_name, save_mesh
-from trunnion.wording import counted, one_line
+from trunnion.wording import counted, format_duration, one_line
 
 _DECIMALS: Final = 6
 

@@ -6,7 +6,6 @@ Out:    HTML, with all text from outside escaped.
 
 from collections.abc import Sequence
 
-from trunnion.machines.motion_time import format_duration
 from trunnion.reporting.content import ReportContent
 from trunnion.reporting.extents import AxisExtent, BlockReference, Extremes, TipExtent
 from trunnion.reporting.html_text import (
@@ -21,7 +20,7 @@ from trunnion.reporting.html_text import (
 from trunnion.reporting.simulation_page import simulation_section
 from trunnion.reporting.usage import OperationUsage, ToolUsage
 from trunnion.verification.results import Check, Place
-from trunnion.wording import counted
+from trunnion.wording import counted, format_duration
 
 #: Places that the page shows for each check; the JSON report has all of them.
 MAX_PLACES = 12

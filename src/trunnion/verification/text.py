@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from trunnion.machines.motion_time import format_duration
 from trunnion.model.toolpath import Kind
 from trunnion.verification.results import Check, Place, Verification
+from trunnion.wording import format_duration
 
 
 def check_lines(verification: Verification) -> Iterator[str]:
