@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import Any, Final, cast
 
 from trunnion import __version__
+from trunnion.cli.twin_arguments import add_twin
 
 
 def _key_value(text: str) -> tuple[str, str]:
@@ -142,6 +143,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     )
     _add_simulate(commands.add_parser("simulate", help="cut stock with NC programs: what is left, and what is hit"))
     _add_view(commands.add_parser("view", help="show an NC program on its machine, in a browser"))
+    _add_twin(commands.add_parser("twin", help="serve an NC program as a running machine: OPC UA and MTConnect"))
     _add_build(commands.add_parser("build", help="set up the definition of a machine, in a browser"))
     _add_info(commands.add_parser("info", help="show what CL files hold; no machine is needed"))
     _add_curve(commands.add_parser("curve", help="fit curves to measured points; no machine is needed"))
@@ -306,6 +308,12 @@ def _add_view(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--output", metavar="FILE.html", help="write a page that works offline, and serve nothing")
     _add_serving(parser)
     parser.set_defaults(run=_lazy_command("view", "run"))
+
+
+def _add_twin(parser: argparse.ArgumentParser) -> None:
+    add_twin(parser)
+    _add_subprograms(parser, "it")
+    parser.set_defaults(run=_lazy_command("twin", "run"))
 
 
 def _add_build(parser: argparse.ArgumentParser) -> None:
