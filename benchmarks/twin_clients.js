@@ -45,13 +45,13 @@ async function follow(space) {
     { samplingInterval: Number(interval), discardOldest: true, queueSize: 1000 }, TimestampsToReturn.Source);
   group.on("changed", (_item, value, index) => {
     if (value.statusCode.hasOverflowBit) lost += 1;
-    told[index].push([value.sourceTimestamp.getTime() * 1000 + (value.sourcePicoseconds || 0) / 1e6, value.value.value]);
+    told[index].push(value.sourceTimestamp.getTime() * 1000 + (value.sourcePicoseconds || 0) / 1e6, value.value.value);
   });
   return { client, session, subscription, wanted, told, begun: Date.now(), lost: () => lost };
 }
 
 async function main() {
-  const probe = OPCUAClient.create({ endpointMustExist: false });
+  const probe = OPCUAClient.create({ endpointMustExist: false, keepSessionAlive: true });
   await probe.connect(address);
   const session = await probe.createSession();
   const space = (await session.readNamespaceArray()).indexOf("urn:trunnion:twin");
@@ -62,36 +62,42 @@ async function main() {
   await pause(Number(seconds) * 1000);
   const last = (Date.now() - 1000) * 1000;
   await pause(3000);
-  const reference = new Map();
-  let missed = 0, values = 0;
-  const inWindow = (list) => list.filter(([stamp]) => first <= stamp && stamp <= last);
-  for (const each of all)
-    each.wanted.forEach((name, index) => {
-      const seen = inWindow(each.told[index]);
-      values += seen.length;
-      const known = reference.get(name);
-      if (!known || seen.length > known.length) reference.set(name, seen);
-    });
-  for (const each of all)
-    each.wanted.forEach((name, index) => {
-      const seen = new Set(inWindow(each.told[index]).map(String));
-      for (const value of reference.get(name)) if (!seen.has(String(value))) missed += 1;
-    });
-  let behind = 0;
+  const kept = {};
   for (const axis of ["X", "Y", "Z", "B", "C"]) {
     const name = `CncInterface.CncAxisList.${axis}.PosDirect.ActPos`;
     const nodeId = `ns=${space};s=${name}`;
-    const kept = await session.readHistoryValue({ nodeId }, new Date(first / 1000), new Date(last / 1000));
-    const known = new Set(reference.get(name).map(([stamp, value]) => `${stamp},${value}`));
-    for (const value of kept.historyData.dataValues) {
-      const stamp = value.sourceTimestamp.getTime() * 1000 + (value.sourcePicoseconds || 0) / 1e6;
-      if (first <= stamp && stamp <= last && !known.has(`${stamp},${value.value.value}`)) behind += 1;
-    }
+    const read = await session.readHistoryValue({ nodeId }, new Date(first / 1000), new Date(last / 1000));
+    kept[name] = read.historyData.dataValues.flatMap((value) => [
+      value.sourceTimestamp.getTime() * 1000 + (value.sourcePicoseconds || 0) / 1e6, value.value.value,
+    ]);
   }
+  // Times and values in turn, of the window alone.
+  const inWindow = (list) => list.filter((_, k) => first <= list[k - (k % 2)] && list[k - (k % 2)] <= last);
+  /** How many pairs of one list are not in another; both are in the order of time. */
+  const absent = (wanted, seen) => {
+    let count = 0, place = 0;
+    for (let k = 0; k < wanted.length; k += 2) {
+      while (place < seen.length && seen[place] < wanted[k]) place += 2;
+      if (seen[place] !== wanted[k] || seen[place + 1] !== wanted[k + 1]) count += 1;
+    }
+    return count;
+  };
+  const reference = new Map();
+  let missed = 0, values = 0;
+  for (const each of all) each.told = each.told.map(inWindow);
+  for (const each of all)
+    each.wanted.forEach((name, index) => {
+      values += each.told[index].length / 2;
+      if (each.told[index].length > (reference.get(name) || []).length) reference.set(name, each.told[index]);
+    });
+  for (const each of all)
+    each.wanted.forEach((name, index) => { missed += absent(reference.get(name) || [], each.told[index]); });
+  let behind = 0;
+  for (const [name, list] of Object.entries(kept)) behind += absent(inWindow(list), reference.get(name) || []);
   const lost = all.reduce((sum, each) => sum + each.lost(), 0);
   fs.writeFileSync(file, JSON.stringify({
     values, missed, behind, lost, seconds: (last - first) / 1e6, nodes: reference.size,
-    stamps: reference.get("Twin.ProgramTime").length,
+    stamps: (reference.get("Twin.ProgramTime") || []).length / 2,
   }));
   process.exit(0);
 }

@@ -9,10 +9,11 @@ import pytest
 
 from tests.support.twins import HUB_ROUGH
 from trunnion.api.twin import twin_program
-from trunnion.twin import Playback, TwinProgram
 from trunnion.twin.mtconnect.adapter import HEARTBEAT, MTConnectAdapter
 from trunnion.twin.mtconnect.device import device_xml
+from trunnion.twin.playback import Playback
 from trunnion.twin.running import Twin
+from trunnion.twin.snapshots import TwinProgram
 
 NAMESPACE = "{urn:mtconnect.org:MTConnectDevices:1.6}"
 

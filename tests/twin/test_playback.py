@@ -11,8 +11,7 @@ from tests.support.twins import BLADE_FINISH, HUB_ROUGH
 from trunnion.api.twin import twin_program
 from trunnion.model.run import RunEvent
 from trunnion.timing import TimedEvent, TimedRun
-from trunnion.twin import Playback, PlayState
-from trunnion.twin.playback import MOST_ENDS
+from trunnion.twin.playback import MOST_ENDS, Playback, PlayState
 
 
 @cache

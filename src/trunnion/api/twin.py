@@ -19,10 +19,11 @@ from trunnion.files import atomic_file
 from trunnion.model.run import Run
 from trunnion.readers.program.source_text import decode
 from trunnion.timing import time_run
-from trunnion.twin import Playback, TwinProgram
 from trunnion.twin.limits import FASTEST, LONGEST_RATE, SHORTEST_RATE, SLOWEST
 from trunnion.twin.mtconnect.device import device_xml
+from trunnion.twin.playback import Playback
 from trunnion.twin.ports import listen
+from trunnion.twin.snapshots import TwinProgram
 from trunnion.user_cache import user_data
 from trunnion.verification import restore_rapids
 

@@ -142,7 +142,8 @@ class Twin:
     async def _advance(self) -> None:
         """Tell what has run since the last time."""
         state = self.playback.state
-        await self._wait_for_clients()
+        if await self._wait_for_clients():
+            self.playback.skip(self.clock())  # the program has waited as well
         for stretch in self.playback.advance(self.clock()):
             await self._tell(stretch)
         if self.playback.state is not state or self.clock() - self._told >= 1.0:
@@ -153,29 +154,22 @@ class Twin:
         left = self.period - math.fmod(self.clock(), self.period)
         await asyncio.sleep(0.0 if runs_free else left)
 
-    async def _wait_for_clients(self) -> None:
-        """Wait until all clients that still fetch have room; the wall time until then passes without the program."""
+    async def _wait_for_clients(self) -> bool:
+        """Wait until all clients that still fetch have room; whether that took any time."""
         waiting: dict[object, tuple[int, float]] = {}
-        waited = False
         while True:
-            lagging = {
-                client: fetched
-                for outlet in self.outlets
-                for client, fetched in outlet.lagging().items()
-                if self._lost.get(client) != fetched
-            }
-            now = time.monotonic()
-            for client, fetched in lagging.items():
+            behind = {client: fetched for outlet in self.outlets for client, fetched in outlet.lagging().items()}
+            # Who is given up counts again as soon as he fetches.
+            self._lost = {client: fetched for client, fetched in self._lost.items() if behind.get(client) == fetched}
+            now, missing = time.monotonic(), behind.keys() - self._lost.keys()
+            if not missing:
+                return bool(waiting)
+            for client in missing:
                 before, since = waiting.get(client, (-1, now))
-                waiting[client] = (fetched, since if before == fetched else now)
+                waiting[client] = behind[client], since if before == behind[client] else now
                 if now - waiting[client][1] > _PATIENCE:
-                    self._lost[client] = fetched  # until it fetches again
-            if not lagging:
-                break
-            waited = True
+                    self._lost[client] = behind[client]
             await asyncio.sleep(_LOOK)
-        if waited:
-            self._lost = {client: fetched for client, fetched in self._lost.items() if client in waiting}
 
     async def _tell(self, stretch: Stretch) -> None:
         """Tell all ends of blocks in a stretch, and samples between them."""
@@ -188,8 +182,7 @@ class Twin:
         wall = stretch.wall(seconds)
         for first in range(0, len(seconds), _AT_A_TIME):
             part = slice(first, first + _AT_A_TIME)
-            if first:
-                await self._wait_for_clients()
+            await self._wait_for_clients()
             await self._show(seconds[part], ended[part], wall[part])
             await asyncio.sleep(0.0)
         await self._tell_events(stretch)
