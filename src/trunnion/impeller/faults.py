@@ -109,7 +109,7 @@ def blade_faults(
             yield definition.problem("stock.diameter_mm", f"{what} {across:.1f}", cure)
         else:
             what = f"the blade does not reach {body} near this point"
-            cure = f"let the blade be thinner, or {table.called} be smoother there"
+            cure = "does it lean too much here, or is it too thick? check the curves and the thicknesses"
             yield Problem(table.file, _line(table, place[k]), what, cure)
 
 
