@@ -61,7 +61,9 @@ async function main() {
   const first = Date.now() * 1000;
   await pause(Number(seconds) * 1000);
   const last = (Date.now() - 1000) * 1000;
-  await pause(3000);
+  // A computer that has other work as well may still have values of the window on their way.
+  const whole = (each) => each.told.every((list) => list.length < 4 || list[list.length - 2] > last);
+  for (let waited = 0; waited < 60 && !all.every(whole); waited++) await pause(1000);
   const kept = {};
   for (const axis of ["X", "Y", "Z", "B", "C"]) {
     const name = `CncInterface.CncAxisList.${axis}.PosDirect.ActPos`;
