@@ -10,6 +10,7 @@ import numpy as np
 
 from trunnion.api import kernels
 from trunnion.api.arguments import check_observer, check_path, wrong_argument
+from trunnion.api.impeller_settings import operation_settings, program_settings
 from trunnion.api.impellers import load_impeller, model_impeller
 from trunnion.api.input_files import definition_files
 from trunnion.api.job import prepare
@@ -18,7 +19,7 @@ from trunnion.api.post_result import PostResult
 from trunnion.api.posted_simulation import named_run
 from trunnion.api.posting import post_toolpaths
 from trunnion.api.reading import FilePath, MachineLike, as_machine, read_cl
-from trunnion.api.settings import Settings, SettingValue
+from trunnion.api.settings import Settings
 from trunnion.api.simulating import simulate
 from trunnion.api.simulation_result import SimulationResult
 from trunnion.api.targets import open_target
@@ -166,14 +167,10 @@ def cut_impeller(
     remarks = tuple(order_problems(found, chosen))
     observer.problems(remarks)
     control = load_control(loaded.control)
-    own: dict[str, SettingValue] = {"title": definition.name}
-    if control.subprograms is not None:
-        own["programs"] = "operations"
-    if control.tcp:
-        own["mode"] = "tcp"  # links are proven clear as straight lines, which a way through home and a plane is not
+    stem = _file_stem(definition.name)
+    own = program_settings(control, definition.name, stem)
     job = prepare(loaded, {**own, **(settings or {})}, columns=True)
     folder = _folder(output)
-    stem = _file_stem(definition.name)
     report = folder / f"{stem}.html"
     job = replace(job, report=report, forcing="")
     read = [definition.file, *(table.file for table in definition.sections), *definition_files(machine, loaded)]
@@ -189,6 +186,8 @@ def cut_impeller(
                 texts.append((file, text))
                 toolpaths.append(replace(read_cl(io.BytesIO(text)), file=str(file)))
                 advance(1)
+        own_settings = operation_settings(made, control, job.settings, job.own_settings)
+        job = replace(job, own_settings=own_settings)
         result = post_toolpaths(toolpaths, job, target, observer)
         for file, text in texts:
             target.files.add_file(file.name).write(text)
