@@ -5,13 +5,18 @@ from dataclasses import replace
 import pytest
 
 from tests.support.locations import ROOT
+from tests.support.operations import operation_of
+from tests.support.path_strategies import winding
 from trunnion.api.impeller_settings import operation_settings, program_settings
+from trunnion.api.impeller_windings import winding_problems
 from trunnion.controls import load_control
 from trunnion.impeller.definition import read_impeller
 from trunnion.impeller.machining import StepPaths
 from trunnion.impeller.steps import StepKind
 from trunnion.machines import load_machine
 from trunnion.model.machining_method import machining_method
+from trunnion.model.toolpath import Toolpath
+from trunnion.planning import plan
 
 DEFINITION = read_impeller(ROOT / "examples" / "impeller" / "mixed_flow.toml")
 STEP, TOOL = DEFINITION.steps[0], DEFINITION.tools[0]
@@ -57,3 +62,18 @@ def test_a_control_whose_programs_have_names_gets_that_of_the_file_and_numbers_s
     assert program_settings(load_control(load_machine("mikron_600u").control), "A B", "A_B")["program"] == "A_B"
     for other in ("matsuura_mx330", "haas_umc750", "yl569"):
         assert "program" not in program_settings(load_control(load_machine(other).control), "A B", "A_B")
+
+
+@pytest.mark.parametrize(
+    ("machine", "said"),
+    [("generic_head_table_bc", "10 turns back home"), ("generic_head_head_ca", "rewinds in the cut"), ("yl569", "")],
+)
+def test_a_tilt_that_winds_or_rewinds_is_told_with_what_helps(machine: str, said: str) -> None:
+    loaded = load_machine(machine)
+    moves = winding(10.0, 0.0, 3600.0, 900)
+    toolpath = Toolpath("part.cls", (operation_of(replace(moves, tip=40.0 * moves.axis)),))
+    motions = plan([toolpath], loaded, 0.001).motions
+    step = replace(STEP, kind=StepKind.STOCK_FINISHING, tilt=10.0)
+    found = list(winding_problems("part.toml", step, motions, loaded))
+    assert [said in problem.what and "tilt_deg = 0" in problem.cure for problem in found] == ([True] if said else [])
+    assert list(winding_problems("part.toml", replace(step, tilt=0.0), motions, loaded)) == []
