@@ -26,8 +26,8 @@ _CONE: Final = 3.0
 _FEED: Final = 200.0
 
 
-#: Of surfaces on which others printed less overcut than is left where both count the same: side, limit of overcut in mm,
-#: and what was printed, um.
+#: Of surfaces on which others printed less overcut than is left where both count the same: side, limit of overcut (mm),
+#: and what was printed (um).
 _LIMITED: Final = {"high twist": (1.0, 0.106, 112), "S warp": (1.0, 1.0, 3924)}
 
 

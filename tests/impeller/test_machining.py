@@ -1,5 +1,7 @@
 """All steps of the published impeller: every pose of every linked path is clear, by exact distances."""
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
@@ -108,6 +110,24 @@ def test_no_pose_of_any_path_cuts_into_the_part(impeller: Impeller) -> None:
 
 def test_only_the_steps_that_are_asked_for_are_made(impeller: Impeller) -> None:
     assert [one.names for one in step_paths(impeller, None, ["STOCK_ROUGHING"])] == [("STOCK_ROUGHING",)]
+
+
+def test_stages_within_a_step_tell_how_far_they_are(impeller: Impeller) -> None:
+    told: dict[str, list[int]] = {}
+
+    @contextmanager
+    def progress(stage: str, total: int, _unit: str) -> Iterator[Callable[[int], None]]:
+        done = told.setdefault(stage, [total, 0])
+
+        def advance(more: int) -> None:
+            done[1] += more
+
+        yield advance
+
+    list(step_paths(impeller, up_to_tilt, ["CHANNEL_ROUGHING"], progress))
+    for stage in ("layers", "tool axes", "links"):
+        total, done = told[f"CHANNEL_ROUGHING: {stage}"]
+        assert done == total > 1
 
 
 def test_what_is_wrong_names_the_step(impeller: Impeller, tmp_path_factory: pytest.TempPathFactory) -> None:
