@@ -43,7 +43,7 @@ def builder_application(session: BuilderSession, access: Access) -> Any:
 
     async def answer(request: Any) -> Any:
         # A form of another page cannot send JSON without being asked first.
-        if request.headers.get("content-type", "").partition(";")[0].strip() != "application/json":
+        if request.headers.get("content-type", "").partition(";")[0].strip().casefold() != "application/json":
             return plain("send JSON", 415)
         body = bytearray()
         async for piece in request.stream():
@@ -55,9 +55,9 @@ def builder_application(session: BuilderSession, access: Access) -> Any:
             if not isinstance(given, dict):
                 raise RequestError
             found = await run_in_threadpool(session.answer, request.path_params["what"], given)
+            return None if found is None else responses.JSONResponse(found, headers=HEADERS)
         except (RequestError, ValueError, RecursionError):
             return plain("the page makes no such request", 400)
-        return None if found is None else responses.JSONResponse(found, headers=HEADERS)
 
     application = import_extra("starlette.applications", "view").Starlette(
         routes=[

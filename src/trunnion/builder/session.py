@@ -8,7 +8,6 @@ Out:    answers of the same kind. Nothing is kept between two requests but the n
 import base64
 import binascii
 import hashlib
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,21 +18,21 @@ from trunnion.builder.document import (
     FieldPath,
     UnclearPlaceError,
     Value,
+    same,
     with_table_moved,
     with_value,
     without_value,
 )
-from trunnion.builder.draft import MOST_LETTERS, Draft, draft_data, inherited_value, judge
+from trunnion.builder.draft import Draft, draft_data, inherited_value, judge
 from trunnion.builder.sample import sample_data
+from trunnion.builder.saved_file import check_place, file_text, is_file_name, page_text, read_raw
 from trunnion.controls.loading import shipped_controls
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError
 from trunnion.files import atomic_file
 from trunnion.machines import load_machine, shipped_machines
 
 #: A CL file for the sample program has so many bytes at most.
 MOST_CL_BYTES: Final = 4_000_000
-
-_FILE_NAME: Final = re.compile(r"[\w][\w .+-]{0,99}\.toml")
 
 
 class RequestError(ValueError):
@@ -59,10 +58,13 @@ class BuilderSession:
         InputError
             If the file cannot be read.
         """
-        text = _read(self.folder / self.name) if self.name else ""
+        text = ""
+        if self.name:
+            check_place(self.folder / self.name)
+            text = read_raw(self.folder / self.name)
         return {
             "title": self.name or "machine.toml",
-            "text": _plain_ends(text),
+            "text": page_text(text),
             "seen": _digest(text) if self.name else "",
             "machines": [{"key": key, "name": load_machine(key).name} for key in shipped_machines()],
             "controls": shipped_controls(),
@@ -113,6 +115,8 @@ class BuilderSession:
     def _change(self, given: Mapping[str, Any]) -> dict[str, Any]:
         """The definition with a value set, taken out, or an axis moved; ``unclear`` where only the user can do that."""
         text, draft = _text(given, "text"), self._draft(_text(given, "text"))
+        if draft.root is None:
+            return {"text": text, **draft_data(draft), "unclear": "broken"}
         try:
             if "move" in given:
                 by = given.get("by")
@@ -121,14 +125,14 @@ class BuilderSession:
                 text = with_table_moved(text, "axis", _text(given, "move"), by)
             else:
                 path, value = _path(given.get("path")), given.get("value")
-                if value is None or value == inherited_value(draft, path):
+                if value is None or same(value, inherited_value(draft, path)):
                     text = without_value(text, path)
                 else:
                     text = with_value(text, path, _value(value))
-        except (UnclearPlaceError, KeyError, TypeError, ValueError) as error:
-            if isinstance(error, RequestError):
-                raise
-            return {**self._judged(text), "unclear": True}
+        except RequestError:
+            raise
+        except (UnclearPlaceError, KeyError, TypeError, ValueError, RecursionError):
+            return {"text": text, **draft_data(draft), "unclear": "unclear"}
         return self._judged(text)
 
     def _sample(self, given: Mapping[str, Any]) -> dict[str, Any]:
@@ -143,37 +147,21 @@ class BuilderSession:
     def _save(self, given: Mapping[str, Any]) -> dict[str, Any]:
         """Write the definition, unless another one would be lost that the user has not seen."""
         text, name, seen = _text(given, "text"), _text(given, "name"), _text(given, "seen")
-        if not _FILE_NAME.fullmatch(name):
+        if not is_file_name(name) and (not name or name != self.name):
             return {"saved": "", "why": "name"}
         file = self.folder / name
-        old = ""
         try:
-            old = _read(file) if file.exists() else ""
+            check_place(file)
+            old = read_raw(file) if file.exists() else ""
             if file.exists() and _digest(old) != seen and given.get("replace") is not True:
                 return {"saved": "", "why": "changed" if name == self.name and seen else "exists"}
-            written = text.replace("\n", "\r\n") if "\r\n" in old else text
+            written = file_text(text, old)
             with atomic_file(file) as sink:
                 sink.write(written.encode())
         except InputError as error:
             return {"saved": "", "why": "cannot", "problems": [str(problem) for problem in error.problems]}
         self.name = name
         return {"saved": str(file), "seen": _digest(written), "mistakes": len(judge(text, file).problems)}
-
-
-def _read(file: Path) -> str:
-    try:
-        with file.open(encoding="utf-8-sig", newline="") as stream:
-            text = stream.read(MOST_LETTERS + 1)
-    except (OSError, UnicodeDecodeError) as error:
-        why = "is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else f"cannot be read: {error.strerror}"
-        raise InputError(Problem(str(file), 0, why, "choose the TOML file of a machine")) from None
-    if len(text) > MOST_LETTERS:
-        raise InputError(Problem(str(file), 0, f"has more than {MOST_LETTERS} letters", "edit the file itself"))
-    return text
-
-
-def _plain_ends(text: str) -> str:
-    return text.replace("\r\n", "\n")
 
 
 def _digest(text: str) -> str:
@@ -192,7 +180,8 @@ def _path(given: object) -> FieldPath:
         raise RequestError
     path: FieldPath = ()
     for step in given:
-        if isinstance(step, list) and len(step) == 1 and isinstance(step[0], str):
+        follows_key = bool(path) and isinstance(path[-1], str)
+        if isinstance(step, list) and len(step) == 1 and isinstance(step[0], str) and follows_key:
             path = (*path, (step[0],))
         elif isinstance(step, str):
             path = (*path, step)
