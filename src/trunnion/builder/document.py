@@ -79,7 +79,8 @@ def without_value(text: str, path: FieldPath) -> str:
     kept = "".join(f"{indent}{text[a:b]}\n" for a, b in found.comments if begin <= a < end)
     if kept and text[end:].lstrip(" \t").startswith("["):
         kept += "\n"  # or they would be those of the next table
-    return _without_empty_table(_checked(text[:begin] + kept + text[end:], text, _meant(content, path, None)), path)
+    after = text[end:].removeprefix("\n") if begin == 0 and not kept else text[end:]
+    return _without_empty_table(_checked(text[:begin] + kept + after, text, _meant(content, path, None)), path)
 
 
 def with_table_moved(text: str, array: str, name: str, by: int) -> str:
