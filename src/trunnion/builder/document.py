@@ -30,10 +30,6 @@ _BARE_KEY: Final = re.compile(r"[A-Za-z0-9_-]+")
 _ESCAPES: Final = re.compile(r'[\\\x00-\x08\x0b-\x1f\x7f]|"""')
 
 
-#: Greater whole numbers are written with base 16, as they can only have been: Python limits decimal digits.
-_MOST_BITS: Final = 10_000
-
-
 class UnclearPlaceError(ValueError):
     """The text says something in a way in which this change has no place: only the user can make it."""
 
@@ -119,8 +115,6 @@ def written(value: object) -> str:
         return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
     if isinstance(value, str):
         return _lines(value) if "\n" in value else _quoted(value)
-    if isinstance(value, int) and value.bit_length() > _MOST_BITS:
-        return hex(value)
     return str(value)
 
 
