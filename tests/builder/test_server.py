@@ -129,7 +129,8 @@ STRANGE = st.sampled_from(
 KEYS = st.sampled_from(
     ["name", "extends", "description", "axis", "spindle", "control", "workpiece", "spindle.max_rpm", "body",
      "spindle.direction", "control.extends", "control.format", "control.settings", "control.settings.title",
-     "control.templates", "control.coolant", "control.codes", "control.known", "control.block_numbers", "control.block_numbers.step"]
+     "control.templates", "control.coolant", "control.codes", "control.known", "control.block_numbers",
+     "control.block_numbers.step"]
 )  # fmt: skip
 AXIS_KEYS = st.sampled_from(
     ["name", "kind", "direction", "limits_mm", "limits_deg", "point_mm", "endless", "remove", "x"]

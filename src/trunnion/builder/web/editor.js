@@ -4,16 +4,18 @@ export class Editor {
   /**
    * @param {HTMLTextAreaElement} area
    * @param {HTMLElement} gutter
-   * @param {(text: string) => void} onInput after a rest
+   * @param {() => void} onType at each change
+   * @param {() => void} onRest after a rest
    */
-  constructor(area, gutter, onInput) {
+  constructor(area, gutter, onType, onRest) {
     this.area = area;
     this.gutter = gutter;
     this.timer = 0;
     area.addEventListener("input", () => {
+      onType();
       this.#number();
       clearTimeout(this.timer);
-      this.timer = setTimeout(() => onInput(area.value), 350);
+      this.timer = setTimeout(onRest, 350);
     });
     area.addEventListener("scroll", () => { gutter.scrollTop = area.scrollTop; });
     /** @type {Map<number, string>} */
@@ -23,13 +25,19 @@ export class Editor {
   get text() { return this.area.value; }
 
   /**
-   * Show a text that has been changed elsewhere.
+   * Show a text that has been changed elsewhere; the cursor stays where it is in what stays.
    * @param {string} text
    */
   set(text) {
-    if (this.area.value === text) return;
+    const old = this.area.value;
+    if (old === text) return;
+    const most = Math.min(old.length, text.length);
+    let before = 0;
+    while (before < most && old[before] === text[before]) before++;
+    let after = 0;
+    while (after < most - before && old.at(-1 - after) === text.at(-1 - after)) after++;
     const { scrollTop } = this.area;
-    this.area.value = text;
+    this.area.setRangeText(text.slice(before, text.length - after), before, old.length - after, "preserve");
     this.area.scrollTop = scrollTop;
     this.#number();
   }
