@@ -22,7 +22,7 @@ def application(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 
 def ask(
-    application: Any, path: str, body: bytes | None, headers: dict[str, str] = HOST, pieces: int = 1
+    application: Any, path: str, body: bytes | None, headers: dict[str, str] = HOST, pieces: int = 1, query: bytes = b""
 ) -> tuple[int, bytes]:
     """Status and body of what an application answers to a POST; GET without a body."""
     sent: list[dict[str, Any]] = []
@@ -37,7 +37,7 @@ def ask(
 
     scope = {
         "type": "http", "method": "GET" if body is None else "POST", "path": path, "raw_path": path.encode(),
-        "query_string": b"", "headers": [(name.lower().encode(), value.encode()) for name, value in headers.items()],
+        "query_string": query, "headers": [(name.lower().encode(), value.encode()) for name, value in headers.items()],
         "http_version": "1.1", "scheme": "http", "root_path": "", "client": ("127.0.0.1", 1),
         "server": ("127.0.0.1", 80),
     }  # fmt: skip
@@ -186,6 +186,11 @@ def test_a_path_of_names_alone_is_refused(application: Any) -> None:
     for path in ([["a"], "x"], ["axis", ["a"], ["b"], "x"]):
         body = {"text": "[axis]\na = 1\n", "path": path, "value": 1}
         assert ask(application, "/change", json.dumps(body).encode())[0] == 400
+
+
+@pytest.mark.parametrize("file", ["missing.toml", "../x.toml", "/etc/passwd", "%2e%2e%2fx.toml"])
+def test_a_page_of_no_file_is_not_found(application: Any, file: str) -> None:
+    assert ask(application, "/", None, query=f"file={file}".encode())[0] == 404
 
 
 def test_paths_of_files_are_not_served(application: Any, tmp_path: Path) -> None:

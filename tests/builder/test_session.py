@@ -100,6 +100,76 @@ def test_the_shipped_sample_is_proven_on_every_machine(session: BuilderSession, 
     assert sample["passed"], sample["problems"]
 
 
+def test_what_is_not_known_of_a_new_machine_is_left_out_or_marked(session: BuilderSession) -> None:
+    found = ask(session, "begin", name="Ours", chain="head_table_bc", control="haas_ngc")
+    assert "limits_mm" not in found["text"]
+    marked = [each["path"] for each in found["marks"]]
+    assert marked == [["axis", ["C"], "point_mm"], ["axis", ["B"], "point_mm"], ["axis", ["B"], "limits_deg"]]
+    assert [found["text"].split("\n")[each["line"] - 1].count("# ") for each in found["marks"]] == [1, 1, 1]
+    for path, value in zip(marked, ([0, 0, 1], [0, 0, 212.5], [-30, 110]), strict=True):
+        found = ask(session, "change", text=found["text"], path=path, value=value)
+    assert found["marks"] == []
+    assert "#" not in found["text"]
+    warned = ask(session, "sample", text=found["text"])
+    assert any("travel" in each["what"] and not each["error"] for each in warned["problems"])
+
+
+def test_a_comment_of_the_users_own_is_no_mark(session: BuilderSession) -> None:
+    text = 'extends = "yl569"\nname = "x" # the old one\n'
+    changed = ask(session, "change", text=text, path=["name"], value="y")
+    assert changed["text"] == text.replace('"x"', '"y"')
+    assert changed["marks"] == []
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "told"),
+    [
+        (["axis", ["X"], "limits_mm"], [-20, 20], "X"),
+        (["spindle", "max_rpm"], 5999, "6000"),
+        (["control", "settings", "work_offset"], "2", "work_offset"),
+        (["control", "coolant", "ON"], 26, ""),
+        (["control", "block_numbers", "letter"], "L", ""),
+    ],
+)
+def test_a_sample_that_is_refused_has_a_reason(session: BuilderSession, path: list[Any], value: Any, told: str) -> None:
+    changed = ask(session, "change", text=begun(session), path=path, value=value)
+    assert changed["problems"] == []
+    sample = ask(session, "sample", text=changed["text"])
+    assert not sample["passed"]
+    assert any(each["error"] for each in sample["problems"]) or any(not each["passed"] for each in sample["checks"])
+    assert told in str(sample["problems"]) + str(sample["checks"])
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        (["control", "block_numbers", "highest"], 5),
+        (["control", "extension"], "../x"),
+        (["control", "extension"], "mpf"),
+    ],
+)
+def test_what_posting_could_not_use_is_told_at_its_field(session: BuilderSession, path: list[Any], value: Any) -> None:
+    changed = ask(session, "change", text=begun(session), path=path, value=value)
+    assert [each["path"] for each in changed["problems"]] == [path]
+
+
+def test_each_page_has_a_file_of_its_own(session: BuilderSession, tmp_path: Path) -> None:
+    one, other = 'extends = "yl569"\nname = "one"\n', 'extends = "dmu65"\nname = "other"\n'
+    seen = ask(session, "save", text=one, name="one.toml", seen="")["seen"]
+    ask(session, "save", text=other, name="other.toml", seen="")
+    assert session.start("one.toml")["text"] == one
+    assert session.start("other.toml")["title"] == "other.toml"
+    assert session.start()["text"] == ""
+    found = field(ask(session, "judge", text=one, file="one.toml"), "name")
+    assert found["from"].startswith("one.toml")
+    (tmp_path / "one.toml").write_text("x", encoding="utf-8")
+    assert ask(session, "save", text=one, name="one.toml", file="one.toml", seen=seen)["why"] == "changed"
+    assert ask(session, "save", text=one, name="one.toml", file="other.toml", seen=seen)["why"] == "exists"
+    for name in ("../one.toml", "/etc/passwd", "a/b.toml"):
+        with pytest.raises(RequestError):
+            session.start(name)
+
+
 def test_axes_move_in_a_definition_of_its_own(session: BuilderSession) -> None:
     text = ask(session, "begin", name="Ours", chain="table_table_bc", control="haas_ngc")["text"]
     moved = ask(session, "change", text=text, move="X", by=1)

@@ -43,7 +43,7 @@ def with_value(text: str, path: FieldPath, value: Value) -> str:
         If there is no plain place for it.
     """
     found, content = layout(text), tomllib.loads(text)
-    where = _located(content, path)
+    where = located(content, path)
     if where is not None and where in found.values:
         made = _with_replaced(text, found, where, value, _at(content, where))
     else:
@@ -62,7 +62,7 @@ def without_value(text: str, path: FieldPath) -> str:
         If it cannot be taken out plainly.
     """
     found, content = layout(text), tomllib.loads(text)
-    where = _located(content, path)
+    where = located(content, path)
     if where is None:
         return text
     if where not in found.values:
@@ -146,7 +146,7 @@ def _with_new_value(text: str, found: Layout, path: FieldPath, value: Value) -> 
     if len(path) == 1:
         at = _end_of_lines(text, 0, _begin(text, found, 0) if found.headers else len(text))
         return _joined(text[:at], line, text[at:])
-    table = _located(tomllib.loads(text), path[:-1])
+    table = located(tomllib.loads(text), path[:-1])
     if table is not None and any(header == table for _, header in found.headers):
         at = _end_of_lines(text, *_block(text, found, table, within=False))
         return _joined(text[:at], line, text[at:])
@@ -180,7 +180,7 @@ def _with_new_table(text: str, found: Layout, path: FieldPath, line: str) -> str
 def _without_empty_table(text: str, path: FieldPath) -> str:
     """The text without the table of a path if it has nothing left but its name."""
     content = tomllib.loads(text)
-    where = _located(content, path[:-1])
+    where = located(content, path[:-1])
     table = _at(content, where or ())
     if not where or not isinstance(table, dict) or set(table) - ({"name"} if isinstance(where[-1], int) else set()):
         return text
@@ -197,8 +197,8 @@ def _without_empty_table(text: str, path: FieldPath) -> str:
     return made if same(_filled(tomllib.loads(made)), _filled(content)) else text
 
 
-def _located(content: Any, path: FieldPath) -> KeyPath | None:
-    """The path with indices for names; None if the definition has no such value."""
+def located(content: Any, path: FieldPath) -> KeyPath | None:
+    """Return the path with indices for names; None if the definition has no such value."""
     where: KeyPath = ()
     for step in path:
         if isinstance(step, tuple):

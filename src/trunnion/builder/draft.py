@@ -12,8 +12,9 @@ from typing import Any, Final
 
 from trunnion.api.definition_checks import machine_problems
 from trunnion.api.describing import describe_settings
-from trunnion.builder.document import written
+from trunnion.builder.document import FieldPath, written
 from trunnion.builder.fields import PAGES, Field, SettingNotes, fields_of, named_path, tables_of, value_at
+from trunnion.builder.marks import marked_values
 from trunnion.controls import load_control
 from trunnion.controls.loading import control_library
 from trunnion.definitions import LocatedValue, Table, load_draft, resolve_extends
@@ -97,6 +98,7 @@ def draft_data(draft: Draft) -> dict[str, Any]:
     return {
         "pages": {page: [_field(each, root, base, draft) for each in fields if each.page == page] for page in PAGES},
         "problems": [_problem(each, draft) for each in draft.problems],
+        "marks": [] if root is None else [_mark(root, *each) for each in marked_values(draft.text)],
         "axes": _axes(root),
         "extends": _plain_text(root and _own(draft).get("extends")),
         **_machine(draft.machine),
@@ -114,7 +116,7 @@ def _field(each: Field, root: LocatedValue | None, base: LocatedValue | None, dr
     found = None if root is None else value_at(root, each.path)
     below = None if base is None else value_at(base, each.path)
     return {
-        "path": [list(step) if isinstance(step, tuple) else step for step in each.path],
+        "path": _steps(each.path),
         "key": each.key, "kind": each.kind, "unit": each.unit, "choices": each.choices, "size": each.size,
         "optional": each.optional, "note": each.note, "allowed": each.allowed,
         "value": None if found is None else _shown(found, each),
@@ -130,10 +132,19 @@ def _problem(problem: Problem, draft: Draft) -> dict[str, Any]:
     return {
         "line": problem.line if own else 0,
         "place": "" if own else f"{Path(problem.file).name}:{problem.line}",
-        "path": [list(step) if isinstance(step, tuple) else step for step in path],
+        "path": _steps(path),
         "what": problem.what,
         "cure": problem.cure,
     }
+
+
+def _mark(root: LocatedValue, key: str, line: int, what: str) -> dict[str, Any]:
+    return {"line": line, "path": _steps(named_path(root, key)), "what": what}
+
+
+def _steps(path: FieldPath) -> list[str | list[str]]:
+    """A path as JSON has it."""
+    return [list(step) if isinstance(step, tuple) else step for step in path]
 
 
 def _base(draft: Draft) -> LocatedValue | None:

@@ -12,7 +12,7 @@ from importlib.resources import files
 from typing import Any, Final
 
 from trunnion.api.posting import post
-from trunnion.errors import InputError, Problem, Severity
+from trunnion.errors import ArgumentName, Problem, Severity, TrunnionError
 from trunnion.machines import Machine
 
 #: So many lines are shown; the proof is always that of the whole program.
@@ -61,7 +61,7 @@ def sample_data(machine: Machine, cl: bytes | None, name: str, before: Sequence[
     """
     try:
         result = post(_NamedBytes(shipped_sample() if cl is None else cl, name or "sample.cls"), machine=machine)
-    except InputError as error:
+    except TrunnionError as error:  # also what the writer refuses, as `trunnion post` tells it
         problems = [_problem(each) for each in error.problems]
         return {"lines": [], "changed": [], "removed": 0, "checks": [], "problems": problems, "passed": False, "all": 0}
     lines = (result.text or "").splitlines()
@@ -92,6 +92,8 @@ def _changes(before: Sequence[str], now: Sequence[str]) -> tuple[list[int], int]
 
 
 def _problem(problem: Problem) -> dict[str, Any]:
+    subject = f"{problem.file} " if isinstance(problem.file, ArgumentName) else ""
     return {
-        "what": problem.what, "cure": problem.cure, "line": problem.line, "error": problem.severity is Severity.ERROR
+        "what": subject + problem.what, "cure": problem.cure, "line": problem.line,
+        "error": problem.severity is Severity.ERROR
     }  # fmt: skip

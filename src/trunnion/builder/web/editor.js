@@ -1,5 +1,8 @@
 // The definition as text: numbered lines, marks at mistakes, and the line of the field that has the focus.
 
+/** So many changes can be undone. */
+const MOST_UNDONE = 200;
+
 export class Editor {
   /**
    * @param {HTMLTextAreaElement} area
@@ -11,9 +14,17 @@ export class Editor {
     this.area = area;
     this.gutter = gutter;
     this.timer = 0;
+    this.onChange = () => { onType(); onRest(); };
+    // What the text was before each change from elsewhere, of which the browser's own undo knows nothing.
+    /** @type {string[]} */
+    this.past = [];
+    /** @type {string[]} */
+    this.future = [];
+    this.given = "";
     area.addEventListener("input", () => {
       onType();
       this.#number();
+      this.future = [];
       clearTimeout(this.timer);
       this.timer = setTimeout(onRest, 350);
     });
@@ -29,8 +40,33 @@ export class Editor {
    * @param {string} text
    */
   set(text) {
+    if (this.area.value === text) return;
+    if (this.area.value) this.past.push(this.area.value);
+    if (this.past.length > MOST_UNDONE) this.past.shift();
+    this.future = [];
+    this.#replace(text);
+  }
+
+  /**
+   * Undo and redo changes from elsewhere, once the browser has undone what was typed after them.
+   * @param {KeyboardEvent} event
+   */
+  undoKey(event) {
+    const key = event.key.toLowerCase();
+    if (!(event.ctrlKey || event.metaKey) || (key !== "z" && key !== "y") || this.area.value !== this.given) return;
+    const [from, to] = key === "y" || event.shiftKey ? [this.future, this.past] : [this.past, this.future];
+    const text = from.pop();
+    if (text === undefined) return;
+    event.preventDefault();
+    to.push(this.area.value);
+    this.#replace(text);
+    this.onChange();
+  }
+
+  /** @param {string} text */
+  #replace(text) {
     const old = this.area.value;
-    if (old === text) return;
+    this.given = text;
     const most = Math.min(old.length, text.length);
     let before = 0;
     while (before < most && old[before] === text[before]) before++;

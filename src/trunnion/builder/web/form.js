@@ -28,7 +28,11 @@ export function pathText(path) {
 export function refill(element, children) {
   const key = element.contains(document.activeElement) ? /** @type {HTMLElement} */ (document.activeElement).dataset.key : "";
   element.replaceChildren(...children);
-  if (key) Array.from(element.querySelectorAll("button"), (each) => each).find((each) => each.dataset.key === key)?.focus();
+  if (!key) return;
+  const again = Array.from(element.querySelectorAll("button")).find((each) => each.dataset.key === key);
+  // An axis that has come to an end of the order can only go back.
+  const other = /** @type {HTMLElement | null | undefined} */ (again?.parentElement?.querySelector("button:enabled"));
+  (again?.disabled ? other : again)?.focus();
 }
 
 /**
@@ -66,15 +70,18 @@ export class Form {
    * Show fields; those that are there already keep their place and the focus, and what is entered in them.
    * @param {FieldData[]} fields
    * @param {ProblemData[]} problems
+   * @param {{path: Path, what: string}[]} marks values that are still to be entered
    * @param {HTMLElement | null} before
    */
-  show(fields, problems, before) {
+  show(fields, problems, marks, before) {
     if (this.order.textContent !== (before?.textContent ?? "")) refill(this.order, before ? [before] : []);
     const shape = JSON.stringify(fields.map(({ path, kind, choices, note, allowed }) => [path, kind, choices, note, allowed]));
     this.fields = new Map(fields.map((each) => [idOf(each.path), each]));
     if (shape !== this.shape) this.#build(fields);
     this.shape = shape;
-    for (const field of fields) this.#fill(field, problems.filter((each) => covers(each.path, field.path)));
+    for (const field of fields) {
+      this.#fill(field, problems.filter((each) => covers(each.path, field.path)), marks.filter((each) => covers(each.path, field.path)));
+    }
   }
 
   /** @param {FieldData[]} fields */
@@ -140,7 +147,8 @@ export class Form {
     error.setAttribute("role", "alert");
     const meta = Object.assign(document.createElement("span"), { className: "meta" });
     meta.append(place, from);
-    row.append(label, inputs, unit, reset, meta, told, error);
+    const mark = Object.assign(document.createElement("p"), { className: "mark warn" });
+    row.append(label, inputs, unit, reset, meta, told, mark, error);
     return row;
   }
 
@@ -190,8 +198,9 @@ export class Form {
   /**
    * @param {FieldData} field
    * @param {ProblemData[]} problems
+   * @param {{what: string}[]} marks
    */
-  #fill(field, problems) {
+  #fill(field, problems, marks) {
     const row = /** @type {HTMLElement} */ (this.rows.get(idOf(field.path)));
     this.#write(field, row);
     row.querySelectorAll(".inputs > *").forEach((box) => box.setAttribute("aria-invalid", String(problems.length > 0)));
@@ -202,6 +211,7 @@ export class Form {
     reset.title = say("reset", String(field.inherited));
     reset.setAttribute("aria-label", reset.title);
     /** @type {HTMLElement} */ (row.querySelector(".from")).textContent = field.from ? (field.own ? say("own") : field.from) : say("notStated");
+    /** @type {HTMLElement} */ (row.querySelector(".mark")).textContent = marks.map((each) => each.what).join("\n");
     /** @type {HTMLElement} */ (row.querySelector(".error")).textContent = problems.map((each) => `${each.what}; ${each.cure}`).join("\n");
   }
 
@@ -268,7 +278,7 @@ function shownTexts(field, count) {
  * @param {string[]} entered
  */
 function readValue(field, entered) {
-  if (entered.every((text) => text.trim() === "")) return field.kind === "text" && field.inherited ? "" : null;
+  if (entered.every((text) => text.trim() === "")) return ["text", "lines"].includes(field.kind) && field.inherited ? "" : null;
   if (field.kind === "flag") return entered[0] === "true";
   if (field.kind === "text" || field.kind === "choice") return entered[0];
   if (field.kind === "lines") return entered[0].replace(/\r\n/g, "\n").replace(/\n?$/, "\n");

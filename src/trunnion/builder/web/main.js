@@ -3,8 +3,9 @@
 import { Editor } from "./editor.js";
 import { Edits } from "./edits.js";
 import { Form, covers, refill } from "./form.js";
+import { Jog } from "./jog.js";
 import { Sample } from "./sample.js";
-import { COLOURS, Stage } from "./stage.js";
+import { Stage } from "./stage.js";
 import { LANGUAGE, say } from "./texts.js";
 
 /**
@@ -23,6 +24,7 @@ class Builder {
   /** @param {any} start */
   constructor(start) {
     this.start = start;
+    this.file = start.file;
     this.seen = start.seen;
     this.saved = start.text;
     this.page = "structure";
@@ -34,12 +36,13 @@ class Builder {
     this.isSaving = false;
     this.sampled = 0;
     this.stage = new Stage(element("space"));
+    this.jogging = new Jog(element("jog"), element("pose"), this.stage);
     this.form = new Form(element("form"), (path, value, entered) => this.change({ path, value }, () => this.form.settle(path, entered)), (from) => this.editor.show(Number(from.split(":").at(-1))));
     /** @type {Editor} */
     this.editor = new Editor(element("text"), element("gutter"), () => { this.unclear = ""; this.edits.typed(); this.tell("", false); }, () => this.edits.rested());
     /** @type {Edits} */
     this.edits = new Edits({ text: () => this.editor.text, post: (what, given) => this.post(what, given), show: (answer, edit) => this.show(answer, edit) });
-    this.sample = new Sample(element("program"), element("verdict"));
+    this.sample = new Sample(element("program"), element("verdict"), element("checks"));
     this.#listen();
   }
 
@@ -50,7 +53,7 @@ class Builder {
    */
   async post(what, given) {
     try {
-      const answer = await fetch(what, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(given) });
+      const answer = await fetch(what, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ file: this.file, ...given }) });
       return answer.ok ? await answer.json() : { rejected: answer.status };
     } catch {
       this.tell(say("lost"), true);
@@ -93,14 +96,14 @@ class Builder {
     this.#showProblems();
     if (data.machine) {
       this.stage.show(data.machine, data.bodies);
-      this.#showJog();
+      this.jogging.show(data.remark);
     }
   }
 
   /** What was opened is another definition: it is not replaced unasked. */
   #beginsAnew() {
     if (!this.editor.text.trim()) return;
-    this.seen = "";
+    this.seen = this.file = "";
     element("title").textContent = "machine.toml";
   }
 
@@ -138,7 +141,7 @@ class Builder {
   }
 
   #showPage() {
-    this.form.show(this.data.pages[this.page], this.data.problems, this.page === "structure" ? this.#order() : null);
+    this.form.show(this.data.pages[this.page], this.data.problems, this.data.marks, this.page === "structure" ? this.#order() : null);
   }
 
   /** The axes in their order, with the means to change it. */
@@ -167,13 +170,14 @@ class Builder {
   }
 
   #showProblems() {
-    const { problems } = this.data;
-    element("mistakes").textContent = problems.length ? say(problems.length === 1 ? "mistake" : "mistakes", problems.length) : say("clean");
-    element("mistakes").className = problems.length ? "bad" : "good";
-    refill(element("problems"), problems.map((/** @type {any} */ each) => {
-      const item = document.createElement("li");
+    const { problems, marks } = this.data;
+    const found = problems.length ? say(problems.length === 1 ? "mistake" : "mistakes", problems.length) : say("clean");
+    element("mistakes").textContent = [found, ...(marks.length ? [say("toEnter", marks.length)] : [])].join(", ");
+    element("mistakes").className = problems.length ? "bad" : marks.length ? "warn" : "good";
+    refill(element("problems"), [...problems, ...marks].map((/** @type {any} */ each) => {
+      const item = Object.assign(document.createElement("li"), { className: each.cure === undefined ? "warn" : "" });
       const where = each.line ? `${each.line}: ` : each.place ? `${each.place}: ` : "";
-      const button = Object.assign(document.createElement("button"), { type: "button", textContent: `${where}${each.what}; ${each.cure}` });
+      const button = Object.assign(document.createElement("button"), { type: "button", textContent: `${where}${each.what}${each.cure ? `; ${each.cure}` : ""}` });
       button.dataset.key = button.textContent ?? "";
       button.addEventListener("click", () => this.#goToProblem(each));
       item.append(button);
@@ -188,77 +192,23 @@ class Builder {
     if (problem.line) this.editor.show(problem.line);
   }
 
-  #showJog() {
-    const { machine } = this.data;
-    const box = element("jog");
-    const shape = machine.axes.map((/** @type {any} */ axis) => [axis.name, axis.rotary].join()).join(";");
-    if (box.dataset.shape !== shape) {
-      box.dataset.shape = shape;
-      box.replaceChildren(...machine.axes.map((/** @type {any} */ axis, /** @type {number} */ k) => this.#slider(axis, k)));
-      const home = Object.assign(document.createElement("button"), { type: "button", textContent: say("home") });
-      home.addEventListener("click", () => this.jog(this.data.machine.homes));
-      box.append(home);
-    }
-    box.querySelectorAll("input[type=range]").forEach((/** @type {HTMLInputElement} */ range, /** @type {number} */ k) => {
-      const { low, high, rotary } = machine.axes[k];
-      range.min = String(low ?? (rotary ? -360 : -500));
-      range.max = String(high ?? (rotary ? 360 : 500));
-    });
-    this.jog(this.stage.values);
-  }
-
   /**
-   * @param {any} axis
-   * @param {number} k
-   */
-  #slider(axis, k) {
-    const row = document.createElement("label");
-    const name = Object.assign(document.createElement("span"), { textContent: axis.name });
-    name.style.borderColor = COLOURS[k];
-    const range = Object.assign(document.createElement("input"), { type: "range", step: "any" });
-    range.dataset.axis = axis.name;
-    range.setAttribute("aria-label", `${say("jog")} ${axis.name}`);
-    range.addEventListener("input", () => this.jog(this.stage.values.map((value, j) => (j === k ? Number(range.value) : value))));
-    const box = Object.assign(document.createElement("input"), { type: "text", inputMode: "decimal" });
-    box.setAttribute("aria-label", `${axis.name} ${axis.rotary ? "°" : "mm"}`);
-    box.addEventListener("input", () => { box.dataset.held = "true"; });
-    box.addEventListener("blur", () => { delete box.dataset.held; this.jog(this.stage.values); });
-    box.addEventListener("change", () => {
-      delete box.dataset.held;
-      const value = Number(box.value);
-      this.jog(this.stage.values.map((old, j) => (j === k && Number.isFinite(value) ? value : old)));
-    });
-    row.append(name, range, box);
-    return row;
-  }
-
-  /**
-   * Move the machine, and say where the tool is.
+   * Move the machine.
    * @param {number[]} values
    */
-  jog(values) {
-    this.stage.jog(values);
-    const { machine } = this.data;
-    element("jog").querySelectorAll("label").forEach((/** @type {HTMLElement} */ row, /** @type {number} */ k) => {
-      const [range, box] = row.querySelectorAll("input");
-      range.value = String(values[k]);
-      if (!box.dataset.held) box.value = values[k].toFixed(machine.axes[k].rotary ? 3 : 2);
-    });
-    const { tip, axis } = this.stage.tool();
-    const of = (/** @type {number[]} */ v, /** @type {number} */ digits) => v.map((x) => x.toFixed(digits)).join("  ");
-    element("pose").textContent = `${say("tip")} ${of(tip, 3)}   ${say("toolAxis")} ${of(axis, 6)}${machine.zero ? "" : `\n${say("zero")}`}${this.data.remark ? `\n${this.data.remark}` : ""}`;
-  }
+  jog(values) { this.jogging.move(values); }
 
   /** Post and prove the sample again, unless there are mistakes. */
   async runSample() {
     element("cl-name").textContent = this.cl?.name ?? say("sampleFile");
+    if (!this.data) return;
     const number = ++this.sampled;
     const { text } = this.data;
     if (this.data.problems.length) { this.sample.clear(say("waiting")); this.isSampled(); return; }
     element("program").dataset.ready = "false";
     const found = await this.post("sample", { text, cl: this.cl?.content ?? null, clName: this.cl?.name ?? "", before: this.sample.lines.slice(0, 3000) });
     if (number !== this.sampled) return;
-    if (found && !found.rejected) this.sample.show(found);
+    if (found && !found.rejected) this.sample.show(found, this.data.marks.length);
     else this.sample.clear(found ? say("rejected", found.rejected) : say("lost"));
     this.isSampled();
   }
@@ -294,7 +244,10 @@ class Builder {
     }
     this.seen = found.seen;
     this.saved = text;
-    element("title").textContent = name;
+    this.file = element("title").textContent = name;
+    const address = new URL(location.href);
+    address.searchParams.set("file", name);
+    history.replaceState(null, "", address);
     element("saving").close();
     this.tell(found.mistakes ? say("savedBad", found.saved, found.mistakes) : say("saved", found.saved), found.mistakes > 0);
   }
@@ -326,6 +279,7 @@ class Builder {
       element("start").focus();
     });
     element("save").addEventListener("click", () => {
+      if (!this.data) { this.begin(); return; }
       element("save-why").textContent = "";
       element("save-replace").hidden = true;
       element("save-name").value = element("title").textContent;
@@ -348,6 +302,9 @@ class Builder {
       await this.runSample();
     });
     window.addEventListener("keydown", (event) => {
+      const target = /** @type {HTMLElement} */ (event.target);
+      const isElsewhere = document.querySelector("dialog[open]") || (target.matches("input, select, textarea") && target !== this.editor.area);
+      if (!isElsewhere) this.editor.undoKey(event);
       if (event.key !== "s" || !(event.ctrlKey || event.metaKey)) return;
       event.preventDefault();
       if (element("saving").open) this.save(false);
