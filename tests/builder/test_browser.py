@@ -66,7 +66,7 @@ def begin(page: Page, base: str = "", chain: str = "", control: str = "sinumerik
         page.locator("#begin-chain").select_option(chain)
         page.locator("#begin-control").select_option(control)
     page.locator("#begin-go").click()
-    wait(page, "builder.data && document.getElementById('program').dataset.ready === 'true'")
+    wait(page, "builder.data && builder.edits.isIdle && document.getElementById('program').dataset.ready === 'true'")
 
 
 def enter(page: Page, path: str, *values: str) -> None:
@@ -257,6 +257,88 @@ def test_typing_in_the_text_loses_no_letter(page: Page) -> None:
     assert sorted(text.replace("\n[spindle]\nmin_rpm = 200\n", "").replace("\n", "")) == sorted(
         'extends = "yl569"name = "Hall 2"# one! two! three!?'
     )
+
+
+def test_enter_saves_and_a_new_machine_is_another_file(page: Page, folder: Path, address: str) -> None:
+    """Enter is what the button of the dialog is; New never leads to writing over the file that was open."""
+    page.locator("#begin-name").fill("Hall 3")
+    page.locator("#begin-base").select_option("yl569")
+    page.locator("#begin-name").press("Enter")
+    wait(page, "builder.data && builder.edits.isIdle")
+    page.keyboard.press("Control+s")
+    page.locator("#save-name").fill("hall3.toml")
+    page.keyboard.press("Enter")
+    page.locator("#state:has-text('Saved as')").wait_for()
+    first = (folder / "hall3.toml").read_text(encoding="utf-8")
+    page.locator("#start").click()
+    assert page.locator("#begin-why").inner_text() == ""
+    begin(page, base="dmu65")
+    assert page.locator("#title").inner_text() == "machine.toml"
+    page.locator("#start").click()
+    assert "not been saved" in page.locator("#begin-why").inner_text()
+    page.keyboard.press("Escape")
+    page.keyboard.press("Control+s")
+    page.locator("#save-name").fill("hall3.toml")
+    page.keyboard.press("Control+s")
+    page.locator("#save-why:has-text('There is a file')").wait_for()
+    assert (folder / "hall3.toml").read_text(encoding="utf-8") == first
+    page.locator("#save-name").fill("hall4.toml")
+    page.keyboard.press("Enter")
+    page.locator("#state:has-text('Saved as')").wait_for()
+    page.goto(f"{address}?file=hall3.toml")
+    page.wait_for_selector("html[data-ready=true]", state="attached")
+    assert page.locator("#text").input_value() == first
+
+
+def test_what_is_refused_is_not_shown_as_proven(page: Page) -> None:
+    begin(page, base="yl569")
+    assert "only the length of their travel" in page.locator("#checks").inner_text()
+    page.locator("[data-page=spindle]").click()
+    enter(page, '["spindle","max_rpm"]', "5999")
+    wait(page, "document.getElementById('program').dataset.ready === 'true'")
+    assert page.locator("#verdict").inner_text().startswith("The sample is refused")
+    assert "6000" in page.locator("#verdict").inner_text()
+    assert page.locator("#program div").count() == 0
+    assert not page.locator("#checks").is_visible()
+
+
+def test_a_change_of_a_field_can_be_undone_in_the_text(page: Page) -> None:
+    begin(page, base="yl569")
+    text = page.locator("#text")
+    first = text.input_value()
+    page.locator("[data-page=spindle]").click()
+    enter(page, '["spindle","min_rpm"]', "200")
+    second = text.input_value()
+    text.focus()
+    text.press("Control+End")
+    page.keyboard.type("# x")
+    for _ in range(4):
+        if text.input_value() != second:
+            page.keyboard.press("Control+z")
+    assert text.input_value() == second
+    page.keyboard.press("Control+z")
+    assert text.input_value() == first
+    wait(page, "builder.edits.isIdle")
+    assert box_of(page, '["spindle","min_rpm"]').input_value() == ""
+    page.keyboard.press("Control+y")
+    wait(page, "builder.edits.isIdle")
+    assert (text.input_value(), box_of(page, '["spindle","min_rpm"]').input_value()) == (second, "200")
+
+
+def test_jog_boxes_keep_what_is_typed_and_show_what_is_wrong(page: Page) -> None:
+    begin(page, base="yl569")
+    box = page.locator("#jog label:has-text('X') input[type=text]")
+    for typed, shown, wrong in (("12.5", "12.50", "false"), ("9999", "9999.00", "true"), ("1,5", "1,5", "true")):
+        box.fill(typed)
+        page.keyboard.press("Tab")
+        assert (box.input_value(), box.get_attribute("aria-invalid")) == (shown, wrong)
+    box.fill("3")
+    page.locator("#text").evaluate("(area) => { area.focus(); area.setSelectionRange(0, 0); }")
+    page.keyboard.type("x")
+    wait(page, "builder.edits.isIdle && builder.data.problems.length")
+    page.locator("#jog label:has-text('Y') input[type=text]").fill("4")
+    page.keyboard.press("Tab")
+    assert page.evaluate("builder.stage.values").count(4) == 1
 
 
 def test_a_change_is_marked_in_the_sample(page: Page) -> None:

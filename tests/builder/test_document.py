@@ -100,7 +100,8 @@ def test_a_list_with_comments_is_changed_number_by_number() -> None:
     path = ("axis", ("X",), "limits_mm")
     assert with_value(MEASURED, path, [-240, 250]) == MEASURED.replace("-250", "-240")
     assert with_value(MEASURED, path, [-250.5, 251.0]) == MEASURED.replace("-250", "-250.5").replace(" 250,", " 251,")
-    for other in ([-240, 0, 250], "-240, 250", 5):
+    others: list[Any] = [[-240, 0, 250], "-240, 250", 5]
+    for other in others:
         with pytest.raises(UnclearPlaceError):
             with_value(MEASURED, path, other)
 

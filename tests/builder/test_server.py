@@ -150,7 +150,7 @@ def strange_texts(draw: st.DrawFn) -> str:
 
 @settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
 @given(strange_texts(), st.data())
-def test_a_text_of_any_values_is_judged_and_changed(application: Any, text: str, data: st.DataObject) -> None:
+def test_a_text_of_any_values_is_judged_and_changed(application: Any, text: str, data: Any) -> None:
     status, answer = ask(application, "/judge", json.dumps({"text": text}).encode())
     assert status == 200, text
     fields = [each for page in json.loads(answer)["pages"].values() for each in page]

@@ -137,6 +137,8 @@ def test_a_sample_that_is_refused_has_a_reason(session: BuilderSession, path: li
     sample = ask(session, "sample", text=changed["text"])
     assert not sample["passed"]
     assert any(each["error"] for each in sample["problems"]) or any(not each["passed"] for each in sample["checks"])
+    assert "force" not in str(sample)
+    assert (sample["lines"], sample["all"]) == ([], 0)
     assert told in str(sample["problems"]) + str(sample["checks"])
 
 
@@ -324,6 +326,15 @@ def test_what_is_no_file_is_neither_opened_nor_written(session: BuilderSession, 
     with pytest.raises(InputError, match=r"regular file|folder"):
         BuilderSession(tmp_path, "ours.toml").start()
     assert ask(session, "save", text="y", name="ours.toml", seen="", replace=True)["why"] == "cannot"
+
+
+def test_a_body_that_is_no_file_hangs_nothing(session: BuilderSession, tmp_path: Path) -> None:
+    if not hasattr(os, "mkfifo"):
+        pytest.skip("this system has no pipes with names")
+    os.mkfifo(tmp_path / "body.stl")
+    text = begun(session) + '[[body]]\nname = "t"\nlink = "bed"\nshape = "file"\nfile = "body.stl"\n'
+    (tmp_path / "machine.toml").write_text(text, encoding="utf-8")
+    assert "is not a regular file" in ask(session, "judge", text=text)["remark"]
 
 
 @pytest.mark.parametrize("name", shipped_machines())
