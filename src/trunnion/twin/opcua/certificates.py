@@ -1,4 +1,4 @@
-"""The certificate by which a twin's server is known, made on the first start and kept in the user's folder."""
+"""Certificates of a twin's server, and of the client that records: made on first use, kept in the user's folder."""
 
 import hashlib
 import ipaddress
@@ -58,6 +58,35 @@ def server_certificate(folder: Path, application: str, host: str) -> ServerCerti
     return ServerCertificate(certificate, key, hashlib.sha1(data, usedforsecurity=False).hexdigest().upper())
 
 
+@dataclass(frozen=True, slots=True)
+class ClientCertificate:
+    """Files of a client's certificate (DER) and its key (PEM), and the URI by which the client names itself."""
+
+    certificate: Path
+    key: Path
+    application: str
+
+
+def client_certificate(folder: Path) -> ClientCertificate:
+    """The certificate of a client that connects to machines; it is made if need be.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written.
+    """
+    application = f"urn:{socket.gethostname()}:trunnion:client"
+    certificate, key = folder / "client.der", folder / "client.key.pem"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if not (key.is_file() and _is_good(certificate, application)):
+            _make(certificate, key, application, socket.gethostname())
+    except OSError as error:
+        what = f"the certificate of the client cannot be written: {error.strerror}"
+        raise InputError(Problem(str(folder), 0, what, "make the folder writable")) from None
+    return ClientCertificate(certificate, key, application)
+
+
 def _is_good(path: Path, application: str) -> bool:
     try:
         found = x509.load_der_x509_certificate(path.read_bytes())
@@ -70,7 +99,7 @@ def _is_good(path: Path, application: str) -> bool:
 
 def _make(certificate: Path, key: Path, application: str, host: str) -> None:
     private = rsa.generate_private_key(public_exponent=65537, key_size=2048)
-    subject = x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, "Trunnion twin")])
+    subject = x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, "Trunnion")])
     now = datetime.now(UTC)
     identifier = x509.SubjectKeyIdentifier.from_public_key(private.public_key())
     names: list[x509.GeneralName] = [x509.UniformResourceIdentifier(application), x509.DNSName(socket.gethostname())]
@@ -93,7 +122,7 @@ def _make(certificate: Path, key: Path, application: str, host: str) -> None:
         .add_extension(x509.SubjectAlternativeName(names), critical=False)
         .add_extension(x509.BasicConstraints(ca=False, path_length=None), critical=True)
         .add_extension(usage, critical=True)
-        .add_extension(x509.ExtendedKeyUsage([ExtendedKeyUsageOID.SERVER_AUTH]), critical=False)
+        .add_extension(x509.ExtendedKeyUsage([ExtendedKeyUsageOID.SERVER_AUTH, ExtendedKeyUsageOID.CLIENT_AUTH]), critical=False)
         .add_extension(identifier, critical=False)
         .add_extension(x509.AuthorityKeyIdentifier.from_issuer_subject_key_identifier(identifier), critical=False)
         .sign(private, hashes.SHA256())

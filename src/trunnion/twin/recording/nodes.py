@@ -1,0 +1,128 @@
+"""What is recorded: the columns of a recording, and the variables of the machine's server that they show.
+
+In:     the name of a shipped list, or a TOML file.
+Out:    a ``NodeList``.
+"""
+
+import re
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Final
+
+from trunnion.definitions import Table, definition_names, load_table
+from trunnion.model.recording import PROGRAM
+
+_LIBRARY: Final = files("trunnion.twin.recording").joinpath("library")
+
+_NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}", re.ASCII)
+
+#: Columns that every recording has.
+TIMES: Final = ("source", "server", "received", "mark")
+
+#: Columns of texts, whatever a list says.
+TEXTS: Final = (PROGRAM, "block")
+
+_MOST_COLUMNS: Final = 200
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where a variable is: by its NodeId in a namespace, or by the names on the way to it from the objects.
+
+    identifier  of the NodeId, as OPC UA writes it (``s=…``, ``i=…``); empty: it is found by its path
+    """
+
+    namespace: str = ""
+    identifier: str = ""
+    path: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        return "/".join(self.path) if self.path else f"nsu={self.namespace};{self.identifier}"
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column and the variable that it shows.
+
+    is_text      it holds texts
+    is_optional  a machine may lack it
+    element      which element of an array it is, from 1; 0: the variable is no array
+    named_by     a variable that holds the name of the column; None: the name is ``name``
+    """
+
+    name: str
+    place: Place
+    is_text: bool = False
+    is_optional: bool = False
+    element: int = 0
+    named_by: Place | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class NodeList:
+    """The columns of a recording, in their order."""
+
+    columns: tuple[Column, ...]
+
+
+def node_list_names() -> list[str]:
+    """Names of the shipped lists."""
+    return definition_names(_LIBRARY)
+
+
+def load_nodes(name_or_path: str | Path) -> NodeList:
+    """Read a list of nodes.
+
+    Raises
+    ------
+    InputError
+        If there is none of this name, or with every mistake of the file.
+    """
+    root = load_table(name_or_path, _LIBRARY, kind="list of nodes")
+    namespace = root.text("namespace", "")
+    columns = root.table("columns", required=True)
+    found = [_column(name, columns.table(name), namespace) for name in columns.keys()]  # noqa: SIM118 - it is no mapping
+    for name in columns.keys():  # noqa: SIM118
+        if not _NAME.fullmatch(name) or name in TIMES:
+            columns.add_problem(name, "cannot be the name of a column", "write letters, digits and _, such as X")
+    if not found and "columns" in root:
+        root.add_problem("columns", "is empty", "name what is recorded, such as [columns.X]")
+    if len(found) > _MOST_COLUMNS:
+        root.add_problem("columns", f"has {len(found)} columns", f"write at most {_MOST_COLUMNS}")
+    root.report_unread_keys()
+    root.raise_problems()
+    return NodeList(tuple(found))
+
+
+def _column(name: str, table: Table, namespace: str) -> Column:
+    place = _place(table, "id", "path", table.text("namespace", namespace))
+    named = _place(table, "name_id", "name_path", table.text("namespace", namespace), required=False)
+    made = Column(
+        name=name,
+        place=place or Place(),
+        is_text=table.flag("text", name in TEXTS),
+        is_optional=table.flag("optional", False),
+        element=table.integer("element", 0, at_least=0, at_most=10_000),
+        named_by=named,
+    )
+    table.report_unread_keys()
+    return made
+
+
+def _place(table: Table, identifier: str, path: str, namespace: str, *, required: bool = True) -> Place | None:
+    """The place that one of two keys states."""
+    by_id, by_path = table.text(identifier, ""), table.text(path, "")
+    if by_id and by_path:
+        table.add_problem(path, f"is given beside {identifier}", "write one of them")
+    if by_path:
+        return Place(path=tuple(filter(None, by_path.split("/"))))
+    if by_id:
+        if not namespace:
+            table.add_problem(identifier, "has no namespace", 'write namespace = "…", the URI in which the id counts')
+        return Place(namespace, by_id if re.match(r"[isgb]=", by_id) else f"s={by_id}")
+    if required:
+        cure = f"write {identifier} = of a NodeId, or {path} = of names from the objects on"
+        table.add_problem("", "does not say which variable it is", cure)
+    return None
+
