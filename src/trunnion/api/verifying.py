@@ -9,6 +9,7 @@ from trunnion.api.arguments import check_choice, check_observer, check_whole, wr
 from trunnion.api.cl_statements import replace_unknown_statements
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
+from trunnion.api.recording import as_recording
 from trunnion.api.settings import check_operation_names, check_tolerance, m_code, set_up_machine, work_offset_setting
 from trunnion.controls import Control, load_control
 from trunnion.controls.setting_rules import tool_number
@@ -16,6 +17,7 @@ from trunnion.errors import InputError
 from trunnion.jit import compile_ahead
 from trunnion.machines import Machine
 from trunnion.model.axis_tolerance import AxisTolerance
+from trunnion.model.recording import Recording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Operation, Toolpath
 from trunnion.verification import (
@@ -30,6 +32,9 @@ from trunnion.verification import (
 #: How far the tip may be off its CL point, mm; and in a program in inches, half of 0.0001 inch.
 _DEFAULT_TOLERANCE: Final = 0.001
 _DEFAULT_INCH_TOLERANCE: Final = 0.0013
+
+#: How far a recorded machine may be off its path, mm and degrees.
+DEFAULT_RECORDED_TOLERANCE: Final = 0.05
 
 #: Lines stand for arcs within this, mm, where programs for the control can be read but not written.
 _READ_CHORD: Final = 0.001
@@ -52,6 +57,8 @@ def verify(
     frame: Literal["first", "absolute"] = "first",
     zero: str | Iterable[float] | None = None,
     tool_length: str | float | None = None,
+    recorded: FilePath | Recording | None = None,
+    recorded_tolerance: float = DEFAULT_RECORDED_TOLERANCE,
     columns: bool = True,
     observer: Observer = SILENT,
 ) -> Verification:
@@ -93,6 +100,12 @@ def verify(
         Workpiece zero on the machine; needed to check the travel of the slides against their limits.
     tool_length
         From the gauge point of the spindle to the tip, mm; for programs without TCP.
+    recorded
+        What the machine did: a recording of ``trunnion record``, or its file. Each of its positions is compared with
+        the path of the program; with the slides in the machine's own coordinates, ``zero`` and ``tool_length`` are
+        needed.
+    recorded_tolerance
+        How far a recorded tip may be off the path, mm, and its tool axis, degrees.
     columns
         Work out the columns of the result, (n,) each: ``seconds``, ``tip_feed`` (mm/min) and ``cl_line``. A report
         needs them; without them a program of any length takes little memory.
@@ -127,6 +140,8 @@ def verify(
     check_tolerance("tolerance", tolerance)
     check_tolerance("span", span, optional=True)
     check_tolerance("span_tip", span_tip, optional=True)
+    check_tolerance("recorded_tolerance", recorded_tolerance)
+    recording = None if recorded is None else as_recording(recorded)
     loaded = as_machine(machine)
     readers.reader_of(loaded)
     compile_ahead(kernels.VERIFYING)
@@ -145,7 +160,7 @@ def verify(
     if edge is None and toolpaths and "edge" in defaults:
         edge = int(defaults["edge"])
     offset, by_operation = _work_offsets(work_offset, loaded, control, toolpaths)
-    return verification.verify(
+    found = verification.verify(
         run,
         toolpaths,
         tolerances=_tolerances(run, tolerance, span_tip, control),
@@ -165,6 +180,7 @@ def verify(
         ),
         columns=columns,
     )
+    return found if recording is None else verification.with_recording(found, recording, recorded_tolerance)
 
 
 def _tolerances(

@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import Any, Final, cast
 
 from trunnion import __version__
-from trunnion.cli.twin_arguments import add_twin
+from trunnion.cli.twin_arguments import add_record, add_twin
 
 
 def _key_value(text: str) -> tuple[str, str]:
@@ -161,6 +161,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     _add_simulate(commands.add_parser("simulate", help="cut stock with NC programs: what is left, and what is hit"))
     _add_view(commands.add_parser("view", help="show an NC program on its machine, in a browser"))
     _add_twin(commands.add_parser("twin", help="serve an NC program as a running machine: OPC UA and MTConnect"))
+    _add_record(commands.add_parser("record", help="record what a machine, or a twin, shows by OPC UA"))
     _add_build(commands.add_parser("build", help="set up the definition of a machine, in a browser"))
     _add_info(commands.add_parser("info", help="show what CL files hold; no machine is needed"))
     _add_curve(commands.add_parser("curve", help="fit curves to measured points; no machine is needed"))
@@ -237,6 +238,13 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
         help="whose coordinate system the program's is: the first operation's, or the CAM's absolute one",
     )  # fmt: skip
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
+    parser.add_argument(
+        "--recorded", metavar="FILE", help="compare with what the machine did: a recording (.csv or .parquet)"
+    )
+    parser.add_argument(
+        "--recorded-tolerance", type=_tolerance, default=0.05, metavar="MM",
+        help="how far the recorded tip may be off the path, and in degrees its tool axis; 0.05",
+    )  # fmt: skip
     parser.add_argument("--report", metavar="FILE", help="what was checked, as a page (.html) or data (.json)")
     parser.set_defaults(run=_lazy_command("verify", "run"))
 
@@ -331,6 +339,11 @@ def _add_twin(parser: argparse.ArgumentParser) -> None:
     add_twin(parser)
     _add_subprograms(parser, "it")
     parser.set_defaults(run=_lazy_command("twin", "run"))
+
+
+def _add_record(parser: argparse.ArgumentParser) -> None:
+    add_record(parser)
+    parser.set_defaults(run=_lazy_command("record", "run"))
 
 
 def _add_build(parser: argparse.ArgumentParser) -> None:

@@ -1,4 +1,4 @@
-"""The arguments of ``trunnion twin``."""
+"""The arguments of ``trunnion twin`` and ``trunnion record``."""
 
 import argparse
 
@@ -69,3 +69,41 @@ def add_twin(parser: argparse.ArgumentParser) -> None:
         "--role", choices=("operator", "viewer"), default="operator",
         help="of the user who is added: operates the twin, or only looks; operator",
     )  # fmt: skip
+
+
+def _seconds(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < 1e9:
+        raise argparse.ArgumentTypeError(f"{text!r} is no time; write seconds above 0")
+    return value
+
+
+def add_machine_access(parser: argparse.ArgumentParser) -> None:
+    """How a command connects to a machine."""
+    parser.add_argument(
+        "--nodes", default="cnc", metavar="NAME_OR_FILE",
+        help="what is read: cnc (OPC 40502, such as a twin), sinumerik, heidenhain, or a file (.toml); cnc",
+    )  # fmt: skip
+    parser.add_argument(
+        "--rate", type=milliseconds, default=20.0, metavar="MS", help="milliseconds between two looks of the server; 20"
+    )
+    parser.add_argument("--secure", action="store_true", help="sign and encrypt the channel")
+    parser.add_argument(
+        "--trust", default="", metavar="FINGERPRINT", help="of the server's certificate; with --secure"
+    )
+    parser.add_argument(
+        "--user", default="", metavar="NAME", help="user at the machine; the password is asked for or read from stdin"
+    )
+
+
+def add_record(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``trunnion record``."""
+    parser.add_argument("address", metavar="ADDRESS", help="of the machine's OPC UA server: opc.tcp://HOST:PORT/…")
+    parser.add_argument(
+        "--output", required=True, metavar="FILE", help="recording (.csv or .parquet); never written over"
+    )
+    parser.add_argument("--seconds", type=_seconds, metavar="N", help="how long; without it until Ctrl-C")
+    add_machine_access(parser)

@@ -24,6 +24,7 @@ def run(arguments: argparse.Namespace) -> int:
     machine = load_machine(arguments.machine)
     if arguments.report is not None:
         read = [arguments.file, *named_files(arguments.cl), *arguments.subprograms]
+        read += [] if arguments.recorded is None else [arguments.recorded]
         check_report(arguments.report, [*read, *definition_files(arguments.machine, machine)])
     verification = verify(
         arguments.file,
@@ -41,6 +42,8 @@ def run(arguments: argparse.Namespace) -> int:
         frame=arguments.frame,
         zero=arguments.zero or None,
         tool_length=arguments.tool_length or None,
+        recorded=arguments.recorded,
+        recorded_tolerance=arguments.recorded_tolerance,
         columns=arguments.report is not None,
         observer=Terminal(),
     )

@@ -1,13 +1,16 @@
 """The results of a verification, as values; text, HTML and JSON are made from them elsewhere."""
 
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Lines
 from trunnion.machines import Machine
 from trunnion.model.run import Run
+
+if TYPE_CHECKING:  # most verifications have no recording
+    from trunnion.verification.recorded.compared import RecordedComparison
 
 #: Columns that the key of a check takes in a line: those of the longest key.
 _KEY_WIDTH: Final = len("compensation")
@@ -92,7 +95,8 @@ class Verification:
     tip_feed  (n,)   float64   speed of the tip relative to the workpiece, mm/min
     cl_line   (n,)   int32     line of the CL file that the row belongs to, 0 for none
 
-    ``operations`` divide the rows among them; there are none without CL files.
+    ``operations`` divide the rows among them; there are none without CL files. ``recorded`` compares the machine as it
+    was recorded; None: it was not.
     """
 
     program: str
@@ -103,6 +107,7 @@ class Verification:
     tip_feed: Floats
     cl_line: Lines
     operations: tuple[OperationRows, ...] = ()
+    recorded: "RecordedComparison | None" = None
 
     @property
     def passed(self) -> bool:

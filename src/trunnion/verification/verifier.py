@@ -2,12 +2,13 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
 
 from trunnion.arrays import Lines
+from trunnion.model.recording import Recording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Operation, Toolpath
 from trunnion.verification.checks.compensation_checks import check_compensation
@@ -97,6 +98,30 @@ def verify(
     cl_line = _cl_lines(context) if columns else np.zeros(0, np.int32)
     operations = tuple(_operation_rows(context))
     return Verification(run.files[0], run.machine, run, checks, motion.seconds, motion.tip_feed, cl_line, operations)
+
+
+def with_recording(verification: Verification, recording: Recording, tolerance: float) -> Verification:
+    """A verification with the check of a recording of the machine.
+
+    Parameters
+    ----------
+    verification
+        Of the program.
+    recording
+        What the machine showed.
+    tolerance
+        How far its positions may be off the path, mm and degrees.
+
+    Raises
+    ------
+    InputError
+        If the recording has not all axes of the machine.
+    """
+    from trunnion.verification.recorded import check_recorded, compare_recording  # most verifications have none
+
+    compared = compare_recording(verification.run, recording, tolerance)
+    check = check_recorded(Context(verification.run, ExpectedValues()), compared)
+    return replace(verification, checks=(*verification.checks, check), recorded=compared)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -103,9 +103,7 @@ class Connection:
         problems = [each for each in found if isinstance(each, Problem)]
         if problems:
             raise InputError(problems)
-        self.names = tuple(
-            [await self._name(column, node) for column, node in zip(self._columns, found, strict=True)]
-        )
+        self.names = tuple([await self._name(column, node) for column, node in zip(self._columns, found, strict=True)])
         parameters = ua.CreateSubscriptionParameters()
         parameters.RequestedPublishingInterval = PUBLISHING
         parameters.RequestedLifetimeCount = 60 * _KEEP_ALIVE
@@ -117,9 +115,7 @@ class Connection:
         request = ua.CreateMonitoredItemsParameters()
         request.SubscriptionId = made.SubscriptionId
         request.TimestampsToReturn = ua.TimestampsToReturn.Both
-        request.ItemsToCreate = [
-            _item(k, node.nodeid, sampling) for k, node in enumerate(found) if node is not None
-        ]
+        request.ItemsToCreate = [_item(k, node.nodeid, sampling) for k, node in enumerate(found) if node is not None]
         answers = await session.create_monitored_items(request)
         places = [column.place for column, node in zip(self._columns, found, strict=True) if node is not None]
         refused = [
@@ -175,7 +171,7 @@ class Connection:
         """A node; a text says what is there instead."""
         if not place.path:
             return await self._node_by_id(place)
-        node, way = self._client.nodes.objects, []
+        node, way = self._client.nodes.objects, list[str]()
         for name in place.path:
             children = await node.get_children_descriptions()
             names = [child.BrowseName.Name for child in children]
@@ -191,7 +187,9 @@ class Connection:
         if place.namespace not in spaces:
             return f"its namespaces are {', '.join(spaces[1:]) or 'none'}"
         try:
-            node = self._client.get_node(ua.NodeId.from_string(f"ns={spaces.index(place.namespace)};{place.identifier}"))
+            node = self._client.get_node(
+                ua.NodeId.from_string(f"ns={spaces.index(place.namespace)};{place.identifier}")
+            )
             await node.read_node_class()
         except ua.UaError as error:
             return f"compare it with what an OPC UA browser shows ({error.__class__.__name__})"

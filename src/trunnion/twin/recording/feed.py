@@ -6,7 +6,7 @@ Out:    lists of ``Row``s as they become complete, without end.
 
 import asyncio
 import time
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncGenerator, Callable
 from typing import Final
 
 from trunnion.errors import InputError, Problem, Severity
@@ -85,7 +85,7 @@ class MachineFeed:
             raise InputError(Problem(self._access.address, 0, what, "write a list of nodes for this server"))
         self._kept = [k for k, name in enumerate(self._connection.names) if name]
 
-    async def rows(self) -> AsyncIterator[list[Row]]:
+    async def rows(self) -> AsyncGenerator[list[Row], None]:
         """Yield rows as they become complete, and an empty list when nothing comes."""
         maker = self._maker
         while True:

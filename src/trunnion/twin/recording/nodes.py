@@ -125,4 +125,3 @@ def _place(table: Table, identifier: str, path: str, namespace: str, *, required
         cure = f"write {identifier} = of a NodeId, or {path} = of names from the objects on"
         table.add_problem("", "does not say which variable it is", cure)
     return None
-

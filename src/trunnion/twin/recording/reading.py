@@ -157,10 +157,10 @@ def _csv_groups(path: Path) -> Iterator[dict[str, _Cells]]:
                     what, cure = f"has {len(line)} cells, not {len(names)}", "write one for each column"
                     raise InputError(Problem(str(path), lines.line_num - len(group) + k + 1, what, cure))
             if group or first:
-                yield dict(zip(names, zip(*group, strict=True), strict=True)) if group else {name: () for name in names}
+                yield dict(zip(names, zip(*group, strict=True), strict=True)) if group else dict.fromkeys(names, ())
             first = False
         if first:
-            yield {name: () for name in names}
+            yield dict.fromkeys(names, ())
 
 
 def _ends_with_a_line(path: Path) -> bool:
@@ -175,7 +175,7 @@ def _parquet_groups(path: Path) -> Iterator[dict[str, _Cells]]:
         with parquet.ParquetFile(path) as file:
             names = list(file.schema_arrow.names)
             if not file.metadata.num_rows:
-                yield {name: () for name in names}
+                yield dict.fromkeys(names, ())
             for batch in file.iter_batches(_GROUP):
                 yield {name: batch.column(k).to_pylist() for k, name in enumerate(names)}
     except arrow.ArrowException as error:

@@ -83,7 +83,7 @@ class _Recording:
                 left = None if until is None else until - time.monotonic()
                 try:
                     found = await asyncio.wait_for(anext(rows), left)
-                except (TimeoutError, asyncio.TimeoutError):
+                except TimeoutError:
                     break
                 self.gaps += sum(1 for row in found if row.source is None and row.marks)
                 writer.add(found)

@@ -146,5 +146,3 @@ class RowMaker:
 
 def _stamp(reading: Reading, received: int) -> int:
     return next(stamp for stamp in (reading.source, reading.server, received) if stamp is not None)
-
-

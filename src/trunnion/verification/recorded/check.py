@@ -1,0 +1,157 @@
+"""The check of a recording: how far the machine was off the program's path, and how much of its travel it used."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.machines import Machine
+from trunnion.verification.context import MAX_PLACES, Context
+from trunnion.verification.recorded.compared import RecordedComparison
+from trunnion.verification.results import Check, Place
+from trunnion.wording import counted
+
+KEY = "recorded"
+TITLE = "the machine as it was recorded"
+
+#: Axes beyond their limits by less than this are at them, mm or degrees.
+_ROUNDING = 1e-4
+
+
+def check_recorded(context: Context, compared: RecordedComparison) -> Check:
+    """Judge a recording; the places are the worst blocks, worst first."""
+    at = compared.compared
+    if not len(at):
+        why = _not_compared(compared) or "it is empty"
+        summary = f"no position of {compared.recording.name} is on the path of this program: {why}"
+        return Check(KEY, TITLE, False, summary, None, compared.tolerance, "mm")
+    beyond = list(_beyond_travel(context, compared))
+    bad = _bad_rows(compared)
+    rows = bad or _worst_rows(compared)[:1]
+    places = [*beyond, *(_place(context, compared, row) for row in rows[:MAX_PLACES])]
+    worst = float(compared.tip_off[at].max())
+    parts = [
+        f"tip at most {worst:.4f} mm off the path, tool axis {float(compared.axis_off[at].max()):.4f} degrees",
+        f"{counted(len(at), 'position')} in {int((compared.positions > 0).sum())} of {len(context.run)} motions",
+        _uncovered(context, compared),
+        _apart(context, compared),
+        _not_compared(compared),
+        _travel(context, compared),
+    ]
+    if bad or beyond:
+        first = places[0]
+        more = len(bad) + len(beyond) - 1
+        parts.insert(0, f"{first.block_name}: {first.text}" + (f", and {counted(more, 'more place')}" if more else ""))
+    return Check(
+        KEY, TITLE, not bad and not beyond, "; ".join(filter(None, parts)), worst, compared.tolerance, "mm",
+        tuple(places[:MAX_PLACES]),
+    )  # fmt: skip
+
+
+def _bad_rows(compared: RecordedComparison) -> list[int]:
+    """Rows in which the machine was too far off, the worst first."""
+    return [row for row in _worst_rows(compared) if np.nanmax(compared.worst[row]) > compared.tolerance]
+
+
+def _worst_rows(compared: RecordedComparison) -> list[int]:
+    rows = np.flatnonzero(compared.positions > 0)
+    measure = compared.worst[rows].max(axis=1)
+    found: list[int] = rows[np.argsort(-measure, kind="stable")].tolist()
+    return found
+
+
+def _place(context: Context, compared: RecordedComparison, row: int) -> Place:
+    """The place of a row, with its worst position."""
+    of_row = np.flatnonzero(compared.row == row)
+    tip_off = compared.tip_off
+    k = int(of_row[np.argmax(np.maximum(tip_off[of_row], compared.axis_off[of_row]))])
+    text = f"the machine was {tip_off[k]:.4f} mm off the path"
+    if tip_off[k] > compared.tolerance:
+        shares = ", ".join(f"{name}{part:+.4f}" for name, part in zip("XYZ", compared.off[k], strict=True))
+        text = f"{text} ({shares})"
+    text = f"{text}, its tool axis {compared.axis_off[k]:.4f} degrees (line {k + 2} of {compared.recording.name})"
+    return context.place(row, float(max(tip_off[k], compared.axis_off[k])), text)
+
+
+def _uncovered(context: Context, compared: RecordedComparison) -> str:
+    missing = np.flatnonzero(compared.moves & (compared.positions == 0))
+    if not len(missing):
+        return "all blocks that move were recorded"
+    have = "has" if len(missing) == 1 else "have"
+    return f"{counted(len(missing), 'motion')} {have} no position, the first is {context.block_name(int(missing[0]))}"
+
+
+def _apart(context: Context, compared: RecordedComparison) -> str:
+    """How far the machine went without being looked at."""
+    at = compared.compared
+    tips = compared.tips[at]
+    if len(at) < 2:
+        return ""
+    steps = np.where(np.diff(at) == 1, np.linalg.norm(np.diff(tips, axis=0), axis=1), 0.0)
+    k = int(np.argmax(steps))
+    block = context.block_name(int(compared.row[at[k + 1]]))
+    return f"between positions the tip went up to {steps[k]:.3f} mm unseen ({block})" if steps[k] > 0.0 else ""
+
+
+def _not_compared(compared: RecordedComparison) -> str:
+    """Which positions were not compared."""
+    parts = [
+        f"{counted(compared.foreign, 'position')} in other programs" if compared.foreign else "",
+        f"{counted(compared.outside, 'position')} outside it or where nobody knows the tool"
+        if compared.outside
+        else "",
+        f"{counted(compared.incomplete, 'row')} without all axes" if compared.incomplete else "",
+    ]
+    told = ", ".join(filter(None, parts))
+    return f"not compared: {told}" if told else ""
+
+
+def _travel(context: Context, compared: RecordedComparison) -> str:
+    """The axis that came nearest to its limit."""
+    texts: dict[float, str] = {}
+    for k, low, high in _used(compared, context.run.machine):
+        axis = context.run.machine.axes[k]
+        room, whole = min(low - axis.low, axis.high - high), axis.high - axis.low
+        if context.run.machine.is_placed(k):
+            share = room / whole if np.isfinite(whole) else 1.0
+            texts.setdefault(share, f"{axis.name} used {low:.3f} to {high:.3f} of {axis.low:g} to {axis.high:g}")
+        elif np.isfinite(whole):
+            used = high - low
+            texts.setdefault((whole - used) / whole, f"{axis.name} used {used:.3f} mm of the {whole:g} of its travel")
+    return texts[min(texts)] if texts else ""
+
+
+def _used(compared: RecordedComparison, machine: Machine) -> Iterator[tuple[int, float, float]]:
+    """Axes with limits: column, lowest and highest recorded value."""
+    if compared.joints is None:
+        return
+    for k, axis in enumerate(machine.axes):
+        values = compared.joints[:, k][np.isfinite(compared.joints[:, k])]
+        if axis.has_limits and len(values):
+            yield k, float(values.min()), float(values.max())
+
+
+def _beyond_travel(context: Context, compared: RecordedComparison) -> Iterator[Place]:
+    machine = context.run.machine
+    for k, low, high in _used(compared, machine):
+        axis, joints = machine.axes[k], compared.joints
+        assert joints is not None
+        if not machine.is_placed(k):
+            if high - low > axis.high - axis.low + _ROUNDING:
+                text = f"axis {axis.name} used {high - low:.4f} mm, more than its travel of {axis.high - axis.low:g}"
+                yield _place_of_value(context, compared, joints[:, k], high, high - low - axis.high + axis.low, text)
+            continue
+        for value, limit, over in ((low, axis.low, axis.low - low), (high, axis.high, high - axis.high)):
+            if over > _ROUNDING:
+                text = f"axis {axis.name} stood at {value:.4f}, beyond its limit of {limit:g}"
+                yield _place_of_value(context, compared, joints[:, k], value, over, text)
+
+
+def _place_of_value(
+    context: Context, compared: RecordedComparison, column: Floats, value: float, over: float, text: str
+) -> Place:
+    """The place of the first row of the recording with a value."""
+    at = int(np.flatnonzero(column == value)[0])
+    told = compared.row[: at + 1]
+    row = int(told[told >= 0][-1]) if (told >= 0).any() else 0
+    return context.place(row, over, f"{text} (line {at + 2} of {compared.recording.name})")
