@@ -16,8 +16,6 @@ Functions
     post           CL files -> NC program with its proof
     read_program   NC program -> Run: what the control does with it
     verify         NC program against its CL files, and against a recording of the machine -> Verification
-    record         machine, or twin, by OPC UA -> a recording
-    read_recording a recording -> Recording: columns over time
     convert        NC program -> CL file, or program for another machine
     diff           two NC programs -> Comparison
     simulate       NC programs and stock -> SimulationResult: what is cut, and what is hit
