@@ -41,9 +41,7 @@ def recorded(timed: TimedRun, seconds: Floats, *, with_lines: bool = True) -> Re
 def with_values(recording: Recording, **values: Floats) -> Recording:
     """A recording with other columns."""
     changed: Mapping[str, Floats] = {**recording.values, **values}
-    return Recording(
-        recording.file, recording.source, recording.received, recording.marks, changed, recording.texts
-    )
+    return Recording(recording.file, recording.source, recording.received, recording.marks, changed, recording.texts)
 
 
 def known_rows(run: Run) -> slice:

@@ -91,9 +91,7 @@ def add_machine_access(parser: argparse.ArgumentParser) -> None:
         "--rate", type=milliseconds, default=20.0, metavar="MS", help="milliseconds between two looks of the server; 20"
     )
     parser.add_argument("--secure", action="store_true", help="sign and encrypt the channel")
-    parser.add_argument(
-        "--trust", default="", metavar="FINGERPRINT", help="of the server's certificate; with --secure"
-    )
+    parser.add_argument("--trust", default="", metavar="FINGERPRINT", help="of the server's certificate; with --secure")
     parser.add_argument(
         "--user", default="", metavar="NAME", help="user at the machine; the password is asked for or read from stdin"
     )

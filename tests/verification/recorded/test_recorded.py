@@ -88,9 +88,7 @@ def test_positions_in_other_programs_are_not_compared() -> None:
     codes = texts.codes.copy()
     codes[:300] = 2
     others = type(texts)(codes, (*texts.names, "/_N_MPF_DIR/_N_OTHER_MPF"))
-    both = Recording(
-        "x.csv", recording.source, recording.received, {}, recording.values, {"program": others}
-    )
+    both = Recording("x.csv", recording.source, recording.received, {}, recording.values, {"program": others})
     assert "300 positions in other programs" in checked(both).summary
 
 

@@ -47,7 +47,7 @@ def read_recording(path: Path) -> Recording:
         raise InputError(Problem(str(path), 0, "is no recording", "give one that ends in .csv or .parquet"))
     try:
         return _Reader(str(path)).read(_csv_groups(path) if suffix == ".csv" else _parquet_groups(path))
-    except (OSError, UnicodeError, csv.Error) as error:
+    except (OSError, csv.Error) as error:
         raise InputError(Problem(str(path), 0, f"cannot be read: {error}", "give a recording of trunnion")) from None
 
 
@@ -66,7 +66,6 @@ class _Reader:
         names: list[str] = []
         for group in groups:
             names = names or list(group)
-            self._check_names(names)
             for name in names:
                 parts.setdefault(name, []).append(self._column(name, group[name]))
             self._rows += len(group[names[0]])
@@ -86,14 +85,6 @@ class _Reader:
             {name: column for name, column in whole.items() if name not in TIMES and name not in TEXTS},
             {name: TextColumn(whole[name], tuple(self._codes[name])) for name in TEXTS if name in whole},
         )
-
-    def _check_names(self, names: Sequence[str]) -> None:
-        if self._rows:
-            return
-        if len(set(names)) < len(names) or len(names) > _MOST_COLUMNS or "source" not in names:
-            what = "has columns of the same name" if len(set(names)) < len(names) else "has no column source"
-            cure = "the first line of a recording names its columns: source, received, mark, X, Y, …"
-            raise InputError(Problem(self._file, 1, what, cure))
 
     def _column(self, name: str, cells: _Cells) -> Any:
         if name in ("source", "server", "received"):
@@ -143,11 +134,12 @@ class _Reader:
 
 def _csv_groups(path: Path) -> Iterator[dict[str, _Cells]]:
     is_whole = _ends_with_a_line(path)
-    with path.open(encoding="utf-8-sig", newline="") as source:
+    with path.open(encoding="utf-8-sig", errors="replace", newline="") as source:
         lines = csv.reader(source)
         names = [name.strip() for name in next(lines, [])]
         if not names:
             raise InputError(Problem(str(path), 0, "is empty", "give a recording"))
+        _check_names(path, names)
         first = True
         while group := list(islice(lines, _GROUP)):
             if len(group) < _GROUP and not is_whole:
@@ -163,6 +155,20 @@ def _csv_groups(path: Path) -> Iterator[dict[str, _Cells]]:
             yield dict.fromkeys(names, ())
 
 
+def _check_names(path: Path, names: Sequence[str]) -> None:
+    """Refuse columns that are not those of a recording."""
+    what = ""
+    if len(set(names)) < len(names):
+        what = "has columns of the same name"
+    elif len(names) > _MOST_COLUMNS:
+        what = f"has more than {_MOST_COLUMNS} columns"
+    elif "source" not in names:
+        what = "has no column source"
+    if what:
+        cure = "the columns of a recording are source, received, mark, X, Y, …"
+        raise InputError(Problem(str(path), 1, what, cure))
+
+
 def _ends_with_a_line(path: Path) -> bool:
     with path.open("rb") as source:
         source.seek(max(path.stat().st_size - 1, 0))
@@ -174,6 +180,7 @@ def _parquet_groups(path: Path) -> Iterator[dict[str, _Cells]]:
     try:
         with parquet.ParquetFile(path) as file:
             names = list(file.schema_arrow.names)
+            _check_names(path, names)
             if not file.metadata.num_rows:
                 yield dict.fromkeys(names, ())
             for batch in file.iter_batches(_GROUP):

@@ -5,8 +5,8 @@ Out:    ``Row``s: what all columns show at a time.
 Units:  microseconds since 1970.
 
 A server sends what has changed: a row takes all other columns from the row before. It may send the values of one
-variable after those of another, and those of one time in two messages. So rows are made from all values up to the last
-time of the message before; those of later times wait for the next one.
+variable after those of another, and those of one time in several messages. So rows are made from all values up to the
+last time of the message before, but for the newest time of all; those of later times wait for the next message.
 """
 
 from collections.abc import Iterable
@@ -88,13 +88,13 @@ class RowMaker:
             self._highest = key if self._highest is None else max(self._highest, key)
         if more and len(self._waiting) < _MOST_WAITING:
             return []
-        rows = self._made(self._limit) if self._limit is not None else []
+        rows = self._made(self._limit, flushed=False) if self._limit is not None else []
         self._limit = self._highest
         return rows
 
     def flush(self) -> list[Row]:
         """Return the rows of everything that has arrived: nothing more is coming."""
-        return self._made(self._highest) if self._highest is not None else []
+        return self._made(self._highest, flushed=True) if self._highest is not None else []
 
     def broken(self, received: int) -> list[Row]:
         """The connection is broken: return what has arrived, and the row of the gap. Nothing is known any more."""
@@ -111,9 +111,13 @@ class RowMaker:
             return 0, stamp
         return before[0] + (stamp < before[1]), stamp
 
-    def _made(self, limit: _Key | None) -> list[Row]:
-        ready = [each for each in self._waiting if limit is not None and each[0] <= limit]
-        self._waiting = [each for each in self._waiting if limit is None or each[0] > limit]
+    def _made(self, limit: _Key, *, flushed: bool) -> list[Row]:
+        ready: list[tuple[_Key, Reading, int]] = []
+        later: list[tuple[_Key, Reading, int]] = []
+        for each in self._waiting:
+            is_ready = each[0] <= limit and (flushed or each[0] != self._highest)
+            (ready if is_ready else later).append(each)
+        self._waiting = later
         ready.sort(key=lambda each: each[0])
         rows: list[Row] = []
         filled: set[int] = set()

@@ -19,9 +19,9 @@ from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine, forward
 from trunnion.model.recording import TIP, Mark, Recording
 from trunnion.model.run import Run
-from trunnion.verification.recorded.nearest import Nearest, nearest_places
+from trunnion.verification.recorded.nearest import Nearest, nearest_pieces, nearest_places
 from trunnion.verification.recorded.order import BEFORE, UNTOLD, ToldRows, told_rows
-from trunnion.verification.recorded.path import ProgramPath
+from trunnion.verification.recorded.path import SAG, ProgramPath
 
 #: Blocks before and after the told ones that are compared with as well.
 _BESIDE: Final = 1
@@ -31,6 +31,9 @@ _FURTHER: Final = (3.0, 5.0)
 
 #: By how much is looked further where nothing is near.
 _WIDER: Final = (1.0, 10.0, 100.0)
+
+#: Pieces of the beginning, where a program that runs once more is looked for.
+_BEGINNING: Final = 64
 
 #: Pieces that are looked at for one position at most.
 _MOST_PIECES: Final = 200_000
@@ -176,6 +179,7 @@ class _Walk:
 
     def __init__(self, path: ProgramPath, tolerance: float) -> None:
         self._path, self._tolerance = path, tolerance
+        self._near_enough = max(tolerance, 2.0 * SAG)
         steps = np.linalg.norm(path.tip[1] - path.tip[0], axis=1)
         steps = np.nan_to_num(steps) + np.degrees(np.linalg.norm(np.nan_to_num(path.axis[1] - path.axis[0]), axis=1))
         self._length = np.concatenate(([0.0], np.cumsum(steps)))
@@ -192,6 +196,8 @@ class _Walk:
         last = np.flatnonzero(piece >= 0)
         low = np.maximum(piece, 0)
         found = nearest_places(self._path, tip, axis, low, np.where(piece >= 0, low + 1, low))
+        beside = self._unknown[np.minimum(low + 2, len(self._path))] > self._unknown[np.maximum(low - 1, 0)]
+        found.piece[beside & (found.measure > self._tolerance)] = -1
         self._forget_the_end(found, last)
         return found
 
@@ -207,13 +213,13 @@ class _Walk:
         for way in ways:
             high = int(np.searchsorted(self._length, self._length[self._now] + way, "right"))
             high = min(max(high, self._now + 2), self._now + _MOST_PIECES, len(self._path))
-            found = nearest_places(self._path, tip, axis, np.array([self._now]), np.array([high]))
-            if found.measure[0] <= self._tolerance:
-                self._now = int(found.piece[0])
-                return self._now
+            found, away = self._look(tip, axis, self._now, high)
+            if away <= self._near_enough:
+                self._now = found
+                return found
             if narrow < 0:
-                narrow, unknown = int(found.piece[0]), bool(self._unknown[high] > self._unknown[self._now])
-        if (begun := self._near(tip, axis, 0, min(len(self._path), 64))) >= 0:
+                narrow, unknown = found, bool(self._unknown[high] > self._unknown[self._now])
+        if (begun := self._near(tip, axis, 0, min(len(self._path), _BEGINNING))) >= 0:
             self._now = begun  # the program runs once more
             return begun
         if unknown:
@@ -223,8 +229,13 @@ class _Walk:
 
     def _near(self, tip: Floats, axis: Floats, low: int, high: int) -> int:
         """The nearest of some pieces if it is within the tolerance, else -1."""
-        found = nearest_places(self._path, tip, axis, np.array([low]), np.array([high]))
-        return int(found.piece[0]) if found.measure[0] <= self._tolerance else -1
+        found, away = self._look(tip, axis, low, high)
+        return found if away <= self._near_enough else -1
+
+    def _look(self, tip: Floats, axis: Floats, low: int, high: int) -> tuple[int, float]:
+        """The nearest of some pieces, and how far away it is."""
+        found, away = nearest_pieces(self._path, tip, axis, np.array([low]), np.array([high - low]))
+        return int(found[0]), float(away[0])
 
     def _forget_the_end(self, found: Nearest, compared: Ints) -> None:
         """Positions after the last one that is at the path's end are no longer in the program."""

@@ -56,7 +56,7 @@ def nearest_places(path: ProgramPath, tip: Floats, axis: Floats, low: Ints, high
     while first < len(tip):
         end = max(int(np.searchsorted(ends, (ends[first - 1] if first else 0) + _PAIRS, "right")), first + 1)
         part = slice(first, end)
-        piece[part] = _guess(path, tip[part], axis[part], low[part], count[part])
+        piece[part] = nearest_pieces(path, tip[part], axis[part], low[part], count[part])[0]
         first = end
     found = np.flatnonzero(piece >= 0)
     off, axis_off = np.full((len(tip), 3), np.nan), np.full(len(tip), np.nan)
@@ -64,12 +64,16 @@ def nearest_places(path: ProgramPath, tip: Floats, axis: Floats, low: Ints, high
     return Nearest(piece, off, axis_off)
 
 
-def _guess(path: ProgramPath, tip: Floats, axis: Floats, low: Ints, count: Ints) -> Ints:
-    """The nearest piece to each position, with pieces taken for straight; -1 where none is known."""
-    best = np.full(len(tip), -1, np.int64)
+def nearest_pieces(path: ProgramPath, tip: Floats, axis: Floats, low: Ints, count: Ints) -> tuple[Ints, Floats]:
+    """The nearest piece to each position, with pieces taken for straight, and how far away it is.
+
+    They are ``count`` pieces from ``low`` on, (k,) each; where none of them is known the piece is -1, infinitely far
+    away.
+    """
+    best, least = np.full(len(tip), -1, np.int64), np.full(len(tip), np.inf)
     of = np.repeat(np.arange(len(tip)), count)
     if not len(of):
-        return best
+        return best, least
     piece = np.repeat(low, count) + np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
     at = _along(path, tip[of], axis[of], piece)[:, None]
     away = tip[of] - path.tip[0, piece] - at * (path.tip[1, piece] - path.tip[0, piece])
@@ -77,11 +81,10 @@ def _guess(path: ProgramPath, tip: Floats, axis: Floats, low: Ints, count: Ints)
     measure = np.where(path.known[piece], _square(away) + LEVER**2 * _square(turned), np.inf)
     there = count > 0
     begins = (np.cumsum(count) - count)[there]
-    least = np.full(len(tip), np.inf)
     least[there] = np.minimum.reduceat(measure, begins)
     hits = np.flatnonzero((measure == least[of]) & np.isfinite(measure))[::-1]
     best[of[hits]] = piece[hits]  # the first of them
-    return best
+    return best, np.sqrt(least)
 
 
 def _along(path: ProgramPath, tip: Floats, axis: Floats, piece: Ints) -> Floats:

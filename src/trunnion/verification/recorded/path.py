@@ -16,7 +16,7 @@ from trunnion.model.run import Run
 from trunnion.timing import axis_pieces
 
 #: How far the tip may be from the straight line between the ends of a piece, mm; and the pieces of one piece at most.
-_SAG: Final = 0.005
+SAG: Final = 0.005
 _MOST_PARTS: Final = 256
 
 
@@ -75,5 +75,5 @@ def _counts(machine: Machine, before: Floats, after: Floats) -> Ints:
     """How many parts pieces are cut into, so that the tip goes straight in each."""
     middle = forward(machine, (before + after) / 2.0)[0]
     sag = np.linalg.norm(middle - (forward(machine, before)[0] + forward(machine, after)[0]) / 2.0, axis=1)
-    parts = np.ceil(np.sqrt(np.nan_to_num(sag) / _SAG))
+    parts = np.ceil(np.sqrt(np.nan_to_num(sag) / SAG))
     return np.asarray(np.clip(parts, 1, _MOST_PARTS), np.int64)
