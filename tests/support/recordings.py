@@ -9,9 +9,11 @@ import numpy as np
 from tests.support.locations import YL569
 from trunnion import load_machine, read_program
 from trunnion.arrays import Floats
-from trunnion.model.recording import Recording, TextColumn
-from trunnion.model.run import Run
+from trunnion.files import resolve_output
+from trunnion.model.recording import NO_TIME, Mark, Recording, TextColumn
 from trunnion.timing import TimedRun, time_run
+from trunnion.twin.recording.files import RecordingWriter
+from trunnion.twin.recording.rows import Row
 
 BLADE_FINISH = YL569 / "3_blade_finish.expected.mpf"
 
@@ -44,6 +46,28 @@ def with_values(recording: Recording, **values: Floats) -> Recording:
     return Recording(recording.file, recording.source, recording.received, recording.marks, changed, recording.texts)
 
 
-def known_rows(run: Run) -> slice:
-    """Rows of the blade's program of which it is known where the tool is, without those beside others."""
-    return slice(10, len(run) - 4)
+def written(recording: Recording, file: Path) -> Path:
+    """A recording as a file."""
+    names = [*recording.values, *recording.texts]
+    writer = RecordingWriter(resolve_output(file), names, frozenset(recording.texts))
+    columns = [column.tolist() for column in recording.values.values()]
+    for row in range(len(recording)):
+        values = [None if np.isnan(column[row]) else column[row] for column in columns]
+        values += [column[row] or None for column in recording.texts.values()]
+        source = int(recording.source[row])
+        stamp = None if source == NO_TIME else source
+        writer.add([Row(values, stamp, stamp, int(recording.received[row]), list(recording.marks.get(row, ())))])
+    writer.close()
+    return file
+
+
+def with_gap(recording: Recording, first: int, end: int) -> Recording:
+    """A recording that was not connected from row ``first`` to row ``end``."""
+    keep = np.r_[0:first, first, end : len(recording)]
+    gap = np.arange(len(keep)) == first
+    values = {name: np.where(gap, np.nan, column[keep]) for name, column in recording.values.items()}
+    texts = {
+        name: TextColumn(np.where(gap, 0, column.codes[keep]), column.names) for name, column in recording.texts.items()
+    }
+    source = np.where(gap, NO_TIME, recording.source[keep])
+    return Recording(recording.file, source, recording.received[keep], {first: (Mark.GAP,)}, values, texts)

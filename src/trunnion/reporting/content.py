@@ -20,6 +20,7 @@ from trunnion.machines import Machine
 from trunnion.model.motion import Decision
 from trunnion.model.toolpath import Kind
 from trunnion.reporting.extents import AxisExtent, TipExtent, axis_extent, tip_extent
+from trunnion.reporting.recorded_content import RecordedContent, recorded_content
 from trunnion.reporting.simulation_content import SimulationContent
 from trunnion.reporting.text import clean
 from trunnion.reporting.usage import OperationUsage, ToolUsage, operation_usage, tool_usages
@@ -56,6 +57,7 @@ class ReportContent:
     axes: tuple[AxisExtent, ...]
     units: tuple[str, ...] = ()
     simulation: SimulationContent | None = None
+    recorded: RecordedContent | None = None
 
 
 def collect_content(
@@ -89,6 +91,7 @@ def collect_content(
         axes=tuple(axis_extent(run, k, axis) for k, axis in enumerate(machine.axes)),
         units=tuple(_UNITS[inches] for inches in dict.fromkeys(run.state.inches.values.tolist())),
         simulation=simulation,
+        recorded=recorded_content(verification),
     )
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from trunnion.reporting.content import ReportContent
 from trunnion.reporting.detail_levels import detail_levels, select_rows
-from trunnion.reporting.html_plots import column_element, column_elements, plot_section
+from trunnion.reporting.html_plots import column_element, column_elements, element_prefix, plot_section
 from trunnion.reporting.html_tables import page_body
 from trunnion.reporting.html_text import escape, source_hash
 from trunnion.reporting.plot_series import PlotSeries
@@ -25,18 +25,24 @@ _ASSETS = files("trunnion.reporting")
 
 def render_page(content: ReportContent, series: PlotSeries) -> Iterator[bytes]:
     """Yield the page, piece by piece."""
-    levels = list(detail_levels(series))
+    parts = [series] if content.recorded is None else [content.recorded.series, series]
+    levels = [list(detail_levels(part)) for part in parts]
     scripts = (_read_vendored("uPlot.iife.min.js"), _read_asset("unpack.js") + _read_asset("page.js"))
     yield _head(content, scripts).encode()
     yield page_body(content).encode()
-    yield plot_section(series, levels).encode()
-    if levels:
-        yield from column_elements("coarse", select_rows(series, levels[0].rows))
+    for part, own in zip(parts, levels, strict=True):
+        yield plot_section(part, own).encode()
+    yield b"</main>\n"
+    for part, own in zip(parts, levels, strict=True):
+        if own:
+            yield from column_elements("coarse", select_rows(part, own[0].rows))
     for script in scripts:
         yield f"<script>{script}</script>\n".encode()
-    for level in levels[1:]:
-        yield column_element(f"level-{level.buckets}", level.rows.astype(np.int32))
-    yield from column_elements("full", series)
+    for part, own in zip(parts, levels, strict=True):
+        for level in own[1:]:
+            name = f"{element_prefix(part)}level-{level.buckets}"
+            yield column_element(name, level.rows.astype(np.int32))
+        yield from column_elements("full", part)
     yield b"</body>\n</html>\n"
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from trunnion.reporting.column_encoding import encode_column
 from trunnion.reporting.detail_levels import BUCKETS_IN_VIEW, MAX_DIRECT_POINTS, DetailLevel
+from trunnion.reporting.html_text import escape
 from trunnion.reporting.plot_series import Curve, Plot, PlotSeries
 
 #: Tool changes marked in the plots; more of them would be a grey wall.
@@ -23,30 +24,37 @@ limits really are is not known: no workpiece zero is given, or for a slide along
 
 
 def plot_section(series: PlotSeries, levels: Sequence[DetailLevel]) -> str:
-    """Return the section of the plots; without motion it only closes the page's main part."""
+    """Return the section of the plots of a program, or of a recording; empty without motion."""
     if len(series) < 2:
-        return "</main>\n"
+        return ""
+    own = element_prefix(series)
     floating = any(curve.floating for plot in series.plots for curve in plot.curves)
-    return f"""<section id="plots">
-<h2>Axes, speeds and feed over {"time" if series.timed else "motions: no times are known"}</h2>
-<p class="note">Drag over a stretch to zoom in, double-click for the whole program; click a point to hold it, Escape
-lets go. Red lines are limits.{FLOATING_NOTE if floating else ""}</p>
-<div id="bar">
-<div id="point"><span class="hint">Loading …</span></div>
-<div id="buttons"><button type=button data-act="left" title="earlier">◀</button>
+    title = series.title or f"Axes, speeds and feed over {'time' if series.timed else 'motions: no times are known'}"
+    whole = "whole recording" if series.name else "whole program"
+    return f"""<section id="{own}plots" class="plots">
+<h2>{escape(title)}</h2>
+<p class="note">Drag over a stretch to zoom in, double-click for the {whole}; click a point to hold it, Escape
+lets go. Red lines are limits.{FLOATING_NOTE if floating else ""} {escape(series.note)}</p>
+<div id="{own}bar" class="bar">
+<div id="{own}point" class="point"><span class="hint">Loading …</span></div>
+<div class="buttons"><button type=button data-act="left" title="earlier">◀</button>
 <button type=button data-act="out" title="zoom out">−</button>
 <button type=button data-act="in" title="zoom in">+</button>
 <button type=button data-act="right" title="later">▶</button>
-<button type=button data-act="whole">whole program</button>
-<label><input type=checkbox id="fit"> fit heights to the motion</label></div>
+<button type=button data-act="whole">{whole}</button>
+<label><input type=checkbox id="{own}fit"> fit heights to the motion</label></div>
 </div>
-<div id="strips"></div>
-<p class="note" id="status"></p>
+<div id="{own}strips"></div>
+<p class="note" id="{own}status"></p>
 <noscript><p class="note">The plots need JavaScript, which this browser has switched off.</p></noscript>
 </section>
-</main>
-<script type="application/json" id="report">{script_json(_specification(series, levels))}</script>
+<script type="application/json" id="{own}report">{script_json(_specification(series, levels))}</script>
 """
+
+
+def element_prefix(series: PlotSeries) -> str:
+    """What the ids of the elements of a section begin with."""
+    return f"{series.name}-" if series.name else ""
 
 
 def _specification(series: PlotSeries, levels: Sequence[DetailLevel]) -> dict[str, object]:
@@ -64,6 +72,8 @@ def _specification(series: PlotSeries, levels: Sequence[DetailLevel]) -> dict[st
         "files": list(series.files) if "file" in series.lines else [],
         "plots": [_plot(plot) for plot in series.plots],
         "marks": [[float(time[row]), name] for row, name in series.tool_changes[:MAX_TOOL_MARKS]],
+        "markWord": "" if series.name else "T",
+        "first": "" if series.name else "before the first motion",
     }
 
 
@@ -88,9 +98,9 @@ def column_elements(group: str, series: PlotSeries) -> Iterator[bytes]:
     if len(series) < 2:
         return
     for name, column in {"seconds": series.seconds, **series.values}.items():
-        yield column_element(f"{group}-{name}", column)
+        yield column_element(f"{element_prefix(series)}{group}-{name}", column)
     for name, numbers in series.lines.items():
-        yield column_element(f"{group}-{name}", numbers)
+        yield column_element(f"{element_prefix(series)}{group}-{name}", numbers)
 
 
 def column_element(name: str, column: NDArray[np.float32] | NDArray[np.int32]) -> bytes:

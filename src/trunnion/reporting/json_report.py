@@ -5,7 +5,7 @@ Out:    UTF-8 JSON, with null for NaN and infinities.
 """
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from trunnion.model.motion import Decision
 from trunnion.reporting.content import ReportContent
 from trunnion.reporting.extents import AxisExtent, BlockReference, Extremes, TipExtent
 from trunnion.reporting.plot_series import PlotSeries
+from trunnion.reporting.recorded_content import RecordedContent
 from trunnion.reporting.text import finite_or_none
 from trunnion.reporting.usage import OperationUsage, ToolUsage
 from trunnion.verification.results import Check, Place
@@ -63,11 +64,23 @@ def _head(content: ReportContent) -> dict[str, object]:
         "tools": [_tool(tool) for tool in content.tools],
         "operations": [_operation(operation) for operation in content.operations],
         **({} if content.simulation is None else {"simulation": dict(content.simulation.data)}),
+        **({} if content.recorded is None else {"recorded": _recorded(content.recorded)}),
         "decisions": [_decision(decision) for decision in content.decisions],
         "extents": {
             "tip": [_tip(extent) for extent in content.tip],
             "axes": [_axis(extent) for extent in content.axes],
         },
+    }
+
+
+def _recorded(recorded: RecordedContent) -> dict[str, object]:
+    return {
+        "file": recorded.file,
+        "seconds": recorded.seconds,
+        "positions": recorded.compared,
+        "positions_elsewhere": recorded.other,
+        "incomplete_rows": recorded.incomplete,
+        "gaps": recorded.gaps,
     }
 
 
@@ -167,7 +180,7 @@ def _number(number: int) -> int | None:
     return number if number >= 0 else None
 
 
-def _columns(content: ReportContent, series: PlotSeries) -> Iterator[tuple[str, list[float] | list[int] | list[str]]]:
+def _columns(content: ReportContent, series: PlotSeries) -> Iterator[tuple[str, Sequence[float | str | None]]]:
     """Yield the columns by the names of the schema, one value a motion: without the point before the first one."""
     yield "nc_line", series.lines["block"][1:].tolist()
     yield "number", series.lines["number"][1:].tolist()
@@ -182,6 +195,10 @@ def _columns(content: ReportContent, series: PlotSeries) -> Iterator[tuple[str, 
         if f"speed{k}" in series.values:
             yield f"speed {axis.name}", _rounded(series, f"speed{k}")
     yield "tip_feed", _rounded(series, "feed")
+    if content.recorded is not None:
+        yield "recorded_positions", content.recorded.positions.tolist()
+        for k, name in enumerate(("recorded_tip_off", "recorded_axis_off")):
+            yield name, [None if np.isnan(value) else value for value in content.recorded.worst[:, k].tolist()]
 
 
 def _rounded(series: PlotSeries, column: str) -> list[float]:

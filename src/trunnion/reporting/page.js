@@ -5,11 +5,12 @@
  * Whatever stretch is looked at, `tableFor` picks the table that shows it with few enough points.
  */
 "use strict";
-(() => {
-  const holder = document.getElementById("report");
+// Plots of the program, and of a recording: the ids of their elements begin with `own`.
+for (const own of ["", "recorded-"]) (() => {
+  const holder = document.getElementById(`${own}report`);
   if (!holder) return;
   const report = JSON.parse(holder.textContent);
-  const byId = (id) => document.getElementById(id);
+  const byId = (id) => document.getElementById(own + id);
   const NAMES = ["seconds", ...report.values, ...report.lines];
   const WHOLE = [0, report.total || 1];
   const HEIGHT = 118, AXIS = 26;
@@ -29,7 +30,7 @@
   async function unpackTable(group) {
     const made = {};
     for (const name of NAMES) {
-      const words = await unpack(`${group}-${name}`);
+      const words = await unpack(`${own}${group}-${name}`);
       made[name] = report.lines.includes(name) ? words : new Float32Array(words.buffer);
     }
     made.time = new Float64Array(made.seconds.length);
@@ -111,9 +112,9 @@
     };
     if (!point) place.append(element("span", "held", "held"));
     say(report.timed ? "time" : "motion", clock(t.time[at], 3));
-    if (at === 0) return void place.append(element("span", "hint", "before the first motion"));
+    if (at === 0 && report.first) return void place.append(element("span", "hint", report.first));
     if (t.number[at] >= 0) say("block", `N${t.number[at]}`);
-    say("NC line", String(t.block[at]));
+    if (t.block[at] > 0) say("NC line", String(t.block[at]));
     if (t.file && t.file[at]) say("in", report.files[t.file[at]]);
     if (t.cl[at] > 0) say("CL line", String(t.cl[at]));
   }
@@ -163,7 +164,7 @@
       const x = upright(time, colours.mark, [2, 3]);
       ctx.fillStyle = colours.soft;
       ctx.textAlign = x > bbox.left + bbox.width - 40 * ratio ? "right" : "left";
-      if (u === plots[0].u) ctx.fillText(`T${tool}`, x + (ctx.textAlign === "left" ? 3 : -3) * ratio, bbox.top + bbox.height - 5 * ratio);
+      if (u === plots[0].u) ctx.fillText(`${report.markWord}${tool}`, x + (ctx.textAlign === "left" ? 3 : -3) * ratio, bbox.top + bbox.height - 5 * ratio);
     }
     spec.lines.forEach((line) => {
       for (const limit of line.limits) {
@@ -230,7 +231,7 @@
         // The block that runs at a moment is the one that ends next.
         dataIdx: (u, k, nearest, time) => Math.min(firstAt(u.data[0], time), u.data[0].length - 1),
         drag: { x: true, y: false, setScale: false },
-        sync: { key: "report", filters: { pub: (type) => type !== "mousedown" && type !== "mouseup" && type !== "dblclick" } },
+        sync: { key: `${own}report`, filters: { pub: (type) => type !== "mousedown" && type !== "mouseup" && type !== "dblclick" } },
         bind: { dblclick: () => () => { show(...WHOLE); return null; } },
       },
       hooks: {
@@ -348,8 +349,8 @@
   function listen() {
     document.addEventListener("click", (event) => {
       const { act: what, line, cl, file } = event.target.dataset || {};
-      if (what) act(what);
-      if (line) goTo(Number(line), Number(cl), file);
+      if (what && byId("plots").contains(event.target)) act(what);
+      if (line && !own) goTo(Number(line), Number(cl), file);
     });
     document.addEventListener("keydown", (event) => { if (event.key === "Escape") hold(null); });
     byId("fit").addEventListener("change", (event) => { fit = event.target.checked; show(...view); });
@@ -377,15 +378,15 @@
       coarse = await unpackTable("coarse");
       levels = [{ buckets: report.levels[0], table: coarse }];
       show(...WHOLE);
-      performance.mark("coarse plots");
+      performance.mark(`${own}coarse plots`);
     }
     await parsed;
     full = await unpackTable("full");
     for (const buckets of report.levels.slice(1)) {
-      levels.push({ buckets, table: rowsOf(full, await unpack(`level-${buckets}`)) });
+      levels.push({ buckets, table: rowsOf(full, await unpack(`${own}level-${buckets}`)) });
     }
     show(...view);
-    performance.mark("full plots");
+    performance.mark(`${own}full plots`);
     tell(null);
   }
 

@@ -55,7 +55,9 @@ class PlotSeries:
     values        name -> (n+1,) float32
     lines         name -> (n+1,) int32: ``block``, ``number``, ``cl``, and ``file`` if there are subprograms
     timed         whether ``seconds`` are seconds; otherwise no time is known and each motion counts 1
-    tool_changes  the point after which each one happens, and the name of the tool
+    tool_changes  the point after which each one happens, and the name of the tool; of a recording, what is marked
+    name          of the section; empty: the program itself
+    title, note   of the section; empty: those of the program
     """
 
     seconds: SingleFloats
@@ -65,6 +67,9 @@ class PlotSeries:
     files: tuple[str, ...]
     tool_changes: tuple[tuple[int, str], ...]
     timed: bool
+    name: str = ""
+    title: str = ""
+    note: str = ""
 
     def __len__(self) -> int:
         return len(self.seconds)
@@ -141,7 +146,7 @@ def _plots(verification: Verification) -> Iterator[Plot]:
 
 def _position_plot(verification: Verification, k: int) -> Plot:
     axis = verification.machine.axes[k]
-    limits = () if axis.endless else _finite_values(axis.low, axis.high)
+    limits = () if axis.endless else finite_values(axis.low, axis.high)
     note = "endless" if axis.endless else "" if limits else "limits not stated"
     floating = bool(limits) and not is_zero_known(verification.run, k)
     if floating:
@@ -162,10 +167,11 @@ def _centred_limits(verification: Verification, k: int) -> tuple[float, ...]:
 
 def _speed_curve(axis: Axis, k: int) -> Curve:
     name = clean(axis.name)
-    return Curve(f"speed{k}", name, _finite_values(axis.rapid), f"{name} rapid")
+    return Curve(f"speed{k}", name, finite_values(axis.rapid), f"{name} rapid")
 
 
-def _finite_values(*values: float | None) -> tuple[float, ...]:
+def finite_values(*values: float | None) -> tuple[float, ...]:
+    """Those that are known and finite."""
     return tuple(value for value in values if value is not None and math.isfinite(value))
 
 

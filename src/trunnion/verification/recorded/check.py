@@ -6,6 +6,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.machines import Machine
+from trunnion.model.recording import Mark
 from trunnion.verification.context import MAX_PLACES, Context
 from trunnion.verification.recorded.compared import RecordedComparison
 from trunnion.verification.results import Check, Place
@@ -87,7 +88,8 @@ def _apart(context: Context, compared: RecordedComparison) -> str:
     tips = compared.tips[at]
     if len(at) < 2:
         return ""
-    steps = np.where(np.diff(at) == 1, np.linalg.norm(np.diff(tips, axis=0), axis=1), 0.0)
+    between = at[1:] - at[:-1] - 1 - compared.recording.marked(Mark.GAP)[np.minimum(at[:-1] + 1, len(compared.row) - 1)]
+    steps = np.where(between == 0, np.linalg.norm(np.diff(tips, axis=0), axis=1), 0.0)
     k = int(np.argmax(steps))
     block = context.block_name(int(compared.row[at[k + 1]]))
     return f"between positions the tip went up to {steps[k]:.3f} mm unseen ({block})" if steps[k] > 0.0 else ""

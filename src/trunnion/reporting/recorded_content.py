@@ -1,0 +1,152 @@
+"""What a report shows of a recording: curves of axes and spindle over time, and how far off each motion was.
+
+In:     a ``Verification`` with a recording.
+Out:    ``RecordedContent``.
+Units:  seconds, mm, degrees, rev/min.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats, Ints, Lines
+from trunnion.machines import Axis
+from trunnion.model.recording import SPINDLE, TIP, Mark
+from trunnion.reporting.plot_series import Curve, Plot, PlotSeries, finite_values
+from trunnion.reporting.text import clean
+from trunnion.verification.recorded import RecordedComparison
+from trunnion.verification.results import Verification
+
+#: What is marked where the connection was broken, and where it was there again.
+_GAP, _AFTER_GAP = "gap", "connected again"
+
+_NOTE: Final = """Between two positions the machine was not looked at. Dotted upright lines are where the connection
+was broken."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RecordedContent:
+    """A recording in a report; n motions.
+
+    file       its name
+    compared   positions that were compared
+    other      positions in other programs, before the program, after it, and where nobody knows the tool
+    incomplete rows without all axes
+    gaps       breaks of the connection
+    seconds    how long it is
+    positions  (n,)    positions of each motion
+    worst      (n, 2)  how far off tip and tool axis were at worst; NaN where there is no position
+    series     curves over time
+    """
+
+    file: str
+    compared: int
+    other: int
+    incomplete: int
+    gaps: int
+    seconds: float
+    positions: Ints
+    worst: Floats
+    series: PlotSeries
+
+
+def recorded_content(verification: Verification) -> RecordedContent | None:
+    """The content of the recording; None if there is none."""
+    found = verification.recorded
+    if found is None:
+        return None
+    elapsed = found.recording.elapsed()
+    return RecordedContent(
+        file=clean(found.recording.name),
+        compared=len(found.compared),
+        other=found.foreign + found.outside,
+        incomplete=found.incomplete,
+        gaps=int(found.recording.marked(Mark.GAP).sum()),
+        seconds=float(elapsed[-1]) if len(elapsed) else 0.0,
+        positions=found.positions,
+        worst=found.worst,
+        series=_series(verification, found, elapsed),
+    )
+
+
+def _series(verification: Verification, found: RecordedComparison, elapsed: Floats) -> PlotSeries:
+    """Rows that show all axes, as points over time."""
+    recording, run = found.recording, verification.run
+    curves = dict(_curves(verification, found))
+    shown = np.flatnonzero(np.isfinite(np.column_stack([column for _, column in curves.values()])).all(axis=1))
+    marks = []
+    for gap in np.flatnonzero(recording.marked(Mark.GAP)).tolist():
+        after = int(np.searchsorted(shown, gap))
+        marks += [(max(after - 1, 0), _GAP), *([(after, _AFTER_GAP)] if after < len(shown) else [])]
+    row = found.row[shown]
+    block, number = (
+        np.where(row >= 0, column[row], nothing) for column, nothing in ((run.line, 0), (run.block_number, -1))
+    )
+    cl = (
+        verification.cl_line[row]
+        if len(verification.cl_line) == len(run) and len(run)
+        else np.zeros(len(row), np.int32)
+    )
+    values = {f"axis{k}": column[shown].astype(np.float32) for k, (_, column) in enumerate(curves.values())}
+    if SPINDLE in recording.values:
+        values[SPINDLE] = np.nan_to_num(recording.values[SPINDLE][shown]).astype(np.float32)
+    return PlotSeries(
+        seconds=np.diff(elapsed[shown], prepend=elapsed[shown][:1]).astype(np.float32),
+        values=values,
+        lines={"block": _as_int32(block), "number": _as_int32(number), "cl": _as_int32(np.where(row >= 0, cl, 0))},
+        plots=tuple(_plots(verification, curves, SPINDLE in recording.values)),
+        files=tuple(clean(Path(file).name) for file in run.files),
+        tool_changes=tuple(marks),
+        timed=True,
+        name="recorded",
+        title=f"As recorded in {clean(recording.name)}: axes and spindle over time",
+        note=_NOTE,
+    )
+
+
+def _curves(verification: Verification, found: RecordedComparison) -> Iterator[tuple[str, tuple[int | None, Floats]]]:
+    """Recorded columns by their names, with the column of the machine's axis: slides first, or the tip."""
+    machine, joints = verification.machine, found.joints
+    if joints is not None:
+        for k in (*machine.linear, *machine.rotary):
+            yield machine.names[k], (k, joints[:, k])
+        return
+    for name, column in zip(TIP, found.tips.T, strict=True):
+        yield name, (None, column)
+    columns = {name.casefold(): column for name, column in found.recording.values.items()}
+    for k in machine.rotary:
+        yield machine.names[k], (k, columns[machine.names[k].casefold()])
+
+
+def _plots(
+    verification: Verification, curves: dict[str, tuple[int | None, Floats]], has_spindle: bool
+) -> Iterator[Plot]:
+    machine = verification.machine
+    for k, (name, (axis, values)) in enumerate(curves.items()):
+        if axis is None:
+            yield Plot(name, "mm", (Curve(f"axis{k}", name),))
+        else:
+            yield _axis_plot(f"axis{k}", machine.axes[axis], values, machine.is_placed(axis))
+    if has_spindle:
+        limits = finite_values(machine.spindle_max_rpm)
+        yield Plot("Spindle", "rev/min", (Curve(SPINDLE, "spindle", limits, "fastest"),))
+
+
+def _axis_plot(column: str, axis: Axis, values: Floats, is_placed: bool) -> Plot:
+    """An axis with its travel, which stands around the motion where nobody knows its place."""
+    limits = () if axis.endless else finite_values(axis.low, axis.high)
+    note = "endless" if axis.endless else "" if limits else "limits not stated"
+    known = values[np.isfinite(values)]
+    if limits and not is_placed:
+        middle, half = float(known.min() + known.max()) / 2.0 if len(known) else 0.0, (axis.high - axis.low) / 2.0
+        limits = (middle - half, middle + half) if np.isfinite(half) else ()
+    name = clean(axis.name)
+    curve = Curve(column, name, limits, floating=bool(limits) and not is_placed)
+    return Plot(name, "°" if axis.is_rotary else "mm", (curve,), note=note)
+
+
+def _as_int32(column: Ints | Lines) -> Lines:
+    return np.where(np.abs(column) < 2**31, column, -1).astype(np.int32)
