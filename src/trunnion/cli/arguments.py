@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import Any, Final, cast
 
 from trunnion import __version__
-from trunnion.cli.twin_arguments import add_record, add_twin
+from trunnion.cli.twin_arguments import add_machine_access, add_record, add_twin
 
 
 def _key_value(text: str) -> tuple[str, str]:
@@ -314,9 +314,14 @@ def _add_stock(parser: argparse.ArgumentParser) -> None:
 
 def _add_view(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "files", nargs="+", metavar="NC|CL|PROJECT",
+        "files", nargs="*", metavar="NC|CL|PROJECT",
         help="NC program, with its subprograms behind it; CL files, which are posted; or a project (.toml)",
     )  # fmt: skip
+    parser.add_argument(
+        "--live", metavar="ADDRESS",
+        help="follow a machine, or a twin, by OPC UA (opc.tcp://HOST:PORT/…), as it moves; no program is needed",
+    )  # fmt: skip
+    add_machine_access(parser)
     parser.add_argument("--machine", metavar="NAME_OR_FILE", help="machine that runs it; a project may state it")
     parser.add_argument("--against", metavar="NC|CL", help="a second program, beside it on the same tool path")
     parser.add_argument("--against-machine", metavar="NAME_OR_FILE", help="machine of that, if it is another")

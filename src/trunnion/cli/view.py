@@ -2,14 +2,22 @@
 
 import argparse
 import sys
+from functools import partial
+from typing import Any
 
+from trunnion.api.recording import machine_feed
 from trunnion.api.simulation_project import project_files
 from trunnion.api.viewing import check_view_name, prepare_view, write_view
+from trunnion.api.viewing_live import LiveMachine, machine_content
 from trunnion.cli.cl_files import cl_inputs, named_files
+from trunnion.cli.record import machine_password
 from trunnion.cli.results import print_result
 from trunnion.cli.serving import announce
 from trunnion.cli.terminal import Terminal
+from trunnion.errors import InputError, argument_problem
 from trunnion.files import check_outputs
+from trunnion.viewer.content import ViewContent
+from trunnion.viewer.live import LiveView
 from trunnion.viewer.server import view_application
 from trunnion.viewer.serving import listen, serve
 from trunnion.wording import counted
@@ -18,6 +26,10 @@ from trunnion.wording import counted
 def run(arguments: argparse.Namespace) -> int:
     """Write the page, or serve it until the user ends it."""
     files = arguments.files
+    if arguments.live is None and not files:
+        raise InputError(argument_problem("nc", "is missing", "name a program, CL files or a project"))
+    if arguments.live is not None and arguments.output is not None:
+        raise InputError(argument_problem("live", "is for a page that is served", "leave --output out"))
     read = [*files, *project_files(files, ("machine", "stock")), *arguments.subprograms, *named_files(arguments.cl)]
     read += [*arguments.libraries, *arguments.fixtures]
     read += [file for file in (arguments.part, arguments.stock, arguments.against) if file is not None]
@@ -37,7 +49,31 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
 
     with listen(arguments.host, arguments.port) as listening:
-        content = prepare_view(files, observer=Terminal(), **given)
+        live = None
+        if arguments.live is None:
+            content = prepare_view(files, observer=Terminal(), **given)
+        else:
+            content, live = _live(arguments, given)
         print(counted(len(content.scene["findings"]), "finding"), file=sys.stderr)
-        serve(lambda access: view_application(content, access), listening, announce(browser=arguments.browser))
+        serve(lambda access: view_application(content, access, live), listening, announce(browser=arguments.browser))
     return 0
+
+
+def _live(arguments: argparse.Namespace, given: dict[str, Any]) -> tuple[ViewContent, LiveView]:
+    """What is shown of a machine that moves, and the machine; its program is shown where one is named."""
+    if arguments.machine is None:
+        raise InputError(argument_problem("machine", "is missing", "say which machine it is"))
+    password = machine_password(arguments.user)
+    make = partial(
+        machine_feed, arguments.live, nodes=arguments.nodes, rate=arguments.rate, secure=arguments.secure,
+        trust=arguments.trust, user=arguments.user, password=password,
+    )  # fmt: skip
+    LiveMachine(make, arguments.machine).check()
+    if arguments.files:
+        content = prepare_view(arguments.files, observer=Terminal(), **given)
+    else:
+        alone = {
+            name: given[name] for name in ("zero", "tool_length", "part", "fixtures", "tools", "libraries", "unit")
+        }
+        content = machine_content(arguments.machine, arguments.live, **alone)
+    return content, LiveView(LiveMachine(make, arguments.machine, content.scene["files"]))

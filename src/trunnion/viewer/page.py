@@ -21,7 +21,19 @@ from trunnion.viewer.shell import PageShell, bundle
 _WEB: Final = files("trunnion.viewer") / "web"
 
 #: In an order in which each needs only those before it.
-MODULES: Final = ("texts", "data", "kinematics", "program", "space", "stock", "listing", "curves", "twin", "main")
+MODULES: Final = (
+    "texts",
+    "data",
+    "kinematics",
+    "program",
+    "space",
+    "stock",
+    "listing",
+    "curves",
+    "twin",
+    "live",
+    "main",
+)
 
 
 def render_view(content: ViewContent, *, embedded: bool) -> Iterator[bytes]:

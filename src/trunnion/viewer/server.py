@@ -8,6 +8,7 @@ import asyncio
 import re
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from functools import cache
 from typing import Any, Final
 
@@ -16,6 +17,7 @@ import numpy as np
 from trunnion.extras import import_extra
 from trunnion.viewer.bricks import NOTHING
 from trunnion.viewer.content import ViewContent
+from trunnion.viewer.live import LiveView
 from trunnion.viewer.page import render_view
 from trunnion.viewer.serving import HEADERS, Access, application_of
 
@@ -26,7 +28,7 @@ _NEW_LINE: Final = 10
 _NUMBER: Final = re.compile(r"\d{1,9}", re.ASCII)
 
 
-def view_application(content: ViewContent, access: Access) -> Any:
+def view_application(content: ViewContent, access: Access, live: LiveView | None = None) -> Any:
     """Make the application.
 
     Parameters
@@ -35,6 +37,8 @@ def view_application(content: ViewContent, access: Access) -> Any:
         What its page shows.
     access
         Who may see it.
+    live
+        The machine whose motion it follows; None: it follows none.
 
     Raises
     ------
@@ -42,6 +46,8 @@ def view_application(content: ViewContent, access: Access) -> Any:
         If Starlette is not installed.
     """
     responses, routing = (import_extra(f"starlette.{name}", "view") for name in ("responses", "routing"))
+    if live is not None:
+        content = replace(content, scene={**content.scene, "live": True})
     page = b"".join(render_view(content, embedded=False))
 
     def show_page(_request: Any) -> Any:
@@ -79,9 +85,16 @@ def view_application(content: ViewContent, access: Access) -> Any:
             return responses.PlainTextResponse("another state was asked for meanwhile", 409, HEADERS)
         return responses.Response(found, 200, HEADERS, _BYTES)
 
+    def follow(_request: Any) -> Any:
+        return None if live is None else responses.StreamingResponse(live.events(), 200, HEADERS, "text/event-stream")
+
     @asynccontextmanager
     async def until_the_end(_application: Any) -> AsyncIterator[None]:
+        listening = None if live is None else asyncio.create_task(live.listen())
         yield
+        if listening is not None:
+            listening.cancel()
+            await asyncio.gather(listening, return_exceptions=True)
         if content.stock is not None:
             content.stock.leave()
 
@@ -92,6 +105,7 @@ def view_application(content: ViewContent, access: Access) -> Any:
             routing.Route("/data/text/{number:int}", access.guarded(give_text)),
             routing.Route("/data/text/{number:int}/{line:int}", access.guarded(give_line)),
             routing.Route("/data/stock/{rows:int}", access.guarded(give_stock)),
+            routing.Route("/live", access.guarded(follow)),
         ],
         lifespan=until_the_end,
     )

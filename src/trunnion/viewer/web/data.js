@@ -9,7 +9,7 @@
  *   tools: {name: string, length: number, known: boolean}[], files: string[], clFiles: string[], clText: number,
  *   operations: {name: string, first: number, end: number, cl: number}[],
  *   events: Mark[], findings: Mark[], timed: boolean, checks: {key: string, passed: boolean, summary: string}[],
- *   against?: any, columns: Record<string, string>, stock?: import("./stock.js").StockData}} SceneData
+ *   live?: boolean, against?: any, columns: Record<string, string>, stock?: import("./stock.js").StockData}} SceneData
  */
 
 /** Of all texts. */

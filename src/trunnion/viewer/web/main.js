@@ -3,6 +3,7 @@
 import { readColumn, readLine, readScene, readText } from "./data.js";
 import { Curves } from "./curves.js";
 import { Listing } from "./listing.js";
+import { followMachine } from "./live.js";
 import { Program } from "./program.js";
 import { Space } from "./space.js";
 import { Places, Stock } from "./stock.js";
@@ -217,6 +218,18 @@ class Page {
     this.twin?.show(time, row, atEnd);
     this.curves.setCursor(time);
     element("scrub").value = String(this.program.end ? time / this.program.end : 0);
+    this.#readOut(values, row);
+    this.#showLine(row);
+  }
+
+  /**
+   * Show a machine where it is, at the row that it runs.
+   * @param {number[]} values of the five axes
+   * @param {number} row
+   */
+  showMachineAt(values, row) {
+    this.row = row;
+    this.space.setPose(values, row);
     this.#readOut(values, row);
     this.#showLine(row);
   }
@@ -596,6 +609,7 @@ async function start() {
   for (const each of page.spaces) { each.look("iso"); each.tryPace(); }
   element("remarks").textContent = remarksOf(scene).join(" ");
   element("status").textContent = "";
+  if (scene.live) followMachine(page, element("live-place"));
   Object.assign(window, { page });
   document.documentElement.dataset.ready = "true";
 }

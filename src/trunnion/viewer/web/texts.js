@@ -3,6 +3,7 @@
 /** @type {Record<string, Record<string, string>>} */
 export const TEXTS = {
   en: {
+    live: "live", liveGone: "The machine is not connected.",
     approach: "approach", cut: "cut", departure: "departure", engage: "engage", phase: "phase", retract: "retract", stepover: "step-over", traverse: "traverse",
     circle: "circle", straight: "line",
     apart: "The programs go together nowhere.", limits: "limits", rewind: "rewind",
@@ -22,6 +23,7 @@ export const TEXTS = {
     zero: "No workpiece zero is known: the part is drawn at the machine's zero.", notFound: "Not found", measureHint: "Click two points of the path.",
   },
   de: {
+    live: "live", liveGone: "Die Maschine ist nicht verbunden.",
     approach: "Anfahren", cut: "Schnitt", departure: "Abfahren", engage: "Eintauchen", phase: "Phase", retract: "Rückzug", stepover: "Zustellung", traverse: "Überfahren",
     circle: "Kreis", straight: "Gerade",
     apart: "Die Programme gehen nirgends gemeinsam.", limits: "Grenzen", rewind: "Rückdrehung",
@@ -41,6 +43,7 @@ export const TEXTS = {
     zero: "Der Werkstücknullpunkt ist nicht bekannt: das Teil ist im Maschinennullpunkt gezeichnet.", measureHint: "Zwei Punkte der Bahn anklicken.",
   },
   zh: {
+    live: "实时", liveGone: "机床未连接。",
     approach: "接近", cut: "切削", departure: "离开", engage: "进刀", phase: "阶段", retract: "退刀", stepover: "步进", traverse: "移刀",
     circle: "圆弧", straight: "直线",
     apart: "两个程序没有共同的轨迹。", limits: "极限", rewind: "回转",

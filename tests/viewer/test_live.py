@@ -1,0 +1,124 @@
+"""The viewer follows a machine as it moves: what is shown is where the machine says that it is."""
+
+import asyncio
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import AsyncIterator, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from playwright.sync_api import Browser
+
+from tests.support.browser import browser as browser
+from tests.support.browser import needs_browser, open_page
+from tests.support.locations import ROOT
+from tests.support.twins import BLADE_FINISH, served
+from trunnion import load_machine
+from trunnion.cli import main
+from trunnion.machines import forward
+from trunnion.viewer.live import LivePose, LiveView
+
+
+def events(count: int, poses: list[LivePose | None]) -> list[object]:
+    """The first events that a page is sent of a machine."""
+
+    class Told:
+        async def poses(self) -> AsyncIterator[LivePose | None]:
+            for pose in poses:
+                yield pose
+                await asyncio.sleep(0.1)
+
+    async def run() -> list[object]:
+        view = LiveView(Told())
+        listening = asyncio.create_task(view.listen())
+        found = []
+        async for event in view.events():
+            found.append(json.loads(event.removeprefix(b"data: ")))
+            if len(found) == count:
+                break
+        await listening
+        return found
+
+    return asyncio.run(run())
+
+
+def test_a_page_is_sent_each_pose_and_that_the_connection_is_broken() -> None:
+    pose = LivePose((1.0, 2.0, 3.0, 4.0, 5.0), 7, 1)
+    assert events(4, [pose, None, pose]) == [
+        {"values": None}, {"values": [1.0, 2.0, 3.0, 4.0, 5.0], "line": 7, "file": 1}, {"values": None},
+        {"values": [1.0, 2.0, 3.0, 4.0, 5.0], "line": 7, "file": 1},
+    ]  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def twin() -> Iterator[str]:
+    with served(BLADE_FINISH, "--speed", "20", "--loop", "--no-mtconnect") as serving:
+        yield serving.opcua
+
+
+# A page that is open in the browser keeps a loop of its own: what needs one comes before.
+
+
+def test_a_machine_that_is_not_there_is_an_error_of_input(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["view", "--live", "opc.tcp://127.0.0.1:1/", "--machine", "yl569", "--no-browser"]) == 2
+    assert "cannot be connected to" in capsys.readouterr().err
+    assert main(["view", "--machine", "yl569", "--no-browser"]) == 2
+    assert "name a program" in capsys.readouterr().err
+
+
+def test_axes_that_are_not_shown_are_named(twin: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    nodes = tmp_path / "mine.toml"
+    nodes.write_text('[columns]\nX = { path = "CncInterface/CncAxisList/X/PosDirect/ActPos" }\n', encoding="utf-8")
+    arguments = ["view", "--live", twin, "--machine", "yl569", "--nodes", str(nodes), "--no-browser"]
+    assert main(arguments) == 2
+    assert "does not show the axes Y, Z, C, B" in capsys.readouterr().err
+
+
+@pytest.fixture(scope="module", params=[[str(BLADE_FINISH)], []], ids=["with its program", "alone"])
+def page_address(twin: str, request: pytest.FixtureRequest) -> Iterator[str]:
+    command = [sys.executable, "-m", "trunnion", "view", *request.param, "--live", twin, "--machine", "yl569"]
+    command += ["--no-browser", "--tool-length", "100"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
+    process = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment, encoding="utf-8"
+    )
+    try:
+        assert process.stdout is not None
+        address = process.stdout.readline().strip()
+        assert re.match(r"http://127\.0\.0\.1:\d+/", address), process.communicate()
+        yield address
+    finally:
+        process.terminate()
+        process.communicate()
+
+
+@needs_browser
+def test_the_pose_that_is_shown_is_that_of_the_machine(page_address: str, browser: Browser) -> None:
+    machine = load_machine("yl569")
+    with open_page(browser, page_address) as (page, errors):
+        page.wait_for_function("page.space.values.some(value => value !== 0)")
+        shown = page.evaluate(
+            """async () => { const found = [];
+            for (let k = 0; k < 12; k++) {
+              const { tip, axis } = page.space.shownTool();
+              found.push([...page.space.values, ...tip, ...axis, page.program.lengthAt(page.row)]);
+              await new Promise(done => setTimeout(done, 60)); }
+            return found; }"""
+        )
+        assert errors == []
+        rows = np.array(shown)
+        for row in rows:
+            tip, axis = forward(machine, row[None, :5], tool_length=float(row[11]))
+            np.testing.assert_allclose(row[5:8], tip[0], atol=1e-4)
+            np.testing.assert_allclose(row[8:11], axis[0], atol=1e-6)
+        assert len(np.unique(rows[:, :5], axis=0)) > 3
+        page.locator("#live").uncheck()
+        page.wait_for_timeout(100)
+        first = page.evaluate("page.space.values")
+        page.wait_for_timeout(200)
+        assert page.evaluate("page.space.values") == first
+        assert page.locator("#live-state").inner_text() == ""
