@@ -35,6 +35,6 @@ SLOW = (
     "verification/test_declared_deviations.py", "verification/test_declared_deviations_random.py",
     "verification/test_events.py", "verification/test_matching.py", "verification/test_mutations.py",
     "twin/test_security.py", "twin/test_served.py",
-    "verification/test_turns.py", "viewer/test_bricks.py", "viewer/test_browser.py", "viewer/test_live.py", "viewer/test_stock.py",
-    "viewer/test_tools.py",
+    "verification/test_turns.py", "viewer/test_bricks.py", "viewer/test_browser.py", "viewer/test_live.py",
+    "viewer/test_stock.py", "viewer/test_tools.py",
 )  # fmt: skip

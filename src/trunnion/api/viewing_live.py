@@ -80,8 +80,9 @@ class LiveMachine:
 
     def _pose(self, shown: dict[str, Any]) -> LivePose | None:
         """What is shown as a pose; None where an axis is not known."""
-        values = [shown.get(name) for name in self._machine.names]
-        if not all(isinstance(value, float) and math.isfinite(value) for value in values):
+        found = [shown.get(name) for name in self._machine.names]
+        values = [value for value in found if isinstance(value, float) and math.isfinite(value)]
+        if len(values) < len(found):
             return None
         line = shown.get(LINE)
         file = self._files.get(PurePath(str(shown.get(PROGRAM) or "")).name, 0)
