@@ -28,7 +28,7 @@ from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.model import impeller_mesh
 from trunnion.impeller.solid.impeller_body import impeller_body
 from trunnion.impeller.solid.order import Made, Order, Refusal
-from trunnion.impeller.solid.root_loop import Density
+from trunnion.impeller.solid.root_loop import Density, carried_on
 from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
 
 #: Points of patches; the next of them where patches are too far off, or the kernel makes no solid.
@@ -136,7 +136,7 @@ def _fine_fillets(impeller: Impeller) -> Iterator[tuple[Blade, Fillet]]:
     stations = root_stations(*_STATIONS, round_trailing=impeller.definition.trailing_edge == "round")
     for blade in (impeller.blade, impeller.splitter):
         if blade is not None:
-            yield blade, root_fillet(blade, impeller.hub, impeller.definition.fillet, stations)
+            yield blade, root_fillet(carried_on(impeller, blade), impeller.hub, impeller.definition.fillet, stations)
 
 
 def _free_angle(angles: Floats) -> float:

@@ -35,6 +35,9 @@ TRAILING: Final = 5
 #: A blade that the stock cuts goes on so much lower, of v, that its fillet finds a place outside of the stock too.
 _LOWER: Final = 0.5
 
+#: And farther outside by the first of these that is enough, in radii of its fillet.
+_FARTHER: Final = (0.0, 0.5, 1.0, 1.5, 2.0, 3.0)
+
 #: Places of an edge at which it may be divided.
 _DIVISIONS: Final = np.linspace(0.1, 0.9, 161)
 
@@ -101,8 +104,7 @@ def root_loop(impeller: Impeller, blade: Blade, density: Density, near: float | 
         If the fillet finds no place all round the blade, or reaches the shroud.
     """
     radius = impeller.definition.fillet
-    if impeller.definition.trailing_edge == "cut":
-        blade = replace(blade, low=blade.low - _LOWER)
+    blade = carried_on(impeller, blade)
     stations = _stations(blade, impeller.hub, radius, density)
     joined = Stations(np.concatenate([one.part for one in stations]), np.concatenate([one.at for one in stations]))
     fillet = root_fillet(blade, impeller.hub, radius, joined)
@@ -124,6 +126,29 @@ def root_loop(impeller: Impeller, blade: Blade, density: Density, near: float | 
         for one, k in zip(stations, rows, strict=True)
     )
     return RootLoop(parts, fillet, radius)
+
+
+def carried_on(impeller: Impeller, blade: Blade) -> Blade:
+    """A blade as it is; or, where the stock cuts it, one that ends so far outside that its fillet does so too.
+
+    It ends no farther outside than that takes: there its fillet may reach the shroud.
+    """
+    definition = impeller.definition
+    if definition.trailing_edge != "cut":
+        return blade
+    slopes = np.stack([curve.derivatives(np.ones(1), 1)[1, 0] for curve in (impeller.curves[0], impeller.curves[-1])])
+    turns = np.linspace(0.0, 1.0, 17)
+    edge = Stations(np.full(len(turns), 3), turns)
+    found = replace(blade, low=blade.low - _LOWER)
+    for part in _FARTHER:
+        edges = blade.edges.copy()
+        edges[1] += part * definition.fillet / np.linalg.norm(slopes, axis=1)
+        found = replace(found, edges=edges)
+        fillet = root_fillet(found, impeller.hub, definition.fillet, edge)
+        ends = np.vstack([fillet.centre + definition.fillet * away for away in (fillet.to_hub, fillet.to_blade)])
+        if np.hypot(ends[:, 0], ends[:, 1]).min() > definition.stock.diameter / 2.0:
+            break
+    return found
 
 
 def _stations(blade: Blade, hub: Profile, radius: float, density: Density) -> tuple[Stations, ...]:
