@@ -9,6 +9,7 @@ million lines may end its process, or never end.
 """
 
 import io
+import re
 from collections.abc import Iterator, Sequence
 from typing import Any, Final
 
@@ -78,6 +79,9 @@ _OF_VOLUME: Final = 1e-4
 #: Places along u and v of a face, and along an edge, at which it is measured.
 _GRID: Final = (41, 7)
 _ALONG_EDGE: Final = 25
+
+#: Stands for the part's name until the file is written.
+_NAME: Final = "TRUNNION-PART-NAME"
 
 #: A file has no date: the same input gives the same bytes.
 _DATE: Final = "1970-01-01T00:00:00"
@@ -263,17 +267,27 @@ def _volume(solid: Any) -> float:
 
 def _written(solid: Any, name: str) -> bytes:
     """The STEP file of a solid, without the date of today."""
-    Interface_Static.SetCVal_s("write.step.schema", "AP214IS")
-    Interface_Static.SetCVal_s("write.step.product.name", name)
     writer, stream = STEPControl_Writer(), io.BytesIO()
+    # These settings are there once a writer is.
+    Interface_Static.SetCVal_s("write.step.schema", "AP214IS")
+    Interface_Static.SetCVal_s("write.step.product.name", _NAME)
     writer.Transfer(solid, STEPControl_ManifoldSolidBrep)
     header = APIHeaderSection_MakeHeader(writer.Model())
     header.SetTimeStamp(TCollection_HAsciiString(_DATE))
-    header.SetName(TCollection_HAsciiString(name))
+    header.SetName(TCollection_HAsciiString(_NAME))
+    header.SetAuthorValue(1, TCollection_HAsciiString(""))
+    header.SetOrganizationValue(1, TCollection_HAsciiString(""))
     header.SetOriginatingSystem(TCollection_HAsciiString("Trunnion"))
     if writer.WriteStream(stream) != IFSelect_RetDone:
         return b""
-    return stream.getvalue()
+    # The kernel writes names as they are and numbers those of products, where the format has ASCII alone.
+    return re.sub(rb"'%b( \d+)?'" % _NAME.encode(), lambda _: _text(name), stream.getvalue())
+
+
+def _text(name: str) -> bytes:
+    """A name as a text of ISO 10303-21."""
+    plain = name.replace("\\", "\\\\").replace("'", "''")
+    return ("'" + re.sub(r"[^ -~]", lambda one: f"\\X4\\{ord(one[0]):08X}\\X0\\", plain) + "'").encode("ascii")
 
 
 def _read(step: bytes) -> Any:
