@@ -31,3 +31,15 @@ def counted(count: int, thing: str) -> str:
     ('1 check', '3 checks')
     """
     return f"{count} {thing}" + ("" if count == 1 else "s")
+
+
+def format_duration(seconds: float) -> str:
+    """A time as people read it.
+
+    >>> format_duration(4.26), format_duration(75), format_duration(7384)
+    ('4.3 s', '1:15 min', '2:03:04 h')
+    """
+    if round(seconds, 1) < 60.0:
+        return f"{seconds:.1f} s"
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes}:{rest:02d} min" if minutes < 60 else f"{minutes // 60}:{minutes % 60:02d}:{rest:02d} h"

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import trunnion
-from trunnion.machines.motion_time import format_duration
+from trunnion.wording import format_duration
 
 OPERATION = """TOOL PATH/{name},TOOL,D10
 TLDATA/MILL,10,0,75,0,0

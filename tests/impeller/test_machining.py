@@ -1,5 +1,7 @@
 """All steps of the published impeller: every pose of every linked path is clear, by exact distances."""
 
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
@@ -14,6 +16,7 @@ from trunnion.impeller.flank.fit import Limits
 from trunnion.impeller.impeller import Impeller, rotated
 from trunnion.impeller.machining import step_paths
 from trunnion.model.toolpath import Kind, Phase
+from trunnion.simulation.tools.profile import Role
 
 EXAMPLE = ROOT / "examples" / "impeller"
 
@@ -109,6 +112,24 @@ def test_only_the_steps_that_are_asked_for_are_made(impeller: Impeller) -> None:
     assert [one.names for one in step_paths(impeller, None, ["STOCK_ROUGHING"])] == [("STOCK_ROUGHING",)]
 
 
+def test_stages_within_a_step_tell_how_far_they_are(impeller: Impeller) -> None:
+    told: dict[str, list[int]] = {}
+
+    @contextmanager
+    def progress(stage: str, total: int, _unit: str) -> Iterator[Callable[[int], None]]:
+        done = told.setdefault(stage, [total, 0])
+
+        def advance(more: int) -> None:
+            done[1] += more
+
+        yield advance
+
+    list(step_paths(impeller, up_to_tilt, ["CHANNEL_ROUGHING"], progress))
+    for stage in ("layers", "tool axes", "links"):
+        total, done = told[f"CHANNEL_ROUGHING: {stage}"]
+        assert done == total > 1
+
+
 def test_what_is_wrong_names_the_step(impeller: Impeller, tmp_path_factory: pytest.TempPathFactory) -> None:
     large = STEP.format(kind="root blend", tool=2, stepover=1.0, more="")
     wrong = impeller_with(tmp_path_factory.mktemp("wrong"), large)
@@ -151,6 +172,26 @@ def test_flanks_are_milled_from_both_sides_with_the_blade_on_the_right(
             touching += 1
     assert touching > 4
     assert gaps(impeller, path.centre).min() > 2.0 - 0.05
+    least = {one.part: one for one in found.clearance}
+    assert list(least) == [Role.CUTTER, Role.SHANK]
+    assert least[Role.CUTTER].body != "blade 1"  # that one it cuts
+    assert found.share == 1.0
+    # Balls in the cutter by exact distances: hub and blades go on beyond the stock there, so that less may be found,
+    # and the cutter counts from one radius above its lowest ball on, so that the next balls reach below that.
+    cuts = path.phase == Phase.CUT
+    lower, higher = (
+        np.concatenate([path.centre[cuts] + up * path.axis[cuts] for up in np.linspace(first, 22.0, 41)])
+        for first in (2.0, 4.0)
+    )
+    apart = [impeller.blade.distances(rotated(lower, angle))[0].min() for angle in (np.pi / 3.0, -np.pi / 3.0)]
+    assert least[Role.CUTTER].distance > min(*apart, impeller.hub.distances(lower)[0].min()) - 2.0 - 0.01
+    higher = higher[np.hypot(higher[:, 0], higher[:, 1]) < 40.0]
+    assert least[Role.CUTTER].distance < impeller.hub.distances(higher)[0].min() - 2.0 + 0.01
+    short = "diameter_mm = 4\nflute_length_mm = 24\nlength_mm = "
+    fat = tools.replace(f"{short}60", f"{short}25\nholder = [{{ diameter_mm = 60, height_mm = 40 }}]")
+    file.write_text(file.read_text(encoding="utf-8").replace(tools, fat), encoding="utf-8")
+    with pytest.raises(InputError, match=r"FLANK_MILLING: holder and .* do not clear each other"):
+        list(step_paths(load_impeller(file), up_to_tilt))
 
 
 @pytest.mark.parametrize(

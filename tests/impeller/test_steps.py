@@ -7,7 +7,7 @@ import pytest
 from trunnion.errors import InputError
 from trunnion.impeller.definition import read_impeller
 from trunnion.impeller.paths.passes import Stepover, Way
-from trunnion.impeller.steps import StepKind
+from trunnion.impeller.steps import StepKind, file_stem
 from trunnion.simulation.tools.sizes import ToolKind
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples" / "impeller"
@@ -91,3 +91,23 @@ def test_operations_are_told_apart_and_want_tools(tmp_path: Path) -> None:
     ]
     ((_, what), *_) = read(tmp_path, step)
     assert "tool" in what
+
+
+def test_names_are_one_line_and_make_different_files(tmp_path: Path) -> None:
+    step = f'[[operation]]\nkind = "blade finish"\nname = "NAME"\ntool = 4\nstepover_mm = 0.2\n{FEEDS}'
+    line = TOOLS.count("\n") + 3
+    for first, second in (("A B", "a_b"), ("Ä", "A")):
+        found = read(tmp_path, TOOLS + step.replace("NAME", first) + step.replace("NAME", second))
+        what = "operation[1].name makes the same file name as that of operation[0]; tell operations apart"
+        assert found == [(line + 7, what)]
+    for name in (" ", r"A\nM3 S9999", r"\u202e", "x" * 81):
+        ((at, what),) = read(tmp_path, TOOLS + step.replace("NAME", name))
+        assert (at, what.endswith("; write one line of 80 letters at most")) == (line, True)
+    ((at, what),) = read(tmp_path, TOOLS.replace("number = 4", 'name = "A\\nM30"\nnumber = 4') + step)
+    assert what.startswith('tool[1].name is "A')
+
+
+def test_names_of_files_are_none_of_a_device() -> None:
+    assert [file_stem(name) for name in ("CON", "nul", "CONE", "Gehäuse 2", "A) M30 (B")] == [
+        "CON_", "nul_", "CONE", "Gehause_2", "A__M30__B",
+    ]  # fmt: skip

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from tests.support.reports import CHECKS, PLACES, Page, blade, waves, with_columns, with_seconds
-from trunnion.machines.motion_time import format_duration
 from trunnion.model.columns import StepColumn
 from trunnion.reporting import write_report
 from trunnion.reporting.column_encoding import decode_column
 from trunnion.reporting.html_text import format_number
 from trunnion.verification.results import Check, Verification
+from trunnion.wording import format_duration
 
 HOSTILE = "</script><script>alert(1)</script><img src=x onerror=alert(2)>\"'--><!--&amp;"
 

@@ -93,6 +93,18 @@ def test_a_line_leads_to_its_pose_and_a_pose_to_its_line(view: Page) -> None:
     assert shown(view).split()[0].startswith(str(line))
 
 
+def test_the_statement_of_the_cl_file_stands_beside_its_block(view: Page) -> None:
+    statements = CL.read_text(encoding="utf-8").splitlines()
+    for row in (20, 60, 100):
+        view.evaluate(f"page.goToRow({row})")
+        line = view.evaluate(f"page.program.cl[{row}]")
+        assert line > 0
+        view.wait_for_function(
+            "text => document.getElementById('cl').textContent.endsWith(text)", arg=statements[line - 1]
+        )
+        assert view.locator("#cl").inner_text() == f"CL line {line}: {statements[line - 1]}"
+
+
 def test_play_moves_and_stops_at_the_end(view: Page) -> None:
     view.evaluate("page.goToRow(0); document.getElementById('speed').value = 1")
     view.locator("#play").click()
@@ -235,6 +247,83 @@ def test_a_finding_leads_to_its_line(tmp_path: Path, browser: Browser) -> None:
         assert "X36.72781" in shown(page)
         page.locator("#findings button").first.click()
         assert "X36.72781" in shown(page)
+        assert errors == []
+
+
+ENDS = "end => document.querySelector('#listing .current')?.textContent.endsWith(end)"
+
+LOOP = "G90 G54 G17 G710 G94\nG0 X0 Y0 Z50 B0 C0\nG91\nFOR R1=1 TO 5\nG1 X150 F1000\nENDFOR\nM30\n"
+
+
+def test_a_finding_in_a_loop_leads_to_its_pass(tmp_path: Path, browser: Browser) -> None:
+    (tmp_path / "loop.mpf").write_text(LOOP, encoding="utf-8")
+    write_view(tmp_path / "loop.mpf", machine="yl569", output=tmp_path / "view.html")
+    with open_page(browser, open_file(tmp_path / "view.html")) as (page, errors):
+        page.locator("#findings button", has_text="X needs 750").click()
+        assert page.evaluate("page.space.toolOf(page.program.valuesAfter(page.row), page.row).tip[0]") == pytest.approx(
+            750.0
+        )
+        page.evaluate("page.goToRow(3); page.goToLine(5)")  # of the passes of a line, that of the cursor
+        assert page.evaluate("page.row") == 3
+        assert errors == []
+
+
+@pytest.mark.parametrize(
+    ("name", "machine", "text"),
+    [
+        (
+            "part.nc", "matsuura_mx330",
+            "%\nO1\nG90 G21 G54 G0 X0 Y0 Z50.\nM98 P1000\nG1 X20. F500\nM30\nO1000\nG1 Z40. F500\nM99\n%\n",
+        ),
+        (
+            "part.ngc", "xyzac_trt",
+            "o100 sub\nG1 Z40 F500\no100 endsub\nG90 G21 G54 G0 X0 Y0 Z50\no100 call\nG1 X20\nM2\n",
+        ),
+        (
+            "part.h", "dmu65",
+            "0 BEGIN PGM PART MM\n1 L X+0 Y+0 Z+50 R0 FMAX\n2 CALL LBL 1\n3 L X+20 F500\n4 M30\n5 LBL 1\n"
+            "6 L Z+40 F500\n7 LBL 0\n8 END PGM PART MM\n",
+        ),
+    ],
+    ids=["fanuc", "linuxcnc", "heidenhain"],
+)  # fmt: skip
+def test_a_line_leads_to_its_block_however_lines_are_called(
+    name: str, machine: str, text: str, tmp_path: Path, browser: Browser
+) -> None:
+    (tmp_path / name).write_text(text, encoding="utf-8")
+    write_view(tmp_path / name, machine=machine, output=tmp_path / "view.html")
+    with open_page(browser, open_file(tmp_path / "view.html")) as (page, errors):
+        for words, row in (("X20", 2), ("Z40", 1), ("Z50", 0)):
+            line = next(k for k, each in enumerate(text.splitlines(), 1) if words in each.replace("+", ""))
+            page.locator(f"#listing .line[data-line='{line}']").click()
+            assert words in shown(page).replace("+", "")
+            assert page.evaluate("page.row") == row
+        assert errors == []
+
+
+def test_a_finding_in_a_subprogram_is_shown_in_its_file(tmp_path: Path, browser: Browser) -> None:
+    main, called = tmp_path / "MAIN.mpf", tmp_path / "L10.spf"
+    main.write_text("G90 G54 G710 G94\nG0 X0 Y0 Z50 B0 C0\nG1 X2 F500\nL10\nG1 X1\nM30\n", encoding="utf-8")
+    called.write_text("G1 Z49\nWRONGWORD\nG1 X9999\nM17\n", encoding="utf-8")
+    write_view(main, machine="yl569", subprograms=[called], output=tmp_path / "view.html")
+    with open_page(browser, open_file(tmp_path / "view.html")) as (page, errors):
+        for words, line in (("WRONGWORD", "WRONGWORD"), ("X needs 9999", "G1 X9999")):
+            page.evaluate("page.goToRow(0)")
+            page.locator("#findings button", has_text=words).first.click()
+            page.wait_for_function(
+                "end => document.querySelector('#listing .current')?.textContent.endsWith(end)", arg=line
+            )
+            assert page.locator("#file option:checked").inner_text() == "L10.spf"
+        assert errors == []
+
+
+def test_a_program_without_motion_shows_its_text_and_its_findings(tmp_path: Path, browser: Browser) -> None:
+    (tmp_path / "still.mpf").write_text("; nothing moves\nWRONGWORD\nM30\n", encoding="utf-8")
+    write_view(tmp_path / "still.mpf", machine="yl569", output=tmp_path / "view.html")
+    with open_page(browser, open_file(tmp_path / "view.html")) as (page, errors):
+        assert page.locator("#listing .line").count() == 3
+        page.locator("#findings button", has_text="WRONGWORD").first.click()
+        assert shown(page).endswith("WRONGWORD")
         assert errors == []
 
 

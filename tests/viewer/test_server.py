@@ -6,8 +6,10 @@ import threading
 import time
 import urllib.error
 import urllib.request
+import zipfile
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
@@ -70,12 +72,27 @@ def test_it_gives_the_page_its_columns_and_its_texts(content: ViewContent) -> No
     assert ask(application, "/data/text/0", {"Host": "localhost"})[1] == PROGRAM.read_bytes()
 
 
+def test_it_gives_single_lines_of_cl_files(tmp_path: Path) -> None:
+    cl = tmp_path / "archive.zip"
+    with zipfile.ZipFile(cl, "w") as archive:
+        archive.write(PROGRAM.with_name("3_blade_finish.cls"), "blade.cls")
+    application = view_application(prepare_view(PROGRAM, machine="yl569", cl=cl), Access(NAMES))
+    lines = PROGRAM.with_name("3_blade_finish.cls").read_bytes().splitlines(keepends=True)
+    for number in (1, 40, len(lines)):
+        assert ask(application, f"/data/text/1/{number}", {"Host": "localhost"})[:2] == (200, lines[number - 1])
+    for beyond in (0, len(lines) + 2, 10**9):
+        assert ask(application, f"/data/text/1/{beyond}", {"Host": "localhost"})[0] == 404
+    assert ask(application, "/data/text/2/1", {"Host": "localhost"})[0] == 404
+
+
 @pytest.mark.parametrize(
     "headers",
     [
         {"Host": "evil.example"}, {"Host": "127.0.0.1.evil.example:80"}, {},
         {"Host": "127.0.0.1:80", "Origin": "http://evil.example"}, {"Host": "127.0.0.1:80", "Origin": "null"},
-        {"Host": "localhost@evil.example"},
+        {"Host": "localhost@evil.example"}, {"Host": "localhost:evil.example"},
+        {"Host": "127.0.0.1:80", "Origin": "http://127.0.0.1:81"}, {"Host": "127.0.0.1:80", "Origin": "https://127.0.0.1:80"},
+        {"Host": "127.0.0.1:80", "Origin": "http://localhost:80"},
     ],
 )  # fmt: skip
 def test_another_host_or_origin_gets_nothing(content: ViewContent, headers: dict[str, str]) -> None:
@@ -85,8 +102,8 @@ def test_another_host_or_origin_gets_nothing(content: ViewContent, headers: dict
 
 
 def test_off_this_computer_a_token_is_asked_for(content: ViewContent) -> None:
-    application = view_application(content, Access((*NAMES, "10.0.0.5"), "secret"))
-    host = {"Host": "10.0.0.5:80"}
+    application = view_application(content, Access(NAMES, "secret", 80))
+    host = {"Host": "shop-pc:80"}  # by whatever name: 0.0.0.0 stands for all addresses of this computer
     for path in ("/", "/?token=", "/?token=Secret", "/data/text/0", "/?token=%FF"):
         assert ask(application, path, host)[0] == 403
     status, _, headers = ask(application, "/?token=secret", host)
@@ -94,7 +111,30 @@ def test_off_this_computer_a_token_is_asked_for(content: ViewContent) -> None:
     cookie = headers["set-cookie"]
     assert "HttpOnly" in cookie
     assert "samesite=strict" in cookie.lower()
-    assert ask(application, "/data/text/0", {**host, "Cookie": cookie.partition(";")[0]})[0] == 200
+    known = {**host, "Cookie": cookie.partition(";")[0]}
+    assert ask(application, "/data/text/0", known)[0] == 200
+    assert ask(application, "/data/text/0", {**known, "Origin": "http://evil.example"})[0] == 403
+
+
+def test_servers_on_two_ports_do_not_take_each_others_cookies(content: ViewContent) -> None:
+    cookies = []
+    for port in (80, 81):
+        _, _, headers = ask(
+            view_application(content, Access(NAMES, f"secret-{port}", port)), f"/?token=secret-{port}", {"Host": "pc"}
+        )
+        cookies.append(headers["set-cookie"].partition(";")[0])
+    both = {"Host": "pc", "Cookie": "; ".join(cookies)}
+    for port in (80, 81):
+        application = view_application(content, Access(NAMES, f"secret-{port}", port))
+        assert ask(application, "/data/text/0", both)[0] == 200
+
+
+@pytest.mark.parametrize(("path", "method"), [("/", "GET"), ("/nothing", "GET"), ("/data/text/0", "DELETE")])
+def test_no_answer_can_be_framed_or_guessed_at(content: ViewContent, path: str, method: str) -> None:
+    _, _, headers = ask(view_application(content, Access(NAMES)), path, {"Host": "LocalHost:1"}, method)
+    assert headers["x-frame-options"] == "DENY"
+    assert headers["content-security-policy"] == "frame-ancestors 'none'"
+    assert headers["x-content-type-options"] == "nosniff"
 
 
 @pytest.mark.parametrize(

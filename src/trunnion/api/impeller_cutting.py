@@ -9,35 +9,38 @@ from typing import Final
 import numpy as np
 
 from trunnion.api import kernels
-from trunnion.api.arguments import check_observer, check_path, wrong_argument
+from trunnion.api.arguments import check_observer, wrong_argument
+from trunnion.api.impeller_files import ImpellerFiles, output_folder
 from trunnion.api.impellers import load_impeller, model_impeller
 from trunnion.api.input_files import definition_files
-from trunnion.api.job import prepare
+from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.post_result import PostResult
 from trunnion.api.posted_simulation import named_run
 from trunnion.api.posting import post_toolpaths
 from trunnion.api.reading import FilePath, MachineLike, as_machine, read_cl
-from trunnion.api.settings import Settings, SettingValue
+from trunnion.api.settings import Settings, SettingValue, check_tolerance
 from trunnion.api.simulating import simulate
+from trunnion.api.simulation_report import simulation_content
 from trunnion.api.simulation_result import SimulationResult
 from trunnion.api.targets import open_target
 from trunnion.arrays import Flags, Floats
 from trunnion.cl.writers import WRITERS
 from trunnion.controls import load_control
-from trunnion.errors import InputError, Problem, argument_problem
-from trunnion.files.places import cannot_write
+from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.machining import StepPaths, step_paths
-from trunnion.impeller.paths.tool_axes import PartClearance
+from trunnion.impeller.material import Material, material_before, order_problems, side_problems
+from trunnion.impeller.paths.least_clearances import PartClearance
 from trunnion.impeller.paths.toolpaths import CuttingData, operation_of
-from trunnion.impeller.steps import MachiningStep
+from trunnion.impeller.steps import MachiningStep, file_stem
 from trunnion.jit import compile_ahead
 from trunnion.machines import Machine
 from trunnion.machines.inverse import inverse
 from trunnion.machines.spindle_range import spindle_speed_fault
 from trunnion.model.toolpath import Operation, Tool, Toolpath
-from trunnion.simulation.meshes import save_mesh
+from trunnion.reporting.simulation_page import render_simulation_page
+from trunnion.simulation.meshes import picture
 from trunnion.simulation.stock.surface import stock_surface
 from trunnion.simulation.tools.library import LibraryTool
 from trunnion.simulation.tools.sizes import ToolKind
@@ -54,9 +57,10 @@ class CutStep:
     toolpath   its operations, one for each blade or channel, as the CL file says them
     points     of all of them
     seconds    of each operation on the machine, with what leads to it
-    clearance  of each part of the tool, the least that it has to a blade or the hub; none where the step goes round
-               the part or mills flanks
+    clearance  of each part of the tool, the least that it has to a blade or the hub, or to the stock where the step
+               goes round the part. In flank milling the cutter's is that to the hub and to other blades
     flanks     of flank milling: overcut and undercut of each side, mm
+    before     what metal stands before it, an estimate
     """
 
     step: MachiningStep
@@ -64,6 +68,7 @@ class CutStep:
     points: int
     seconds: tuple[float, ...]
     clearance: tuple[PartClearance, ...]
+    before: Material
     flanks: tuple[tuple[float, float], ...] = ()
 
     @property
@@ -77,6 +82,7 @@ class ImpellerCut:
     """An impeller as it is machined.
 
     steps       in their order
+    remarks     warnings: steps that find more metal than they can take, by an estimate
     result      of the post: the program, its proof and its files
     cl_files    one for each step
     simulation  what the program leaves of the stock, against the model; None: it was not simulated
@@ -87,6 +93,7 @@ class ImpellerCut:
     result: PostResult
     cl_files: tuple[Path, ...]
     simulation: SimulationResult | None
+    remarks: tuple[Problem, ...] = ()
 
     def __repr__(self) -> str:
         """Return what matters in a notebook."""
@@ -118,7 +125,8 @@ def cut_impeller(
         As for ``trunnion.post``. Tool axes keep to what its rotary axes reach.
     output
         Folder, made if there is none: it takes a CL file for each operation of the definition, the main program with
-        its subprograms, and the report of the proof. All of them appear together, or none.
+        its subprograms, the report of the proof, and what is made of the simulation. They appear together, or not at
+        all.
     operations
         Names of operations, to make these only; by default all.
     settings
@@ -153,11 +161,15 @@ def cut_impeller(
     ImpellerCut(passed=True, 1 steps)
     """
     check_observer(observer)
+    check_tolerance("cell", cell, optional=True)
     found = impeller if isinstance(impeller, Impeller) else load_impeller(impeller)
+    observer.problems(found.remarks)
     definition = found.definition
     chosen = _chosen(found, operations)
     loaded = as_machine(machine)
     _check_speeds(found, chosen, loaded)
+    remarks = tuple(order_problems(found, chosen))
+    observer.problems(remarks)
     control = load_control(loaded.control)
     own: dict[str, SettingValue] = {"title": definition.name}
     if control.subprograms is not None:
@@ -165,18 +177,33 @@ def cut_impeller(
     if control.tcp:
         own["mode"] = "tcp"  # links are proven clear as straight lines, which a way through home and a plane is not
     job = prepare(loaded, {**own, **(settings or {})}, columns=True)
-    folder = _folder(output)
-    stem = _file_stem(definition.name)
-    report = folder / f"{stem}.html"
-    job = replace(job, report=report, forcing="")
     read = [definition.file, *(table.file for table in definition.sections), *definition_files(machine, loaded)]
-    with open_target(folder / f"{stem}{control.extension}", report=report, inputs=read) as target:
+    with output_folder(output) as folder:
+        files = ImpellerFiles(folder, file_stem(definition.name), control.extension)
+        files.check_own()
+        try:
+            cut = _cut(found, chosen, loaded, job, files, read, cell, observer)
+            return replace(cut, remarks=(*remarks, *cut.remarks))
+        finally:
+            files.remember_report()
+
+
+def _cut(
+    found: Impeller, chosen: Sequence[str], machine: Machine, job: PostJob, files: ImpellerFiles,
+    inputs: Sequence[FilePath], cell: float | None, observer: Observer,
+) -> ImpellerCut:  # fmt: skip
+    """As ``cut_impeller``: all files appear when it ends."""
+    definition = found.definition
+    job = replace(job, report=files.report, forcing="")
+    with open_target(files.program, report=files.report, inputs=inputs) as target:
+        naming = job.control.subprograms if job.subprograms(target.files, target.path) is not None else None
+        steps = [step for step in definition.steps if step.name in chosen]
+        files.check_others(target.files, steps, found, naming, simulated=cell is not None)
         compile_ahead(kernels.POSTING)
-        job.subprograms(target.files, target.path)
         made, texts, toolpaths = [], [], []
         with observer.progress("tool paths", len(chosen), "steps") as advance:
-            for paths in step_paths(found, reachable_axes(loaded), chosen):
-                file = folder / f"{stem}_{_file_stem(paths.step.name)}.cls"
+            for paths in step_paths(found, reachable_axes(machine), chosen, observer.progress):
+                file = files.cl_file(paths.step)
                 text = cl_text(step_toolpath(paths, definition.name, str(file)))
                 made.append(paths)
                 texts.append((file, text))
@@ -185,13 +212,17 @@ def cut_impeller(
         result = post_toolpaths(toolpaths, job, target, observer)
         for file, text in texts:
             target.files.add_file(file.name).write(text)
-    steps = tuple(_steps(made, toolpaths, result))
-    simulated = None
-    if cell is not None:
-        simulated = _simulated(found, loaded, steps, result, cell, observer)
-        simulated.write_report(folder / f"{stem}_simulation.html")
-        save_mesh(stock_surface(simulated.simulation.stock), folder / f"{stem}_stock.png", inputs=read)
-    return ImpellerCut(found, steps, result, tuple(file for file, _ in texts), simulated)
+        cut = tuple(_steps(found, made, toolpaths, result))
+        beside = [each for one in cut for each in side_problems(definition.file, one.step, one.before, one.clearance)]
+        beside += [_shared(definition.file, one) for one in made if one.share < 1.0]
+        observer.problems(beside)
+        simulated = None
+        if cell is not None:
+            simulated = _simulated(found, machine, cut, result, cell, observer)
+            page = render_simulation_page(simulation_content(simulated))
+            target.files.add_file(files.simulation.name).writelines(page)
+            target.files.add_file(files.picture.name).write(picture(stock_surface(simulated.simulation.stock)))
+    return ImpellerCut(found, cut, result, tuple(file for file, _ in texts), simulated, tuple(beside))
 
 
 def _chosen(impeller: Impeller, names: Sequence[str]) -> list[str]:
@@ -221,21 +252,6 @@ def _check_speeds(impeller: Impeller, chosen: Sequence[str], machine: Machine) -
     cure = "give it an rpm that the machine has"
     if problems := [Problem(definition.file, 0, f"operation {name}: {fault}", cure) for name, fault in faults if fault]:
         raise InputError(problems)
-
-
-def _folder(output: object) -> Path:
-    """The folder of the files, made if there is none."""
-    folder = check_path("output", output)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise cannot_write(str(folder), error) from None
-    return folder
-
-
-def _file_stem(name: str) -> str:
-    """A name as that of a file and of a program: letters, digits and underscores."""
-    return "".join(letter if letter.isascii() and letter.isalnum() else "_" for letter in name) or "IMPELLER"
 
 
 def reachable_axes(machine: Machine) -> Callable[[Floats], Flags]:
@@ -289,21 +305,33 @@ def cl_text(toolpath: Toolpath) -> bytes:
     return sink.getvalue()
 
 
-def _steps(made: Sequence[StepPaths], toolpaths: Sequence[Toolpath], result: PostResult) -> Iterator[CutStep]:
+def _steps(
+    impeller: Impeller, made: Sequence[StepPaths], toolpaths: Sequence[Toolpath], result: PostResult
+) -> Iterator[CutStep]:
     """The steps with the times of their operations."""
+    before = {
+        step.name: stands for step, stands in zip(impeller.definition.steps, material_before(impeller), strict=False)
+    }
     assert result.verification is not None
     seconds, _ = durations(result.verification)
     of_operation = iter([float(seconds[rows.first : rows.end].sum()) for rows in result.verification.operations])
     for paths, toolpath in zip(made, toolpaths, strict=True):
         points = sum(len(operation.moves) for operation in toolpath.operations)
         clearance: dict[str, PartClearance] = {}
-        for axes in paths.axes:
-            for one in axes.clearance:
-                if one.part not in clearance or one.distance < clearance[one.part].distance:
-                    clearance[one.part] = one
+        for one in (*paths.clearance, *(one for axes in paths.axes for one in axes.clearance)):
+            if one.part not in clearance or one.distance < clearance[one.part].distance:
+                clearance[one.part] = one
         own = tuple(next(of_operation) for _ in toolpath.operations)
         flanks = tuple((one.cut.left.overcut, one.cut.left.undercut) for one in paths.flanks)
-        yield CutStep(paths.step, toolpath, points, own, tuple(clearance.values()), flanks)
+        yield CutStep(paths.step, toolpath, points, own, tuple(clearance.values()), before[paths.step.name], flanks)
+
+
+def _shared(file: str, paths: StepPaths) -> Problem:
+    """The warning about a step that keeps only a share of its clearances."""
+    cutter, shank, holder, _ = paths.step.clearance
+    wanted = f"{cutter:g}, {shank:g} and {holder:g} mm are wanted of cutter, shank and holder"
+    what = f"{paths.step.name}: keeps only {paths.share:.0%} of its clearances: {wanted}"
+    return Problem(file, paths.step.line, what, "choose a thinner or longer tool, or want less", Severity.WARNING)
 
 
 def _simulated(

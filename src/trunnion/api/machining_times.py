@@ -9,10 +9,10 @@ from collections.abc import Sequence
 from typing import BinaryIO, Final
 
 from trunnion.files import OutputFiles
-from trunnion.machines.motion_time import format_duration
 from trunnion.output.program import Program
 from trunnion.output.template_values import TIME_TOKEN, TIME_TOKEN_LENGTH, estimated_seconds, prints_times
 from trunnion.verification import Verification, durations
+from trunnion.wording import format_duration
 
 __all__ = ["operation_times", "prints_times", "write_times"]
 

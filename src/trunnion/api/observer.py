@@ -30,11 +30,11 @@ class Observer:
         Parameters
         ----------
         stage
-            The name of the file that is read, or ``writing``.
+            The name of the file that is read, ``writing``, or what else is done; it may be within another one.
         total
             How much there is to do.
         unit
-            What ``total`` counts: ``B`` or ``points``.
+            What ``total`` counts: ``B``, ``points``, ``steps`` ...
 
         Returns
         -------

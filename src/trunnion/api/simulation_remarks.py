@@ -13,10 +13,10 @@ from trunnion.errors import Problem, Severity, merge_repeated
 from trunnion.machines import Machine
 from trunnion.machines.inverse import slide_positions
 from trunnion.model.run import Run
+from trunnion.model.stated_tips import StatedTips
 from trunnion.model.toolpath import Kind
 from trunnion.simulation.cutting.sweeps import sideways_exits, unknown_swivels
 from trunnion.simulation.simulator import Setup
-from trunnion.simulation.stated_tips import StatedTips
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.stock.solids import StockShape
 from trunnion.simulation.tool_deltas import SIZES, is_told_of_length

@@ -112,7 +112,7 @@ def _prepared(
     design = None if given["part"] is None else load_mesh(check_path("part", given["part"]), name="part")
     run = viewed.verification.run
     bodies = _known_tools(run, given["tools"], given["libraries"], given["unit"], viewed.toolpaths)
-    content = view_content(viewed.verification, viewed.texts, bodies, design, around, viewed.toolpaths)
+    content = view_content(viewed.verification, viewed.texts, viewed.cl_texts, bodies, design, around, viewed.toolpaths)
     if simulated is not None:
         content = with_stock(content, simulated, run, viewed.toolpaths, observer)
     return content, run

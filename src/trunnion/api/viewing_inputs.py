@@ -4,11 +4,13 @@ In:     files by their names.
 Out:    a program that has been run and verified, with its text; the arguments that a project states.
 """
 
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
+from trunnion.api.arguments import is_stream
 from trunnion.api.observer import Observer
 from trunnion.api.posting import post
 from trunnion.api.reading import ToolpathLike, as_run, as_toolpaths
@@ -17,6 +19,7 @@ from trunnion.api.simulation_project import read_project
 from trunnion.api.simulation_setups import SetupInput
 from trunnion.api.verifying import rapid_feed_of, verify
 from trunnion.cl import is_cl_file
+from trunnion.cl.sources import cl_sources
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine
@@ -47,11 +50,13 @@ class ViewedProgram:
     verification  of its run, with columns
     texts         of its files, in the order of the run's
     toolpaths     what it was made from, as far as that is known
+    cl_texts      of the CL files among them, by the names that operations have for them
     """
 
     verification: Verification
     texts: tuple[str, ...]
     toolpaths: Sequence[Toolpath]
+    cl_texts: Mapping[str, str]
 
 
 def view_program(
@@ -90,7 +95,8 @@ def view_program(
         raise InputError(Problem(str(unused[0]), 0, what, "view it alone"))
     toolpaths = as_toolpaths(cl, None, False, observer)
     verification = verify(run, machine=machine, cl=toolpaths, observer=observer)
-    return ViewedProgram(verification, tuple(decode(Path(file).read_bytes()) for file in run.files), toolpaths)
+    texts = tuple(decode(Path(file).read_bytes()) for file in run.files)
+    return ViewedProgram(verification, texts, toolpaths, _cl_texts(cl))
 
 
 def _posted(
@@ -105,7 +111,14 @@ def _posted(
     run = result.verification.run
     verification = replace(result.verification, program=name, run=replace(run, files=(name, *run.files[1:])))
     more = tuple(decode(Path(file).read_bytes()) for file in run.files[1:])
-    return ViewedProgram(verification, (text, *more), result.toolpaths)
+    return ViewedProgram(verification, (text, *more), result.toolpaths, _cl_texts(files))
+
+
+def _cl_texts(cl: ToolpathLike | Iterable[ToolpathLike]) -> dict[str, str]:
+    """The texts of CL files that are named, also of those in archives; a stream has been read and has none."""
+    named = [cl] if isinstance(cl, str | os.PathLike | Toolpath) or is_stream(cl) else cl
+    paths = [Path(each) for each in named if isinstance(each, str | os.PathLike)]
+    return {source.name: decode(source.open().read()) for path in paths for source in cl_sources(path)}
 
 
 def of_project(path: Path, setup: str | None, given: Mapping[str, Any]) -> dict[str, Any]:

@@ -141,7 +141,7 @@ def _machine_fields(root: LocatedValue) -> Iterator[Field]:
     yield Field("spindle", ("spindle", "direction"), "vector", size=3)
     yield Field("spindle", ("spindle", "gauge_point_mm"), "vector", size=3)
     yield Field("spindle", ("workpiece", "zero_mm"), "vector", size=3)
-    for key in ("min_rpm", "max_rpm", "power_kw", "torque_nm"):
+    for key in ("min_rpm", "max_rpm", "acceleration_rpm_s", "tool_change_s", "power_kw", "torque_nm"):
         yield Field("spindle", ("spindle", key), "number")
 
 
@@ -163,6 +163,7 @@ def _axis_fields(name: str, is_rotary: bool) -> Iterator[Field]:
         yield of(page, "prefer", "choice", tuple(PreferredSign))
     yield of(page, f"rapid_{unit}_min", "number")
     yield of(page, f"acceleration_{unit}_s2", "number")
+    yield of(page, f"jerk_{unit}_s3", "number")
     yield of("home", f"home_{unit}", "number")
 
 

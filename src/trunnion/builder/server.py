@@ -10,7 +10,7 @@ from typing import Any, Final
 from trunnion.builder.page import render_builder
 from trunnion.builder.session import MOST_CL_BYTES, BuilderSession, RequestError
 from trunnion.extras import import_extra
-from trunnion.viewer.serving import HEADERS, Access
+from trunnion.viewer.serving import HEADERS, Access, application_of
 
 #: A CL file in base64, a definition and an earlier program.
 _MOST_BYTES: Final = MOST_CL_BYTES * 4 // 3 + 4_000_000
@@ -59,11 +59,9 @@ def builder_application(session: BuilderSession, access: Access) -> Any:
             return plain("the page makes no such request", 400)
         return None if found is None else responses.JSONResponse(found, headers=HEADERS)
 
-    application = import_extra("starlette.applications", "view").Starlette(
-        routes=[
+    return application_of(
+        [
             routing.Route("/", access.guarded(show_page)),
             routing.Route("/{what}", access.guarded(answer), methods=["POST"]),
         ]
     )
-    application.router.redirect_slashes = False
-    return application

@@ -13,9 +13,8 @@ from trunnion.cli.simulate import simulation_lines
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import InputError, argument_problem
 from trunnion.impeller.impeller import Impeller
-from trunnion.machines.motion_time import format_duration
 from trunnion.simulation.meshes import STEP_ENDINGS, TriangleMesh, check_mesh_name, save_mesh
-from trunnion.wording import counted, one_line
+from trunnion.wording import counted, format_duration, one_line
 
 _DECIMALS: Final = 6
 
@@ -48,6 +47,7 @@ def model(arguments: argparse.Namespace) -> int:
             return _solid(arguments)
     tolerance = _TOLERANCE if arguments.tolerance is None else arguments.tolerance
     impeller = load_impeller(arguments.file)
+    Terminal().problems(impeller.remarks)
     definition = impeller.definition
     found = model_impeller(impeller, tolerance=tolerance)
     if arguments.output is not None:
@@ -70,6 +70,7 @@ def _solid(arguments: argparse.Namespace) -> int:
     """Write a STEP file."""
     tolerance = _OF_FACES if arguments.tolerance is None else arguments.tolerance
     impeller = load_impeller(arguments.file)
+    Terminal().problems(impeller.remarks)
     found = write_impeller_step(impeller, arguments.output, tolerance=tolerance)
     if arguments.json:
         print_result(as_json(_model_data(impeller, found.volume, {"faces": found.faces}, found.deviation, found.mesh)))
@@ -175,6 +176,11 @@ def _cut_data(found: ImpellerCut) -> dict[str, object]:
                     {"part": one.part, "body": one.body, "mm": round(one.distance, _DECIMALS), "at": one.centre}
                     for one in step.clearance
                 ],
+                "before": {
+                    "form_mm": round(step.before.form, _DECIMALS),
+                    "hub_mm": round(step.before.hub, _DECIMALS),
+                    "blades_mm": None if step.before.blades is None else round(step.before.blades, _DECIMALS),
+                },
                 "flanks": [
                     {"overcut_mm": round(over, _DECIMALS), "undercut_mm": round(under, _DECIMALS)}
                     for over, under in step.flanks
@@ -182,6 +188,7 @@ def _cut_data(found: ImpellerCut) -> dict[str, object]:
             }
             for step in found.steps
         ],
+        "remarks": [{"file": r.file, "line": r.line, "what": r.what, "cure": r.cure} for r in found.remarks],
         "checks": {check.key: check.passed for check in found.result.checks},
         "simulation": None if found.simulation is None else simulation_data(found.simulation),
     }

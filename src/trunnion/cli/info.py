@@ -10,9 +10,8 @@ from trunnion.api.plotting import check_plot, write_plot
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result
 from trunnion.cli.terminal import Terminal
-from trunnion.machines.motion_time import format_duration
 from trunnion.model.toolpath import Frame
-from trunnion.wording import counted, one_line
+from trunnion.wording import counted, format_duration, one_line
 
 _INDENT: Final = "  "
 

@@ -71,6 +71,10 @@ def _spindle_lines(machine: Machine) -> Iterator[str]:
     along = named_direction(machine.spindle_direction)
     yield f"Spindle, all axes at zero: from the tip of the tool to the holder it points to {along}."
     yield f"Tool lengths begin at {_point(machine.spindle_point)} mm, all axes at zero."
+    speeding, change = machine.facts.spindle_acceleration_rpm_s, machine.facts.tool_change_s
+    how = "at once" if speeding is None else f"by {number_text(speeding, 1)} rev/min a second"
+    seconds = "no time" if change is None else f"{number_text(change, 2)} s"
+    yield f"In times, its speed changes {how}, and a tool change takes {seconds}."
     zero = machine.workpiece_zero
     yield f"Workpiece zero: {f'{_point(zero)} mm' if zero else 'not stated, taken for (0, 0, 0)'}."
 
@@ -83,6 +87,23 @@ def _axis_lines(jog: AxisJog) -> Iterator[str]:
     yield f"{'':<10} {jog.iron}"
     line = f"turns about the line through {_point(axis.point)} along {named_direction(axis.direction)}; "
     yield f"{'':<10} {line if axis.is_rotary else ''}{_travel(axis, unit)}; {_home(axis, unit)}"
+    yield f"{'':<10} {_dynamics(axis, unit)}"
+
+
+def _dynamics(axis: Axis, unit: str) -> str:
+    stated = [
+        f"{name} {number_text(value, 4)}{unit}{per}"
+        for name, value, per in (
+            ("rapid", axis.rapid, "/min"), ("acceleration", axis.acceleration, "/s²"), ("jerk", axis.jerk, "/s³")
+        )
+        if value is not None
+    ]  # fmt: skip
+    missing = [name for name, value in (("rapid", axis.rapid), ("acceleration", axis.acceleration)) if value is None]
+    return (
+        ", ".join(stated)
+        + ("; " if stated and missing else "")
+        + (f"{' and '.join(missing)} not stated: times count no limit" if missing else "")
+    )
 
 
 def _travel(axis: Axis, unit: str) -> str:

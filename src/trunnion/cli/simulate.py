@@ -15,11 +15,10 @@ from trunnion.cli.results import as_json, print_result
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import Severity
 from trunnion.files import atomic_file, check_outputs
-from trunnion.machines.motion_time import format_duration
 from trunnion.simulation.meshes import check_mesh_name, save_mesh
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.stock.surface import stock_surface
-from trunnion.wording import counted, one_line
+from trunnion.wording import counted, format_duration, one_line
 
 #: Findings that the text shows of each kind; the data has all.
 _MOST: Final = 20

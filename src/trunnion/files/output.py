@@ -77,18 +77,24 @@ class OutputFiles:
             If there cannot be a file of this name beside the first, or if it is one that is read or written already, or
             one that exists and that no earlier job of this first file has written.
         """
+        place = self.check_file(name, other_name)
+        self._claims.write(place)
+        path = self.path.parent / name
+        self._subprograms[path] = _open(path, place.name), place
+        return self._subprograms[path][0]
+
+    def check_file(self, name: str, other_name: str = "") -> OutputPlace:
+        """Find out whether ``add_file`` can begin a file, and where it will be; errors are those of ``add_file``."""
         assert self._place is not None, "a stream is one file"
         place = resolve_output(Path(self._place.name).with_name(name))
         if place.is_stream:
             raise InputError(Problem(place.name, 0, "a subprogram cannot be written to a device", "remove it"))
-        self._claims.write(place)
+        self._claims.check(place)
         if self._earlier is not None and place.path.exists() and not self._earlier.wrote(place.path):
             what = f"would be replaced, although {Path(self._place.name).name} has not written it as it is"
             cure = f"choose a folder for this program alone{other_name and f', or {other_name}'}, or remove the file"
             raise InputError(Problem(place.name, 0, what, cure))
-        path = self.path.parent / name
-        self._subprograms[path] = _open(path, place.name), place
-        return self._subprograms[path][0]
+        return place
 
     def add_report(self, place: OutputPlace) -> BinaryIO:
         """Begin a report of the first file, which appears with it, and return its sink."""

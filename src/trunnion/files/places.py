@@ -169,11 +169,15 @@ class Claims:
         InputError
             If it is read, or written already.
         """
+        self.check(place)
+        self._written[place.entry] = place
+
+    def check(self, place: OutputPlace) -> None:
+        """Raise ``InputError`` as ``write`` does, without keeping the file."""
         self._check_input(place)
         if place.entry in self._written:
             what = f"would be written twice: {self._written[place.entry].name} is the same file"
             raise InputError(Problem(place.name, 0, what, _OTHER))
-        self._written[place.entry] = place
 
     def release(self, place: OutputPlace) -> None:
         """A file that is not going to be written after all."""

@@ -4,16 +4,17 @@ In:     the path of a definition; tables of points beside it.
 Out:    ``ImpellerDefinition``, every value checked by itself.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from importlib.resources import files
 from pathlib import Path
 from typing import Final
 
 from trunnion.definitions import Table, load_table
-from trunnion.errors import InputError
+from trunnion.errors import InputError, Problem
 from trunnion.geometry.parameters import PARAMETERIZATIONS
 from trunnion.geometry.point_tables import PointTable, read_point_table, scaled
-from trunnion.impeller.steps import MachiningStep, read_steps
+from trunnion.impeller.steps import MachiningStep, StepKind, read_name, read_steps
 from trunnion.simulation.tools.library.library import LibraryTool
 from trunnion.simulation.tools.library.toml_library import read_tool_tables
 
@@ -22,6 +23,9 @@ EDGES: Final = ("round", "cut")
 _GREATEST: Final = 10_000.0
 
 _MOST_BLADES: Final = 60
+
+#: No ball mills a smaller fillet, mm, and facets get as small as it.
+_LEAST_FILLET: Final = 0.05
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +55,8 @@ class ImpellerDefinition:
     splitter          share of the blade's length at which its splitters begin; None: it has none
     fillet            radius between blade and hub, mm
     tools, steps      with which it is machined, in their order; none where the definition has none
+    premachined       what was made elsewhere before these steps
+    places            file and line of each key, by its path, such as ``stock.height_mm``
     """
 
     file: str
@@ -66,6 +72,14 @@ class ImpellerDefinition:
     stock: StockSize
     tools: tuple[LibraryTool, ...] = ()
     steps: tuple[MachiningStep, ...] = ()
+    premachined: tuple[StepKind, ...] = ()
+    places: Mapping[str, tuple[str, int]] = field(default_factory=dict)
+
+    def problem(self, key: str, what: str, cure: str) -> Problem:
+        """A mistake that a key makes; it is told at the line of its table where the key is not written."""
+        table = key.rpartition(".")[0]
+        file, line = self.places.get(key) or self.places.get(table) or (self.file, 0)
+        return Problem(file, line, what, cure, key=key)
 
 
 def read_impeller(path: Path) -> ImpellerDefinition:
@@ -77,10 +91,10 @@ def read_impeller(path: Path) -> ImpellerDefinition:
         If a file cannot be read, with every mistake and its line.
     """
     root = load_table(path, files(__package__), kind="impeller")
-    name = root.text("name", path.stem)
+    name = read_name(root, path.stem)
     blade, hub, stock = (root.table(key, required=True) for key in ("blade", "hub", "stock"))
     sections = _sections(blade, path)
-    tools = read_tool_tables(root) if "operation" in root or "tool" in root else ()
+    tools = _tools(root) if "operation" in root or "tool" in root else ()
     found = ImpellerDefinition(
         file=str(path),
         name=name,
@@ -91,15 +105,30 @@ def read_impeller(path: Path) -> ImpellerDefinition:
         tip_thickness=blade.number("tip_thickness_mm", above=0.0, at_most=_GREATEST),
         trailing_edge=_edges(blade),
         splitter=blade.number("splitter_start", None, at_least=0.05, at_most=0.95),
-        fillet=hub.number("fillet_mm", above=0.0, at_most=_GREATEST),
+        fillet=hub.number("fillet_mm", at_least=_LEAST_FILLET, at_most=_GREATEST),
         stock=_stock(stock),
         tools=tools,
         steps=read_steps(root, tools),
+        premachined=_premachined(stock),
+        places=_places(root, blade, hub, stock),
     )
     for table in (root, blade, hub, stock):
         table.report_unread_keys()
     root.raise_problems()
     return found
+
+
+def _tools(root: Table) -> tuple[LibraryTool, ...]:
+    """The tools; their names stand in CL files and programs."""
+    tools = read_tool_tables(root)
+    for table in root.tables("tool"):
+        read_name(table, "tool")
+    return tools
+
+
+def _places(*tables: Table) -> dict[str, tuple[str, int]]:
+    """File and line of each key of some tables, by its path."""
+    return {table.key_path(key): table.location(key) for table in tables for key in [*table.keys()]}
 
 
 def _edges(blade: Table) -> str:
@@ -115,6 +144,17 @@ def _stock(table: Table) -> StockSize:
     if diameter and bore >= diameter:
         table.add_problem("bore_mm", f"is {bore:g}, not less than the diameter", "make it smaller")
     return StockSize(diameter, height, table.number("bottom_mm", 0.0, at_least=-_GREATEST, at_most=_GREATEST), bore)
+
+
+def _premachined(stock: Table) -> tuple[StepKind, ...]:
+    """Kinds of steps that were made elsewhere."""
+    words = stock.texts("premachined", ())
+    kinds = list(StepKind)
+    for word in words:
+        if word not in kinds:
+            what = f"names {word!r}, which is no kind of operation"
+            stock.add_problem("premachined", what, f"name {', '.join(kinds)}")
+    return tuple(StepKind(word) for word in words if word in kinds)
 
 
 def _sections(blade: Table, path: Path) -> tuple[PointTable, ...]:

@@ -19,17 +19,39 @@ _SAMPLES: Final = 400
 #: Two places of a section are apart along it if the way is so many times the straight line.
 _WAY: Final = 5.0
 
+#: Sections that are nearer to each other are the same there, mm.
+_APART: Final = 1e-3
 
-def section_faults(definition: ImpellerDefinition, curves: Sequence[BSplineCurve], hub: Profile) -> Iterator[Problem]:
+_ORDER: Final = "from the inlet, which is on top, to the outlet; the axis is Z"
+
+#: A blade is farther out than its points where it goes straight on to the stock, mm.
+_BEYOND: Final = 0.1
+
+
+def direction_faults(definition: ImpellerDefinition) -> Iterator[Problem]:
+    """Sections that do not go from the inlet, on top or near the axis, to the outlet."""
+    for table in definition.sections:
+        across, up = np.hypot(*table.points[[0, -1], :2].T), table.points[[0, -1], 2]
+        if across[1] - across[0] <= up[1] - up[0]:
+            way = "from radius {:.4g} and height {:.4g} to {:.4g} and {:.4g}".format(
+                *np.column_stack((across, up)).flat
+            )
+            what = f"{table.called} goes upward or inward: {way}"
+            yield Problem(table.file, table.lines[0], what, f"let its rows go {_ORDER}")
+
+
+def section_faults(definition: ImpellerDefinition, curves: Sequence[BSplineCurve]) -> Iterator[Problem]:
     """What is wrong with the sections of a blade."""
     thickness = max(definition.hub_thickness, definition.tip_thickness)
     for table, curve in zip(definition.sections, curves, strict=True):
         yield from _crossings(table, curve, thickness)
-    for table in definition.sections[1:]:
-        height = hub.distances(table.points)[0]
-        for k in np.flatnonzero(height <= 0.0)[:1].tolist():
-            what = f"{table.called} is {-height[k]:.3f} mm inside the hub here"
-            yield Problem(table.file, table.lines[k], what, "name the curves from hub to shroud")
+    for below, curve, above in zip(definition.sections, curves, definition.sections[1:], strict=False):
+        height = Profile.of_curve(curve).distances(above.points)[0]
+        for k in np.flatnonzero(height <= _APART)[:1].tolist():
+            where = f"{-height[k]:.3f} mm below" if height[k] < -_APART else "the same here as"
+            what = f"{above.called} is {where} {below.called}, which is named before it"
+            cure = f"name the curves from hub to shroud, and let their rows go {_ORDER}"
+            yield Problem(above.file, above.lines[k], what, cure)
 
 
 def _crossings(table: PointTable, curve: BSplineCurve, thickness: float) -> Iterator[Problem]:
@@ -69,11 +91,25 @@ def blade_faults(
             table = definition.sections[0 if v[k] < 0.5 else -1]
             what = f"blades overlap by {-gap[k]:.3f} mm near this point"
             yield Problem(table.file, _line(table, centre[k]), what, "let them be thinner, or fewer")
-    foot, top = (first.frames(np.linspace(0.0, 1.0, 41), np.full(41, at)) for at in (first.low, first.high))
-    if (hub.distances(foot[0])[0] >= 0.0).any():
-        yield Problem(definition.file, 0, "the blade does not reach into the hub everywhere", "check curves and scale")
-    if (shroud.distances(top[0])[0] <= 0.0).any():
-        yield Problem(definition.file, 0, "the blade does not reach the shroud everywhere", "check curves and scale")
+    edge = min(radius, max(float(np.hypot(*table.points[:, :2].T).max()) for table in definition.sections) + _BEYOND)
+    w = np.linspace(0.0, 1.0, 201)
+    foot, top = (first.frames(w, np.full(len(w), at))[0] for at in (first.low, first.high))
+    for table, place, missing, body in (
+        (definition.sections[0], foot, hub.distances(foot)[0] >= 0.0, "into the hub"),
+        (definition.sections[-1], top, shroud.distances(top)[0] <= 0.0, "the shroud"),
+    ):
+        if not missing.any():
+            continue
+        k = int(missing.argmax())
+        across = float(np.hypot(*place[k, :2]))
+        if across > edge:
+            what = f"the blade goes straight on from its points to the stock, and does not reach {body} at radius"
+            cure = "let the points go on farther, or make the stock's diameter smaller"
+            yield definition.problem("stock.diameter_mm", f"{what} {across:.1f}", cure)
+        else:
+            what = f"the blade does not reach {body} near this point"
+            cure = f"let the blade be thinner, or {table.called} be smoother there"
+            yield Problem(table.file, _line(table, place[k]), what, cure)
 
 
 def fillet_faults(

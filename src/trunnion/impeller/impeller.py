@@ -5,7 +5,7 @@ Out:    ``Impeller``; what does not make an impeller is refused with the rows of
 Units:  mm, axis Z.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,8 +19,9 @@ from trunnion.geometry.point_faults import point_faults
 from trunnion.geometry.surfaces import BSplineSurface, loft
 from trunnion.impeller.blade import Blade
 from trunnion.impeller.definition import ImpellerDefinition
-from trunnion.impeller.faults import blade_faults, section_faults
+from trunnion.impeller.faults import blade_faults, direction_faults, section_faults
 from trunnion.impeller.profiles import Profile
+from trunnion.impeller.stock_faults import stock_faults
 
 #: How far blades go on beyond hub, shroud and stock, mm, besides their thickness.
 _BEYOND = 1.0
@@ -38,6 +39,7 @@ class Impeller:
     splitter  the first splitter, half a pitch behind; None: there is none
     hub       the first curve turned about Z
     shroud    the last curve turned about Z
+    remarks   warnings of what is probably not meant
     """
 
     definition: ImpellerDefinition
@@ -46,6 +48,7 @@ class Impeller:
     splitter: Blade | None
     hub: Profile
     shroud: Profile
+    remarks: tuple[Problem, ...] = ()
 
     def blades(self) -> Iterator[tuple[Blade, float]]:
         """All blades and splitters, each with the angle in radians by which it is turned about Z."""
@@ -62,27 +65,33 @@ def build_impeller(definition: ImpellerDefinition) -> Impeller:
     Raises
     ------
     InputError
-        If the points make no blade: the same twice, out of order, a section that crosses itself, hub above shroud,
-        blades that overlap, a trailing edge that the stock does not cut; each with the rows.
+        If the points make no blade: the same twice, out of order, a section that crosses itself or is below the one
+        before, blades that overlap or stand out of the stock, a trailing edge that the stock does not cut; each with
+        the rows.
     """
     problems = [fault for table in definition.sections for fault in point_faults(table)]
     if problems:
         raise InputError([Problem(one.file, one.line, one.what, one.cure, Severity.ERROR) for one in problems])
+    _raise_errors(direction_faults(definition))
     curves = tuple(
         interpolate(table.points, parameters_of(table.points, definition.parameterization))
         for table in definition.sections
     )
     hub, shroud = Profile.of_curve(curves[0]), Profile.of_curve(curves[-1])
-    problems = list(section_faults(definition, curves, hub))
-    if problems:
-        raise InputError(problems)
+    remarks = _raise_errors([*section_faults(definition, curves), *stock_faults(definition, hub)])
     surface = loft(curves)
     blade = _blade(definition, curves, surface, 0.0)
     splitter = None if definition.splitter is None else _blade(definition, curves, surface, definition.splitter)
-    found = Impeller(definition, curves, blade, splitter, hub, shroud)
-    problems = list(blade_faults(definition, list(found.blades()), hub, shroud))
-    if problems:
-        raise InputError(problems)
+    found = Impeller(definition, curves, blade, splitter, hub, shroud, remarks)
+    _raise_errors(blade_faults(definition, list(found.blades()), hub, shroud))
+    return found
+
+
+def _raise_errors(problems: Iterable[Problem]) -> tuple[Problem, ...]:
+    """Return warnings; raise ``InputError`` with all problems if one is an error."""
+    found = tuple(problems)
+    if any(problem.severity == Severity.ERROR for problem in found):
+        raise InputError(found)
     return found
 
 
@@ -123,7 +132,7 @@ def _beyond_stock(definition: ImpellerDefinition, curve: BSplineCurve, radius: f
     outward = float(point[:2] @ slope[:2]) / float(np.hypot(*point[:2]))
     if outward < 0.2 * float(np.linalg.norm(slope)):
         what = "the trailing edge does not lead outward, so that the stock cannot cut it"
-        raise InputError(Problem(definition.file, 0, what, 'write trailing_edge = "round"'))
+        raise InputError(definition.problem("blade.trailing_edge", what, 'write trailing_edge = "round"'))
     missing = definition.stock.diameter / 2.0 - float(np.hypot(*point[:2])) + radius + _BEYOND
     return 1.0 + max(missing, radius + _BEYOND) / outward
 

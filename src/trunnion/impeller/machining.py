@@ -22,16 +22,19 @@ from trunnion.impeller.paths.blade_finish import BladeFinish, blade_finish
 from trunnion.impeller.paths.channel import channels_of
 from trunnion.impeller.paths.channel_roughing import channel_roughing
 from trunnion.impeller.paths.clear_poses import pose_check
-from trunnion.impeller.paths.clearance import SLACK, Obstacles, obstacles_of
+from trunnion.impeller.paths.clearance import SLACK, Margins, Obstacles, obstacles_of, tool_body
 from trunnion.impeller.paths.hub_finish import hub_finish
+from trunnion.impeller.paths.least_clearances import PartClearance, least_clearances
 from trunnion.impeller.paths.linking import FreeSpace, IsClear, LinkedPath, Links, link_passes
 from trunnion.impeller.paths.passes import Pass, PassFamily
 from trunnion.impeller.paths.root_blend import RootBlend, root_blend
 from trunnion.impeller.paths.shroud import shroud_finish, shroud_form, stock_roughing
-from trunnion.impeller.paths.tool_axes import ToolAxes, Wanted, choose_axes
+from trunnion.impeller.paths.stock_clearance import is_roughed, stock_before, stock_clearances
+from trunnion.impeller.paths.tool_axes import SHARES, ToolAxes, Wanted, choose_axes
+from trunnion.impeller.progress import Progress, silent
 from trunnion.impeller.steps import ROUND_STEPS, MachiningStep, StepKind
 from trunnion.simulation.tools.library.library import LibraryTool
-from trunnion.simulation.tools.profile import ToolShape
+from trunnion.simulation.tools.profile import Role, ToolShape
 
 #: Which tool axes (n, 3) a machine reaches, (n,).
 Reachable = Callable[[Floats], Flags]
@@ -43,6 +46,13 @@ _THINNING_SHARE: Final = 0.5
 #: A direct link is as long as so many step-overs at most, or this long, mm.
 _LINK_STEPS: Final = 4.0
 _LINK: Final = 3.0
+
+#: What helps a part of a tool that mills flanks.
+_FLANK_CURES: Final = {
+    Role.CUTTER: "take a thinner or shorter cutter, or blade finish by points",
+    Role.SHANK: "take longer flutes or a thinner neck, or blade finish by points",
+    Role.HOLDER: "take a longer tool or a thinner holder, or blade finish by points",
+}
 
 #: A ball this far in the form of the shroud still touches it only, mm.
 _NEAR: Final = 0.01
@@ -57,6 +67,9 @@ class StepPaths:
     families      its passes, once for all blades that are alike; none of steps round the part
     axes          of these families, with what was proven of them
     flanks        of flank milling: both sides of the blade, and of the splitter, with what is left of them
+    clearance     of a step round the part: shank and holder to the stock, where they are near; of flank milling: each
+                  part of the tool, the cutter to what it does not mill
+    share         of the wanted clearances that is kept
     left          what a step round the part leaves besides its allowance, where the tool's side would cut too much
     """
 
@@ -68,10 +81,14 @@ class StepPaths:
     families: tuple[PassFamily, ...] = ()
     axes: tuple[ToolAxes, ...] = ()
     flanks: tuple[BladeFlank, ...] = ()
+    clearance: tuple[PartClearance, ...] = ()
+    share: float = 1.0
     left: float = 0.0
 
 
-def step_paths(impeller: Impeller, reachable: Reachable | None, names: Sequence[str] = ()) -> Iterator[StepPaths]:
+def step_paths(
+    impeller: Impeller, reachable: Reachable | None, names: Sequence[str] = (), progress: Progress = silent
+) -> Iterator[StepPaths]:
     """Yield the paths of the steps of an impeller, one after another.
 
     Parameters
@@ -82,6 +99,8 @@ def step_paths(impeller: Impeller, reachable: Reachable | None, names: Sequence[
         None: every tool axis can be had.
     names
         Of the steps to make; none: all of them.
+    progress
+        Accompanies the work within each step.
 
     Raises
     ------
@@ -91,7 +110,7 @@ def step_paths(impeller: Impeller, reachable: Reachable | None, names: Sequence[
     definition = impeller.definition
     if not definition.steps:
         raise InputError(Problem(definition.file, 0, "has no [[operation]]", "describe the machining steps"))
-    makers = _StepMaker(impeller, reachable)
+    makers = _StepMaker(impeller, reachable, progress)
     for step in definition.steps:
         if names and step.name not in names:
             continue
@@ -100,7 +119,7 @@ def step_paths(impeller: Impeller, reachable: Reachable | None, names: Sequence[
         except InputError as error:
             raise InputError(
                 [
-                    Problem(definition.file, 0, f"{step.name}: {each.what}", each.cure, each.severity)
+                    Problem(definition.file, step.line, f"{step.name}: {each.what}", each.cure, each.severity)
                     for each in error.problems
                 ]
             ) from None
@@ -109,8 +128,8 @@ def step_paths(impeller: Impeller, reachable: Reachable | None, names: Sequence[
 class _StepMaker:
     """Makes steps, with what they share: the bodies that tools keep clear of."""
 
-    def __init__(self, impeller: Impeller, reachable: Reachable | None) -> None:
-        self._impeller, self._reachable = impeller, reachable
+    def __init__(self, impeller: Impeller, reachable: Reachable | None, progress: Progress) -> None:
+        self._impeller, self._reachable, self._progress = impeller, reachable, progress
         self._obstacles: Obstacles | None = None
 
     def make(self, step: MachiningStep) -> StepPaths:
@@ -131,9 +150,13 @@ class _StepMaker:
             turned = shroud_finish(impeller, half, step.stepover, step.tilt, step.allowance, chord)
             radius = half
         space = self._space(step, tool.shape(), half, radius, turned.axes)
-        check = _outside(impeller, radius)
-        path = link_passes(turned.passes, turned.axes, space, _links(step), radius, check, step.name)
-        return StepPaths(step, tool, radius, (step.name,), (path,), left=turned.left)
+        check, progress = _outside(impeller, radius), self._within(step)
+        before = stock_before(impeller, step, step.stepover.on(half))
+        slotting = step.tilt > 0.0 and not is_roughed(impeller.definition, step)
+        passes = list(zip(turned.passes, turned.axes, strict=True))
+        clearance = stock_clearances(tool.shape(), radius, 0.0 if slotting else half, passes, before)
+        path = link_passes(turned.passes, turned.axes, space, _links(step), radius, check, step.name, progress)
+        return StepPaths(step, tool, radius, (step.name,), (path,), clearance=clearance, left=turned.left)
 
     def _space(
         self, step: MachiningStep, shape: ToolShape, half: float, radius: float, axes: Sequence[Floats]
@@ -151,16 +174,21 @@ class _StepMaker:
         wanted = Wanted(cutter=cutter, shank=shank, holder=holder, tilt=step.tilt)
         is_clear = pose_check(obstacles, shape, radius, step.tolerance)
         copies: list[tuple[float, LinkedPath]] = []
-        families, fields = [], []
+        families, fields, progress = [], [], self._within(step)
         for family, angles in self._families(step, radius):
-            found = choose_axes(family, shape, obstacles, wanted, self._everywhere(angles))
+            found = choose_axes(family, shape, obstacles, wanted, self._everywhere(angles), progress)
             space = self._space(step, shape, radius, radius, found.axes)
-            path = link_passes(family.passes, found.axes, space, _links(step), radius, is_clear, step.name)
+            path = link_passes(family.passes, found.axes, space, _links(step), radius, is_clear, step.name, progress)
             copies += [(angle, path.turned(angle)) for angle in angles]
             families.append(family)
             fields.append(found)
         names, paths = _named(step, copies)
-        return StepPaths(step, tool, radius, names, paths, tuple(families), tuple(fields))
+        share = min(one.share for one in fields)
+        return StepPaths(step, tool, radius, names, paths, tuple(families), tuple(fields), share=share)
+
+    def _within(self, step: MachiningStep) -> Progress:
+        """Progress within a step, which its stages do not name."""
+        return lambda stage, total, unit: self._progress(f"{step.name}: {stage}", total, unit)
 
     def _bodies(self) -> Obstacles:
         if self._obstacles is None:
@@ -176,18 +204,26 @@ class _StepMaker:
         is_clear = pose_check(obstacles, shape, radius, step.overcut, step.overcut + SLACK)
         copies: list[tuple[float, LinkedPath]] = []
         flanks: list[BladeFlank] = []
+        clearance, share = list[PartClearance](), 1.0
+        body = tool_body(shape, radius, Margins(0.0, 0.0, 0.0, 1.0))
+        within = self._within(step)
         for blade in _kinds_of_blades(impeller):
             first, *rest = (angle for each, angle in impeller.blades() if each is blade)
-            sides = [mill_blade_flank(impeller, blade, side, cutter, step.overcut) for side in (1.0, -1.0)]
+            sides = [mill_blade_flank(impeller, blade, side, cutter, step.overcut, within) for side in (1.0, -1.0)]
             found = [_climbing(one) for one in sides]
             family = PassFamily(tuple(one for one, _ in found), radius, step.way).turned(first)
             turned = [rotated(axis, first) for _, axis in found]
+            own = "blade 1" if blade is impeller.blade else "splitter 1"
+            clearance += least_clearances(obstacles, body, family.centres(), np.concatenate(turned), [own])
+            share = min(share, _kept(step, tool, clearance))
             space = self._space(step, shape, radius, radius, turned)
-            path = link_passes(family.passes, turned, space, _links(step), radius, is_clear, step.name)
+            path = link_passes(family.passes, turned, space, _links(step), radius, is_clear, step.name, within)
             copies += [(angle, path.turned(angle - first)) for angle in (first, *rest)]
             flanks += sides
         names, paths = _named(step, copies)
-        return StepPaths(step, tool, radius, names, paths, flanks=tuple(flanks))
+        return StepPaths(
+            step, tool, radius, names, paths, flanks=tuple(flanks), clearance=tuple(clearance), share=share
+        )
 
     def _everywhere(self, angles: Sequence[float]) -> Reachable | None:
         """Which tool axes a machine reaches in all copies of a family."""
@@ -195,13 +231,11 @@ class _StepMaker:
         if reachable is None:
             return None
 
+        turns = np.array([[[np.cos(a), np.sin(a), 0.0], [-np.sin(a), np.cos(a), 0.0], [0.0, 0.0, 1.0]] for a in angles])
+
         def in_all(axes: Floats) -> Flags:
-            found = np.ones(len(axes), np.bool_)
-            for angle in angles:
-                cosine, sine = np.cos(angle), np.sin(angle)
-                turned = axes @ np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
-                found[found] = reachable(turned[found])
-            return found
+            found = reachable((axes @ turns).reshape(-1, 3))
+            return np.asarray(found.reshape(len(angles), -1).all(axis=0))
 
         return in_all
 
@@ -214,12 +248,12 @@ class _StepMaker:
                 if step.kind is StepKind.CHANNEL_ROUGHING:
                     family = channel_roughing(
                         channel, radius, step.stepover, step.step_down, tolerance=chord,
-                        blade_allowance=step.allowance, hub_allowance=step.hub_allowance,
+                        blade_allowance=step.allowance, hub_allowance=step.hub_allowance, progress=self._within(step),
                     )  # fmt: skip
                 else:
                     family = hub_finish(
                         channel, radius, step.stepover, tolerance=chord, blade_allowance=step.allowance,
-                        hub_allowance=step.hub_allowance,
+                        hub_allowance=step.hub_allowance, progress=self._within(step),
                     )  # fmt: skip
                 yield family, [k * pitch for k in range(impeller.definition.number)]
             return
@@ -255,12 +289,50 @@ def _climbing(flank: BladeFlank) -> tuple[Pass, Floats]:
     return (one.backwards(), axis[::-1]) if flank.side > 0.0 else (one, axis)
 
 
+def operation_names(impeller: Impeller, step: MachiningStep) -> tuple[str, ...]:
+    """The names of the operations of a step: one for each blade or channel, or one round the part."""
+    if step.kind in ROUND_STEPS:
+        return (step.name,)
+    return _copy_names(step, impeller.definition.number * len(_kinds_of_blades(impeller)))
+
+
+def _copy_names(step: MachiningStep, count: int) -> tuple[str, ...]:
+    return tuple(f"{step.name}_{k}" for k in range(1, count + 1))
+
+
 def _named(
     step: MachiningStep, copies: list[tuple[float, LinkedPath]]
 ) -> tuple[tuple[str, ...], tuple[LinkedPath, ...]]:
     """Names and paths of the copies of a step, by their angles about Z."""
     paths = tuple(path for _, path in sorted(copies, key=lambda each: each[0]))
-    return tuple(f"{step.name}_{k}" for k in range(1, len(paths) + 1)), paths
+    return _copy_names(step, len(paths)), paths
+
+
+def _kept(step: MachiningStep, tool: LibraryTool, clearance: Sequence[PartClearance]) -> float:
+    """The share of the wanted clearances that is kept.
+
+    Raises
+    ------
+    InputError
+        If not even the least is: with the place, what is in the way of which part of the tool, and what helps.
+    """
+    cutter, shank, holder, _ = step.clearance
+    wanted = Wanted(cutter=cutter, shank=shank, holder=holder)
+    for share in SHARES:
+        margins = wanted.margins(share)
+        least = {Role.CUTTER: margins.cutter, Role.SHANK: margins.shank, Role.HOLDER: margins.holder}
+        missing = [one for one in clearance if one.distance < least[one.part]]
+        if not missing:
+            return share
+    problems = []
+    for one in missing:
+        x, y, z = one.centre
+        what = (
+            f"{one.part} and {one.body} do not clear each other with the ball's centre at ({x:.2f}, {y:.2f}, {z:.2f}): "
+            f"{one.distance:.3f} mm are between them, and {least[one.part]:g} are the least"
+        )
+        problems.append(Problem(tool.name, 0, what, _FLANK_CURES[one.part]))
+    raise InputError(problems)
 
 
 def _links(step: MachiningStep) -> Links:

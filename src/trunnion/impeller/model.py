@@ -32,6 +32,9 @@ _SAMPLES: Final = 20_000
 #: Rings of points round a blade, from below the hub to above the shroud.
 _RINGS: Final = 33
 
+#: Facets are off by no more than this part of a fillet's radius, whose body goes a quarter of it into blade and hub.
+_OF_FILLET: Final = 0.2
+
 #: Facets that change the surface by less than this part of the tolerance are joined.
 _SIMPLER: Final = 0.1
 
@@ -62,17 +65,10 @@ def impeller_model(impeller: Impeller, tolerance: float) -> ImpellerModel:
     Raises
     ------
     InputError
-        If the fillet finds no place, or the bodies make no closed solid.
+        If the fillet finds no place, the bodies make no closed solid, or its facets are farther off than the tolerance.
     """
-    mesh, fillets = impeller_mesh(impeller, tolerance)
-    points = np.vstack((mesh.vertices, mesh.vertices[mesh.faces].mean(axis=1)))
-    off = off_surfaces(impeller, points[:: max(1, len(points) // _SAMPLES)], fillets)
-    return ImpellerModel(mesh, mesh.volume, float(off.max()))
-
-
-def impeller_mesh(impeller: Impeller, tolerance: float) -> tuple[TriangleMesh, list[tuple[Blade, Fillet]]]:
-    """The mesh alone, as ``impeller_model``, and the fillets of the blade and of the splitter if there is one."""
-    definition, share = impeller.definition, _SHARE * tolerance
+    definition = impeller.definition
+    share = min(_SHARE * tolerance, _OF_FILLET * definition.fillet)
     stock = definition.stock
     segments = _segments(stock.diameter / 2.0, share)
     fillets = _fillets(impeller, share)
@@ -85,17 +81,34 @@ def impeller_mesh(impeller: Impeller, tolerance: float) -> tuple[TriangleMesh, l
         found -= solid(turned_mesh(_cylinder(stock.bore / 2.0, stock.top + 1.0, stock.bottom - 1.0), segments))
     data = found.simplify(_SIMPLER * tolerance).to_mesh64()
     vertices, faces = np.asarray(data.vert_properties)[:, :3], np.asarray(data.tri_verts).astype(np.int64)
-    if not len(faces) or found.status() != import_extra("manifold3d", "impeller").Error.NoError:
+    faces = faces if found.status() == import_extra("manifold3d", "impeller").Error.NoError else faces[:0]
+    mesh = TriangleMesh(*_joined(vertices, faces), definition.name)
+    if not is_closed(mesh.faces):
         what = "its bodies make no closed solid"
-        raise InputError(Problem(definition.file, 0, what, "check curves, thicknesses and stock"))
-    return TriangleMesh(*_joined(vertices, faces), definition.name), fillets
+        raise InputError(Problem(definition.file, 0, what, "check curves, thicknesses, fillet and stock"))
+    points = np.vstack((mesh.vertices, mesh.vertices[mesh.faces].mean(axis=1)))
+    deviation = float(off_surfaces(impeller, points[:: max(1, len(points) // _SAMPLES)], fillets).max())
+    if deviation > tolerance:
+        what = f"its facets would be {deviation:.4f} mm off the exact surfaces, and {tolerance:g} mm are asked for"
+        raise InputError(Problem(definition.file, 0, what, "check curves and thicknesses: does the blade meet itself?"))
+    return ImpellerModel(mesh, mesh.volume, deviation)
 
 
 def _joined(vertices: Floats, faces: Ints) -> tuple[Floats, Ints]:
     """Vertices and facets of a mesh without edges that have no length in the numbers of an STL file."""
     _, first, number = np.unique(vertices.astype(np.float32), axis=0, return_index=True, return_inverse=True)
     a, b, c = faces = number.ravel()[faces].T
-    return vertices[first], np.ascontiguousarray(faces[:, (a != b) & (b != c) & (c != a)].T)
+    faces = np.ascontiguousarray(faces[:, (a != b) & (b != c) & (c != a)].T)
+    _, one, count = np.unique(np.sort(faces, axis=1), axis=0, return_inverse=True, return_counts=True)
+    return vertices[first], faces[count[one.ravel()] == 1]  # a facet and its back have nothing between them
+
+
+def is_closed(faces: Ints) -> bool:
+    """Whether each edge of a mesh belongs to two facets that go along it in opposite directions."""
+    a, b = faces.ravel(), np.roll(faces, -1, axis=1).ravel()
+    size = int(faces.max(initial=0)) + 1
+    edges, count = np.unique(a * size + b, return_counts=True)
+    return len(faces) > 0 and bool((count == 1).all()) and np.array_equal(edges, np.unique(b * size + a))
 
 
 def _fillets(impeller: Impeller, tolerance: float) -> list[tuple[Blade, Fillet]]:

@@ -3,20 +3,27 @@
 Units: mm, mm/min, rev/min, degrees.
 """
 
+import unicodedata
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final
 
 from trunnion.definitions import Table
+from trunnion.definitions.messages import as_written
 from trunnion.impeller.paths.passes import Stepover, Way
+from trunnion.output.subprograms import DEVICE_NAME
 from trunnion.simulation.tools.library.library import LibraryTool
-from trunnion.simulation.tools.sizes import ToolKind
+from trunnion.simulation.tools.sizes import ToolKind, ToolSizes
 
 _GREATEST: Final = 1000.0
 
 #: Greatest angle between tool axis and Z where nothing is stated, degrees.
 _TILT: Final = 100.0
+
+
+#: Letters of a name at most: files have the names of the impeller and of a step.
+_LONGEST_NAME: Final = 80
 
 
 class StepKind(StrEnum):
@@ -73,6 +80,7 @@ class MachiningStep:
     tolerance        of the ball's centre
     coolant          a CL word; empty: none
     published_minutes  for one blade or channel, to compare with; 0: none
+    line             of the definition
     """
 
     kind: StepKind
@@ -93,6 +101,7 @@ class MachiningStep:
     tolerance: float
     coolant: str
     published_minutes: float
+    line: int
 
 
 def read_steps(root: Table, tools: Sequence[LibraryTool]) -> tuple[MachiningStep, ...]:
@@ -103,10 +112,35 @@ def read_steps(root: Table, tools: Sequence[LibraryTool]) -> tuple[MachiningStep
         step = _read_step(table, {tool.number: tool for tool in tools})
         if step is None:
             continue
-        if taken.setdefault(step.name, table.path) != table.path:
-            table.add_problem("name", f"is that of {taken[step.name]} too", "tell operations apart")
+        other = taken.setdefault(file_stem(step.name).casefold(), table.path)
+        if other != table.path:
+            alike = step.name in {each.name for each in found}
+            what = f"is that of {other} too" if alike else f"makes the same file name as that of {other}"
+            table.add_problem("name", what, "tell operations apart")
         found.append(step)
     return tuple(found)
+
+
+def read_name(table: Table, default: str) -> str:
+    """The name of a table: one line that can be printed."""
+    name = table.text("name", default)
+    if not (name.strip() and name.isprintable() and len(name) <= _LONGEST_NAME):
+        table.add_problem("name", f"is {as_written(name)}", f"write one line of {_LONGEST_NAME} letters at most")
+        return default
+    return name
+
+
+def file_stem(name: str) -> str:
+    """A name as that of a file and of a program: letters, digits and underscores.
+
+    Examples
+    --------
+    >>> file_stem("Gehäuse 2"), file_stem("CON")
+    ('Gehause_2', 'CON_')
+    """
+    plain = "".join(one for one in unicodedata.normalize("NFKD", name) if not unicodedata.combining(one))
+    stem = "".join(letter if letter.isascii() and letter.isalnum() else "_" for letter in plain)
+    return f"{stem}_" if DEVICE_NAME.fullmatch(stem) else stem
 
 
 def _read_step(table: Table, tools: Mapping[int | None, LibraryTool]) -> MachiningStep | None:
@@ -129,7 +163,7 @@ def _read_step(table: Table, tools: Mapping[int | None, LibraryTool]) -> Machini
     ways = _WAYS[kind]
     step = MachiningStep(
         kind=kind,
-        name=table.text("name", word.replace(" ", "_").upper()),
+        name=read_name(table, word.replace(" ", "_").upper()),
         tool=tool,
         stepover=Stepover() if kind is StepKind.FLANK_MILLING else _read_stepover(table),
         step_down=table.number("step_down_mm", above=0.0, at_most=_GREATEST) if kind in _DEEP else 0.0,
@@ -146,9 +180,23 @@ def _read_step(table: Table, tools: Mapping[int | None, LibraryTool]) -> Machini
         tolerance=table.number("tolerance_mm", 0.01, at_least=0.0005, at_most=1.0),
         coolant=table.text("coolant", "", one_of=("", "ON", "FLOOD", "MIST", "THRU", "AIR")),
         published_minutes=table.number("published_min", 0.0, at_least=0.0),
+        line=table.line,
     )
+    if tool in tools:
+        _check_reach(table, step, tools[tool].sizes)
     table.report_unread_keys()
     return step
+
+
+def _check_reach(table: Table, step: MachiningStep, sizes: ToolSizes) -> None:
+    """Add what a tool cannot take at once: deeper than its flutes are long, or wider than the mill is."""
+    flutes = sizes.flute_length or sizes.length
+    if 0.0 < flutes < step.step_down:
+        what = f"is {step.step_down:g}, and the flutes of tool {step.tool} are {flutes:g} mm long"
+        table.add_problem("step_down_mm", what, "let it be less, or take longer flutes")
+    if step.kind is StepKind.STOCK_ROUGHING and step.stepover.distance > sizes.diameter:
+        what = f"is {step.stepover.distance:g}, and tool {step.tool} is {sizes.diameter:g} mm wide: a wall would stay"
+        table.add_problem("stepover_mm", what, "let it be the diameter at most")
 
 
 def _read_stepover(table: Table) -> Stepover:

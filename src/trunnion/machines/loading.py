@@ -129,6 +129,7 @@ def _axis(entry: Table) -> Axis:
     home = _home(entry, f"home_{unit}", low, high)
     rapid = entry.number(f"rapid_{unit}_min", None, above=0)
     acceleration = entry.number(f"acceleration_{unit}_s2", None, above=0)
+    jerk = entry.number(f"jerk_{unit}_s3", None, above=0)
     entry.report_unread_keys()
     return Axis(
         name=name,
@@ -142,6 +143,7 @@ def _axis(entry: Table) -> Axis:
         output=rotary.output,
         rapid=rapid,
         acceleration=acceleration,
+        jerk=jerk,
         home=home,
         positive=PositiveDirection(positive),
         prefer=rotary.prefer,
@@ -204,6 +206,8 @@ def _facts(spindle: Table, facts: Table) -> MachineFacts:
         spindle_gears_rpm=tuple(_gear(gear) for gear in spindle.tables("gear")),
         spindle_power_kw=spindle.number("power_kw", None, above=0),
         spindle_torque_nm=spindle.number("torque_nm", None, above=0),
+        spindle_acceleration_rpm_s=spindle.number("acceleration_rpm_s", None, above=0),
+        tool_change_s=spindle.number("tool_change_s", None, at_least=0),
         tool_holder=facts.text("tool_holder", None),
         tool_pockets=facts.integer("tool_pockets", None, at_least=1),
         table_size_mm=None if size is None else (size[0], size[1]),

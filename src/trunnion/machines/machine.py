@@ -1,7 +1,8 @@
 """A machine tool as data: five axes in the order in which they carry each other, and a spindle.
 
 Everything is given in ONE machine frame, with all axes at zero. Order: from the workpiece to the tool.
-Units: mm and degrees; rapids in mm/min and deg/min, accelerations in mm/s^2 and deg/s^2, as the definition keys say.
+Units: mm and degrees; rapids in mm/min and deg/min, accelerations in mm/s^2 and deg/s^2, jerks in mm/s^3 and deg/s^3,
+as the definition keys say.
 Limits, home and all axis values are those that the control displays and the program contains.
 """
 
@@ -71,6 +72,7 @@ class Axis:
     low, high       travel in displayed values, mm or deg; -inf and inf where endless or not stated
     rapid           mm/min or deg/min; None where not stated
     acceleration    mm/s^2 or deg/s^2; None where not stated
+    jerk            mm/s^3 or deg/s^3; None where not stated
     home            displayed value, mm or deg
     home_is_stated  the definition states it; else it is assumed to be 0
     """
@@ -86,6 +88,7 @@ class Axis:
     output: AngleOutput = AngleOutput.NONE
     rapid: float | None = None
     acceleration: float | None = None
+    jerk: float | None = None
     home: float = 0.0
     positive: PositiveDirection = PositiveDirection.STANDARD
     prefer: PreferredSign = PreferredSign.EITHER
@@ -128,6 +131,8 @@ class MachineFacts:
     spindle_gears_rpm: tuple[tuple[float, float], ...] = ()
     spindle_power_kw: float | None = None
     spindle_torque_nm: float | None = None
+    spindle_acceleration_rpm_s: float | None = None
+    tool_change_s: float | None = None
     tool_holder: str | None = None
     tool_pockets: int | None = None
     table_size_mm: tuple[float, float] | None = None

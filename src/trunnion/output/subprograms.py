@@ -21,7 +21,7 @@ _OTHER_CHARACTERS: Final = re.compile(r"[^A-Za-z0-9]+")
 _BEGINS_WITH_LETTERS: Final = re.compile(r"[A-Za-z]{2}")
 
 #: Names of devices on Windows, which no file can have.
-_DEVICE_NAME: Final = re.compile(r"CON|PRN|AUX|NUL|COM[0-9]|LPT[0-9]", re.IGNORECASE)
+DEVICE_NAME: Final = re.compile(r"CON|PRN|AUX|NUL|COM[0-9]|LPT[0-9]", re.IGNORECASE)
 
 #: Precedes names that are not valid by themselves.
 _PREFIX: Final = "OP"
@@ -56,7 +56,7 @@ class SubprogramNames:
         plain = _OTHER_CHARACTERS.sub("_", "".join(one for one in letters if not unicodedata.combining(one))).strip("_")
         valid = (
             _BEGINS_WITH_LETTERS.match(plain)
-            and not _DEVICE_NAME.fullmatch(plain)
+            and not DEVICE_NAME.fullmatch(plain)
             and not plain.upper().startswith(naming.reserved_prefixes)
         )
         if not valid:

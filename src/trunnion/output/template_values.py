@@ -15,7 +15,6 @@ from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import OFFSETS_DIFFER, PLANES_USED, TCP_USED
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Axis, inverse
-from trunnion.machines.motion_time import format_duration
 from trunnion.model.apt_cutter import apt_cutter
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import LoadTool, Operation, Sense, SpindleOn, Tool
@@ -23,6 +22,7 @@ from trunnion.output.coordinates.extents import cut_extents
 from trunnion.output.coordinates.rotary_angles import rotary_counts
 from trunnion.output.program import Program
 from trunnion.planning import operation_seconds
+from trunnion.wording import format_duration
 
 #: The value of the setting ``blank`` for a block form around all cuts.
 EXTENTS: Final = "extents"

@@ -10,6 +10,7 @@ Text from outside is cleaned here of characters that no file can hold.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -128,7 +129,10 @@ def _control_name(machine: Machine) -> str:
 
 
 def _clean_check(check: Check) -> Check:
-    places = tuple(replace(place, text=clean(place.text), cl_file=clean(place.cl_file)) for place in check.places)
+    places = tuple(
+        replace(place, text=clean(place.text), cl_file=clean(place.cl_file), nc_file=clean(Path(place.nc_file).name))
+        for place in check.places
+    )
     return replace(
         check,
         key=clean(check.key),

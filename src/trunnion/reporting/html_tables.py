@@ -6,7 +6,6 @@ Out:    HTML, with all text from outside escaped.
 
 from collections.abc import Sequence
 
-from trunnion.machines.motion_time import format_duration
 from trunnion.reporting.content import ReportContent
 from trunnion.reporting.extents import AxisExtent, BlockReference, Extremes, TipExtent
 from trunnion.reporting.html_text import (
@@ -21,7 +20,7 @@ from trunnion.reporting.html_text import (
 from trunnion.reporting.simulation_page import simulation_section
 from trunnion.reporting.usage import OperationUsage, ToolUsage
 from trunnion.verification.results import Check, Place
-from trunnion.wording import counted
+from trunnion.wording import counted, format_duration
 
 #: Places that the page shows for each check; the JSON report has all of them.
 MAX_PLACES = 12
@@ -96,7 +95,7 @@ def _worst_places(checks: Sequence[Check]) -> str:
 def _check_places(check: Check) -> str:
     rows = [
         f"<tr><td class=n>{format_number(place.value)}</td>"
-        f"<td class=n>{_number(place.number)}</td><td class=n>{place.nc_line or ''}</td>"
+        f"<td class=n>{_number(place.number)}</td><td class=n>{_nc_line(place)}</td>"
         f"<td class=n>{_cl_line(place)}</td>"
         f"<td>{escape(place.text)}</td>"
         f"<td class=go>{_plot_button(place)}</td></tr>"
@@ -115,7 +114,15 @@ def _plot_button(place: Place) -> str:
     """The button that zooms to a place, unless it has no block."""
     if not place.nc_line:
         return ""
-    return f'<button type=button data-line="{place.nc_line}" data-cl="{place.cl_line}">plot</button>'
+    file = f' data-file="{escape(place.nc_file)}"' if place.nc_file else ""
+    return f'<button type=button data-line="{place.nc_line}" data-cl="{place.cl_line}"{file}>plot</button>'
+
+
+def _nc_line(place: Place) -> str:
+    """The line of a block, with the subprogram in which it is."""
+    if not place.nc_file:
+        return str(place.nc_line or "")
+    return f"{escape(place.nc_file)}:{place.nc_line}"
 
 
 def _cl_line(place: Place) -> str:

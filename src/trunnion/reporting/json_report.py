@@ -87,6 +87,7 @@ def _check(check: Check) -> dict[str, object]:
 def _place(place: Place) -> dict[str, object]:
     return {
         "nc_line": place.nc_line,
+        "nc_file": place.nc_file or None,
         "number": _number(place.number),
         "cl_file": place.cl_file or None,
         "cl_line": place.cl_line or None,

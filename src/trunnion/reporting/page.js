@@ -318,12 +318,13 @@
     }
   }
 
-  /* Show the point of an NC line, the one of this CL line if there are several. */
-  function goTo(line, cl) {
+  /* Show the point of an NC line of a file, the one of this CL line if there are several; without a file: of the program itself. */
+  function goTo(line, cl, file) {
     if (!full) return;
+    const number = file ? report.files.indexOf(file) : 0;
     let at = -1;
     for (let i = 1; i < full.block.length; i++) {
-      if (full.block[i] !== line || (full.file && full.file[i])) continue;
+      if (full.block[i] !== line || (full.file ? full.file[i] : 0) !== number) continue;
       if (at < 0 || full.cl[i] === cl) at = i;
       if (full.cl[i] === cl) break;
     }
@@ -346,9 +347,9 @@
 
   function listen() {
     document.addEventListener("click", (event) => {
-      const { act: what, line, cl } = event.target.dataset || {};
+      const { act: what, line, cl, file } = event.target.dataset || {};
       if (what) act(what);
-      if (line) goTo(Number(line), Number(cl));
+      if (line) goTo(Number(line), Number(cl), file);
     });
     document.addEventListener("keydown", (event) => { if (event.key === "Escape") hold(null); });
     byId("fit").addEventListener("change", (event) => { fit = event.target.checked; show(...view); });

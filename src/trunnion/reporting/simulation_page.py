@@ -9,10 +9,9 @@ from collections.abc import Iterator, Sequence
 from importlib.resources import files
 from typing import Final
 
-from trunnion.machines.motion_time import format_duration
 from trunnion.reporting.html_text import escape, format_number, source_hash
 from trunnion.reporting.simulation_content import DeviationBin, FindingRow, OperationRow, SimulationContent, StockState
-from trunnion.wording import counted
+from trunnion.wording import counted, format_duration
 
 #: Findings that the page shows; the data has all.
 _MOST: Final = 200

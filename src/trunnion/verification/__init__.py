@@ -1,5 +1,6 @@
 """Verification: a program that was read back and run, against the CL files that it was made from."""
 
+from trunnion import timing
 from trunnion.machines.forward import tool_axis_rows
 from trunnion.verification.context import ExpectedValues
 from trunnion.verification.deviations.point_deviations import compare_rows
@@ -13,7 +14,7 @@ from trunnion.verification.text import check_lines, failures, place_line, place_
 from trunnion.verification.verifier import verify
 
 #: Kernels that every program needs.
-KERNELS = (tool_axis_rows, axis_motion_rows, compare_rows)
+KERNELS = (tool_axis_rows, axis_motion_rows, compare_rows, *timing.KERNELS)
 
 __all__ = [
     "KERNELS",

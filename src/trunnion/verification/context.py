@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 
 import numpy as np
 
@@ -76,16 +75,17 @@ class Context:
     def place(self, row: int, value: float, text: str) -> Place:
         """The place of a row."""
         run = self.run
-        file = run.state.file[row]
-        if file:
-            text = f"{Path(run.files[file]).name}: {text}"
-        return Place(run.lines[row], run.block_numbers[row], value, text)
+        file = self.file_name(run.state.file[row])
+        return Place(run.lines[row], run.block_numbers[row], value, text, nc_file=file, row=row)
 
     def place_of_event(self, event: RunEvent, value: float, text: str) -> Place:
         """The place of something that happens between rows."""
-        if event.file:
-            text = f"{Path(self.run.files[event.file]).name}: {text}"
-        return Place(event.line, -1, value, text)
+        row = min(event.before_row, len(self.run) - 1)
+        return Place(event.line, -1, value, text, nc_file=self.file_name(event.file), row=row)
+
+    def file_name(self, number: int) -> str:
+        """The file of a row or an event as places have it: empty for the program itself."""
+        return self.run.files[number] if number else ""
 
     def next_row(self, row: int) -> int:
         """The row after a row, or the last one."""

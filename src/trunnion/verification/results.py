@@ -18,6 +18,8 @@ class Place:
     """One place of a program.
 
     nc_line          line of the NC file, from 1
+    nc_file          the subprogram in which that line is; empty: the program itself
+    row              the row of the run, as long as that is known; -1 for none
     number           block number, -1 for none
     value            what was found there, in the unit of the check
     text             the same in words
@@ -30,6 +32,8 @@ class Place:
     text: str
     cl_file: str = ""
     cl_line: int = 0
+    nc_file: str = ""
+    row: int = -1
 
     @property
     def block_name(self) -> str:

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from trunnion.machines.motion_time import format_duration
 from trunnion.model.toolpath import Kind
 from trunnion.verification.results import Check, Place, Verification
+from trunnion.wording import format_duration
 
 
 def check_lines(verification: Verification) -> Iterator[str]:
@@ -34,7 +34,7 @@ def place_line(program: str, place: Place) -> str:
     """One place, in the form that editors can jump to."""
     number = f" (N{place.number})" if place.number >= 0 else ""
     cl = f", {place.cl_file}:{place.cl_line}" if place.cl_line else ""
-    return f"{program}:{place.nc_line}{number}{cl}: {place.text}"
+    return f"{place.nc_file or program}:{place.nc_line}{number}{cl}: {place.text}"
 
 
 def time_lines(verification: Verification) -> Iterator[str]:

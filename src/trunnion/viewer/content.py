@@ -52,7 +52,8 @@ class ViewContent:
 
     scene    names and numbers, as JSON has them
     columns  by name, (k,) float32 or int32
-    texts    of the program and its subprograms, UTF-8, in the order of ``scene["files"]``
+    texts    UTF-8, of the program and its subprograms in the order of ``scene["files"]``, then of its CL files in that
+             of ``scene["clFiles"]``
     stock    as it is cut, where that was simulated
     """
 
@@ -65,6 +66,7 @@ class ViewContent:
 def view_content(
     verification: Verification,
     texts: Sequence[str],
+    cl_texts: Mapping[str, str],
     tools: Mapping[str, ToolShape],
     part: TriangleMesh | None = None,
     fixtures: Iterable[TriangleMesh] = (),
@@ -78,6 +80,8 @@ def view_content(
         Of the program; with its columns, motions take their times.
     texts
         Of the files of its run, in their order.
+    cl_texts
+        Of its CL files, by the names that its operations have for them.
     tools
         Bodies of tools by their names in the program; others are drawn as needles.
     part, fixtures
@@ -91,6 +95,7 @@ def view_content(
         If a mesh of the machine cannot be used.
     """
     run, machine = verification.run, verification.machine
+    cl_files = {name: k for k, name in enumerate(cl_texts)}
     seconds = durations(verification)[0] if len(verification.seconds) else np.zeros(0)
     lengths = {k: _length(tools.get(name), machine) for k, name in enumerate(run.tools)}
     motion = motion_columns(run, seconds, lengths)
@@ -127,13 +132,18 @@ def view_content(
             for k, name in enumerate(run.tools)
         ],
         "files": list(run.files),
-        "operations": [{"name": one.name, "first": one.first, "end": one.end} for one in verification.operations],
+        "clFiles": list(cl_texts),
+        "clText": len(texts),
+        "operations": [
+            {"name": one.name, "first": one.first, "end": one.end, "cl": cl_files.get(one.cl_file, -1)}
+            for one in verification.operations
+        ],
         "events": [*_events(run), *_rewinds(run)],
         "findings": [*_findings(verification.checks, run), *_diagnostics(run)],
         "timed": bool(len(seconds)),
         "checks": [{"key": one.key, "passed": one.passed, "summary": one.summary} for one in verification.checks],
     }
-    return ViewContent(scene, columns, tuple(text.encode() for text in texts))
+    return ViewContent(scene, columns, tuple(text.encode() for text in (*texts, *cl_texts.values())))
 
 
 def side_by_side(first: ViewContent, second: ViewContent, alignment: Alignment) -> ViewContent:
@@ -270,17 +280,27 @@ def _rewinds(run: Run) -> list[dict[str, Any]]:
 
 def _findings(checks: Sequence[Check], run: Run) -> list[dict[str, Any]]:
     """The places of the checks that have not passed, as rows."""
-    if all(check.passed for check in checks) or not len(run):
-        return []
-    order = np.argsort(run.line, kind="stable")
-    lines = run.line[order]
+    numbers = {name: k for k, name in enumerate(run.files)}
     found = []
     for check in checks:
         for place in () if check.passed else check.places[:_MOST_PLACES]:
-            at = int(np.searchsorted(lines, place.nc_line))
-            row = int(order[min(at, len(order) - 1)])
-            found.append({"kind": check.key, "row": row, "line": place.nc_line, "file": 0, "text": place.text})
+            file = numbers.get(place.nc_file, 0)
+            row = place.row if place.row >= 0 else _row_of(run, file, place.nc_line)
+            found.append({"kind": check.key, "row": row, "line": place.nc_line, "file": file, "text": place.text})
     return found
+
+
+def _row_of(run: Run, file: int, line: int) -> int:
+    """The row at a line: the first one of that line, else of the nearest line after it that moves, else before it.
+
+    Rows are in the order in which the program runs, which is not that of lines where there are subprograms and jumps.
+    """
+    rows = np.flatnonzero(run.file == file)
+    if not len(rows):
+        return max(len(run) - 1, 0)
+    lines = run.line[rows]
+    after = lines[lines >= line]
+    return int(rows[np.argmax(lines == (after.min() if len(after) else lines.max()))])
 
 
 def _diagnostics(run: Run) -> list[dict[str, Any]]:
@@ -289,7 +309,6 @@ def _diagnostics(run: Run) -> list[dict[str, Any]]:
     found = []
     for each in run.errors:
         file = numbers.get(each.file, 0)
-        at = np.flatnonzero((run.line >= each.line) & (run.file == file))
-        row = int(at[0]) if len(at) else max(len(run) - 1, 0)
+        row = _row_of(run, file, each.line)
         found.append({"kind": "word", "row": row, "line": each.line, "file": file, "text": each.text})
     return found

@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
-from trunnion.simulation.collisions.motion import axis_pieces
+from trunnion.timing import axis_pieces
 
 #: One count of an axis value, mm or degrees: a fiftieth of what the smallest printed digit is worth at a table's rim.
 COUNT: Final = 1e-5

@@ -8,15 +8,19 @@ import asyncio
 import re
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from functools import cache
 from typing import Any, Final
+
+import numpy as np
 
 from trunnion.extras import import_extra
 from trunnion.viewer.bricks import NOTHING
 from trunnion.viewer.content import ViewContent
 from trunnion.viewer.page import render_view
-from trunnion.viewer.serving import HEADERS, Access
+from trunnion.viewer.serving import HEADERS, Access, application_of
 
 _BYTES: Final = "application/octet-stream"
+_NEW_LINE: Final = 10
 
 #: Rows, in an address.
 _NUMBER: Final = re.compile(r"\d{1,9}", re.ASCII)
@@ -38,7 +42,6 @@ def view_application(content: ViewContent, access: Access) -> Any:
         If Starlette is not installed.
     """
     responses, routing = (import_extra(f"starlette.{name}", "view") for name in ("responses", "routing"))
-    applications = import_extra("starlette.applications", "view")
     page = b"".join(render_view(content, embedded=False))
 
     def show_page(_request: Any) -> Any:
@@ -51,6 +54,19 @@ def view_application(content: ViewContent, access: Access) -> Any:
     def give_text(request: Any) -> Any:
         number = request.path_params["number"]
         return responses.Response(content.texts[number], 200, HEADERS, _BYTES) if number < len(content.texts) else None
+
+    @cache
+    def line_starts(number: int) -> list[int]:
+        text = content.texts[number]
+        ends = np.flatnonzero(np.frombuffer(text, np.uint8) == _NEW_LINE) + 1
+        return [0, *ends.tolist(), len(text)]
+
+    def give_line(request: Any) -> Any:
+        number, line = request.path_params["number"], request.path_params["line"]
+        if number >= len(content.texts) or not 0 < line < len(line_starts(number)):
+            return None
+        first, end = line_starts(number)[line - 1 : line + 1]
+        return responses.Response(content.texts[number][first:end], 200, HEADERS, _BYTES)
 
     async def give_stock(request: Any) -> Any:
         stock, rows = content.stock, request.path_params["rows"]
@@ -69,14 +85,13 @@ def view_application(content: ViewContent, access: Access) -> Any:
         if content.stock is not None:
             content.stock.leave()
 
-    application = applications.Starlette(
-        lifespan=until_the_end,
-        routes=[
+    return application_of(
+        [
             routing.Route("/", access.guarded(show_page)),
             routing.Route("/data/column/{name}", access.guarded(give_column)),
             routing.Route("/data/text/{number:int}", access.guarded(give_text)),
+            routing.Route("/data/text/{number:int}/{line:int}", access.guarded(give_line)),
             routing.Route("/data/stock/{rows:int}", access.guarded(give_stock)),
         ],
+        lifespan=until_the_end,
     )
-    application.router.redirect_slashes = False
-    return application

@@ -1,10 +1,14 @@
 """Pages on this computer: who may see them, the port they are served on, and their end.
 
-Requests are answered only for hosts that were asked for, so that no page of someone else can read a program through
-the browser (DNS rebinding). Off this computer, a token in the address is asked for as well.
+On this computer's own address, requests are answered only by its own names, so that no page of someone else can read a
+program through the browser (DNS rebinding). On any other address, a token that is part of the page's address is asked
+for instead: a page of someone else does not have it, under whatever name it reaches the server.
 """
 
+import errno
 import inspect
+import ipaddress
+import re
 import secrets
 import socket
 from collections.abc import Callable
@@ -16,12 +20,20 @@ from trunnion.extras import import_extra
 
 _LOOPBACK_NAMES: Final = ("127.0.0.1", "localhost", "[::1]")
 
-_COOKIE: Final = "trunnion-view"
+#: ``host`` or ``host:port``, as a browser sends it; an address of IPv6 stands in brackets.
+_HOST: Final = re.compile(r"(\[[0-9a-f:.]+\]|[a-z0-9._-]+)(?::\d{1,5})?", re.ASCII | re.IGNORECASE)
+
+#: Why a port cannot be had, as people say it.
+_REASONS: Final = {
+    errno.EADDRINUSE: "the port is taken", errno.EACCES: "the system does not allow it",
+    errno.EADDRNOTAVAIL: "it is no address of this computer",
+}  # fmt: skip
 
 #: Headers of every answer.
 HEADERS: Final = {
     "X-Content-Type-Options": "nosniff", "Referrer-Policy": "no-referrer", "Cache-Control": "no-store",
-    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin", "X-Frame-Options": "DENY",
+    "Content-Security-Policy": "frame-ancestors 'none'",
 }  # fmt: skip
 
 
@@ -29,22 +41,30 @@ HEADERS: Final = {
 class Access:
     """Who may see a page.
 
-    hosts   values of the header Host that are answered, without ports
+    hosts   values of the header Host that are answered without a token, in lower case and without ports
     token   asked for in the address of the page, and by its cookie after that; empty: none is
+    port    of the server: browsers send the cookies of a host to all its ports, so that each has a name of its own
     """
 
     hosts: tuple[str, ...]
     token: str = ""
+    port: int = 0
+
+    @property
+    def cookie(self) -> str:
+        """The name of the cookie."""
+        return f"trunnion-{self.port}"
 
     def allows(self, request: Any) -> bool:
         """Whether a Starlette request comes by a name of ours, from no page of another origin, with the token."""
-        origin = request.headers.get("origin", "")
-        if _host_of(request.headers.get("host", "")) not in self.hosts:
+        host, origin = request.headers.get("host", ""), request.headers.get("origin", "")
+        named = _HOST.fullmatch(host)
+        if named is None or (origin and origin.lower() != f"http://{host}".lower()):
             return False
-        if origin and _host_of(origin.partition("://")[2]) not in self.hosts:
-            return False
-        given = request.query_params.get("token") or request.cookies.get(_COOKIE, "")
-        return not self.token or secrets.compare_digest(given.encode(), self.token.encode())
+        if not self.token:
+            return named[1].lower() in self.hosts
+        given = request.query_params.get("token") or request.cookies.get(self.cookie, "")
+        return secrets.compare_digest(given.encode(), self.token.encode())
 
     def guarded(self, answer: Callable[[Any], Any]) -> Callable[[Any], Any]:
         """An endpoint that answers those who are allowed; None becomes "not found"."""
@@ -63,13 +83,23 @@ class Access:
         """The answer with the page, and with the token's cookie."""
         made = import_extra("starlette.responses", "view").Response(page, 200, HEADERS, "text/html")
         if self.token:
-            made.set_cookie(_COOKIE, self.token, httponly=True, samesite="strict")
+            made.set_cookie(self.cookie, self.token, httponly=True, samesite="strict")
         return made
 
 
-def _host_of(place: str) -> str:
-    """The host of ``host:port``."""
-    return place if place.endswith("]") else place.rsplit(":", 1)[0] if ":" in place else place
+def application_of(routes: list[Any], **more: Any) -> Any:
+    """A Starlette application of routes; what is at none of them is answered with our headers as well."""
+    responses = import_extra("starlette.responses", "view")
+
+    def refuse(_request: Any, error: Any) -> Any:
+        text = "there is no such thing" if error.status_code == 404 else "the page makes no such request"
+        return responses.PlainTextResponse(text, error.status_code, {**HEADERS, **(error.headers or {})})
+
+    application = import_extra("starlette.applications", "view").Starlette(
+        routes=routes, exception_handlers={404: refuse, 405: refuse}, **more
+    )
+    application.router.redirect_slashes = False
+    return application
 
 
 def listen(host: str, port: int) -> socket.socket:
@@ -82,9 +112,14 @@ def listen(host: str, port: int) -> socket.socket:
     """
     try:
         return socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET)
-    except (OSError, OverflowError) as error:
-        what = f"cannot be served on {host}, port {port}: {getattr(error, 'strerror', None) or error}"
-        raise InputError(Problem("the page", 0, what, "choose another port, or none")) from None
+    except OverflowError:
+        what, cure = f"cannot be served on port {port}", "choose a port from 1 to 65535, or none"
+    except socket.gaierror:
+        what, cure = f"cannot be served on {host}: no such name is known", "choose an address of this computer"
+    except OSError as error:
+        why = _REASONS.get(error.errno or 0, str(error))
+        what, cure = f"cannot be served on {host}, port {port}: {why}", "choose another port, or none"
+    raise InputError(Problem("the page", 0, what, cure))
 
 
 def serve(make: Callable[[Access], Any], listening: socket.socket, ready: Callable[[str], None]) -> None:
@@ -106,12 +141,13 @@ def serve(make: Callable[[Access], Any], listening: socket.socket, ready: Callab
     """
     uvicorn = import_extra("uvicorn", "view")
     host, port = listening.getsockname()[:2]
-    host = f"[{host}]" if ":" in host else host
-    token = "" if host in _LOOPBACK_NAMES else secrets.token_urlsafe(16)
-    hosts = _LOOPBACK_NAMES if not token else (*_LOOPBACK_NAMES, host)
-    application = make(Access(hosts, token))
+    address = ipaddress.ip_address(host.partition("%")[0])
+    token = "" if address.is_loopback else secrets.token_urlsafe(16)
+    own = f"[{host}]" if ":" in host else host
+    application = make(Access((*_LOOPBACK_NAMES, own), token, port))
     config = uvicorn.Config(application, log_level="warning", access_log=False, timeout_graceful_shutdown=1)
-    ready(f"http://{host}:{port}/" + (f"?token={token}" if token else ""))
+    reached = socket.gethostname() if address.is_unspecified else own
+    ready(f"http://{reached}:{port}/" + (f"?token={token}" if token else ""))
     try:
         uvicorn.Server(config).run(sockets=[listening])
     except KeyboardInterrupt as end:

@@ -35,8 +35,9 @@ def finish(published: Impeller) -> PassFamily:
 @pytest.fixture(scope="module")
 def roughing(published: Impeller) -> PassFamily:
     (channel,) = channels_of(published)
-    allowances = {"blade_allowance": 0.3, "hub_allowance": 0.4}
-    return channel_roughing(channel, 3.0, Stepover(distance=1.5), 2.5, tolerance=TOLERANCE, **allowances)
+    return channel_roughing(
+        channel, 3.0, Stepover(distance=1.5), 2.5, tolerance=TOLERANCE, blade_allowance=0.3, hub_allowance=0.4
+    )
 
 
 def with_middles(family: PassFamily) -> Floats:
@@ -114,8 +115,10 @@ def test_nothing_is_cut_and_nothing_is_left(
     families = []
     for channel in channels_of(impeller):
         if is_roughing:
-            both = {"blade_allowance": allowance, "hub_allowance": allowance}
-            found = channel_roughing(channel, radius, Stepover(distance=step), down, tolerance=0.02, **both)
+            found = channel_roughing(
+                channel, radius, Stepover(distance=step), down, tolerance=0.02, blade_allowance=allowance,
+                hub_allowance=allowance,
+            )  # fmt: skip
         else:
             found = hub_finish(channel, radius, Stepover(distance=step), tolerance=0.02)
         points = with_middles(found)

@@ -12,8 +12,9 @@ from trunnion.impeller.impeller import Impeller, build_impeller, rotated
 from trunnion.impeller.paths.cells import STEPS, cell_tree, joined
 from trunnion.impeller.paths.clearance import Obstacles, obstacles_of
 from trunnion.impeller.paths.clearance_kernel import BodyData
+from trunnion.impeller.paths.least_clearances import PartClearance
 from trunnion.impeller.paths.passes import Pass, PassFamily, Way
-from trunnion.impeller.paths.tool_axes import PartClearance, ToolAxes, Wanted, choose_axes
+from trunnion.impeller.paths.tool_axes import ToolAxes, Wanted, choose_axes
 from trunnion.simulation.tools.profile import Role, ToolShape
 from trunnion.simulation.tools.shapes import BodyPiece, ball
 

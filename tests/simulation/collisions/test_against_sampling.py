@@ -11,10 +11,10 @@ from trunnion.machines import Machine, link_transforms
 from trunnion.machines.links import axes_between, link_chain
 from trunnion.simulation.collisions.bodies import Body, BodyKind
 from trunnion.simulation.collisions.clearance import joint_senses, motion_bounds, relative_pose
-from trunnion.simulation.collisions.motion import AxisPieces
 from trunnion.simulation.collisions.queries import PairQuery, Solid
 from trunnion.simulation.collisions.watching import PairWatch
 from trunnion.simulation.meshes import TriangleMesh, box_mesh, cylinder_mesh
+from trunnion.timing import AxisPieces
 
 #: Places of four rows, far enough apart for bodies to meet and part, and near enough to look everywhere.
 paths = st.lists(

@@ -27,6 +27,10 @@ needs_simulator = pytest.mark.skipif(
     reason="LinuxCNC is not installed (Debian package linuxcnc-uspace)",
 )
 
+#: The greatest speed of its joints, mm/s and deg/s, and their acceleration, mm/s^2 and deg/s^2.
+VELOCITY = {"LINEAR": 500.0, "ANGULAR": 360.0}
+ACCELERATION = 5000.0
+
 #: A joint that moves by less than this in a millisecond rests, mm or degrees.
 _RESTS = 1e-9
 
@@ -81,7 +85,7 @@ try:
             command.wait_complete(20)
             until(idle, 20, text)
         with open(program["samples"], "w") as out:
-            sampler = subprocess.Popen(["halsampler"], stdout=out)
+            sampler = subprocess.Popen(["halsampler", "-t"], stdout=out)
             time.sleep(0.1)
             mode(linuxcnc.MODE_AUTO)
             command.program_open(program["file"])
@@ -140,7 +144,7 @@ _AXIS = """[{section}]
 MIN_LIMIT = -100000
 MAX_LIMIT = 100000
 MAX_VELOCITY = {velocity}
-MAX_ACCELERATION = 5000
+MAX_ACCELERATION = {acceleration}
 """
 
 _JOINT = """TYPE = {kind}
@@ -193,6 +197,17 @@ def rests(bench: Bench, programs: Sequence[str], seconds: float = 60.0) -> list[
     SimulatorError
         When LinuxCNC does not run a program to its end.
     """
+    return [_rests(joints) for joints in motions(bench, programs, seconds)]
+
+
+def motions(bench: Bench, programs: Sequence[str], seconds: float = 60.0) -> list[Floats]:
+    """The positions of the joints in each program, one row a millisecond, (k, 5) mm and degrees.
+
+    Raises
+    ------
+    SimulatorError
+        When LinuxCNC does not run a program to its end.
+    """
     with _alone(), tempfile.TemporaryDirectory(prefix="linuxcnc") as name:
         folder = Path(name)
         folder.chmod(0o777)
@@ -217,7 +232,7 @@ def rests(bench: Bench, programs: Sequence[str], seconds: float = 60.0) -> list[
         error = json.loads(outcome.read_text())["error"]
         if error:
             raise SimulatorError(error)
-        return [_rests(file) for file in samples]
+        return [_read(file) for file in samples]
 
 
 @contextmanager
@@ -239,11 +254,11 @@ def _write(bench: Bench, programs: Sequence[str], folder: Path, seconds: float) 
         (folder / "remaps" / f"m{code}.ngc").write_text(text)
     ini = _INI.format(client=client, folder=folder, letters=bench.letters, module=bench.module)
     for joint, letter in enumerate(bench.letters):
-        turns = letter in "ABC"
-        velocity = 360 if turns else 500
-        ini += _AXIS.format(section=f"AXIS_{letter}", velocity=velocity)
-        ini += _AXIS.format(section=f"JOINT_{joint}", velocity=velocity)
-        ini += _JOINT.format(kind="ANGULAR" if turns else "LINEAR")
+        kind = "ANGULAR" if letter in "ABC" else "LINEAR"
+        velocity = VELOCITY[kind]
+        ini += _AXIS.format(section=f"AXIS_{letter}", velocity=velocity, acceleration=ACCELERATION)
+        ini += _AXIS.format(section=f"JOINT_{joint}", velocity=velocity, acceleration=ACCELERATION)
+        ini += _JOINT.format(kind=kind)
     (folder / "judge.ini").write_text(ini)
     (folder / "judge.tbl").write_text(f"T1 P1 Z{bench.length} D6\n")
     hal = [
@@ -279,10 +294,26 @@ def _write(bench: Bench, programs: Sequence[str], folder: Path, seconds: float) 
     return [Path(each["samples"]) for each in listed]
 
 
-def _rests(samples: Path) -> Floats:
-    """The places at which all joints rest for a while, without repeats."""
+def _read(samples: Path) -> Floats:
+    """All samples of a program.
+
+    Raises
+    ------
+    SimulatorError
+        When samples were lost: the machine has gone on without them.
+    """
     lines = [line.split() for line in samples.read_text().splitlines()]
-    joints = np.array([[float(value) for value in line[-5:]] for line in lines if len(line) >= 5])
+    table = np.array([[float(value) for value in line] for line in lines if len(line) == 6])
+    if not len(table):
+        raise SimulatorError("the sampler has seen nothing")
+    lost = np.flatnonzero(np.diff(table[:, 0]) != 1.0)
+    if (np.abs(np.diff(table[:, 1:], axis=0))[lost] > _RESTS).any():
+        raise SimulatorError("samples were lost while the machine moved: the sampler was not read in time")
+    return np.asarray(table[:, 1:])
+
+
+def _rests(joints: Floats) -> Floats:
+    """The places at which all joints rest for a while, without repeats."""
     still = np.abs(np.diff(joints, axis=0)).max(axis=1) < _RESTS
     edges = np.flatnonzero(np.diff(np.concatenate(([False], still, [False])).astype(np.int8)))
     long = [int(first) for first, last in zip(edges[::2], edges[1::2], strict=True) if last - first >= _SAMPLES]

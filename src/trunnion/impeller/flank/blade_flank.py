@@ -22,6 +22,7 @@ from trunnion.impeller.flank.flanks import Flank
 from trunnion.impeller.flank.milling import FlankCut, mill_flank
 from trunnion.impeller.impeller import Impeller, rotated
 from trunnion.impeller.paths.passes import Pass
+from trunnion.impeller.progress import Progress, silent
 
 #: A flank ends where the fillet takes up more than this part of the blade's height.
 _LOW: Final = 0.75
@@ -82,7 +83,12 @@ class BladeFlank:
 
 
 def mill_blade_flank(
-    impeller: Impeller, blade: Blade, side: float, cutter: FlankCutter, overcut: float = 0.01
+    impeller: Impeller,
+    blade: Blade,
+    side: float,
+    cutter: FlankCutter,
+    overcut: float = 0.01,
+    progress: Progress = silent,
 ) -> BladeFlank:
     """Fit the path for one side (+1 or -1) of a blade: the least undercut with no more overcut than allowed, mm.
 
@@ -103,7 +109,8 @@ def mill_blade_flank(
         distance, normal, _ = impeller.hub.distances(points)
         return distance, normal
 
-    cut = mill_flank(grid, cutter, limits, below=0.0, floor=Floor(from_hub, cutter.radius + _OFF_HUB))
+    floor = Floor(from_hub, cutter.radius + _OFF_HUB)
+    cut = mill_flank(grid, cutter, limits, below=0.0, floor=floor, progress=progress)
     axis_points, radii = _axis_points(cut, cutter)
     hub = float((impeller.hub.distances(axis_points)[0] - radii).min())
     return BladeFlank(cut, side, until, hub, _neighbour(impeller, blade, axis_points, radii))

@@ -16,6 +16,7 @@ from trunnion.arrays import Floats
 from trunnion.extras import import_extra
 from trunnion.impeller.flank.deviations import Deviations, deviations_of, slopes_of
 from trunnion.impeller.flank.path import FlankPath, basis
+from trunnion.impeller.progress import Advance, ignore
 
 #: Local minima along the path of which each must not cut too much: the least is not always the same one.
 _MINIMA: Final = 3
@@ -74,7 +75,9 @@ class Floor:
     places: int = 120
 
 
-def fit_path(path: FlankPath, points: Floats, limits: Limits, floor: Floor | None = None) -> Fit:
+def fit_path(
+    path: FlankPath, points: Floats, limits: Limits, floor: Floor | None = None, advance: Advance = ignore
+) -> Fit:
     """The path fitted to points (n, 3) of a flank, from one that is near."""
     merit, found, at = _left(path, points, limits, floor)
     history = [merit]
@@ -83,6 +86,7 @@ def fit_path(path: FlankPath, points: Floats, limits: Limits, floor: Floor | Non
     for _ in range(limits.rounds):
         if merit <= limits.enough or region < smallest:
             break
+        advance(1)
         step, foreseen = _step(path, points, found, at, limits, region, floor)
         tried = FlankPath(path.lower + step[0], path.upper + step[1], path.cutter)
         new, new_found, new_at = _left(tried, points, limits, floor)

@@ -21,6 +21,7 @@ from trunnion.impeller.flank.flanks import Flank
 from trunnion.impeller.flank.measure import measured_deviations
 from trunnion.impeller.flank.path import FlankPath
 from trunnion.impeller.flank.start import start_path
+from trunnion.impeller.progress import Progress, silent
 
 #: Points along and across that are fitted, and on which the result is told.
 _FITTED: Final = (101, 21)
@@ -30,6 +31,10 @@ _DENSE: Final = (401, 61)
 _ADDED: Final = 2
 _WORST: Final = 500
 _ROUNDS: Final = 12
+
+#: A start that cuts so many times deeper than the limit of overcut is fitted without that limit first: kept to it from
+#: the beginning, the fit ends at paths that leave far more.
+_DEEPER: Final = 4.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,6 +62,7 @@ def mill_flank(
     lead: float = 0.06,
     control_points: int = 14,
     floor: Floor | None = None,
+    progress: Progress = silent,
 ) -> FlankCut:
     """The pass that leaves least of a flank.
 
@@ -68,20 +74,27 @@ def mill_flank(
         how far the axis begins below the flank's lower end, mm; below 0: above it
     lead
         how far the path goes on at either end, as a share of its length
+    progress
+        accompanies the work
     """
     flank, dense = grid(*_FITTED), grid(*_DENSE).flat()
     points = flank.flat()
     start = start_path(flank, cutter, control_points, below, lead)
-    fit = fit_path(start, points, limits, floor)
-    rounds = len(fit.history) - 1
-    for _ in range(_ADDED):
-        left = deviations_of(fit.path, dense)[0][:, 0]
-        worse = _worse(left, fit, limits)
-        if not len(worse):
-            break
-        points = np.concatenate((points, dense[worse]))
-        fit = fit_path(fit.path, points, replace(limits, rounds=_ROUNDS), floor)
+    with progress("fit of a flank", limits.rounds + _ADDED * _ROUNDS, "rounds") as advance:
+        rounds, begun = 0, start
+        if limits.overcut is not None and deviations_of(start, points)[0].min() < -_DEEPER * limits.overcut:
+            fit = fit_path(start, points, replace(limits, overcut=None), floor, advance)
+            rounds, begun = len(fit.history) - 1, fit.path
+        fit = fit_path(begun, points, limits, floor, advance)
         rounds += len(fit.history) - 1
+        for _ in range(_ADDED):
+            left = deviations_of(fit.path, dense)[0][:, 0]
+            worse = _worse(left, fit, limits)
+            if not len(worse):
+                break
+            points = np.concatenate((points, dense[worse]))
+            fit = fit_path(fit.path, points, replace(limits, rounds=_ROUNDS), floor, advance)
+            rounds += len(fit.history) - 1
     left = measured_deviations(fit.path, dense)
     return FlankCut(fit.path, Deviations.of(left), Deviations.of(measured_deviations(start, dense)), rounds)
 

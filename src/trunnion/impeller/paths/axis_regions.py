@@ -16,6 +16,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.extras import import_extra
+from trunnion.impeller.progress import Advance, ignore
 
 #: How far directions (n, 3) at places (n,) are from being forbidden, (n,): below 0 they are. Below the third argument,
 #: it may be less than what is told.
@@ -83,7 +84,7 @@ def sphere(count: int) -> Floats:
     return np.column_stack((np.cos(angle) * r, np.sin(angle) * r, z))
 
 
-def grow_regions(places: Floats, margin: Margin) -> Regions:
+def grow_regions(places: Floats, margin: Margin, advance: Advance = ignore) -> Regions:
     """Regions at places (n, k), from the narrowest of some of them to all others; none if some of them have none."""
     count = len(places)
     seeds = np.unique(np.linspace(0, count - 1, _SEEDS).astype(int))
@@ -99,6 +100,7 @@ def grow_regions(places: Floats, margin: Margin) -> Regions:
     middle[first] = found.middle[0]
     tried = np.zeros(count, np.bool_)
     tried[first] = True
+    advance(1)
     front = np.array([first])
     while True:
         pairs = np.column_stack((np.repeat(front, near.shape[1]), near[front].ravel()))
@@ -111,6 +113,7 @@ def grow_regions(places: Floats, margin: Margin) -> Regions:
         start = _nearest_allowed(rows, middle[pairs[index, 0]], margin)
         there = np.isfinite(start[:, 0])
         tried[rows] = True
+        advance(len(rows))
         rows = rows[there]
         if len(rows):
             found = _regions(rows, start[there], margin)

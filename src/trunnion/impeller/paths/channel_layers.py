@@ -17,6 +17,7 @@ from trunnion.errors import InputError, Problem
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.paths.channel import Channel, Extent, turned
 from trunnion.impeller.paths.channel_sheets import Ball, Sheet, problem, sheets_of
+from trunnion.impeller.progress import Progress, silent
 
 #: How often the ball's way in before an edge is laid, and moved off the blade where it is too near.
 _SWINGS: Final = 3
@@ -70,7 +71,7 @@ class _Throat:
     room: float
 
 
-def layers_of(channel: Channel, ball: Ball, step_down: float | None) -> list[Layer]:
+def layers_of(channel: Channel, ball: Ball, step_down: float | None, progress: Progress = silent) -> list[Layer]:
     """All layers of a channel from the lowest one, or that one alone without a step-down.
 
     Raises
@@ -85,8 +86,12 @@ def layers_of(channel: Channel, ball: Ball, step_down: float | None) -> list[Lay
         what = f"a ball of {2.0 * ball.radius:g} mm is smaller than the fillet of {fillet:g} mm, and would cut into it"
         raise InputError(problem(impeller, what, "take a larger ball, or leave more on blades and hub"))
     sheets = sheets_of(impeller, ball, step_down)
-    with ThreadPoolExecutor(_THREADS) as executor:  # kernels run beside each other
-        laid = list(executor.map(lambda sheet: _laid(channel, ball, sheet), sheets))
+    laid = []
+    # Kernels run beside each other.
+    with ThreadPoolExecutor(_THREADS) as executor, progress("layers", len(sheets), "layers") as advance:
+        for one in executor.map(lambda sheet: _laid(channel, ball, sheet), sheets):
+            laid.append(one)
+            advance(1)
     throat = min((throat for _, throat in laid), key=lambda one: one.room)
     if throat.room < ball.to_blade:
         raise InputError(_too_narrow(channel, ball, step_down, throat))

@@ -12,6 +12,7 @@ from trunnion.impeller.paths.channel_layers import layers_of
 from trunnion.impeller.paths.channel_passes import passes_on
 from trunnion.impeller.paths.channel_sheets import Ball
 from trunnion.impeller.paths.passes import Pass, PassFamily, Stepover, Way
+from trunnion.impeller.progress import Progress, silent
 
 
 def channel_roughing(
@@ -23,6 +24,7 @@ def channel_roughing(
     tolerance: float,
     blade_allowance: float = 0.0,
     hub_allowance: float = 0.0,
+    progress: Progress = silent,
 ) -> PassFamily:
     """Passes of a ball that clears a channel.
 
@@ -40,6 +42,8 @@ def channel_roughing(
         How far chords may be off the path, mm.
     blade_allowance, hub_allowance
         What is left, mm.
+    progress
+        Accompanies the work.
 
     Raises
     ------
@@ -48,7 +52,7 @@ def channel_roughing(
         place is named then, and the largest ball that fits.
     """
     ball = Ball(radius, blade_allowance, hub_allowance, tolerance)
-    layers = layers_of(channel, ball, step_down)[::-1]
+    layers = layers_of(channel, ball, step_down, progress)[::-1]
     along = min(layer.u[0] for layer in layers), max(layer.u[-1] for layer in layers)
     passes: list[Pass] = []
     for number, layer in enumerate(layers):

@@ -11,7 +11,7 @@ import math
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import accumulate, pairwise
 from typing import Final
 
@@ -35,16 +35,21 @@ _STRAIGHT: Final = (32, 256)
 #: What a ball may be off its place, mm: so much nearer the tool may stand beside the ball.
 SLACK: Final = 0.005
 
+#: Threads that look for distances, and rows that one of them looks at at least.
+_THREADS: Final = os.cpu_count() or 1
+_ROWS: Final = 64
+
 #: How close the pieces of a tool are to it, mm.
 _TOOL: Final = 0.001
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Obstacles:
-    """What tools must not touch, and its names."""
+    """What tools must not touch, and its names; and the threads that look for distances from it."""
 
     data: BodyData
     names: tuple[str, ...]
+    threads: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(_THREADS))
 
 
 def obstacles_of(impeller: Impeller, clamping: Floats | None = None) -> Obstacles:
@@ -180,6 +185,12 @@ class ToolBody:
     wide: ToolData
     wide_roles: tuple[Role, ...]
 
+    def part(self, role: Role) -> ToolData:
+        """The pieces of ``real`` of a role."""
+        which = [k for k, one in enumerate(self.roles) if one is role]
+        first = self.real.first
+        return _data([self.real.corners[first[k] : first[k + 1]] for k in which], [0.0] * len(which))
+
     def up_to(self, role: Role) -> ToolData:
         """The pieces of ``wide`` up to the last one of a role."""
         count = 1 + max(k for k, one in enumerate(self.wide_roles) if one is role)
@@ -282,7 +293,7 @@ def margins_of(obstacles: Obstacles, tool: ToolData, centre: Floats, axis: Float
     def work(rows: slice) -> None:
         least_margins(obstacles.data, tool, centre[rows], axis[rows], low, high, found[rows])
 
-    _on_all_cores(work, len(centre))
+    _on_all_cores(obstacles.threads, work, len(centre))
     return found
 
 
@@ -293,18 +304,16 @@ def distances_of(obstacles: Obstacles, tool: ToolData, centre: Floats, axis: Flo
     def work(rows: slice) -> None:
         part_distances(obstacles.data, tool, centre[rows], axis[rows], high, found[rows])
 
-    _on_all_cores(work, len(centre))
+    _on_all_cores(obstacles.threads, work, len(centre))
     return found
 
 
-def _on_all_cores(work: Callable[[slice], None], count: int) -> None:
+def _on_all_cores(threads: ThreadPoolExecutor, work: Callable[[slice], None], count: int) -> None:
     """Work on rows in as many threads as there are cores; kernels give up the interpreter's lock."""
-    threads = os.cpu_count() or 1
-    size = max(-(-count // (4 * threads)), 64)
+    size = max(-(-count // (4 * _THREADS)), _ROWS)
     rows = [slice(start, start + size) for start in range(0, count, size)]
-    if threads == 1 or len(rows) < 2:
+    if _THREADS == 1 or len(rows) < 2:
         for one in rows:
             work(one)
         return
-    with ThreadPoolExecutor(threads) as executor:
-        list(executor.map(work, rows))
+    list(threads.map(work, rows))

@@ -10,6 +10,7 @@ from trunnion.impeller.paths.channel_layers import layers_of
 from trunnion.impeller.paths.channel_passes import passes_on
 from trunnion.impeller.paths.channel_sheets import Ball
 from trunnion.impeller.paths.passes import PassFamily, Stepover, Way
+from trunnion.impeller.progress import Progress, silent
 
 
 def hub_finish(
@@ -20,6 +21,7 @@ def hub_finish(
     tolerance: float,
     blade_allowance: float = 0.0,
     hub_allowance: float = 0.0,
+    progress: Progress = silent,
 ) -> PassFamily:
     """Passes of a ball on the hub of a channel, along the blades.
 
@@ -35,6 +37,8 @@ def hub_finish(
         How far chords may be off the path, mm.
     blade_allowance, hub_allowance
         What is left, mm.
+    progress
+        Accompanies the work.
 
     Raises
     ------
@@ -42,6 +46,6 @@ def hub_finish(
         If the ball is smaller than the fillet, does not get out of the stock, or does not fit between the blades; the
         place is named then, and the largest ball that fits.
     """
-    (layer,) = layers_of(channel, Ball(radius, blade_allowance, hub_allowance, tolerance), None)
+    (layer,) = layers_of(channel, Ball(radius, blade_allowance, hub_allowance, tolerance), None, progress)
     along = float(layer.u[0]), float(layer.u[-1])
     return PassFamily(tuple(passes_on(layer, radius, stepover, tolerance, along, radius)), radius, Way.BOTH_WAYS)

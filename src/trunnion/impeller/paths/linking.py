@@ -21,6 +21,7 @@ from trunnion.impeller.definition import StockSize
 from trunnion.impeller.impeller import rotated
 from trunnion.impeller.paths.passes import Pass
 from trunnion.impeller.paths.thinning import thinned
+from trunnion.impeller.progress import Progress, silent
 from trunnion.model.toolpath import Kind, Phase
 
 #: Whether the ball and the rest of the tool are clear at poses: centres (n, 3), axes (n, 3) -> (n,).
@@ -145,7 +146,7 @@ class _Path:
 
 def link_passes(
     passes: Sequence[Pass], axes: Sequence[Floats], space: FreeSpace, links: Links, radius: float, is_clear: IsClear,
-    name: str,
+    name: str, progress: Progress = silent,
 ) -> LinkedPath:  # fmt: skip
     """Link passes in their order to one path.
 
@@ -161,6 +162,8 @@ def link_passes(
         Of the ball and the rest of the tool.
     name
         Of the step, for messages.
+    progress
+        Accompanies the work.
 
     Raises
     ------
@@ -169,19 +172,21 @@ def link_passes(
     """
     path = _Path()
     before: tuple[Floats, Floats] | None = None
-    for k, (one, axis) in enumerate(zip(passes, axes, strict=True)):
-        keep = thinned(one.centre, axis, radius, links.tolerance, _AXIS_TOLERANCE)
-        centre, directions = one.centre[keep], axis[keep]
-        start = _lead(one, axis, links.lead, is_clear, out=False)
-        if before is not None and _is_direct(before, (centre[0], directions[0]), links, is_clear):
-            path.add(centre[:1], directions[:1], Kind.LINEAR, Phase.STEPOVER)
-        else:
-            if before is not None:
-                _leave(path, passes[k - 1], axes[k - 1], space, links, is_clear, name)
-            _approach(path, start, directions[0], space, is_clear, name)
-            path.add(start, np.repeat(directions[:1], len(start), axis=0), Kind.LINEAR, Phase.ENGAGE)
-        path.add(centre, directions, Kind.LINEAR, Phase.CUT)
-        before = centre[-1], directions[-1]
+    with progress("links", len(passes), "passes") as advance:
+        for k, (one, axis) in enumerate(zip(passes, axes, strict=True)):
+            keep = thinned(one.centre, axis, radius, links.tolerance, _AXIS_TOLERANCE)
+            centre, directions = one.centre[keep], axis[keep]
+            start = _lead(one, axis, links.lead, is_clear, out=False)
+            if before is not None and _is_direct(before, (centre[0], directions[0]), links, is_clear):
+                path.add(centre[:1], directions[:1], Kind.LINEAR, Phase.STEPOVER)
+            else:
+                if before is not None:
+                    _leave(path, passes[k - 1], axes[k - 1], space, links, is_clear, name)
+                _approach(path, start, directions[0], space, is_clear, name)
+                path.add(start, np.repeat(directions[:1], len(start), axis=0), Kind.LINEAR, Phase.ENGAGE)
+            path.add(centre, directions, Kind.LINEAR, Phase.CUT)
+            before = centre[-1], directions[-1]
+            advance(1)
     if passes:
         _leave(path, passes[-1], axes[-1], space, links, is_clear, name)
     return path.done()

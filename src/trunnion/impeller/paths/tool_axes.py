@@ -21,7 +21,9 @@ from trunnion.impeller.paths.axis_field import AxisField, FieldFit, fit_field
 from trunnion.impeller.paths.axis_regions import Margin, Regions, climb, grow_regions, regions_about, sphere
 from trunnion.impeller.paths.clearance import Margins, Obstacles, ToolBody, distances_of, margins_of, tool_body
 from trunnion.impeller.paths.clearance_kernel import ToolData
+from trunnion.impeller.paths.least_clearances import FAR, PartClearance, least_clearances
 from trunnion.impeller.paths.passes import PassFamily, Way
+from trunnion.impeller.progress import Advance, Progress, silent
 from trunnion.simulation.tools.profile import Role, ToolShape
 
 #: Places from which the search begins.
@@ -38,8 +40,8 @@ _LEAST_WIDTH: Final = 0.25
 _ROUNDS: Final = 8
 _ADDED: Final = 60
 
-#: Parts of the wanted clearances that are tried.
-_SHARES: Final = (1.0, 0.5, 0.25, 0.0)
+#: Parts of the wanted clearances that are tried, from all of them to the least.
+SHARES: Final = (1.0, 0.5, 0.25, 0.0)
 
 #: The cutter leans away from the surface at least so much beside its ball, degrees.
 _LEAST_LEAN: Final = 0.2
@@ -49,9 +51,6 @@ _DIRECTIONS: Final = 2000
 
 #: Places in the way of a field at which the reason is sought.
 _ASKED: Final = 8
-
-#: Clearances are told up to this, mm.
-_FAR: Final = 10.0
 
 #: A field that is out of a cone by less than this is in it.
 _NEAR: Final = 1e-6
@@ -79,26 +78,6 @@ class Wanted:
         return Margins(share * self.cutter, shank, holder, max(share * self.lean, min(_LEAST_LEAN, self.lean)))
 
 
-@dataclass(frozen=True, slots=True)
-class PartClearance:
-    """The least distance of a part of the tool to a body, mm, and where: the ball's centre, and the tool axis there.
-
-    The cutter counts from one radius above its ball's centre on. Distances are measured up to 10 mm.
-    """
-
-    part: Role
-    body: str
-    distance: float
-    centre: tuple[float, float, float]
-    axis: tuple[float, float, float]
-
-    def __str__(self) -> str:
-        """Return the distance in words, such as ``shank 2.500 mm from blade 1``."""
-        if self.distance >= _FAR:
-            return f"{self.part} {_FAR:g} mm or more from all blades and the hub"
-        return f"{self.part} {self.distance:.3f} mm from {self.body}"
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class ToolAxes:
     """The tool axes of a family.
@@ -122,6 +101,7 @@ def choose_axes(
     obstacles: Obstacles,
     wanted: Wanted = Wanted(),
     reachable: Callable[[Floats], Flags] | None = None,
+    progress: Progress = silent,
 ) -> ToolAxes:
     """Choose the tool axes of a family of passes.
 
@@ -135,19 +115,21 @@ def choose_axes(
         Clearances; where they cannot be had everywhere, a smaller share of all of them is tried.
     reachable
         Tells of directions (n, 3) which the machine reaches, (n,).
+    progress
+        Accompanies the work.
 
     Raises
     ------
     InputError
         If there is no such field: with the place, what is in the way of which part of the tool, and what helps.
     """
-    search = _Search(family, obstacles, wanted.tilt, reachable)
-    for share in _SHARES:
+    search = _Search(family, obstacles, wanted.tilt, reachable, progress)
+    for share in SHARES:
         body = tool_body(tool, family.radius, wanted.margins(share))
         field = search.field(body)
         if field is not None:
             axes = tuple(field.axes(one.place) for one in family.passes)
-            clearance = _least(obstacles, body, search.centres, np.concatenate(axes))
+            clearance = least_clearances(obstacles, body, search.centres, np.concatenate(axes))
             return ToolAxes(field, axes, clearance, share, _turning(family, axes))
     raise InputError(search.fault(tool, body))
 
@@ -156,13 +138,18 @@ class _Search:
     """The search for a field, with one tool and one set of clearances after another."""
 
     def __init__(
-        self, family: PassFamily, obstacles: Obstacles, tilt: float, reachable: Callable[[Floats], Flags] | None
+        self,
+        family: PassFamily,
+        obstacles: Obstacles,
+        tilt: float,
+        reachable: Callable[[Floats], Flags] | None,
+        progress: Progress,
     ) -> None:
         self.centres, self.places = family.centres(), family.places()
         self._obstacles = obstacles
         self._lowest = math.cos(math.radians(tilt)) - 1e-12
         self._tilt = tilt
-        self._reachable = reachable
+        self._reachable, self._progress = reachable, progress
         self._is_closed = family.way is Way.SPIRAL
         self._lengths = _lengths(family)
         self._nodes = _nodes(self.places, self._lengths)
@@ -171,7 +158,8 @@ class _Search:
     def field(self, body: ToolBody) -> AxisField | None:
         """A field that keeps a tool clear everywhere; None if none is found."""
         nodes = self._nodes
-        regions = grow_regions(self._apart(self.places[nodes]), self._margin_at(body.wide, nodes))
+        with self._progress("tool axes", len(nodes), "places") as advance:
+            regions = grow_regions(self._apart(self.places[nodes]), self._margin_at(body.wide, nodes), advance)
         nowhere = np.flatnonzero(np.isnan(regions.middle[:, 0]))
         if len(nowhere):
             self._bad = nodes[nowhere]
@@ -188,6 +176,12 @@ class _Search:
 
     def _checked(self, body: ToolBody, nodes: Ints, regions: Regions, spans: tuple[int, ...]) -> AxisField | None:
         """The field with so many spans, after as many rounds of checking as it takes; None: that does not end."""
+        with self._progress("field of tool axes", _ROUNDS, "rounds") as advance:
+            return self._rounds(body, nodes, regions, spans, advance)
+
+    def _rounds(
+        self, body: ToolBody, nodes: Ints, regions: Regions, spans: tuple[int, ...], advance: Advance
+    ) -> AxisField | None:
         for _ in range(_ROUNDS):
             fit = self._fit(nodes, regions, spans)
             if fit.outside > _NEAR:
@@ -207,6 +201,7 @@ class _Search:
                 self._bad = added[nowhere]
                 return None
             nodes, regions = np.r_[nodes, added], regions.joined(more)
+            advance(1)
         return None
 
     def _fit(self, nodes: Ints, regions: Regions, spans: tuple[int, ...]) -> FieldFit:
@@ -284,7 +279,7 @@ class _Search:
 
     def _missing(self, pieces: ToolData, point: Ints, axis: Floats) -> tuple[float, str]:
         """How much pieces of a tool miss at a point with an axis, and the body that is in their way."""
-        distances = distances_of(self._obstacles, pieces, self.centres[point], axis, _FAR)[0] - pieces.wanted[:, None]
+        distances = distances_of(self._obstacles, pieces, self.centres[point], axis, FAR)[0] - pieces.wanted[:, None]
         _, number = np.unravel_index(int(distances.argmin()), distances.shape)
         return -float(distances.min()), self._obstacles.names[number]
 
@@ -323,8 +318,7 @@ def _nodes(places: Floats, lengths: Floats) -> Ints:
     low, high = 0.01, float(lengths.max())
     for _ in range(40):
         size = math.sqrt(low * high)
-        cells = np.floor(np.clip(places, 0.0, 1.0 - 1e-12) * np.maximum(np.round(lengths / size), 1.0))
-        if len(np.unique(cells, axis=0)) > _NODES:
+        if len(np.unique(_cells(places, np.maximum(np.round(lengths / size), 1.0)))) > _NODES:
             low = size
         else:
             high = size
@@ -332,25 +326,22 @@ def _nodes(places: Floats, lengths: Floats) -> Ints:
     scaled = np.clip(places, 0.0, 1.0 - 1e-12) * counts
     away = np.linalg.norm(scaled - np.floor(scaled) - 0.5, axis=1)
     order = np.argsort(away, kind="stable")
-    _, first = np.unique(np.floor(scaled)[order], axis=0, return_index=True)
+    _, first = np.unique(_cells(places, counts)[order], return_index=True)
     return np.asarray(order[first])
+
+
+def _cells(places: Floats, counts: Floats) -> Ints:
+    """Numbers (n,) of the cells in which places (n, k) are, with so many of them (k,) along each parameter."""
+    found = np.zeros(len(places), np.int64)
+    for k, count in enumerate(counts.astype(np.int64).tolist()):
+        found *= count
+        found += (np.clip(places[:, k], 0.0, 1.0 - 1e-12) * count).astype(np.int64)
+    return found
 
 
 def _nearest(places: Floats, asked: Floats) -> Ints:
     """Rows of places that are nearest to those asked."""
     return np.array([int(np.linalg.norm(places - one, axis=1).argmin()) for one in asked])
-
-
-def _least(obstacles: Obstacles, body: ToolBody, centres: Floats, axes: Floats) -> tuple[PartClearance, ...]:
-    """For each part of a tool, the least of its distances, the nearest part first."""
-    distances = distances_of(obstacles, body.real, centres, axes, _FAR)
-    found = []
-    for role in dict.fromkeys(body.roles):
-        own = distances[:, [k for k, one in enumerate(body.roles) if one is role]].min(axis=1)
-        row, number = np.unravel_index(int(own.argmin()), own.shape)
-        centre, axis = ((float(x), float(y), float(z)) for x, y, z in (centres[row], axes[row]))
-        found.append(PartClearance(role, obstacles.names[number], float(own[row, number]), centre, axis))
-    return tuple(sorted(found, key=lambda one: one.distance))
 
 
 def _turning(family: PassFamily, axes: Sequence[Floats]) -> float:

@@ -25,7 +25,7 @@ from trunnion.impeller.blade import Blade
 from trunnion.impeller.deviation import off_surfaces
 from trunnion.impeller.fillet import Fillet, root_fillet, root_stations
 from trunnion.impeller.impeller import Impeller
-from trunnion.impeller.model import impeller_mesh
+from trunnion.impeller.model import impeller_model
 from trunnion.impeller.solid.impeller_body import impeller_body
 from trunnion.impeller.solid.order import Made, Order, Refusal
 from trunnion.impeller.solid.root_loop import Density, carried_on
@@ -105,9 +105,9 @@ def impeller_solid(impeller: Impeller, tolerance: float) -> ImpellerSolid:
         import_extra("OCP", "cad")
     file = impeller.definition.file
     with ThreadPoolExecutor(1) as beside:
-        waiting = beside.submit(impeller_mesh, impeller, _MESH * impeller.definition.stock.diameter)
+        waiting = beside.submit(impeller_model, impeller, _MESH * impeller.definition.stock.diameter)
         made, deviation = _within(impeller, tolerance)
-        mesh, _ = waiting.result()
+        mesh = waiting.result().mesh
     if abs(made.volume - mesh.volume) > _VOLUME * mesh.volume:
         what = f"its solid has {made.volume:.1f} mm³, its mesh {mesh.volume:.1f} mm³"
         raise InputError(Problem(file, 0, what, "write a mesh"))

@@ -1,15 +1,15 @@
-"""How long an operation takes on the machine: an estimate for people, by ``trunnion.machines.motion_time``."""
+"""How long an operation takes on the machine: an estimate for people, by ``trunnion.timing``."""
 
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, slide_positions
-from trunnion.machines.motion_time import row_seconds
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Dwell, Kind, Stop
 from trunnion.planning.linearization.arc_chords import arc_sweeps
 from trunnion.planning.rotary_positions import continuous_positions
 from trunnion.planning.speed.rotary_speed import REST_LENGTH, tip_speeds
+from trunnion.timing import CORNER_TOLERANCE, AxisDynamics, Path, piece_seconds
 
 
 def row_durations(machine: Machine, motion: Motion) -> Floats:
@@ -30,7 +30,9 @@ def row_durations(machine: Machine, motion: Motion) -> Floats:
     rate = np.where((moves.kind == Kind.RAPID) | ~(rate > 0.0), np.inf, rate)
     stop = np.append(rests[1:] != rests[:-1], True)
     stop[[event.row - 1 for event in motion.operation.events if isinstance(event, Dwell | Stop) and event.row]] = True
-    return row_seconds(machine, steps, length, rate, stop)
+    tolerance = np.full(len(steps), CORNER_TOLERANCE)
+    path = Path(steps, length, rate, tolerance, stop, np.zeros(0, np.int64))
+    return piece_seconds(path, AxisDynamics.of(machine))
 
 
 def operation_seconds(machine: Machine, motion: Motion) -> float:

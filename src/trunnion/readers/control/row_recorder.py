@@ -182,6 +182,14 @@ class RowRecorder:
         """Record within which tolerance the control may round off the path from now on, mm; 0: none."""
         self.add_event("tolerance", tolerance)
 
+    def add_exact_stop(self, mode: str) -> None:
+        """Record how the control goes through the ends of blocks from now on.
+
+        ``on``: it stops at each; ``path``: it never leaves the path, and stops where it must; ``off``: as its settings
+        say; ``block``: it stops at the end of this block.
+        """
+        self.add_event("exact_stop", mode)
+
     def add_tool_delta(self, name: str, value: float) -> None:
         """Record that the program adds to the length or the radius of the tool, mm: the path does not show it.
 

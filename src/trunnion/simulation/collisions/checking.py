@@ -11,11 +11,11 @@ from trunnion.errors import InputError, Problem
 from trunnion.model.run import Run
 from trunnion.simulation.collisions.bodies import Body, BodyKind, tool_bodies
 from trunnion.simulation.collisions.findings import Collision
-from trunnion.simulation.collisions.motion import axis_pieces
 from trunnion.simulation.collisions.pairs import body_pairs
 from trunnion.simulation.collisions.queries import Solid
 from trunnion.simulation.collisions.watching import PairWatch
 from trunnion.simulation.tools.profile import ToolShape
+from trunnion.timing import axis_pieces
 
 #: Bodies closer to each other than this are looked at again after moving by so much, mm: what touches and leaves within
 #: it, less than half of it deep, may be missed.

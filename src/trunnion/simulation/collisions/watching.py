@@ -13,8 +13,8 @@ from trunnion.machines.links import WORKPIECE, link_chain
 from trunnion.simulation.collisions.bodies import Body
 from trunnion.simulation.collisions.clearance import joint_senses, motion_bounds, relative_pose, turns_about_itself
 from trunnion.simulation.collisions.findings import Collision
-from trunnion.simulation.collisions.motion import AxisPieces
 from trunnion.simulation.collisions.queries import PairQuery, Solid
+from trunnion.timing import AxisPieces
 
 #: More stretches of one pair are not told one by one: the last one goes on to the end.
 MOST_FINDINGS: Final = 200

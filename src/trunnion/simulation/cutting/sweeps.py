@@ -20,9 +20,9 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.machines import forward
 from trunnion.model.run import Orientation, ProgrammedWord, Run
+from trunnion.model.stated_tips import StatedTips, turns_without_tcp
 from trunnion.model.subdivision import subdivide
 from trunnion.model.toolpath import Kind
-from trunnion.simulation.stated_tips import StatedTips, turns_without_tcp
 
 _XYZ = int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z)
 

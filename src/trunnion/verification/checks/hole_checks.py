@@ -1,7 +1,7 @@
 """The holes of a program against the cycles of the CL files."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from trunnion.model.run import Run
 from trunnion.verification.checks.drill_motions import HoleFault
@@ -48,7 +48,7 @@ def check_holes(context: ComparedContext) -> Check:
         count += len(faults)
         for fault in faults[: max(MAX_PLACES - len(places), 0)]:
             at = context.place(fault.row, fault.value, fault.text)
-            places.append(Place(at.nc_line, at.number, at.value, at.text, hole.file, hole.line))
+            places.append(replace(at, cl_file=hole.file, cl_line=hole.line))
     soft = list(_floating_threads(context, by_index))
     count, places = count + len(soft), places + soft[: max(MAX_PLACES - len(places), 0)]
     for match in (match for match in matches if match.index >= len(expected.holes)):
@@ -78,7 +78,7 @@ def _floating_threads(context: ComparedContext, matches: Mapping[int, MatchedHol
         if hole.cycle.mode[:1] == ("TAP",) and not (hole.cycle.floating or rigid or match.by_motion):
             text = f"cuts a thread as with a compensating chuck: M{code} is missing"
             place = context.place(match.first, 0.0, text)
-            yield Place(place.nc_line, place.number, 0.0, place.text, hole.file, hole.line)
+            yield replace(place, cl_file=hole.file, cl_line=hole.line)
         before = match.end
 
 

@@ -40,8 +40,8 @@ def check_modal_state(context: Context) -> Check:
     places += _without_units(context)
     places += compensated_askew(context)
     places += compensated_blind(context)
-    if len(run) and not any(event.kind == "end" for event in run.events):
-        last = max(context.last_line, run.lines[-1])
+    if not any(event.kind == "end" for event in run.events):
+        last = max(context.last_line, run.lines[-1] if len(run) else 1)
         places.append(Place(last, -1, 0.0, "the program has no end (M30 or M2) after this"))
     places += _changed_while_turning(context)
     places.sort(key=lambda place: place.nc_line)

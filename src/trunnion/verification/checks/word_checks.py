@@ -22,12 +22,15 @@ def check_words(context: Context) -> Check:
     remarks = len(diagnostics) - len(errors)
     good = "every word is known" + (f", {remarks} remarks" if remarks else "")
     if not errors and remarks:
-        return Check("words", _TITLE, True, good, places=tuple(map(_place, diagnostics[:MAX_PLACES])))
-    return check_from_places("words", _TITLE, [_place(error) for error in errors], good)
+        return Check(
+            "words", _TITLE, True, good, places=tuple(_place(context, each) for each in diagnostics[:MAX_PLACES])
+        )
+    return check_from_places("words", _TITLE, [_place(context, error) for error in errors], good)
 
 
-def _place(diagnostic: Diagnostic) -> Place:
-    return Place(diagnostic.line, -1, 0.0, diagnostic.text)
+def _place(context: Context, diagnostic: Diagnostic) -> Place:
+    of_subprogram = diagnostic.file in context.run.files[1:]
+    return Place(diagnostic.line, -1, 0.0, diagnostic.text, nc_file=diagnostic.file if of_subprogram else "")
 
 
 def _compared_errors(

@@ -7,7 +7,7 @@ Units:  mm and degrees; minutes inside the kernel, seconds outside.
 
 A row at feed covers its length at its feed. With TCP, its length is the distance that the tip travels; without, that
 of the slides, or whatever else the control counts (``FeedPath``). Where only rotary axes move, degrees count as
-millimetres. ``trunnion.verification.kinematics.run_time`` turns this into time. The acceleration between two rows at
+millimetres. ``trunnion.timing`` turns this into time. The acceleration between two rows at
 feed is the change of speed over half the time of both: a control that rounds corners needs less, one that stops
 exactly needs more.
 """
@@ -19,12 +19,12 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Machine, forward
-from trunnion.model.feed_path import NO_ROTATION, FeedPath, feed_path_lengths
+from trunnion.model.feed_path import NO_ROTATION
 from trunnion.model.run import Orientation, PositionChunk, Run
 from trunnion.model.toolpath import Kind
+from trunnion.timing import RowFeeds, RunTimer
 from trunnion.verification.kinematics.axis_motion_kernel import AxisLimits, ChunkRows, axis_motion_rows
 from trunnion.verification.kinematics.positioning_moves import approach_rows
-from trunnion.verification.kinematics.run_time import RunTimer
 from trunnion.verification.kinematics.worst_rows import WorstRows
 
 
@@ -61,9 +61,9 @@ class AxisMotionAnalyzer:
     def __init__(self, run: Run, max_rows: int, *, times: bool = True) -> None:
         self._run = run
         self._limits = AxisLimits.of(run.machine)
-        self._arc_length = _arc_lengths(run)
+        self._feeds = RowFeeds(run)
         self._approach_rows = approach_rows(run)
-        self._carry = np.zeros(7)
+        self._carry = np.zeros(6)
         self._timer = RunTimer(run) if times else None
         axes = run.machine.axes
         self._motion = AxisMotion(
@@ -85,6 +85,7 @@ class AxisMotionAnalyzer:
         # On the first leg of an approach the tool is still as high as the machine position before it.
         here = self._approach_rows[(self._approach_rows >= first) & (self._approach_rows < end)]
         machine_frame[here - first] = True
+        feeds = self._feeds.part(first, end, positions)
         rows = ChunkRows(
             positions.joints,
             positions.tip,
@@ -94,19 +95,15 @@ class AxisMotionAnalyzer:
             run.programmed[first:end],
             tcp,
             machine_frame,
-            state.feed.part(first, end),
-            state.feed_mode.part(first, end),
-            state.rpm.part(first, end),
             run.orientation_between(first, end) == Orientation.ANGLES,
-            self._feed_lengths(first, end, positions, tcp),
+            feeds,
         )
-        times, shares, deviation = np.empty((4, count)), np.empty((2, 5, count)), np.empty(count)
+        shares, deviation = np.empty((2, 5, count)), np.empty(count)
         axis_motion_rows(
-            first, rows, self._limits, run.arcs.row, self._arc_length, self._carry, motion.extremes,
-            motion.extreme_rows, times, shares, deviation,
-        )  # fmt: skip
+            first, rows, self._limits, self._carry, motion.extremes, motion.extreme_rows, shares, deviation
+        )
         if self._timer is not None:
-            self._timer.add(first, end, positions, times)
+            self._timer.add(first, positions, feeds)
         for k, axis in enumerate(run.machine.axes):
             if axis.rapid is not None:
                 motion.speed[k].add(first, shares[0, k])
@@ -122,42 +119,12 @@ class AxisMotionAnalyzer:
         steps = np.diff(positions.joints[:, self._limits.rotary], axis=0)
         return np.asarray(np.abs(steps).max(axis=1) > NO_ROTATION)
 
-    def _feed_lengths(self, first: int, end: int, positions: PositionChunk, tcp: Flags) -> Floats:
-        """What F counts in rows that turn rotary axes without TCP, NaN in the others; empty where there are none.
-
-        A control that counts the slides alone is left to the kernel.
-        """
-        path = self._run.state.feed_path.part(first, end)
-        counted = ~tcp & (path != FeedPath.SLIDES)
-        if not counted.any():
-            return np.zeros(0)
-        rows = np.flatnonzero(counted & self._turns(positions))
-        lengths, joints = np.full(end - first, np.nan), positions.joints
-        lengths[rows] = feed_path_lengths(self._run.machine, joints[rows], joints[rows + 1], path[rows])
-        return lengths
-
     def result(self) -> AxisMotion:
         """Everything, once all rows have been added."""
         if self._timer is None:
             return self._motion
         seconds, tip_feed = self._timer.result()
         return replace(self._motion, seconds=seconds, tip_feed=tip_feed)
-
-
-def _arc_lengths(run: Run) -> Floats:
-    """Length of each circle of the run, mm."""
-    rows = run.arcs.row
-    if not len(rows):
-        return np.zeros(0)
-    start, end = run.positions(rows - 1).tip, run.positions(rows).tip
-    centre, normal = run.arcs.centre, run.arcs.normal
-    rise = np.einsum("ij,ij->i", end - start, normal)
-    a, b = start - centre, end - centre
-    across = np.einsum("ij,ij->i", np.cross(a, b), normal)
-    along = np.einsum("ij,ij->i", a, b) - np.einsum("ij,ij->i", a, normal) * np.einsum("ij,ij->i", b, normal)
-    angle = np.mod(np.arctan2(across, along), 2.0 * np.pi)
-    angle = np.where(np.minimum(angle, 2.0 * np.pi - angle) * run.arcs.radius < 1e-6, 2.0 * np.pi, angle)
-    return np.asarray(np.hypot((angle + 2.0 * np.pi * run.arcs.full_turns) * run.arcs.radius, rise))
 
 
 def _tip_deviations(machine: Machine, positions: PositionChunk, rows: Ints, count: int) -> Floats:

@@ -40,8 +40,7 @@ class ChunkRows(NamedTuple):
     joints, tip, axis  (k + 1, …)  the position before the rows comes first
     half_way           (k, 3)      tool axis where every joint is half-way
     angles             (k,) bool   the control interpolates rotary angles, not the tool axis on a great circle
-    feed_lengths       (k,)        what the feed counts where that is neither the path of the tip nor that of the
-                                   slides, else NaN; or empty
+    feeds              (4, k)      as ``trunnion.timing.row_feeds`` has them
     """
 
     joints: Floats2
@@ -52,11 +51,8 @@ class ChunkRows(NamedTuple):
     programmed: Codes
     tcp: Flags
     machine_frame: Flags
-    feed: Floats
-    feed_mode: Codes
-    rpm: Floats
     angles: Flags
-    feed_lengths: Floats
+    feeds: Floats2
 
 
 @inner
@@ -75,55 +71,35 @@ def half_way_deviation(axis: Floats, half_way: Floats, row: int) -> float:
     return math.degrees(chord if chord < 1e-8 else 2.0 * math.asin(min(1.0, 0.5 * chord)))
 
 
-@kernel(writes="carry extremes extreme_rows times shares deviation")
+@kernel(writes="carry extremes extreme_rows shares deviation")
 def axis_motion_rows(
     first: int,
     rows: ChunkRows,
     limits: AxisLimits,
-    arc_row: Ints,
-    arc_length: Floats,
     carry: Floats,
     extremes: Floats2,
     extreme_rows: Ints2,
-    times: Floats2,
     shares: Floats3,
     deviation: Floats,
 ) -> None:
     """Analyze k rows from row ``first`` on.
 
-    arc_row, arc_length  (m,)    rows of all circles, and their lengths, mm
-    carry      (7,) float64      carried from chunk to chunk: minutes of the row before if it was at feed (else 0),
-                                 next arc, axis speeds in that row (5)
+    carry      (6,) float64      carried from chunk to chunk: minutes of the row before if it was at feed (else 0), and
+                                 axis speeds in that row (5)
     extremes, extreme_rows       updated, as in ``AxisMotion``
-    times      (4, k) float64    written: the length that the feed counts, mm or degrees; the feed along it, infinite
-                                 for rapids; the distance that the tip travels, mm; and whether the length is that of
-                                 the tip (0), of the slides (1) or in degrees (2)
     shares     (2, 5, k) float64 written: shares of rapid speed and, where stated, of acceleration; 0 for rapids
     deviation  (k,) float64      written: how far the tool axis is off half-way in rows at feed, degrees
     """
     # Arrays are taken out of their tuples once: in the loop that would count references for every row.
-    joints, tip, axis, half_way, kind, programmed, tcp, machine_frame, feed, feed_mode, rpm, angles, feed_lengths = rows
+    joints, _, axis, half_way, kind, programmed, tcp, machine_frame, angles, feeds = rows
     rotary, rapid, acceleration = limits
-    velocity = carry[2:]
+    velocity = carry[1:]
     minutes_before = carry[0]
-    arc = int(carry[1])
     for at in range(kind.shape[0]):
         row = first + at
         slides_count = not machine_frame[at] and (tcp[at] or programmed[at] & 7 != 0)
-        slides, turned = _axis_steps(joints, at, row, rotary, slides_count, extremes, extreme_rows)
-        while arc < arc_row.shape[0] and arc_row[arc] < row:
-            arc += 1
-        on_arc = arc < arc_row.shape[0] and arc_row[arc] == row
-        travel = arc_length[arc] if on_arc else _tip_travel(tip, at)
-        length, counts = (travel, 0.0) if tcp[at] or on_arc else (slides, 1.0)
-        if feed_lengths.shape[0] and not on_arc and feed_lengths[at] == feed_lengths[at]:
-            length = feed_lengths[at]
-        if length < 1e-9:
-            length, counts = turned, 2.0
-        rate, minutes = math.inf, 0.0
-        if kind[at] != 0:
-            rate, minutes = _rate_and_minutes(feed[at], feed_mode[at], rpm[at], length)
-        times[0, at], times[1, at], times[2, at], times[3, at] = length, rate, travel, counts
+        turned = _axis_steps(joints, at, row, rotary, slides_count, extremes, extreme_rows)
+        minutes = feeds[0, at] / feeds[1, at] if feeds[1, at] < math.inf else 0.0
         deviation[at] = 0.0
         at_feed = kind[at] != 0 and not machine_frame[at]
         if turned > NO_ROTATION and at_feed and (angles[at] or not tcp[at]):
@@ -131,25 +107,21 @@ def axis_motion_rows(
         _axis_shares(joints, at, rapid, acceleration, minutes, minutes_before, velocity, shares)
         minutes_before = minutes
     carry[0] = minutes_before
-    carry[1] = arc
 
 
 @inlined
 def _axis_steps(
     joints: Floats, at: int, row: int, rotary: Flags, slides_count: bool, extremes: Floats, extreme_rows: Ints
-) -> tuple[float, float]:
-    """How far the slides go, mm, and the rotary axis that turns farthest, degrees.
+) -> float:
+    """How far the rotary axis turns that turns farthest, degrees.
 
     Extremes are updated; those of slides if ``slides_count``.
     """
-    squares, turned = 0.0, 0.0
+    turned = 0.0
     for k in range(5):
         value = joints[at + 1, k]
-        moved = abs(value - joints[at, k])
         if rotary[k]:
-            turned = max(turned, moved)
-        else:
-            squares += moved * moved
+            turned = max(turned, abs(value - joints[at, k]))
         if rotary[k] or slides_count:
             if value < extremes[k, 0]:
                 extremes[k, 0] = value
@@ -157,27 +129,7 @@ def _axis_steps(
             if value > extremes[k, 1]:
                 extremes[k, 1] = value
                 extreme_rows[k, 1] = row
-    return math.sqrt(squares), turned
-
-
-@inlined
-def _tip_travel(tip: Floats, at: int) -> float:
-    """Straight distance of the tip in a row, mm."""
-    dx, dy, dz = tip[at + 1, 0] - tip[at, 0], tip[at + 1, 1] - tip[at, 1], tip[at + 1, 2] - tip[at, 2]
-    return math.sqrt(dx * dx + dy * dy + dz * dz)
-
-
-@inlined
-def _rate_and_minutes(feed: float, mode: int, rpm: float, length: float) -> tuple[float, float]:
-    """Speed along a length, per minute, and the minutes it takes; infinite and 0 without a feed."""
-    rate = feed
-    if mode == 95:
-        rate = feed * rpm
-    elif mode == 93:
-        rate = feed * length
-    if not rate > 0.0:
-        return math.inf, 0.0
-    return rate, length / rate
+    return turned
 
 
 @inlined

@@ -6,10 +6,20 @@
  * @typedef {{key: string, name: string, partAxes: number, zero: number[] | null, gauge: number[], spindle: number[], axes: Axis[]}} Machine
  * @typedef {{kind: string, row: number, line: number, file: number, text: string, place?: number[] | null}} Mark
  * @typedef {{title: string, machine: Machine, bodies: {name: string, link: string, kind: string, tool: string | null, colour: string}[],
- *   tools: {name: string, length: number, known: boolean}[], files: string[], operations: {name: string, first: number, end: number}[],
+ *   tools: {name: string, length: number, known: boolean}[], files: string[], clFiles: string[], clText: number,
+ *   operations: {name: string, first: number, end: number, cl: number}[],
  *   events: Mark[], findings: Mark[], timed: boolean, checks: {key: string, passed: boolean, summary: string}[],
  *   against?: any, columns: Record<string, string>, stock?: import("./stock.js").StockData}} SceneData
  */
+
+/** Of all texts. */
+export const DECODER = new TextDecoder();
+
+/**
+ * texts that the page holds, as lines
+ * @type {Map<number, Promise<string[]>>}
+ */
+const LINES = new Map();
 
 const EMBEDDED = document.documentElement.dataset.embedded === "true";
 
@@ -53,6 +63,17 @@ export async function readColumn(scene, name) {
  */
 export async function readText(number) {
   return EMBEDDED ? inflated(`text-${number}`) : new Uint8Array(await fetched(`text/${number}`));
+}
+
+/**
+ * One line of a text, without its end: of a long text, a page of a server needs no more.
+ * @param {number} number
+ * @param {number} line from 1
+ */
+export async function readLine(number, line) {
+  if (!EMBEDDED) return DECODER.decode(await fetched(`text/${number}/${line}`)).trimEnd();
+  if (!LINES.has(number)) LINES.set(number, readText(number).then((bytes) => DECODER.decode(bytes).split("\n")));
+  return (await /** @type {Promise<string[]>} */ (LINES.get(number)))[line - 1]?.trimEnd() ?? "";
 }
 
 /**

@@ -1,12 +1,12 @@
 // The program's text: only the lines that are in sight are elements, so that a million scroll as smoothly as ten.
 
+import { DECODER } from "./data.js";
+
 /** Height of a line, CSS pixels. */
 const LINE = 18;
 
 /** Browsers stop at a height near 2^25 pixels: beyond it, a pixel of the scroll bar is more than one of the text. */
 const HIGHEST = 15_000_000;
-
-const DECODER = new TextDecoder();
 
 export class Listing {
   /**

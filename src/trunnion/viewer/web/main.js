@@ -1,6 +1,6 @@
 // The page: what its controls do, and how time, picture, text and curves follow one another.
 
-import { readColumn, readScene, readText } from "./data.js";
+import { readColumn, readLine, readScene, readText } from "./data.js";
 import { Curves } from "./curves.js";
 import { Listing } from "./listing.js";
 import { Program } from "./program.js";
@@ -11,6 +11,9 @@ import { Twin } from "./twin.js";
 
 /** Slowest and fastest play, times real time; the slider is their logarithm. */
 const SPEEDS = [0.1, 1000];
+
+/** A cursor that has not moved for so long rests, ms. */
+const RESTS = 80;
 
 /** Keys that a slider or a text that has the focus takes itself. */
 const OF_SLIDERS = new Set(["ArrowLeft", "ArrowRight", "Home", "End"]);
@@ -58,9 +61,14 @@ class Page {
     this.time = 0;
     this.playing = false;
     this.shownFile = -1;
+    /** Whether the text of that file is there, and still wanted. */
+    this.opening = Promise.resolve(true);
     /** @type {number[]} */
     this.measuring = [];
     this.isMeasuring = false;
+    /** File and line of the CL statement that is shown. */
+    this.clLine = "";
+    this.clTimer = 0;
     this.curves = new Curves(element("curves"), program, this.#strips(), (time) => this.goTo(time));
     this.curves.marks = this.scene.findings.map((each) => program.timeOf(each.row));
     if (!program.phase) document.querySelector("#colour option[value=phase]")?.remove();
@@ -215,17 +223,59 @@ class Page {
 
   /** @param {number} row */
   async #showLine(row) {
-    if (!this.program.rows) return;
-    const file = this.program.file[row];
+    if (!this.program.rows) await this.#showFile(Math.max(this.shownFile, 0));
+    else if (await this.#showFile(this.program.file[row])) this.listing.show(this.program.line[this.row]);
+  }
+
+  /**
+   * Show the text of a file of the program; whether it is still the one that is wanted when it is there.
+   * @param {number} file
+   */
+  #showFile(file) {
     if (file !== this.shownFile) {
       this.shownFile = file;
       element("file").value = String(file);
-      const text = await readTextOnce(file);
-      if (this.shownFile !== file) return;
-      this.listing.marks = new Map(this.scene.findings.filter((each) => each.file === file).map((each) => [each.line, "finding"]));
-      this.listing.setText(text);
+      this.opening = this.#open(file);
     }
-    this.listing.show(this.program.line[this.row]);
+    return this.opening;
+  }
+
+  /** @param {number} file */
+  async #open(file) {
+    const text = await readTextOnce(file);
+    if (this.shownFile !== file) return false;
+    this.listing.marks = new Map(this.scene.findings.filter((each) => each.file === file).map((each) => [each.line, "finding"]));
+    this.listing.setText(text);
+    return true;
+  }
+
+  /**
+   * Go to what was found: to its block, and to its line where no block moves.
+   * @param {import("./data.js").Mark} finding
+   */
+  async goToFinding(finding) {
+    this.goToRow(finding.row);
+    if (finding.line > 0 && await this.#showFile(finding.file)) this.listing.show(finding.line);
+  }
+
+  /**
+   * The line of the CL file that a row comes from; its text follows where the cursor rests.
+   * @param {number} row
+   */
+  #showClLine(row) {
+    const line = this.program.rows ? this.program.cl[row] : 0;
+    const file = this.scene.operations.find((one) => row >= one.first && row < one.end)?.cl ?? -1;
+    const wanted = `${file}:${line}`;
+    if (wanted === this.clLine) return;
+    this.clLine = wanted;
+    const several = this.scene.clFiles.length > 1 && file >= 0 ? `${this.scene.clFiles[file].split(/[\\/]/).pop()}:` : "";
+    element("cl").textContent = line > 0 ? `${say("cl")} ${several}${line}` : "";
+    clearTimeout(this.clTimer);
+    if (!(line > 0) || file < 0) return;
+    this.clTimer = setTimeout(async () => {
+      const text = await readLine(this.scene.clText + file, line);
+      if (this.clLine === wanted) element("cl").textContent += `: ${text}`;
+    }, RESTS);
   }
 
   /**
@@ -246,8 +296,8 @@ class Page {
       [say("tip"), three(tip, 4)], [say("toolAxis"), three(axis, 5)], ["F", program.rows ? program.feed[row].toFixed(0) : ""], [say("tool"), tool],
       [say("against"), `${clock(this.time)} / ${clock(program.end)}`],
     ];
-    if (program.rows && program.cl[row] > 0) rows.push([say("cl"), String(program.cl[row])]);
     element("values").innerHTML = shown.join("") + rows.map(([name, value]) => `<dt>${escaped(name)}</dt><dd>${escaped(value)}</dd>`).join("");
+    this.#showClLine(row);
   }
 
   #fillFindings() {
@@ -263,7 +313,7 @@ class Page {
       const line = document.createElement("li"), button = document.createElement("button");
       button.type = "button";
       button.textContent = `${say("line")} ${each.line}: ${each.text}`;
-      button.addEventListener("click", () => this.goToRow(each.row));
+      button.addEventListener("click", () => this.goToFinding(each));
       line.append(button);
       list.append(line);
     });
@@ -321,7 +371,7 @@ class Page {
 
   /** @param {number} line of the file that is shown, from 1 */
   goToLine(line) {
-    const row = this.program.rowOfLine(this.shownFile, line);
+    const row = this.program.rowOfLine(this.shownFile, line, this.row);
     this.goToRow(row);
     this.listing.show(line);
   }
@@ -357,7 +407,7 @@ class Page {
   #pickAt(/** @type {PointerEvent} */ event) {
     const box = this.space.canvas.getBoundingClientRect();
     const finding = this.isMeasuring ? -1 : this.places.pick(event.clientX - box.left, event.clientY - box.top);
-    if (finding >= 0) { this.goToRow(this.scene.findings[finding].row); return; }
+    if (finding >= 0) { this.goToFinding(this.scene.findings[finding]); return; }
     const piece = this.space.pick(event.clientX - box.left, event.clientY - box.top);
     if (piece < 0) return;
     if (!this.isMeasuring) { this.goToRow(this.program.row[piece]); return; }
@@ -394,7 +444,7 @@ class Page {
     on("section-at", "input", () => this.#section());
     on("bodies", "change", (event) => this.spaces.forEach((space) => space.showMachine(event.target.checked)));
     on("path", "change", (event) => this.spaces.forEach((space) => space.showPath(event.target.checked)));
-    on("file", "change", async (event) => this.#chooseFile(Number(event.target.value)));
+    on("file", "change", (event) => this.#chooseFile(Number(event.target.value)));
     on("search", "keydown", (event) => { if (event.key === "Enter") this.search(event.shiftKey); });
     on("measure", "click", () => this.#measure());
     on("picture", "click", () => this.picture());
@@ -409,9 +459,10 @@ class Page {
   }
 
   /** @param {number} file */
-  async #chooseFile(file) {
+  #chooseFile(file) {
     const row = this.program.rowOfLine(file, 0);
-    if (this.program.file[row] === file) this.goToRow(row);
+    if (this.program.rows && this.program.file[row] === file) this.goToRow(row);
+    else this.#showFile(file);
   }
 
   /** @param {KeyboardEvent} event */

@@ -101,13 +101,22 @@ export class Program {
   lengthAt(row) { return this.scene.tools[this.rows ? this.tool[row] : 0]?.length ?? 0; }
 
   /**
-   * The first row of a line or of the next one that moves.
+   * The row at a line: of those of the line, or of the nearest line after it that moves, or before it, the one nearest to a row,
+   * which says in which pass of a loop or call. Rows are in the order in which the program runs, and not in that of lines.
    * @param {number} file
    * @param {number} line
+   * @param {number} near
    */
-  rowOfLine(file, line) {
-    for (let row = 0; row < this.rows; row++) if (this.file[row] === file && this.line[row] >= line) return row;
-    return this.rows - 1;
+  rowOfLine(file, line, near = 0) {
+    let found = -1, at = 0;
+    for (let row = 0; row < this.rows; row++) {
+      if (this.file[row] !== file) continue;
+      const here = this.line[row];
+      const nearer = found >= 0 && here === at && Math.abs(row - near) < Math.abs(found - near);
+      const better = here >= line ? at < line || here < at : at < line && here > at;
+      if (found < 0 || better || nearer) { found = row; at = here; }
+    }
+    return found < 0 ? Math.max(this.rows - 1, 0) : found;
   }
 
   /**

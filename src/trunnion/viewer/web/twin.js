@@ -108,7 +108,7 @@ export class Twin {
    * @param {number} line
    */
   onLine(line) {
-    const k = this.#before(this.twos, this.program.rowOfLine(this.shownFile, line));
+    const k = this.#before(this.twos, this.program.rowOfLine(this.shownFile, line, this.row));
     if (k >= 0) this.onRow(this.ones[k]);
   }
 }

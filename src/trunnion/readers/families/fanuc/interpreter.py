@@ -198,6 +198,8 @@ class FanucInterpreter(CycleInterpreter):
             self._not_stated = frozenset("XYZ")
         elif code == words.SMOOTHNESS:
             self._smoothness(block)
+        elif code in words.EXACT_STOPS:
+            control.add_exact_stop(words.EXACT_STOPS[code])
         elif code == words.NO_PLANE_OF_POSE:
             control.leave_plane_of_pose()
             self._not_stated = frozenset()

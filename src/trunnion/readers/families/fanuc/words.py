@@ -51,6 +51,9 @@ WITHOUT_PATH_EFFECT: Final = frozenset(
     {50, 51, 80, 90, 110, 131, 150, 220, 230, 400, 430, 440, 500, 501, 610, 630, 640, 970}
 )
 
+#: How the control goes through the ends of blocks, by G code: ``RowRecorder.add_exact_stop``.
+EXACT_STOPS: Final = {90: "block", 610: "on", 640: "off"}
+
 #: G codes that are not simulated: the message, and whether the path is wrong without them.
 NOT_SIMULATED: Final = {
     53: ("what it chooses is not known", True),

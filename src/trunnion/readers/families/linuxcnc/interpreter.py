@@ -172,8 +172,10 @@ class LinuxcncInterpreter(CycleInterpreter):
                 self._note("G64 with a tolerance below zero", Severity.ERROR)
             # P0 is no tolerance: the control keeps its speed, as without P.
             control.add_tolerance(tolerance * control.length_unit if tolerance else np.inf)
+            control.add_exact_stop("off")
         elif code in (610, 611):
             control.add_tolerance(0.0)
+            control.add_exact_stop("path" if code == 610 else "on")
         elif code in (980, 990):
             self._to_initial = code == 980
         elif code in words.LENGTHS:

@@ -32,6 +32,7 @@ from trunnion.readers.families.sinumerik.tokens import MAX_LENGTH, Token, TokenK
 from trunnion.readers.families.sinumerik.variables import Variables
 from trunnion.readers.families.sinumerik.words import (
     DEGREE_AS_MILLIMETRE,
+    EXACT_STOPS,
     FRAMES,
     G_FEEDS,
     G_LIMITS,
@@ -280,6 +281,8 @@ class SinumerikInterpreter(CallInterpreter):
             self._note(f"G{code}: {text}", Severity.ERROR if changes_path else Severity.WARNING)
             if code in _THREADS:
                 control.motion = LINEAR
+        elif code in EXACT_STOPS:
+            control.add_exact_stop(EXACT_STOPS[code])
         elif f"G{code}" in WITHIN_COMPENSATION:
             control.modify_compensation(f"G{code}")
         elif code in G_RESERVED:

@@ -64,6 +64,9 @@ G_WITHOUT_PATH_EFFECT: Final = {
     462: "collision monitoring",
 }
 
+#: How the control goes through the ends of blocks, by G code: ``RowRecorder.add_exact_stop``.
+EXACT_STOPS: Final = {9: "block", 60: "on", 64: "off", 641: "off", 642: "off", 643: "off", 644: "off", 645: "off"}
+
 #: G words that are not simulated: the message, and whether the path is wrong without them.
 G_NOT_SIMULATED: Final = {
     33: ("thread cutting is taken as a straight line", True),

@@ -11,7 +11,7 @@ from trunnion.machines import forward, load_machine
 from trunnion.model.run import Run
 from trunnion.model.subdivision import subdivide
 from trunnion.readers import run_program
-from trunnion.simulation.collisions.motion import SAG, AxisPieces, axis_pieces
+from trunnion.timing import SAG, AxisPieces, axis_pieces
 
 ARCS = "G710 G90 G54\nG0 X30 Y0 Z10\nG2 X30 Y0 I-30 J0 F500\nTRAORI\nG3 X-30 Y0 CR=30 B40 C90\nG1 X0 B-10 C300\nM30\n"
 

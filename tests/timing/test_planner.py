@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trunnion.arrays import Floats
+from trunnion.arrays import Flags, Floats
 from trunnion.machines import Machine, load_machine
-from trunnion.machines.motion_time import row_seconds
+from trunnion.timing import CORNER_TOLERANCE, AxisDynamics, Path, piece_seconds
 
 BC = load_machine("generic_head_table_bc")
 X, Y = (next(k for k, axis in enumerate(BC.axes) if axis.name == name) for name in "XY")
@@ -31,7 +31,13 @@ def taken(steps: Floats, feed: float = math.inf, machine: Machine = BC, stops: t
     stop = np.zeros(len(steps), bool)
     stop[list(stops)] = True
     length = np.linalg.norm(steps[:, list(machine.linear)], axis=1)
-    return row_seconds(machine, steps, length, np.full(len(steps), feed), stop)
+    return piece_seconds(path_of(steps, length, feed, stop), AxisDynamics.of(machine))
+
+
+def path_of(steps: Floats, length: Floats, feed: float, stop: Flags) -> Path:
+    """A path with one feed, and the usual tolerance."""
+    n = len(steps)
+    return Path(steps, length, np.full(n, feed), np.full(n, CORNER_TOLERANCE), stop, np.zeros(0, np.int64))
 
 
 def rest_to_rest(length: float, top: float, ramp: float) -> float:
@@ -102,7 +108,7 @@ moves = st.lists(st.tuples(*[st.floats(-20.0, 20.0)] * 5), min_size=1, max_size=
 def test_no_axis_is_faster_than_it_can_be(path: list[tuple[float, ...]], feed: float) -> None:
     steps = np.array(path)
     length, stop = np.linalg.norm(steps, axis=1), np.zeros(len(steps), bool)
-    seconds = row_seconds(BC, steps, length, np.full(len(steps), feed), stop)
+    seconds = piece_seconds(path_of(steps, length, feed, stop), AxisDynamics.of(BC))
     assert np.isfinite(seconds).all()
     assert (seconds >= 60.0 * length / feed * (1.0 - 1e-9)).all()
     for k, axis in enumerate(BC.axes):
@@ -119,5 +125,6 @@ def test_a_stronger_machine_is_no_slower(path: list[tuple[float, ...]], feed: fl
     steps = np.array(path)
     axes = (replace(axis, acceleration=(axis.acceleration or 0.0) * factor) for axis in BC.axes)
     stronger = replace(BC, axes=tuple(axes))
-    given_ = steps, np.linalg.norm(steps, axis=1), np.full(len(steps), feed), np.zeros(len(steps), bool)
-    assert row_seconds(stronger, *given_).sum() <= row_seconds(BC, *given_).sum() * (1.0 + 1e-9)
+    given_ = path_of(steps, np.linalg.norm(steps, axis=1), feed, np.zeros(len(steps), bool))
+    ours, theirs = (piece_seconds(given_, AxisDynamics.of(each)).sum() for each in (BC, stronger))
+    assert theirs <= ours * (1.0 + 1e-9)

@@ -8,7 +8,7 @@ import trunnion
 from tests.support.locations import GOLDEN
 from trunnion.errors import Severity
 from trunnion.machines import shipped_machines
-from trunnion.simulation.stated_tips import StatedTips
+from trunnion.model.stated_tips import StatedTips
 
 BEVEL = GOLDEN / "dmu65" / "bevel.cls"
 STOCK = "box:60,40,24,-30,-20,-10"

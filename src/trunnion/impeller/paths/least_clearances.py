@@ -1,0 +1,71 @@
+"""How near the parts of a tool come to an impeller over all poses of a path.
+
+In:     the bodies of an impeller, a tool, ball centres and tool axes.
+Out:    ``PartClearance`` for each part of the tool.
+Units:  mm.
+"""
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.impeller.paths.clearance import Obstacles, ToolBody, distances_of
+from trunnion.simulation.tools.profile import Role
+
+#: Clearances are told up to this, mm.
+FAR: Final = 10.0
+
+#: One of so many poses is looked at before all of them are.
+_SOME: Final = 16
+
+#: What tells a least distance from those that are only known to be no less, mm.
+_MORE: Final = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class PartClearance:
+    """The least distance of a part of the tool to a body, mm, and where: the ball's centre, and the tool axis there.
+
+    The cutter counts from one radius above its ball's centre on. Distances are measured up to 10 mm.
+    """
+
+    part: Role
+    body: str
+    distance: float
+    centre: tuple[float, float, float]
+    axis: tuple[float, float, float]
+
+    def __str__(self) -> str:
+        """Return the distance in words, such as ``shank 2.500 mm from blade 1``."""
+        if self.distance >= FAR:
+            return f"{self.part} {FAR:g} mm or more from all blades and the hub"
+        return f"{self.part} {self.distance:.3f} mm from {self.body}"
+
+
+def least_clearances(
+    obstacles: Obstacles, body: ToolBody, centres: Floats, axes: Floats, touched: Collection[str] = ()
+) -> tuple[PartClearance, ...]:
+    """For each part of a tool, the least of its distances, the nearest part first.
+
+    Parameters
+    ----------
+    centres, axes : (n, 3)
+        Of the ball, and of the tool towards the holder.
+    touched
+        Names of bodies that the cutter is meant to touch: for it they do not count.
+    """
+    found = []
+    for role in dict.fromkeys(body.roles):
+        pieces = body.part(role)
+        counts = [k for k, name in enumerate(obstacles.names) if role is not Role.CUTTER or name not in touched]
+        # What some poses have is no less than the least: what is farther away than that need not be known.
+        some = distances_of(obstacles, pieces, centres[::_SOME], axes[::_SOME], FAR)[:, :, counts]
+        enough = min(float(some.min()) + _MORE, FAR)
+        own = distances_of(obstacles, pieces, centres, axes, enough)[:, :, counts].min(axis=1)
+        row, number = np.unravel_index(int(own.argmin()), own.shape)
+        centre, axis = ((float(x), float(y), float(z)) for x, y, z in (centres[row], axes[row]))
+        found.append(PartClearance(role, obstacles.names[counts[number]], float(own[row, number]), centre, axis))
+    return tuple(sorted(found, key=lambda one: one.distance))

@@ -1,0 +1,32 @@
+"""Timing: a run as motion in time, under the speeds, accelerations and jerks of the axes of its machine."""
+
+from trunnion.timing.axis_pieces import AxisPieces, axis_pieces
+from trunnion.timing.dynamics import AxisDynamics
+from trunnion.timing.path import Path
+from trunnion.timing.path_modes import CORNER_TOLERANCE
+from trunnion.timing.planner import piece_seconds
+from trunnion.timing.row_feeds import RowFeeds, fill_feeds
+from trunnion.timing.row_interpolation import SAG
+from trunnion.timing.run_timer import RunTimer
+from trunnion.timing.speed_kernel import plan_speeds
+from trunnion.timing.timed_run import MachineState, TimedEvent, TimedRun, time_run
+
+#: Kernels that time most programs.
+KERNELS = (fill_feeds, plan_speeds)
+
+__all__ = [
+    "CORNER_TOLERANCE",
+    "KERNELS",
+    "SAG",
+    "AxisDynamics",
+    "AxisPieces",
+    "MachineState",
+    "Path",
+    "RowFeeds",
+    "RunTimer",
+    "TimedEvent",
+    "TimedRun",
+    "axis_pieces",
+    "piece_seconds",
+    "time_run",
+]

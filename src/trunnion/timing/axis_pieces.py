@@ -1,0 +1,131 @@
+"""The axes of a machine while a run goes on, as pieces in which every axis moves evenly.
+
+In:     a ``Run``, and the length of each tool.
+Out:    axis values at the ends of the pieces, chunk after chunk.
+Units:  mm and degrees.
+
+``row_interpolation`` says into how many pieces a block is cut.
+
+The slides stand where the real tool length puts them: a run was read with one length for all tools, or none.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats, Ints
+from trunnion.machines.links import link_chain
+from trunnion.model.run import CHUNK_ROWS, ProgrammedWord, Run
+from trunnion.model.stated_tips import StatedTips, turns_without_tcp
+from trunnion.timing.row_interpolation import RowInterpolation
+
+_POSITION_WORDS: Final = int(
+    ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z | ProgrammedWord.FIRST | ProgrammedWord.SECOND
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class AxisPieces:
+    """Consecutive pieces of a run.
+
+    first, end  rows that they belong to
+    row         (k,)      row of each piece
+    begin       (k,)      part of the row that is done where the piece begins
+    done        (k,)      and where it ends
+    joints      (k + 1, 5)  axis values before the first piece and after each; mm or deg, machine order
+    tool        (k,)      index of the tool in ``Run.tools``
+    known       (k,)      where the tool is at the workpiece is known: no coordinate of it is left unstated
+    """
+
+    first: int
+    end: int
+    row: Ints
+    begin: Floats
+    done: Floats
+    joints: Floats
+    tool: Ints
+    known: Flags
+
+
+def axis_pieces(run: Run, lengths: Mapping[int, float], end: int | None = None) -> Iterator[AxisPieces]:
+    """Yield the motion of all rows, some thousands of them at a time.
+
+    run      the run
+    lengths  of tools, from tip to gauge point, mm, by their index in ``Run.tools``; others have that of the machine
+    end      the first row that is left out; None: none is
+    """
+    rows = len(run) if end is None else min(end, len(run))
+    motion = _Motion(run, lengths)
+    for first in range(0, rows, CHUNK_ROWS):
+        yield motion.pieces(first, min(first + CHUNK_ROWS, rows))
+
+
+class _Motion:
+    """Walks through a run and knows where the axes stand."""
+
+    def __init__(self, run: Run, lengths: Mapping[int, float]) -> None:
+        self.run, self.lengths = run, lengths
+        self.read_with = run.machine.tool_length or 0.0
+        self.joints = np.array(run.start, np.float64)
+        self.from_machine = np.ones(3, np.bool_)
+        self._inside = RowInterpolation(run)
+        self._slides = np.array([run.machine.column(name) for name in "XYZ"])
+        chain = link_chain(run.machine)
+        # What moves the gauge point along the spindle, all rotary axes at zero.
+        self._along = np.linalg.solve(chain.direction[self._slides].T, np.array(run.machine.spindle_direction))
+
+    def pieces(self, first: int, end: int) -> AxisPieces:
+        """Return the pieces of rows, which follow those of the last call."""
+        run, n = self.run, end - first
+        tool = run.state.tool.part(first, end).astype(np.int64)
+        length = np.array([self.lengths.get(int(k), self.read_with) for k in tool.tolist()]) if n else np.zeros(0)
+        xyz_is_tip = run.state.xyz_is_tip.part(first, end)
+        machine = self._from_machine(first, end, xyz_is_tip)
+        joints = self._row_joints(first, end, xyz_is_tip, length, machine)
+        tips = StatedTips.of(run)
+        known = tips.before[first:end] & tips.after[first:end]
+        if run.machine.workpiece_zero is None:
+            known &= ~turns_without_tcp(run, np.arange(first, end))
+        else:  # with its real length, the tool's place follows from the slides
+            known |= ~xyz_is_tip
+        before = np.concatenate((self.joints[None], joints))
+        for lost in np.flatnonzero(~np.isfinite(joints).all(axis=1)).tolist():
+            before[lost + 1] = before[lost]  # the reader has said that no position is known there
+        row, begin, done, along = self._inside.pieces(first, before, length, self._inside.counts(first, before, length))
+        start, self.joints = self.joints, before[-1].copy()
+        along = np.concatenate((start[None], along))
+        return AxisPieces(first, end, row + first, begin, done, along, tool[row], known[row])
+
+    def _row_joints(self, first: int, end: int, xyz_is_tip: Flags, length: Floats, machine: Flags) -> Floats:
+        """Axis values at the end of rows, with the real lengths of tools."""
+        run = self.run
+        xyz, rotary = run.xyz[first:end], run.rotary[first:end]
+        joints = np.empty((end - first, 5))
+        for each in np.unique(length).tolist():
+            of = length == each
+            joints[of] = self._inside.solved(each, xyz_is_tip[of], xyz[of], rotary[of])
+        from_work = ~xyz_is_tip & self._active(first, end)
+        longer = np.where(from_work, length - self.read_with, 0.0)
+        joints[:, self._slides] += np.where(machine, 0.0, longer[:, None] * self._along)
+        return joints
+
+    def _from_machine(self, first: int, end: int, xyz_is_tip: Flags) -> Flags:
+        """Which slides stand where coordinates of the machine have put them, (n, 3)."""
+        run = self.run
+        words, frame = run.programmed[first:end], run.state.machine_frame.part(first, end)
+        found = np.empty((end - first, 3), np.bool_)
+        nothing = (words & _POSITION_WORDS) == 0
+        for k, word in enumerate((ProgrammedWord.X, ProgrammedWord.Y, ProgrammedWord.Z)):
+            named = ((words & int(word)) != 0) | xyz_is_tip | nothing
+            last = np.maximum.accumulate(np.where(named, np.arange(end - first), -1))
+            found[:, k] = np.where(last >= 0, (frame & ~xyz_is_tip)[last], self.from_machine[k])
+        if end > first:
+            self.from_machine = found[-1].copy()
+        return found
+
+    def _active(self, first: int, end: int) -> Flags:
+        """Where the control counts the length of the tool."""
+        edge = self.run.state.edge.part(first, end)
+        return np.asarray(edge > 0 if self.run.uses_length_numbers else edge != 0)
