@@ -1,4 +1,4 @@
-"""The user's folder for what a program keeps between its runs."""
+"""The user's folders for what a program keeps between its runs."""
 
 import os
 from pathlib import Path
@@ -17,3 +17,15 @@ def user_cache() -> Path | None:
     if not home.is_dir():
         return None
     return home if local else home / ".cache"
+
+
+def user_data() -> Path | None:
+    """The folder of the user's data (``%LOCALAPPDATA%``, ``$XDG_DATA_HOME``, else ``~/.local/share``); as above."""
+    local = os.environ.get("LOCALAPPDATA") or os.environ.get("XDG_DATA_HOME")
+    if local and Path(local).is_absolute():
+        return Path(local)
+    try:
+        home = Path.home()
+    except RuntimeError:
+        return None
+    return home / ".local" / "share" if home.is_dir() else None

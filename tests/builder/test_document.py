@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from trunnion.builder.document import FieldPath, UnclearPlaceError, with_table_moved, with_value, without_value
+from trunnion.definitions import layout
 from trunnion.machines.loading import machine_library, shipped_machines
 
 TEXT = """# our machine, hall 2
@@ -75,16 +76,140 @@ def test_a_template_is_written_line_by_line() -> None:
 
 
 def test_a_value_that_goes_takes_its_line_and_an_empty_table() -> None:
-    changed = without_value(TEXT, ("axis", ("B",), "limits_deg"))
-    assert "limits_deg" not in changed
-    assert "[[axis]]" not in changed
-    assert "# measured in 2024" in changed
-    assert "# below is ours" in changed
+    plain = TEXT.replace(" # with the probe", "")
+    changed = without_value(plain, ("axis", ("B",), "limits_deg"))
+    assert changed == plain.replace('[[axis]]\nname = "B"\nlimits_deg = [-5, 95]\n', "")
     assert without_value(TEXT, ("control", "settings", "part")) == TEXT.replace('part = """\ntwo\n# lines"""\n', "")
 
 
 def test_nothing_is_taken_out_that_is_not_there() -> None:
     assert without_value(TEXT, ("axis", ("C",), "limits_deg")) == TEXT
+
+
+MEASURED = """[[axis]]
+name = "X"
+limits_mm = [
+  -250, # measured, switch
+  250,  # hard stop at 252
+]
+home_mm = 10 # from MD34100
+"""
+
+
+def test_a_list_with_comments_is_changed_number_by_number() -> None:
+    path = ("axis", ("X",), "limits_mm")
+    assert with_value(MEASURED, path, [-240, 250]) == MEASURED.replace("-250", "-240")
+    assert with_value(MEASURED, path, [-250.5, 251.0]) == MEASURED.replace("-250", "-250.5").replace(" 250,", " 251,")
+    others: list[Any] = [[-240, 0, 250], "-240, 250", 5]
+    for other in others:
+        with pytest.raises(UnclearPlaceError):
+            with_value(MEASURED, path, other)
+
+
+def test_a_number_that_stays_is_not_written_anew() -> None:
+    changed = with_value("direction = [ 0.50,1e-1 , 0x10 ]\n", ("direction",), [0.5, 0.1, 17])
+    assert changed == "direction = [ 0.50,1e-1 , 17 ]\n"
+
+
+def test_comments_stay_where_their_value_goes() -> None:
+    changed = without_value(MEASURED, ("axis", ("X",), "home_mm"))
+    assert changed == MEASURED.replace("home_mm = 10 # from", "# from")
+    assert without_value(changed, ("axis", ("X",), "limits_mm")) == (
+        '[[axis]]\nname = "X"\n# measured, switch\n# hard stop at 252\n# from MD34100\n'
+    )
+
+
+def test_a_comment_that_stays_is_not_that_of_the_next_table() -> None:
+    text = '[[axis]]\nname = "X"\nhome_mm = 1 # of X\n[[axis]]\nname = "Y"\n'
+    changed = without_value(text, ("axis", ("X",), "home_mm"))
+    assert with_table_moved(changed, "axis", "Y", -1).endswith('name = "X"\n# of X\n')
+
+
+@pytest.mark.parametrize("value", ["nan", "inf", "1979-05-27", "07:32:00", "[{ a = 1 }]"])
+def test_what_no_field_holds_stands_in_nobodys_way(value: str) -> None:
+    changed = with_value(f"one = {value}\ntwo = 2\n", ("two",), 3)
+    assert changed == f"one = {value}\ntwo = 3\n"
+    assert with_value(changed, ("one",), 1) == "one = 1\ntwo = 3\n"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        'axis = [{name = "X"}, {name = "Y"}]\n',
+        '[[axis]]\nname = "X"\n[spindle]\n[axis.more]\na = 1\n[[axis]]\nname = "Y"\n',
+    ],
+)
+def test_axes_that_are_not_tables_of_their_own_do_not_move(text: str) -> None:
+    with pytest.raises(UnclearPlaceError):
+        with_table_moved(text, "axis", "Y", -1)
+
+
+@pytest.mark.parametrize(
+    "text", ["axis = [1, 2]\n", 'axis = ["Y"]\n', "axis = 5\n", 'axis = "XY"\n', "axis = [{a = 1}]\n"]
+)
+def test_what_is_no_axis_does_not_move(text: str) -> None:
+    assert with_table_moved(text, "axis", "Y", -1) == text
+
+
+BLANKS = st.sampled_from(["", "", " ", "\t", "  "])
+GAPS = st.lists(BLANKS, max_size=2).map(lambda blanks: "".join(f"{each}\n" for each in blanks))
+ENDS = st.tuples(BLANKS, st.sampled_from(["", "# of its line", "#", "# [[axis]]"])).map("".join)
+
+
+@st.composite
+def axis_texts(draw: st.DrawFn) -> str:
+    """A definition with axes, with blanks and comments wherever TOML allows them."""
+    text = draw(st.sampled_from(["", "# head\n", 'name = "x"\n', 'name = "x" \n\n']))
+    for name in draw(st.sampled_from(["XY", "XYZ", "XYZB"])):
+        indent = draw(BLANKS)
+        above = draw(st.sampled_from(["", f"# of {name}", f"## of {name} \n{indent}# more"]))
+        lines = [*([above] if above else []), f"[[axis]]{draw(ENDS)}", f'name = "{name}"{draw(ENDS)}', "b = 1"]
+        lines += draw(
+            st.sampled_from([[], ["limits_mm = [\n 1, # low\n 2 ]"], [f'note = """\n# {name}\n[[axis]]\n"""']])
+        )
+        lines += [f"[axis.more]{draw(ENDS)}", "a = 1"] if draw(st.booleans()) else []
+        text += "".join(f"{indent}{line}\n" for line in lines[:-1]) + f"{indent}{lines[-1]}{draw(ENDS)}\n" + draw(GAPS)
+    text += draw(st.sampled_from(["", "# foot\n[facts]\na = 1\n", "[facts] # foot\na = 1\n"]))
+    return text.removesuffix("\n") if draw(st.booleans()) else text
+
+
+def comments(text: str) -> list[str]:
+    return sorted(text[begin:end] for begin, end in layout(text).comments)
+
+
+@given(axis_texts(), st.sampled_from("XYZB"), st.sampled_from([-1, 1]))
+def test_axes_change_places_and_nothing_else(text: str, name: str, by: int) -> None:
+    moved = with_table_moved(text, "axis", name, by)
+    names = [item["name"] for item in tomllib.loads(text)["axis"]]
+    if name not in names or not 0 <= names.index(name) + by < len(names):
+        assert moved == text
+        return
+    k = names.index(name)
+    names[k], names[k + by] = names[k + by], names[k]
+    assert [item["name"] for item in tomllib.loads(moved)["axis"]] == names
+    assert sorted(moved.split("\n")) == sorted(text.split("\n"))
+    assert with_table_moved(moved, "axis", name, -by) == text
+
+
+@given(axis_texts(), PATHS, VALUES)
+def test_a_change_leaves_every_line_and_its_return_every_letter(text: str, path: FieldPath, value: Any) -> None:
+    changed = with_value(text, path, value)
+    assert read(changed, path) == value
+    assert comments(changed) == comments(text)
+    assert is_part(text.split("\n"), changed.split("\n"))
+    assert without_value(changed, path).removesuffix("\n") == text.removesuffix("\n")
+
+
+def is_part(few: list[str], many: list[str]) -> bool:
+    """Whether lines are all there, in their order."""
+    left = iter(many)
+    return all(line in left for line in few)
+
+
+@given(axis_texts(), st.sampled_from("XYZB"), st.sampled_from(["limits_mm", "note"]))
+def test_what_goes_leaves_its_comments(text: str, name: str, key: str) -> None:
+    changed = without_value(text, ("axis", (name,), key))
+    assert comments(changed) == comments(text)
 
 
 @pytest.mark.parametrize(

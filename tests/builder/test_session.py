@@ -1,15 +1,19 @@
 """What the page asks for: a start, changes that are judged at their fields, a sample that is proven, and to save."""
 
+import os
 import tomllib
 from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from trunnion import InputError, load_machine
 from trunnion.builder.chains import CHAINS
 from trunnion.builder.document import with_value, without_value
 from trunnion.builder.sample import shipped_sample
+from trunnion.builder.saved_file import file_text, page_text
 from trunnion.builder.session import BuilderSession, RequestError
 from trunnion.machines.loading import machine_library, shipped_machines
 
@@ -73,7 +77,11 @@ def test_a_text_that_is_not_toml_is_told_at_its_line(session: BuilderSession) ->
     assert [each["line"] for each in found["problems"]] == [3]
     assert found["machine"] is None
     again = ask(session, "change", text='name = "x"\naxis = [\n', path=["name"], value="y")
-    assert again["unclear"]
+    assert again["unclear"] == "broken"
+    assert (
+        ask(session, "change", text="spindle.max_rpm = 5\n", path=["spindle", "min_rpm"], value=1)["unclear"]
+        == "unclear"
+    )
 
 
 @pytest.mark.parametrize("chain", CHAINS)
@@ -90,6 +98,78 @@ def test_every_order_of_axes_makes_a_machine_whose_sample_is_proven(session: Bui
 def test_the_shipped_sample_is_proven_on_every_machine(session: BuilderSession, name: str) -> None:
     sample = ask(session, "sample", text=begun(session, name))
     assert sample["passed"], sample["problems"]
+
+
+def test_what_is_not_known_of_a_new_machine_is_left_out_or_marked(session: BuilderSession) -> None:
+    found = ask(session, "begin", name="Ours", chain="head_table_bc", control="haas_ngc")
+    assert "limits_mm" not in found["text"]
+    marked = [each["path"] for each in found["marks"]]
+    assert marked == [["axis", ["C"], "point_mm"], ["axis", ["B"], "point_mm"], ["axis", ["B"], "limits_deg"]]
+    assert [found["text"].split("\n")[each["line"] - 1].count("# ") for each in found["marks"]] == [1, 1, 1]
+    for path, value in zip(marked, ([0, 0, 1], [0, 0, 212.5], [-30, 110]), strict=True):
+        found = ask(session, "change", text=found["text"], path=path, value=value)
+    assert found["marks"] == []
+    assert "#" not in found["text"]
+    warned = ask(session, "sample", text=found["text"])
+    assert any("travel" in each["what"] and not each["error"] for each in warned["problems"])
+
+
+def test_a_comment_of_the_users_own_is_no_mark(session: BuilderSession) -> None:
+    text = 'extends = "yl569"\nname = "x" # the old one\n'
+    changed = ask(session, "change", text=text, path=["name"], value="y")
+    assert changed["text"] == text.replace('"x"', '"y"')
+    assert changed["marks"] == []
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "told"),
+    [
+        (["axis", ["X"], "limits_mm"], [-20, 20], "X"),
+        (["spindle", "max_rpm"], 5999, "6000"),
+        (["control", "settings", "work_offset"], "2", "work_offset"),
+        (["control", "coolant", "ON"], 26, ""),
+        (["control", "block_numbers", "letter"], "L", ""),
+    ],
+)
+def test_a_sample_that_is_refused_has_a_reason(session: BuilderSession, path: list[Any], value: Any, told: str) -> None:
+    changed = ask(session, "change", text=begun(session), path=path, value=value)
+    assert changed["problems"] == []
+    sample = ask(session, "sample", text=changed["text"])
+    assert not sample["passed"]
+    assert any(each["error"] for each in sample["problems"]) or any(not each["passed"] for each in sample["checks"])
+    assert "force" not in str(sample)
+    assert (sample["lines"], sample["all"]) == ([], 0)
+    assert told in str(sample["problems"]) + str(sample["checks"])
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        (["control", "block_numbers", "highest"], 5),
+        (["control", "extension"], "../x"),
+        (["control", "extension"], "mpf"),
+    ],
+)
+def test_what_posting_could_not_use_is_told_at_its_field(session: BuilderSession, path: list[Any], value: Any) -> None:
+    changed = ask(session, "change", text=begun(session), path=path, value=value)
+    assert [each["path"] for each in changed["problems"]] == [path]
+
+
+def test_each_page_has_a_file_of_its_own(session: BuilderSession, tmp_path: Path) -> None:
+    one, other = 'extends = "yl569"\nname = "one"\n', 'extends = "dmu65"\nname = "other"\n'
+    seen = ask(session, "save", text=one, name="one.toml", seen="")["seen"]
+    ask(session, "save", text=other, name="other.toml", seen="")
+    assert session.start("one.toml")["text"] == one
+    assert session.start("other.toml")["title"] == "other.toml"
+    assert session.start()["text"] == ""
+    found = field(ask(session, "judge", text=one, file="one.toml"), "name")
+    assert found["from"].startswith("one.toml")
+    (tmp_path / "one.toml").write_text("x", encoding="utf-8")
+    assert ask(session, "save", text=one, name="one.toml", file="one.toml", seen=seen)["why"] == "changed"
+    assert ask(session, "save", text=one, name="one.toml", file="other.toml", seen=seen)["why"] == "exists"
+    for name in ("../one.toml", "/etc/passwd", "a/b.toml"):
+        with pytest.raises(RequestError):
+            session.start(name)
 
 
 def test_axes_move_in_a_definition_of_its_own(session: BuilderSession) -> None:
@@ -157,7 +237,155 @@ def test_a_file_keeps_its_line_ends(tmp_path: Path) -> None:
     assert (tmp_path / "ours.toml").read_bytes().count(b"\r\n") == 3
 
 
-@pytest.mark.parametrize("name", ["../ours.toml", "/tmp/ours.toml", "ours.py", "", "a/b.toml", "C:ours.toml", ".toml"])
+@pytest.mark.parametrize(
+    ("above", "below"),
+    [
+        ("", "\r\n# dos\r\n"),
+        ("", "\n# unix"),
+        ("# unix\n\r\n\n", "\n# dos\r\n"),
+        ("# dos\r\n# unix\n", "\r\n# dos"),
+    ],
+)
+@pytest.mark.parametrize("mark", ["", "\ufeff"])
+def test_a_line_that_is_not_changed_is_saved_as_it_was(tmp_path: Path, mark: str, above: str, below: str) -> None:
+    before, after = (f'{mark}extends = "yl569"\r\n{above}name = "{name}"{below}' for name in "bc")
+    (tmp_path / "ours.toml").write_bytes(before.encode())
+    session = BuilderSession(tmp_path, "ours.toml")
+    start = session.start()
+    changed = ask(session, "change", text=start["text"], path=["name"], value="c")["text"]
+    assert ask(session, "save", text=changed, name="ours.toml", seen=start["seen"])["saved"]
+    assert (tmp_path / "ours.toml").read_bytes() == after.encode()
+
+
+@given(
+    st.lists(st.tuples(st.sampled_from(["", "a", "b", "# c"]), st.sampled_from(["\n", "\r\n"])), max_size=8),
+    st.sampled_from(["", "\ufeff"]),
+    st.sampled_from(["", "end"]),
+)
+def test_a_text_that_is_not_changed_is_saved_to_the_letter(lines: list[tuple[str, str]], mark: str, end: str) -> None:
+    raw = mark + "".join(map("".join, lines)) + end
+    assert "\r" not in page_text(raw)
+    assert file_text(page_text(raw), raw) == raw
+
+
+@pytest.mark.parametrize(
+    "name", ["our mill (2).toml", "[a],b&c.toml", ".ours.toml", "-ours.toml", "铣床.toml", "a.b.toml"]
+)
+def test_a_file_that_is_opened_can_be_saved_under_its_name(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text('extends = "yl569"\nname = "x"\n', encoding="utf-8")
+    session = BuilderSession(tmp_path, name)
+    start = session.start()
+    text = start["text"].replace("x", "y")
+    assert ask(session, "save", text=text, name=name, seen=start["seen"])["saved"]
+    assert ask(BuilderSession(tmp_path), "save", text=text, name=f"new {name}", seen="")["saved"]
+    assert (tmp_path / name).read_text(encoding="utf-8") == text
+
+
+@pytest.fixture
+def outside(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("outside")
+
+
+def link(place: Path, target: Path) -> None:
+    try:
+        place.symlink_to(target)
+    except OSError:
+        pytest.skip("this system makes no links")
+
+
+@pytest.mark.parametrize("is_there", [True, False])
+def test_nothing_is_written_through_a_link(
+    session: BuilderSession, tmp_path: Path, outside: Path, is_there: bool
+) -> None:
+    target = outside / "target.toml"
+    if is_there:
+        target.write_text("x", encoding="utf-8")
+    link(tmp_path / "ours.toml", target)
+    for replace in (False, True):
+        found = ask(session, "save", text="y", name="ours.toml", seen="", replace=replace)
+        assert (found["saved"], found["why"]) == ("", "cannot")
+        assert "link" in found["problems"][0]
+    assert [each.read_text(encoding="utf-8") for each in outside.iterdir()] == ["x"] * is_there
+    with pytest.raises(InputError, match="link"):
+        BuilderSession(tmp_path, "ours.toml").start()
+
+
+def test_a_link_within_the_folder_is_a_file_of_it(tmp_path: Path) -> None:
+    (tmp_path / "true.toml").write_text('extends = "yl569"\nname = "x"\n', encoding="utf-8")
+    link(tmp_path / "ours.toml", tmp_path / "true.toml")
+    session = BuilderSession(tmp_path, "ours.toml")
+    assert ask(session, "save", text="y", name="ours.toml", seen=session.start()["seen"])["saved"]
+    assert (tmp_path / "true.toml").read_text(encoding="utf-8") == "y"
+
+
+@pytest.mark.parametrize("make", ["mkfifo", "mkdir"])
+def test_what_is_no_file_is_neither_opened_nor_written(session: BuilderSession, tmp_path: Path, make: str) -> None:
+    if not hasattr(os, make):
+        pytest.skip("this system has no such thing")
+    getattr(os, make)(tmp_path / "ours.toml")
+    with pytest.raises(InputError, match=r"regular file|folder"):
+        BuilderSession(tmp_path, "ours.toml").start()
+    assert ask(session, "save", text="y", name="ours.toml", seen="", replace=True)["why"] == "cannot"
+
+
+def test_a_body_that_is_no_file_hangs_nothing(session: BuilderSession, tmp_path: Path) -> None:
+    if not hasattr(os, "mkfifo"):
+        pytest.skip("this system has no pipes with names")
+    os.mkfifo(tmp_path / "body.stl")
+    text = begun(session) + '[[body]]\nname = "t"\nlink = "bed"\nshape = "file"\nfile = "body.stl"\n'
+    (tmp_path / "machine.toml").write_text(text, encoding="utf-8")
+    assert "is not a regular file" in ask(session, "judge", text=text)["remark"]
+
+
+@pytest.mark.parametrize("name", shipped_machines())
+def test_another_control_and_back_leaves_no_trace(session: BuilderSession, name: str) -> None:
+    text = begun(session, name)
+    own = field(ask(session, "judge", text=text), "control", "extends")["value"]
+    other = "haas_ngc" if own != "haas_ngc" else "sinumerik_840d"
+    changed = ask(session, "change", text=text, path=["control", "extends"], value=other)
+    told = field(changed, "control", "extends")
+    assert (told["value"], told["inherited"], told["own"]) == (other, own, True)
+    assert ask(session, "change", text=changed["text"], path=["control", "extends"], value=own)["text"] == text
+    assert ask(session, "change", text=changed["text"], path=["control", "extends"], value=None)["text"] == text
+
+
+def test_a_setting_of_another_control_is_inherited_from_that(session: BuilderSession) -> None:
+    text = 'extends = "dmu65"\nname = "x"\n\n[control]\nextends = "haas_ngc"\n'
+    for path in (["control", "extension"], ["control", "block_numbers", "letter"]):
+        told = field(ask(session, "judge", text=text), *path)
+        assert told["value"] == told["inherited"]
+        assert not told["own"]
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [("inf", "inf"), ("2020-01-01", "2020-01-01"), ("[1, 2]", "[1, 2]"), ("[{ a = 1 }]", "[{ a = 1 }]"),
+     ("9007199254740993", "9007199254740993"), ("1e3", 1000.0), ("true", True)],
+)  # fmt: skip
+def test_what_a_field_cannot_hold_is_shown_as_the_text_has_it(session: BuilderSession, value: str, shown: Any) -> None:
+    text = f'extends = "yl569"\nname = "x"\n\n[spindle]\nmax_rpm = {value}\ndirection = {value}\n'
+    found = ask(session, "judge", text=text)
+    assert field(found, "spindle", "max_rpm")["value"] == shown
+    if value != "1e3":
+        assert any(each["path"] == ["spindle", "max_rpm"] for each in found["problems"])
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "../ours.toml",
+        "/tmp/ours.toml",
+        "ours.py",
+        "",
+        "a/b.toml",
+        "C:ours.toml",
+        ".toml",
+        "NUL.toml",
+        "a\\b.toml",
+        "a\n.toml",
+        "a.TOML",
+    ],
+)
 def test_nothing_is_saved_elsewhere(session: BuilderSession, tmp_path: Path, name: str) -> None:
     assert ask(session, "save", text="", name=name, seen="")["why"] == "name"
     assert list(tmp_path.iterdir()) == []

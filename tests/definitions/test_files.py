@@ -193,6 +193,9 @@ def test_a_file_that_nests_without_end_is_refused_at_once(tmp_path: Path, text: 
 def test_a_number_of_many_thousand_digits_is_a_mistake_and_no_crash(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="is not TOML"):
         loaded(tmp_path, "a = " + "9" * 5000)
+    for text in (f"a = 1\nb = 0x{'f' * 5000}", f"[a]\nb = [1, {{c = 0b{'1' * 20000}}}]"):
+        with pytest.raises(InputError, match=r":2: error: has a whole number of more than 10000 bits"):
+            loaded(tmp_path, text)
 
 
 def test_a_missing_file_and_a_folder_are_no_definitions(tmp_path: Path) -> None:

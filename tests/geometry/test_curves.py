@@ -129,6 +129,19 @@ def test_no_sample_of_a_curve_is_nearer_than_the_closest_point(points: Floats, a
     assert (found <= nearest + 1e-9 * size).all()
 
 
+def test_the_closest_point_is_found_on_a_curve_that_comes_back_to_itself() -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(15):
+        points = np.cumsum(rng.normal(size=(9, 3)) * [3.0, 3.0, 0.2], axis=0)
+        curve = interpolate(points, parameters_of(points))
+        dense = curve.points(np.linspace(0.0, 1.0, 20_001))
+        asked = dense[rng.integers(0, len(dense), 100)] + rng.normal(size=(100, 3))
+        found = np.linalg.norm(curve.points(closest_parameters(curve, asked)) - asked, axis=1)
+        assert all(
+            off <= np.linalg.norm(dense - one, axis=1).min() + 1e-9 for off, one in zip(found, asked, strict=True)
+        )
+
+
 @pytest.mark.parametrize("tolerance", [0.3, 0.03, 0.001])
 def test_few_control_points_hold_the_tolerance(tolerance: float) -> None:
     points = circle(60, angle=1.5 * np.pi) + np.column_stack((np.zeros((60, 2)), np.linspace(0.0, 8.0, 60)))
@@ -173,7 +186,16 @@ def test_spans_tell_sag_radius_and_turn_of_an_arc() -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["tangent:0,0,0", "tangent:1,2", "derivative:a,b,c", "natural:1,0,0", "free", "tangent:nan,0,1"]
+    "text",
+    [
+        "tangent:0,0,0",
+        "tangent:1,2",
+        "derivative:a,b,c",
+        "natural:1,0,0",
+        "free",
+        "tangent:nan,0,1",
+        "derivative:1e-320,0,0",
+    ],
 )
 def test_an_end_that_is_none_is_refused_with_what_it_may_be(text: str) -> None:
     with pytest.raises(InputError, match=r"start: error: is .*; write natural, tangent:X,Y,Z"):

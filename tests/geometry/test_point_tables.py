@@ -8,7 +8,7 @@ import pytest
 from trunnion.errors import InputError, Severity
 from trunnion.geometry.fitting import Wanted, fit
 from trunnion.geometry.point_faults import point_faults
-from trunnion.geometry.point_tables import parse_point_table, read_point_table
+from trunnion.geometry.point_tables import PointTable, parse_point_table, read_point_table
 
 ROWS = [[1.5, 2.0, 3.0], [4.0, -5.25, 6.0], [7.0, 8.0, 9.0]]
 
@@ -54,6 +54,12 @@ def test_several_curves_in_mm_and_inches_each_with_its_length() -> None:
         ("x;y;z\n1.234,5;2;3\n", "points.csv:2: error: '1.234,5' is not a number"),
         ("x,y,z\n1,2,3\n1,,3\n", "points.csv:3: error: '' is not a number"),
         ("x,y,z\n1,2,3\n1,2,1e9\n", "points.csv:3: error: is 1e[+]09 mm away"),
+        (
+            "tip_x,tip_y,tip_z,hub_x_cm,hub_y_cm,hub_z_cm\n1,2,3,4,5,6\n",
+            "points.csv:1: error: the column hub_x_cm is in cm",
+        ),
+        ("x [um],y [um],z [um]\n1,2,3\n", "points.csv:1: error: the column x .um. is in um; write mm or inches"),
+        ("1,5 2,5 3\n4 5 6\n", "points.csv:1: error: '5 2' is not a number; write points for decimals, or part"),
         ("x,y,z\n1,2,3\n,,\n4,5,6\n", "points.csv:4: error: the curve  ?goes on after it ended in line 3"),
     ],
 )
@@ -101,7 +107,18 @@ def test_files_are_read_in_their_encoding_and_others_are_refused(tmp_path: Path)
     assert read_point_table(file)[0].name == "叶片前缘曲线"
     file.write_bytes(b"\xef\xbb\xbfx,y,z\n1,2,3\n")
     assert read_point_table(file)[0].points.shape == (1, 3)
+    file.write_text("x,y,z\n1,2,3\n", "utf-16")
+    with pytest.raises(InputError, match="it holds zero bytes, as UTF-16 does; save it as UTF-8"):
+        read_point_table(file)
     with pytest.raises(InputError, match="is a folder, not a table of points"):
         read_point_table(tmp_path)
     with pytest.raises(InputError, match="file not found"):
         read_point_table(tmp_path / "none.csv")
+
+
+def test_points_are_not_so_many_that_a_curve_takes_minutes() -> None:
+    with pytest.raises(InputError, match=r"points\.csv:20002: error: has 20001 points, and 20000 make a curve at most"):
+        parse_point_table("points.csv", "x,y,z\n" + "1,2,3\n" * 20_001)
+    table = PointTable("points", "", np.random.default_rng(1).normal(size=(20_001, 3)), range(1, 20_002))
+    with pytest.raises(InputError, match="has 20001 points, and 20000 make a curve at most"):
+        fit(table, Wanted())

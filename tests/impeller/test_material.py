@@ -127,3 +127,13 @@ def test_what_was_made_elsewhere_is_a_kind_of_operation(tmp_path: Path) -> None:
         load_impeller(file)
     file.write_text(text.replace("height_mm = 35.0", 'height_mm = 35.0\npremachined = ["stock roughing"]'), "utf-8")
     assert load_impeller(file).definition.premachined == (StepKind.STOCK_ROUGHING,)
+
+
+def test_a_step_down_deeper_than_the_form_is_told(published: Impeller) -> None:
+    impeller = with_steps(published, [StepKind.STOCK_ROUGHING])
+    (step,) = impeller.definition.steps
+    assert list(order_problems(impeller)) == []
+    deep = replace(impeller.definition, steps=(replace(step, step_down=40.0),))
+    (problem,) = order_problems(replace(impeller, definition=deep))
+    assert (problem.severity, problem.line) == (Severity.WARNING, step.line)
+    assert "step_down_mm = 40 cuts the whole" in problem.what

@@ -133,6 +133,7 @@ def mistakes(path: Path) -> list[tuple[int, str]]:
         ('["hub", "tip"]', '["hub"]', "are not at least two different curves"),
         ('"blade_points.csv"', '"../blade_points.csv"', "is '../blade_points.csv'"),
         ('"blade_points.csv"', '"none.csv"', "file not found"),
+        ('"blade_points.csv"', '""', "blade.points is empty"),
         ("number = 6", "number = 1", "blade.number is 1"),
         ("scale = 0.75", "scale = 0.75\nscael = 2", "blade.scael is not a key that is known here"),
         ("diameter_mm = 90.0", "diameter_mm = -90.0", "stock.diameter_mm is -90"),
@@ -172,6 +173,28 @@ def test_rows_of_the_points_are_named(tmp_path: Path) -> None:
     swapped = "\n".join([*lines[:5], lines[8], *lines[6:8], lines[5], *lines[9:]]) + "\n"
     found = mistakes(written(tmp_path, points=swapped))
     assert {line for line, what in found if "turns back here" in what} >= {6, 9}
+
+
+def test_points_are_not_read_through_a_link_that_leads_out(tmp_path: Path) -> None:
+    inside = tmp_path / "inside"
+    inside.mkdir()
+    path = written(inside)
+    (inside / "blade_points.csv").rename(tmp_path / "points.csv")
+    try:
+        (inside / "blade_points.csv").symlink_to(tmp_path / "points.csv")
+    except OSError:
+        pytest.skip("this user may make no links")
+    ((line, what),) = mistakes(path)
+    assert (line, what) == (7, "blade.points is 'blade_points.csv', which leads out of the folder of the definition")
+
+
+def test_a_fillet_without_a_place_has_the_row_of_its_point(tmp_path: Path) -> None:
+    path = written(tmp_path, ("fillet_mm = 2.0", "fillet_mm = 10"))
+    with pytest.raises(InputError) as raised:
+        modelled(path)
+    (problem,) = raised.value.problems
+    assert (Path(problem.file).name, 2 <= problem.line <= 21) == ("blade_points.csv", True)
+    assert problem.what == "a fillet of 10 mm finds no place between blade and hub near this point"
 
 
 def test_a_trailing_edge_that_the_stock_cuts_short_is_told_and_one_that_is_round_is_refused(tmp_path: Path) -> None:

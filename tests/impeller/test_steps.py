@@ -111,3 +111,29 @@ def test_names_of_files_are_none_of_a_device() -> None:
     assert [file_stem(name) for name in ("CON", "nul", "CONE", "Gehäuse 2", "A) M30 (B")] == [
         "CON_", "nul_", "CONE", "Gehause_2", "A__M30__B",
     ]  # fmt: skip
+
+
+def test_a_tool_with_a_mistake_is_not_missing_too(tmp_path: Path) -> None:
+    step = f'[[operation]]\nkind = "blade finish"\ntool = 4\nstepover_mm = 0.2\n{FEEDS}'
+    ((_, what),) = read(tmp_path, TOOLS.replace("diameter_mm = 4\n", "") + step)
+    assert what.startswith("tool[1].diameter_mm is missing")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "what"),
+    [
+        (
+            "stepover_mm = 20",
+            "stepover_mm = 1e-9",
+            "stepover_mm is 1e-09; write a number in millimetres of at least 0.01",
+        ),
+        (
+            "step_down_mm = 5",
+            "step_down_mm = 1e-7",
+            "step_down_mm is 1e-07; write a number in millimetres of at least 0.01",
+        ),
+    ],
+)
+def test_passes_are_not_countless(tmp_path: Path, old: str, new: str, what: str) -> None:
+    step = f'[[operation]]\nkind = "stock roughing"\ntool = 1\nstepover_mm = 20\nstep_down_mm = 5\n{FEEDS}'
+    assert [what in text for _, text in read(tmp_path, TOOLS + step.replace(old, new))] == [True]

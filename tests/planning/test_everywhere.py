@@ -18,7 +18,7 @@ from tests.support.without_tcp import NAMES, machine, post, toolpath
 from trunnion.arrays import Floats
 from trunnion.errors import RefusedError, Severity
 from trunnion.machines import AngleOutput, Machine, inverse
-from trunnion.model.toolpath import Moves
+from trunnion.model.toolpath import Message, Moves
 from trunnion.planning import PlanOptions
 
 #: How far rotary axes may be beyond a limit: half the last printed digit, and what the planner counts as noise.
@@ -138,7 +138,8 @@ def check_plan(name: str, variant: str, path: Moves, options: PlanOptions) -> No
         assert not possible or all(what.startswith(between) for what in errors), errors
         return
     assert [str(check) for check in done.found.checks if not check.passed] == []
-    rewinds = sum("in the cut to rewind" in problem.what for problem in done.plan.problems)
+    notes = [each for motion in done.plan.motions for each in motion.operation.events if isinstance(each, Message)]
+    rewinds = sum(each.text.startswith("Rewind: ") for each in notes)
     event(f"rewinds: {rewinds}")
     assert rewinds == needed.rewinds
     low, high = model.limits[list(model.rotary)].T

@@ -1,5 +1,6 @@
 """Rewinds in the cut: inserted rows, refusals, and messages."""
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -16,7 +17,7 @@ from trunnion.arrays import Floats
 from trunnion.cl.write import write_cl
 from trunnion.cli import main
 from trunnion.errors import Severity
-from trunnion.machines import Machine, forward, slide_positions
+from trunnion.machines import Machine, forward, load_machine, slide_positions
 from trunnion.model.motion import DecisionTopic, Motion, Plan
 from trunnion.model.toolpath import Arcs, CutterComp, Dwell, Kind, Message, Moves, Operation, Phase, SpindleOn, Toolpath
 from trunnion.planning import Clearance, ClearanceSurface, PlanOptions, plan
@@ -30,7 +31,8 @@ def planned(operation: Operation, machine: Machine = CA, options: PlanOptions | 
 def added(motion: Motion, moves: Moves) -> tuple[int, Moves]:
     """The row before the one rewind of a motion, and the rows of the motion."""
     rows = motion.operation.moves
-    assert len(rows) == len(moves) + 3
+    inserted = len(rows) - len(moves)
+    assert inserted in {3, 5}
     return int(np.argmax(rows.kind == Kind.RAPID)) - 2, rows
 
 
@@ -38,19 +40,19 @@ def test_the_tool_retracts_turns_and_returns_to_the_same_point() -> None:
     moves = round_part()
     motion = planned(operation_of(moves), options=PlanOptions(clearance=Clearance(30.0))).motions[0]
     row, rows = added(motion, moves)
-    there = slice(row + 1, row + 4)
-    assert rows.kind[there].tolist() == [Kind.LINEAR, Kind.RAPID, Kind.LINEAR]
-    assert rows.phase[there].tolist() == [Phase.RETRACT, Phase.TRAVERSE, Phase.ENGAGE]
-    away = moves.tip[row] + 30.0 * moves.axis[row]
-    assert rows.tip[there] == pytest.approx(np.array([away, away, moves.tip[row]]))
+    there = slice(row + 1, row + 6)
+    assert rows.kind[there].tolist() == [Kind.LINEAR, Kind.RAPID, Kind.RAPID, Kind.RAPID, Kind.LINEAR]
+    assert rows.phase[there].tolist() == [Phase.RETRACT, Phase.RETRACT, Phase.TRAVERSE, Phase.TRAVERSE, Phase.ENGAGE]
+    near, away = (moves.tip[row] + far * moves.axis[row] for far in (2.0, 30.0))
+    assert rows.tip[there] == pytest.approx(np.array([near, away, away, near, moves.tip[row]]))
     assert (rows.axis[there] == moves.axis[row]).all()
-    assert rows.feed[there].tolist() == [100.0, 100.0, 50.0]
+    assert rows.feed[[row + 1, row + 5]].tolist() == [100.0, 50.0]
     assert (rows.line[there] == moves.line[row]).all()
     c = motion.rotary[:, 0]
-    assert c[row + 1] == c[row]
-    assert abs(c[row + 2] - c[row]) == pytest.approx(360.0)
-    assert c[row + 3] == c[row + 2]
-    assert abs(c[row + 4] - c[row + 3]) < 3.0
+    assert c[row + 1] == c[row + 2] == c[row]
+    assert abs(c[row + 3] - c[row]) == pytest.approx(360.0)
+    assert c[row + 5] == c[row + 4] == c[row + 3]
+    assert abs(c[row + 6] - c[row + 5]) < 3.0
     joints = slide_positions(CA, rows.tip, motion.rotary)
     tip, axis = forward(CA, joints)
     assert np.abs(tip - rows.tip).max() < 1e-9
@@ -71,7 +73,7 @@ def test_the_tool_retracts_to_a_plane_or_out_of_a_sphere(
 ) -> None:
     moves = round_part()
     row, rows = added(planned(operation_of(moves), options=PlanOptions(clearance=setting)).motions[0], moves)
-    there = rows.tip[row + 1]
+    there = rows.tip[row + 2 if len(rows) == len(moves) + 5 else row + 1]
     way = there - moves.tip[row]
     assert np.linalg.norm(np.cross(way, moves.axis[row])) < 1e-9
     assert way @ moves.axis[row] >= MIN_RETRACT - 1e-9
@@ -79,6 +81,33 @@ def test_the_tool_retracts_to_a_plane_or_out_of_a_sphere(
         assert way @ moves.axis[row] == pytest.approx(MIN_RETRACT)
     else:
         assert clear(there) < 1e-9
+
+
+def test_a_short_retract_is_at_a_feed_throughout() -> None:
+    moves = round_part()
+    short = planned(operation_of(moves), options=PlanOptions(clearance=Clearance(3.0))).motions[0]
+    assert (short.operation.moves.kind == Kind.RAPID).sum() == 1
+
+
+def test_many_rewinds_are_one_warning_with_their_number_and_time() -> None:
+    path = winding(40.0, 0.0, 3000.0, 900)
+    (problem,) = planned(operation_of(replace(path, tip=40.0 * path.axis))).problems
+    assert problem.severity is Severity.WARNING
+    found = re.search(r"50 mm in the cut to rewind (\d+) times, in lines (\d+), .* some (.*) in all", problem.what)
+    assert found
+    assert int(found[1]) >= 3
+    assert problem.line == int(found[2])
+
+
+def test_an_axis_that_ends_turns_from_home_is_told_with_the_time_of_its_way_back() -> None:
+    path = operation_of(winding(40.0, 0.0, 3600.0, 900), "HELIX")
+    adding_up = next(axis for axis in load_machine("generic_head_table_bc").axes if axis.name == "C")
+    (problem,) = planned(path, load_machine("generic_head_table_bc")).problems
+    assert adding_up.rapid == 18000.0
+    assert (problem.severity, problem.line) == (Severity.WARNING, int(path.moves.line[-1]))
+    assert problem.what == "HELIX: axis C ends 10 turns from home, and turns back, 12.0 s at its rapid speed"
+    assert 'output = "0..360"' in problem.cure
+    assert planned(path, load_machine("yl569")).problems == (), "it is displayed within one turn"
 
 
 def test_a_level_tool_does_not_retract_to_a_plane() -> None:
@@ -146,9 +175,9 @@ def test_events_and_arcs_stay_at_their_rows() -> None:
     operation = replace(operation_of(moves), arcs=arcs, events=events)
     after = planned(operation).motions[0].operation
     added_rows = len(after.moves) - 400
-    assert added_rows == 3
-    assert after.arcs.row.tolist() == [393]
-    assert [e.row for e in after.events if not isinstance(e, Message)] == [0, 5, 392, 403]
+    assert added_rows == 5
+    assert after.arcs.row.tolist() == [395]
+    assert [e.row for e in after.events if not isinstance(e, Message)] == [0, 5, 394, 405]
     assert [event.row for event in after.events] == sorted(event.row for event in after.events)
 
 
@@ -216,19 +245,24 @@ def shifted(block: str, letter: str, by: float) -> str:
     return " ".join(f"{letter}{float(w[1:]) + by:.5f}" if w[0] == letter else w for w in words)
 
 
+#: From the first block of the retract on: out to 2 mm, to the clearance at rapid, a phase, the turn, back to 2 mm, a
+#: phase, the way back to the cut.
 FAULTS: dict[str, Callable[[list[str], int], list[str]]] = {
-    "comes back elsewhere": lambda lines, k: [*lines[: k + 4], shifted(lines[k + 4], "X", 0.01), *lines[k + 5 :]],
-    "leaves to the side": lambda lines, k: [*lines[:k], shifted(lines[k], "X", 1.0), *lines[k + 1 :]],
-    "turns at the part": lambda lines, k: [*lines[:k], lines[k + 2], lines[k], "G1", *lines[k + 3 :]],
+    "comes back elsewhere": lambda lines, k: [*lines[: k + 6], shifted(lines[k + 6], "X", 0.01), *lines[k + 7 :]],
+    "leaves to the side": lambda lines, k: [*lines[: k + 1], shifted(lines[k + 1], "X", 1.0), *lines[k + 2 :]],
+    "turns at the part": lambda lines, k: [
+        *lines[:k], f"G0 {lines[k + 3]}", f"G1 {lines[k]}", *lines[k + 1 : k + 3], *lines[k + 4 :]
+    ],
     "comes back at rapid": lambda lines, k: [
-        *lines[: k + 4], lines[k + 4].replace("G1 ", "").replace(" F50.", ""), "G1 F50.", *lines[k + 5 :]
+        *lines[: k + 6], lines[k + 6].replace("G1 ", "").replace(" F50.", ""), "G1 F50.", *lines[k + 7 :]
     ],
     "comes back faster than it goes on": lambda lines, k: [
-        *lines[: k + 4], lines[k + 4].replace("F50.", "F5000."), *lines[k + 5 :]
+        *lines[: k + 6], lines[k + 6].replace("F50.", "F5000."), *lines[k + 7 :]
     ],
     "leaves at rapid": lambda lines, k: [*lines[:k], f"G0 {lines[k]}", *lines[k + 1 :]],
-    "never turns": lambda lines, k: [*lines[: k + 2], "G0", *lines[k + 3 :]],
-    "does not come back": lambda lines, k: lines[: k + 3] + lines[k + 5 :],
+    "leaves at rapid at once": lambda lines, k: [*lines[:k], *lines[k + 1 :]],
+    "never turns": lambda lines, k: [*lines[: k + 3], *lines[k + 4 :]],
+    "does not come back": lambda lines, k: [*lines[: k + 4], f"G1 {lines[k + 8]}", *lines[k + 9 :]],
 }  # fmt: skip
 
 
@@ -259,7 +293,7 @@ def test_the_same_program_without_a_fault_is_proven(tmp_path: Path, capfd: pytes
 def test_a_move_into_the_part_is_no_retract(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     _, program = posted(tmp_path, round_part())
     lines, k = blocks_of(program.read_text(encoding="utf-8"))
-    out, back = (np.array([float(w[1:]) for w in lines[i].split(" ") if w[0] in "XYZ"]) for i in (k, k + 4))
+    out, back = (np.array([float(w[1:]) for w in lines[i].split(" ") if w[0] in "XYZ"]) for i in (k, k + 6))
     x, y, z = 2.0 * back - out
     lines[k] = f"X{x:.5f} Y{y:.5f} Z{z:.5f}"
     program.write_text("\n".join(lines) + "\n", encoding="utf-8")
@@ -274,8 +308,6 @@ def test_a_move_into_the_part_is_no_retract(tmp_path: Path, capfd: pytest.Captur
 
 
 def test_over_travel_names_the_missing_angle_and_the_other_pose() -> None:
-    from trunnion.machines import load_machine
-
     axis: Floats = directions(np.array([110.0]), np.array([0.0]))
     (problem,) = planned(operation_of(moves_of(np.zeros((1, 3)), axis)), load_machine("yl569")).problems
     assert problem.what == "axis B would go to 110.00000, above its limit 100 degrees"
@@ -312,7 +344,7 @@ def test_inserted_rows_keep_limits_and_points(tilt: float, start: float, sweep: 
     assert np.abs(motion.rotary[:, 0]).max() <= 360.0
     kept = np.ones(len(rows), bool)
     for k in np.flatnonzero(rows.kind == Kind.RAPID):
-        kept[k - 1 : k + 2] = False
+        kept[k - 1 : k + 2] = False  # the rapids, and the lines before and behind them
     assert np.array_equal(rows.tip[kept], 40.0 * moves.axis)
     steps = np.abs(np.diff(motion.rotary, axis=0))[rows.kind[1:] != Kind.RAPID]
     assert steps.max() < 20.0 + 2.0 * abs(sweep) / n, "in the cut no axis winds back"

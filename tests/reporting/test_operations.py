@@ -101,3 +101,13 @@ def test_extents_are_those_of_the_travel_check(machine: str, tmp_path: Path) -> 
     for name, value in needs.items():
         assert axes[name]["whole"]["high"] - axes[name]["whole"]["low"] == pytest.approx(value)
     assert min(axis["margin"] for axis in axes.values() if axis["margin"] is not None) >= 0.0
+
+
+def test_an_operation_in_a_file_of_its_own_begins_there(tmp_path: Path) -> None:
+    files = [YL569 / "2_hub_rough.cls", YL569 / "3_blade_finish.cls"]
+    report = tmp_path / "part.json"
+    done = trunnion.post(
+        files, machine="yl569", output=tmp_path / "part.mpf", report=report, settings={"programs": "operations"}
+    )
+    said: Any = json.loads(report.read_text(encoding="utf-8"))
+    assert [each["first"]["nc_file"] for each in said["operations"]] == [file.name for file in done.subprograms]

@@ -30,9 +30,10 @@ SLOW = (
     "readers/families/heidenhain/test_planes.py", "readers/families/heidenhain/test_programs.py",
     "readers/families/linuxcnc/test_judge.py", "readers/families/linuxcnc/test_programs.py",
     "readers/families/sinumerik/test_flow.py", "readers/test_growing.py", "readers/test_kernels.py",
-    "readers/test_time.py", "reporting/test_plot_series.py", "reporting/test_write.py",
+    "readers/test_time.py", "reporting/test_plot_series.py", "reporting/test_write.py", "timing/test_fastest.py",
     "verification/test_declared_deviations.py", "verification/test_declared_deviations_random.py",
     "verification/test_events.py", "verification/test_matching.py", "verification/test_mutations.py",
+    "twin/test_security.py", "twin/test_served.py",
     "verification/test_turns.py", "viewer/test_bricks.py", "viewer/test_browser.py", "viewer/test_stock.py",
     "viewer/test_tools.py",
 )  # fmt: skip

@@ -11,6 +11,8 @@ import numpy as np
 from trunnion.api import kernels
 from trunnion.api.arguments import check_observer, wrong_argument
 from trunnion.api.impeller_files import ImpellerFiles, output_folder
+from trunnion.api.impeller_settings import operation_settings, program_settings
+from trunnion.api.impeller_windings import winding_problems
 from trunnion.api.impellers import load_impeller, model_impeller
 from trunnion.api.input_files import definition_files
 from trunnion.api.job import PostJob, prepare
@@ -19,7 +21,7 @@ from trunnion.api.post_result import PostResult
 from trunnion.api.posted_simulation import named_run
 from trunnion.api.posting import post_toolpaths
 from trunnion.api.reading import FilePath, MachineLike, as_machine, read_cl
-from trunnion.api.settings import Settings, SettingValue, check_tolerance
+from trunnion.api.settings import Settings, check_tolerance
 from trunnion.api.simulating import simulate
 from trunnion.api.simulation_report import simulation_content
 from trunnion.api.simulation_result import SimulationResult
@@ -33,7 +35,7 @@ from trunnion.impeller.machining import StepPaths, step_paths
 from trunnion.impeller.material import Material, material_before, order_problems, side_problems
 from trunnion.impeller.paths.least_clearances import PartClearance
 from trunnion.impeller.paths.toolpaths import CuttingData, operation_of
-from trunnion.impeller.steps import MachiningStep, file_stem
+from trunnion.impeller.steps import MachiningStep, StepKind, file_stem
 from trunnion.jit import compile_ahead
 from trunnion.machines import Machine
 from trunnion.machines.inverse import inverse
@@ -61,6 +63,8 @@ class CutStep:
                goes round the part. In flank milling the cutter's is that to the hub and to other blades
     flanks     of flank milling: overcut and undercut of each side, mm
     before     what metal stands before it, an estimate
+    cl_file    its CL file
+    programs   the subprogram of each operation; none if they are in one program, or divided further
     """
 
     step: MachiningStep
@@ -70,6 +74,8 @@ class CutStep:
     clearance: tuple[PartClearance, ...]
     before: Material
     flanks: tuple[tuple[float, float], ...] = ()
+    cl_file: Path | None = None
+    programs: tuple[Path, ...] = ()
 
     @property
     def minutes(self) -> float:
@@ -171,15 +177,12 @@ def cut_impeller(
     remarks = tuple(order_problems(found, chosen))
     observer.problems(remarks)
     control = load_control(loaded.control)
-    own: dict[str, SettingValue] = {"title": definition.name}
-    if control.subprograms is not None:
-        own["programs"] = "operations"
-    if control.tcp:
-        own["mode"] = "tcp"  # links are proven clear as straight lines, which a way through home and a plane is not
+    stem = file_stem(definition.name)
+    own = program_settings(control, definition.name, stem)
     job = prepare(loaded, {**own, **(settings or {})}, columns=True)
     read = [definition.file, *(table.file for table in definition.sections), *definition_files(machine, loaded)]
     with output_folder(output) as folder:
-        files = ImpellerFiles(folder, file_stem(definition.name), control.extension)
+        files = ImpellerFiles(folder, stem, control.extension)
         files.check_own()
         try:
             cut = _cut(found, chosen, loaded, job, files, read, cell, observer)
@@ -209,12 +212,19 @@ def _cut(
                 texts.append((file, text))
                 toolpaths.append(replace(read_cl(io.BytesIO(text)), file=str(file)))
                 advance(1)
+        own_settings = operation_settings(made, job.control, job.settings, job.own_settings)
+        job = replace(job, own_settings=own_settings)
         result = post_toolpaths(toolpaths, job, target, observer)
         for file, text in texts:
             target.files.add_file(file.name).write(text)
         cut = tuple(_steps(found, made, toolpaths, result))
         beside = [each for one in cut for each in side_problems(definition.file, one.step, one.before, one.clearance)]
         beside += [_shared(definition.file, one) for one in made if one.share < 1.0]
+        beside += [each for one in made for each in _one_layer(definition.file, one)]
+        for one in cut:
+            names = [operation.name for operation in one.toolpath.operations]
+            own_motions = [motion for motion in result.motions if motion.operation.name in names]
+            beside += winding_problems(definition.file, one.step, own_motions, machine)
         observer.problems(beside)
         simulated = None
         if cell is not None:
@@ -315,6 +325,8 @@ def _steps(
     assert result.verification is not None
     seconds, _ = durations(result.verification)
     of_operation = iter([float(seconds[rows.first : rows.end].sum()) for rows in result.verification.operations])
+    files = result.subprograms
+    is_each = len(files) == sum(len(one.operations) for one in toolpaths)
     for paths, toolpath in zip(made, toolpaths, strict=True):
         points = sum(len(operation.moves) for operation in toolpath.operations)
         clearance: dict[str, PartClearance] = {}
@@ -323,7 +335,11 @@ def _steps(
                 clearance[one.part] = one
         own = tuple(next(of_operation) for _ in toolpath.operations)
         flanks = tuple((one.cut.left.overcut, one.cut.left.undercut) for one in paths.flanks)
-        yield CutStep(paths.step, toolpath, points, own, tuple(clearance.values()), before[paths.step.name], flanks)
+        programs, files = (files[: len(own)], files[len(own) :]) if is_each else ((), files)
+        yield CutStep(
+            paths.step, toolpath, points, own, tuple(clearance.values()), before[paths.step.name], flanks,
+            Path(toolpath.file), programs,
+        )  # fmt: skip
 
 
 def _shared(file: str, paths: StepPaths) -> Problem:
@@ -332,6 +348,18 @@ def _shared(file: str, paths: StepPaths) -> Problem:
     wanted = f"{cutter:g}, {shank:g} and {holder:g} mm are wanted of cutter, shank and holder"
     what = f"{paths.step.name}: keeps only {paths.share:.0%} of its clearances: {wanted}"
     return Problem(file, paths.step.line, what, "choose a thinner or longer tool, or want less", Severity.WARNING)
+
+
+def _one_layer(file: str, paths: StepPaths) -> Iterator[Problem]:
+    """The warning about a step that takes the whole depth of a channel at once, and more than its ball's radius."""
+    step, passes = paths.step, [one for family in paths.families for one in family.passes]
+    if (
+        step.kind is StepKind.CHANNEL_ROUGHING
+        and step.step_down > paths.radius
+        and not any(one.layer for one in passes)
+    ):
+        what = f"{step.name}: step_down_mm = {step.step_down:g} cuts the whole depth of a channel in one layer"
+        yield Problem(file, step.line, what, "give a step_down_mm that the tool can cut", Severity.WARNING)
 
 
 def _simulated(

@@ -36,7 +36,7 @@ _SLIDES: Final = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.
 
 
 def chain_text(chain: str, name: str, control: str) -> str:
-    """Return a whole definition with an order of axes; what only the machine can tell is marked.
+    """Return a whole definition with an order of axes; what only the machine can tell is left out or marked.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def _axis_table(axis: str, side: str, lines: dict[str, tuple[float, float, float
     kind = "rotary" if rotary else "linear"
     text = f'[[axis]]\nname = "{axis}"\nkind = "{kind}"\ncarries = "{side}"\ndirection = [{x:g}, {y:g}, {z:g}]\n'
     if not rotary:
-        return text + "limits_mm = [-300, 300] # enter: data sheet or software limits\n"
+        return text  # travel that is not known is not checked, and programs warn of it
     text += "point_mm = [0, 0, 0] # measure: a point on the line of rotation\n"
     if axis == "C":
         return text + 'endless = true\noutput = "0..360"\n'

@@ -4,7 +4,6 @@ In:     the text of a definition, and the file that it would be saved as.
 Out:    what the builder's page shows, as JSON has it.
 """
 
-import json
 import tomllib
 from contextlib import suppress
 from dataclasses import dataclass
@@ -13,7 +12,9 @@ from typing import Any, Final
 
 from trunnion.api.definition_checks import machine_problems
 from trunnion.api.describing import describe_settings
-from trunnion.builder.fields import PAGES, Field, SettingNotes, fields_of, named_path, value_at
+from trunnion.builder.document import FieldPath, written
+from trunnion.builder.fields import PAGES, Field, SettingNotes, fields_of, named_path, tables_of, value_at
+from trunnion.builder.marks import marked_values
 from trunnion.controls import load_control
 from trunnion.controls.loading import control_library
 from trunnion.definitions import LocatedValue, Table, load_draft, resolve_extends
@@ -29,6 +30,9 @@ MOST_LETTERS: Final = 200_000
 
 #: Bodies of more triangles together are not drawn.
 _MOST_TRIANGLES: Final = 100_000
+
+#: From here on a whole number of the page has digits of its own.
+_BEYOND_PAGE: Final = 2.0**53
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,6 +74,11 @@ def judge(text: str, path: Path) -> Draft:
     machine = None
     with suppress(InputError):
         machine = read_machine(table.unread_copy(), path.stem)
+    return Draft(text, path, _with_control(table), machine, tuple(problems))
+
+
+def _with_control(table: Table) -> LocatedValue:
+    """A definition with its control merged onto what that extends; as it is while that cannot be read."""
     root = table.content
     with suppress(InputError):
         control = resolve_extends(table.unread_copy().table("control"), control_library())
@@ -78,7 +87,7 @@ def judge(text: str, path: Path) -> Draft:
         own = table.unread_copy().table("control").content.value
         if isinstance(own, dict) and "extends" in own and isinstance(control.content.value, dict):
             control.content.value["extends"] = own["extends"]
-    return Draft(text, path, root, machine, tuple(problems))
+    return root
 
 
 def draft_data(draft: Draft) -> dict[str, Any]:
@@ -89,6 +98,7 @@ def draft_data(draft: Draft) -> dict[str, Any]:
     return {
         "pages": {page: [_field(each, root, base, draft) for each in fields if each.page == page] for page in PAGES},
         "problems": [_problem(each, draft) for each in draft.problems],
+        "marks": [] if root is None else [_mark(root, *each) for each in marked_values(draft.text)],
         "axes": _axes(root),
         "extends": _plain_text(root and _own(draft).get("extends")),
         **_machine(draft.machine),
@@ -106,11 +116,11 @@ def _field(each: Field, root: LocatedValue | None, base: LocatedValue | None, dr
     found = None if root is None else value_at(root, each.path)
     below = None if base is None else value_at(base, each.path)
     return {
-        "path": [list(step) if isinstance(step, tuple) else step for step in each.path],
+        "path": _steps(each.path),
         "key": each.key, "kind": each.kind, "unit": each.unit, "choices": each.choices, "size": each.size,
         "optional": each.optional, "note": each.note, "allowed": each.allowed,
-        "value": None if found is None else _plain(found),
-        "inherited": None if below is None else _plain(below),
+        "value": None if found is None else _shown(found, each),
+        "inherited": None if below is None else _shown(below, each),
         "own": found is not None and found.file == str(draft.path),
         "from": "" if found is None else f"{Path(found.file).name}:{found.line}",
     }  # fmt: skip
@@ -122,19 +132,48 @@ def _problem(problem: Problem, draft: Draft) -> dict[str, Any]:
     return {
         "line": problem.line if own else 0,
         "place": "" if own else f"{Path(problem.file).name}:{problem.line}",
-        "path": [list(step) if isinstance(step, tuple) else step for step in path],
+        "path": _steps(path),
         "what": problem.what,
         "cure": problem.cure,
     }
 
 
+def _mark(root: LocatedValue, key: str, line: int, what: str) -> dict[str, Any]:
+    return {"line": line, "path": _steps(named_path(root, key)), "what": what}
+
+
+def _steps(path: FieldPath) -> list[str | list[str]]:
+    """A path as JSON has it."""
+    return [list(step) if isinstance(step, tuple) else step for step in path]
+
+
 def _base(draft: Draft) -> LocatedValue | None:
-    """What the definition extends, merged, without anything of its own."""
+    """What the definition extends, merged, without anything of its own.
+
+    Settings are those of the control that it names itself, if it does; the name of the control is that of the machine.
+    """
     own = _own(draft)
     control = own.get("control")
-    parts = [("", own.get("extends")), ("[control]\n", control.get("extends") if isinstance(control, dict) else None)]
-    text = "".join(f"{head}extends = {json.dumps(name)}\n" for head, name in parts if isinstance(name, str))
-    return judge(text, draft.path).root if text else None
+    machine_name, control_name = own.get("extends"), control.get("extends") if isinstance(control, dict) else None
+    below = _extending("", machine_name, draft.path)
+    if not isinstance(control_name, str):
+        return below
+    root = _extending(f"[control]\nextends = {written(control_name)}\n", machine_name, draft.path)
+    merged = None if root is None else value_at(root, ("control",))
+    if merged is not None and isinstance(merged.value, dict):
+        merged.value.pop("extends", None)
+        named = None if below is None else value_at(below, ("control", "extends"))
+        if named is not None:
+            merged.value["extends"] = named
+    return root
+
+
+def _extending(text: str, name: object, path: Path) -> LocatedValue | None:
+    """A merged definition with a text of its own that extends another; None: nothing, or it cannot be read."""
+    text = (f"extends = {written(name)}\n" if isinstance(name, str) else "") + text
+    with suppress(InputError):
+        return _with_control(load_draft(text, path, machine_library())) if text else None
+    return None
 
 
 def _own(draft: Draft) -> dict[str, Any]:
@@ -159,7 +198,7 @@ def _notes(root: LocatedValue) -> SettingNotes:
 def _axes(root: LocatedValue | None) -> list[str]:
     """Names of the axes in their order."""
     found = None if root is None else value_at(root, ("axis",))
-    items = found.value if found is not None and isinstance(found.value, list) else []
+    items = [] if found is None else tables_of(found.value)
     return [str(name.value) for item in items if (name := value_at(item, ("name",))) is not None]
 
 
@@ -185,8 +224,21 @@ def _machine(machine: Machine | None) -> dict[str, Any]:
     return {"machine": {**machine_scene(machine), "homes": homes}, "bodies": bodies, "jogs": told, "remark": remark}
 
 
+def _shown(found: LocatedValue, field: Field) -> object:
+    """A value as its field takes it: what the field cannot hold, as the text has it."""
+    value = _plain(found)
+    if isinstance(value, list) and 0 < len(value) <= field.numbers and all(map(_is_exact, value)):
+        return value
+    return value if isinstance(value, str) or _is_exact(value) else written(value)
+
+
+def _is_exact(value: object) -> bool:
+    """Whether a value is a number that JSON and the page hold as it is."""
+    return isinstance(value, int | float) and abs(value) < _BEYOND_PAGE
+
+
 def _plain(found: LocatedValue) -> object:
-    return Table(found).to_dict() if isinstance(found.value, dict) else found.value
+    return Table(LocatedValue({"value": found}, found.file, found.line)).to_dict()["value"]
 
 
 def _plain_text(value: object) -> str:

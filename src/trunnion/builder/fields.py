@@ -79,6 +79,11 @@ class Field:
         return ".".join(step for step in self.path if isinstance(step, str))
 
     @property
+    def numbers(self) -> int:
+        """How many numbers a list in it has at most; 0: it holds no list."""
+        return 2 if self.kind == "interval" else self.size
+
+    @property
     def unit(self) -> str:
         """Its unit, as it stands behind the field."""
         last = str(self.path[-1])
@@ -113,10 +118,16 @@ def value_at(root: LocatedValue, path: FieldPath) -> LocatedValue | None:
     for step in path:
         value = None if at is None else at.value
         if isinstance(step, tuple):
-            at = next((item for item in value if _name(item) == step[0]), None) if isinstance(value, list) else None
+            tables = tables_of(value)
+            at = next((item for item in tables if step[0] and _name(item) == step[0]), None)
         else:
             at = value.get(step) if isinstance(value, dict) else None
     return at
+
+
+def tables_of(value: object) -> list[LocatedValue]:
+    """Return the tables of an array of tables; none of any other value."""
+    return [item for item in value if isinstance(item, LocatedValue)] if isinstance(value, list) else []
 
 
 def named_path(root: LocatedValue, key: str) -> FieldPath:
@@ -233,9 +244,7 @@ def _keys(table: LocatedValue) -> list[str]:
 
 
 def _named_tables(root: LocatedValue, key: str) -> list[tuple[str, LocatedValue]]:
-    items = _table(root, key).value
-    tables = [item for item in items if isinstance(item, LocatedValue)] if isinstance(items, list) else []
-    return [(name, item) for item in tables if (name := _name(item))]
+    return [(name, item) for item in tables_of(_table(root, key).value) if (name := _name(item))]
 
 
 def _name(item: object) -> str:

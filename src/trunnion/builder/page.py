@@ -14,7 +14,7 @@ _WEB: Final = files("trunnion.builder") / "web"
 _VIEWER: Final = files("trunnion.viewer") / "web"
 
 #: In an order in which each needs only those before it.
-MODULES: Final = ("texts", "stage", "form", "editor", "sample", "main")
+MODULES: Final = ("texts", "stage", "form", "editor", "edits", "jog", "sample", "main")
 
 
 def render_builder(start: Mapping[str, Any]) -> bytes:

@@ -11,9 +11,11 @@ from collections.abc import Sequence
 from importlib.resources import files
 from typing import Any, Final
 
+from trunnion.api.post_result import ProofFailedError
 from trunnion.api.posting import post
-from trunnion.errors import InputError, Problem, Severity
+from trunnion.errors import ArgumentName, Problem, Severity, TrunnionError
 from trunnion.machines import Machine
+from trunnion.verification import Check
 
 #: So many lines are shown; the proof is always that of the whole program.
 _MOST_LINES: Final = 20_000
@@ -21,6 +23,8 @@ _MOST_LINES: Final = 20_000
 #: Programs of more lines are not compared line by line: it takes the square of them.
 _MOST_COMPARED: Final = 3_000
 
+#: How a refusal ends.
+_NOTHING_WRITTEN: Final = "no program is written"
 
 #: A block number, after the block-skip sign, with a letter or, as Klartext has it, without.
 _BLOCK_NUMBER: Final = re.compile(r"^(/?)[A-Z:]?[0-9]+ ")
@@ -61,9 +65,10 @@ def sample_data(machine: Machine, cl: bytes | None, name: str, before: Sequence[
     """
     try:
         result = post(_NamedBytes(shipped_sample() if cl is None else cl, name or "sample.cls"), machine=machine)
-    except InputError as error:
-        problems = [_problem(each) for each in error.problems]
-        return {"lines": [], "changed": [], "removed": 0, "checks": [], "problems": problems, "passed": False, "all": 0}
+    except ProofFailedError as error:
+        return _without_program(error.result.problems, error.result.checks)
+    except TrunnionError as error:
+        return _without_program(error.problems, ())
     lines = (result.text or "").splitlines()
     changed, removed = _changes(before, lines)
     return {
@@ -71,10 +76,21 @@ def sample_data(machine: Machine, cl: bytes | None, name: str, before: Sequence[
         "all": len(lines),
         "changed": changed,
         "removed": removed,
-        "checks": [{"key": one.key, "passed": one.passed, "summary": one.summary} for one in result.checks],
+        "checks": list(map(_check, result.checks)),
         "problems": [_problem(each) for each in result.problems],
         "passed": result.passed,
     }
+
+
+def _without_program(problems: Sequence[Problem], checks: Sequence[Check]) -> dict[str, Any]:
+    """The answer for a CL file that cannot be posted, or whose program fails its proof."""
+    told = [_problem(each) for each in problems if each.what != _NOTHING_WRITTEN]
+    shown = list(map(_check, checks))
+    return {"lines": [], "changed": [], "removed": 0, "checks": shown, "problems": told, "passed": False, "all": 0}
+
+
+def _check(check: Check) -> dict[str, Any]:
+    return {"key": check.key, "passed": check.passed, "summary": check.summary}
 
 
 def _changes(before: Sequence[str], now: Sequence[str]) -> tuple[list[int], int]:
@@ -92,6 +108,8 @@ def _changes(before: Sequence[str], now: Sequence[str]) -> tuple[list[int], int]
 
 
 def _problem(problem: Problem) -> dict[str, Any]:
+    subject = f"{problem.file} " if isinstance(problem.file, ArgumentName) else ""
     return {
-        "what": problem.what, "cure": problem.cure, "line": problem.line, "error": problem.severity is Severity.ERROR
+        "what": subject + problem.what, "cure": problem.cure, "line": problem.line,
+        "error": problem.severity is Severity.ERROR
     }  # fmt: skip

@@ -9,6 +9,7 @@ from typing import Any, Final
 
 from trunnion.builder.page import render_builder
 from trunnion.builder.session import MOST_CL_BYTES, BuilderSession, RequestError
+from trunnion.errors import InputError
 from trunnion.extras import import_extra
 from trunnion.viewer.serving import HEADERS, Access, application_of
 
@@ -38,12 +39,15 @@ def builder_application(session: BuilderSession, access: Access) -> Any:
     def plain(text: str, status: int) -> Any:
         return responses.PlainTextResponse(text, status, HEADERS)
 
-    def show_page(_request: Any) -> Any:
-        return access.page(render_builder(session.start()))
+    def show_page(request: Any) -> Any:
+        try:
+            return access.page(render_builder(session.start(request.query_params.get("file", ""))))
+        except (InputError, RequestError) as error:
+            return plain(str(error) or "this is no file of a definition", 404)
 
     async def answer(request: Any) -> Any:
         # A form of another page cannot send JSON without being asked first.
-        if request.headers.get("content-type", "").partition(";")[0].strip() != "application/json":
+        if request.headers.get("content-type", "").partition(";")[0].strip().casefold() != "application/json":
             return plain("send JSON", 415)
         body = bytearray()
         async for piece in request.stream():
@@ -55,9 +59,9 @@ def builder_application(session: BuilderSession, access: Access) -> Any:
             if not isinstance(given, dict):
                 raise RequestError
             found = await run_in_threadpool(session.answer, request.path_params["what"], given)
+            return None if found is None else responses.JSONResponse(found, headers=HEADERS)
         except (RequestError, ValueError, RecursionError):
             return plain("the page makes no such request", 400)
-        return None if found is None else responses.JSONResponse(found, headers=HEADERS)
 
     return application_of(
         [

@@ -1,14 +1,13 @@
 """What the builder's page may ask for: a start, a change, a judgement, a sample program, and to save.
 
 In:     requests as JSON has them.
-Out:    answers of the same kind. Nothing is kept between two requests but the name of the file, and nothing is written
-        but by ``save``.
+Out:    answers of the same kind. Nothing is kept between two requests, and nothing is written but by ``save``.
 """
 
 import base64
 import binascii
 import hashlib
-import re
+import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,21 +18,22 @@ from trunnion.builder.document import (
     FieldPath,
     UnclearPlaceError,
     Value,
+    same,
     with_table_moved,
     with_value,
     without_value,
 )
-from trunnion.builder.draft import MOST_LETTERS, Draft, draft_data, inherited_value, judge
+from trunnion.builder.draft import Draft, draft_data, inherited_value, judge
+from trunnion.builder.marks import without_mark
 from trunnion.builder.sample import sample_data
+from trunnion.builder.saved_file import check_place, file_text, is_file_name, page_text, read_raw
 from trunnion.controls.loading import shipped_controls
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError
 from trunnion.files import atomic_file
 from trunnion.machines import load_machine, shipped_machines
 
 #: A CL file for the sample program has so many bytes at most.
 MOST_CL_BYTES: Final = 4_000_000
-
-_FILE_NAME: Final = re.compile(r"[\w][\w .+-]{0,99}\.toml")
 
 
 class RequestError(ValueError):
@@ -45,25 +45,37 @@ class BuilderSession:
     """A definition that is being built.
 
     folder   where it is saved, and below which lies what it extends
-    name     of the file that the builder was opened with, or that was saved last; empty: a new definition
+    name     of the file that the builder was opened with; empty: a new definition
     """
 
     folder: Path
     name: str = ""
 
-    def start(self) -> dict[str, Any]:
+    def start(self, file: str = "") -> dict[str, Any]:
         """What the page begins with: the text of the file, and what a new definition can start from.
+
+        Parameters
+        ----------
+        file
+            Name of another file of the folder, which a page has saved; empty: the one that was opened.
 
         Raises
         ------
         InputError
             If the file cannot be read.
+        RequestError
+            If no file of the folder has such a name.
         """
-        text = _read(self.folder / self.name) if self.name else ""
+        name = file or self.name
+        text = ""
+        if name:
+            check_place(self._place(name))
+            text = read_raw(self._place(name))
         return {
-            "title": self.name or "machine.toml",
-            "text": _plain_ends(text),
-            "seen": _digest(text) if self.name else "",
+            "title": name or "machine.toml",
+            "file": name,
+            "text": page_text(text),
+            "seen": _digest(text) if name else "",
             "machines": [{"key": key, "name": load_machine(key).name} for key in shipped_machines()],
             "controls": shipped_controls(),
             "chains": [{"key": key, "order": chain.order} for key, chain in CHAINS.items()],
@@ -81,7 +93,7 @@ class BuilderSession:
             case "begin":
                 return self._begin(given)
             case "judge":
-                return self._judged(_text(given, "text"))
+                return self._judged(_text(given, "text"), given)
             case "change":
                 return self._change(given)
             case "sample":
@@ -90,11 +102,18 @@ class BuilderSession:
                 return self._save(given)
         return None
 
-    def _draft(self, text: str) -> Draft:
-        return judge(text, self.folder / (self.name or "machine.toml"))
+    def _place(self, name: str) -> Path:
+        """The path of a file of the folder."""
+        if not is_file_name(name) and (not name or name != self.name):
+            raise RequestError
+        return self.folder / name
 
-    def _judged(self, text: str) -> dict[str, Any]:
-        return {"text": text, **draft_data(self._draft(text))}
+    def _draft(self, text: str, given: Mapping[str, Any]) -> Draft:
+        """A text, as the file of the page would have it: each page has its own."""
+        return judge(text, self._place(_text(given, "file") or self.name or "machine.toml"))
+
+    def _judged(self, text: str, given: Mapping[str, Any]) -> dict[str, Any]:
+        return {"text": text, **draft_data(self._draft(text, given))}
 
     def _begin(self, given: Mapping[str, Any]) -> dict[str, Any]:
         """A new definition: one that extends a shipped machine, or one with an order of axes."""
@@ -108,11 +127,13 @@ class BuilderSession:
             if control not in shipped_controls() or chain not in CHAINS:
                 raise RequestError
             text = chain_text(chain, name, control)
-        return self._judged(text)
+        return self._judged(text, given)
 
     def _change(self, given: Mapping[str, Any]) -> dict[str, Any]:
         """The definition with a value set, taken out, or an axis moved; ``unclear`` where only the user can do that."""
-        text, draft = _text(given, "text"), self._draft(_text(given, "text"))
+        text, draft = _text(given, "text"), self._draft(_text(given, "text"), given)
+        if draft.root is None:
+            return {"text": text, **draft_data(draft), "unclear": "broken"}
         try:
             if "move" in given:
                 by = given.get("by")
@@ -121,18 +142,19 @@ class BuilderSession:
                 text = with_table_moved(text, "axis", _text(given, "move"), by)
             else:
                 path, value = _path(given.get("path")), given.get("value")
-                if value is None or value == inherited_value(draft, path):
+                if value is None or same(value, inherited_value(draft, path)):
                     text = without_value(text, path)
                 else:
-                    text = with_value(text, path, _value(value))
-        except (UnclearPlaceError, KeyError, TypeError, ValueError) as error:
-            if isinstance(error, RequestError):
-                raise
-            return {**self._judged(text), "unclear": True}
-        return self._judged(text)
+                    changed = with_value(text, path, _value(value))
+                    text = without_mark(changed, tomllib.loads(changed), path)
+        except RequestError:
+            raise
+        except (UnclearPlaceError, KeyError, TypeError, ValueError, RecursionError):
+            return {"text": text, **draft_data(draft), "unclear": "unclear"}
+        return self._judged(text, given)
 
     def _sample(self, given: Mapping[str, Any]) -> dict[str, Any]:
-        draft = self._draft(_text(given, "text"))
+        draft = self._draft(_text(given, "text"), given)
         before = given.get("before", [])
         if not isinstance(before, list) or not all(isinstance(line, str) for line in before):
             raise RequestError
@@ -143,37 +165,22 @@ class BuilderSession:
     def _save(self, given: Mapping[str, Any]) -> dict[str, Any]:
         """Write the definition, unless another one would be lost that the user has not seen."""
         text, name, seen = _text(given, "text"), _text(given, "name"), _text(given, "seen")
-        if not _FILE_NAME.fullmatch(name):
-            return {"saved": "", "why": "name"}
-        file = self.folder / name
-        old = ""
+        opened = _text(given, "file") or self.name
         try:
-            old = _read(file) if file.exists() else ""
+            file = self._place(name)
+        except RequestError:
+            return {"saved": "", "why": "name"}
+        try:
+            check_place(file)
+            old = read_raw(file) if file.exists() else ""
             if file.exists() and _digest(old) != seen and given.get("replace") is not True:
-                return {"saved": "", "why": "changed" if name == self.name and seen else "exists"}
-            written = text.replace("\n", "\r\n") if "\r\n" in old else text
+                return {"saved": "", "why": "changed" if name == opened and seen else "exists"}
+            written = file_text(text, old)
             with atomic_file(file) as sink:
                 sink.write(written.encode())
         except InputError as error:
             return {"saved": "", "why": "cannot", "problems": [str(problem) for problem in error.problems]}
-        self.name = name
         return {"saved": str(file), "seen": _digest(written), "mistakes": len(judge(text, file).problems)}
-
-
-def _read(file: Path) -> str:
-    try:
-        with file.open(encoding="utf-8-sig", newline="") as stream:
-            text = stream.read(MOST_LETTERS + 1)
-    except (OSError, UnicodeDecodeError) as error:
-        why = "is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else f"cannot be read: {error.strerror}"
-        raise InputError(Problem(str(file), 0, why, "choose the TOML file of a machine")) from None
-    if len(text) > MOST_LETTERS:
-        raise InputError(Problem(str(file), 0, f"has more than {MOST_LETTERS} letters", "edit the file itself"))
-    return text
-
-
-def _plain_ends(text: str) -> str:
-    return text.replace("\r\n", "\n")
 
 
 def _digest(text: str) -> str:
@@ -192,7 +199,8 @@ def _path(given: object) -> FieldPath:
         raise RequestError
     path: FieldPath = ()
     for step in given:
-        if isinstance(step, list) and len(step) == 1 and isinstance(step[0], str):
+        follows_key = bool(path) and isinstance(path[-1], str)
+        if isinstance(step, list) and len(step) == 1 and isinstance(step[0], str) and follows_key:
             path = (*path, (step[0],))
         elif isinstance(step, str):
             path = (*path, step)

@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import Any, Final, cast
 
 from trunnion import __version__
+from trunnion.cli.twin_arguments import add_twin
 
 
 def _key_value(text: str) -> tuple[str, str]:
@@ -47,13 +48,30 @@ DIALECTS = ("clsf", "ncl", "solidworks", "clt", "catia", "fusion", "apt")
 WRITTEN_DIALECTS = ("clsf", "catia", "ncl")
 
 
+#: Tolerances, cells and scales are less.
+_GREATEST: Final = 1e6
+
+
 def _tolerance(text: str) -> float:
+    return _positive(text, "a tolerance", "0.001")
+
+
+def _cell(text: str) -> float:
+    return _positive(text, "a width of cells", "0.25")
+
+
+def _scale(text: str) -> float:
+    return _positive(text, "a scale", "0.75")
+
+
+def _positive(text: str, what: str, such_as: str) -> float:
     try:
         value = float(text)
     except ValueError:
         value = 0.0
-    if not 0.0 < value < 1e6:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a tolerance; write a number above 0, such as 0.001")
+    if not 0.0 < value < _GREATEST:
+        cure = f"write a number above 0 and below {_GREATEST:.0f}, such as {such_as}"
+        raise argparse.ArgumentTypeError(f"{text!r} is not {what}; {cure}")
     return value
 
 
@@ -142,6 +160,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     )
     _add_simulate(commands.add_parser("simulate", help="cut stock with NC programs: what is left, and what is hit"))
     _add_view(commands.add_parser("view", help="show an NC program on its machine, in a browser"))
+    _add_twin(commands.add_parser("twin", help="serve an NC program as a running machine: OPC UA and MTConnect"))
     _add_build(commands.add_parser("build", help="set up the definition of a machine, in a browser"))
     _add_info(commands.add_parser("info", help="show what CL files hold; no machine is needed"))
     _add_curve(commands.add_parser("curve", help="fit curves to measured points; no machine is needed"))
@@ -281,7 +300,7 @@ def _add_stock(parser: argparse.ArgumentParser) -> None:
         help="a fixture, as the program counts; may be repeated",
     )  # fmt: skip
     parser.add_argument("--near", type=_tolerance, metavar="MM", help="tell bodies that come as near as this, too")
-    parser.add_argument("--cell", type=_tolerance, metavar="MM", help="width of the cells; a 200th of the stock's side")
+    parser.add_argument("--cell", type=_cell, metavar="MM", help="width of the cells; a 200th of the stock's side")
     parser.add_argument("--accuracy", type=_tolerance, metavar="MM", help="of motions and tools; a tenth of a cell")
 
 
@@ -306,6 +325,12 @@ def _add_view(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--output", metavar="FILE.html", help="write a page that works offline, and serve nothing")
     _add_serving(parser)
     parser.set_defaults(run=_lazy_command("view", "run"))
+
+
+def _add_twin(parser: argparse.ArgumentParser) -> None:
+    add_twin(parser)
+    _add_subprograms(parser, "it")
+    parser.set_defaults(run=_lazy_command("twin", "run"))
 
 
 def _add_build(parser: argparse.ArgumentParser) -> None:
@@ -366,7 +391,7 @@ def _add_curve(parser: argparse.ArgumentParser) -> None:
         "--tolerance", type=_tolerance, metavar="MM", help="pass the points within it, with few control points"
     )
     parser.add_argument("--fair", type=_tolerance, metavar="MM", help="first move points by as much, for an even curve")
-    parser.add_argument("--scale", type=_tolerance, default=1.0, metavar="FACTOR", help="multiply the points by it")
+    parser.add_argument("--scale", type=_scale, default=1.0, metavar="FACTOR", help="multiply the points by it")
     parser.add_argument("--json", action="store_true", help="data in place of text")
     parser.add_argument("--picture", metavar="FILE", help="curves with their curvature combs (.svg)")
     parser.set_defaults(run=_lazy_command("curve", "run"))
@@ -396,7 +421,7 @@ def _add_impeller(parser: argparse.ArgumentParser) -> None:
         help="cut: make this operation of the definition only; may be repeated",
     )  # fmt: skip
     parser.add_argument(
-        "--cell", type=_tolerance, metavar="MM",
+        "--cell", type=_cell, metavar="MM",
         help="cut: simulate the program in cells of this width, and compare the part with the model",
     )  # fmt: skip
     parser.add_argument(

@@ -152,6 +152,9 @@ def _step_line(step: CutStep) -> str:
     parts += map(str, step.clearance)
     for over, under in step.flanks:
         parts.append(f"a flank {over:.4f} mm too deep and {under:.4f} mm left at most")
+    if step.programs:
+        names = list(dict.fromkeys((step.programs[0].name, step.programs[-1].name)))
+        parts.append(f"in {' to '.join(names)}")
     return ", ".join(parts)
 
 
@@ -169,6 +172,8 @@ def _cut_data(found: ImpellerCut) -> dict[str, object]:
                 "name": step.step.name,
                 "kind": step.step.kind,
                 "operations": len(step.seconds),
+                "cl_file": str(step.cl_file),
+                "programs": [str(file) for file in step.programs],
                 "points": step.points,
                 "minutes": round(step.minutes, _DECIMALS),
                 "published_minutes": step.step.published_minutes or None,

@@ -1,5 +1,6 @@
 """From the ``[control]`` table of a definition to a ``Control``, with every mistake reported at once."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from importlib.resources import files
@@ -70,7 +71,7 @@ def load_control(own: Table) -> Control:
         description=table.text("description", ""),
         family=family,
         family_name=table.text("family"),
-        extension=table.text("extension"),
+        extension=_read_extension(table),
         longest_line=table.integer("longest_line", 1 << 20, at_least=40, at_most=1 << 20),
         continued=table.text("continued", ""),
         block_numbers=_read_block_numbers(table.table("block_numbers")),
@@ -192,6 +193,13 @@ def _read_word(entry: Table, formats: Mapping[str, FormatPair], words: Sequence[
     return word
 
 
+def _read_extension(table: Table) -> str:
+    extension = table.text("extension")
+    if not re.fullmatch(r"\.[\w.+-]*\w", extension):
+        table.add_problem("extension", f"is {extension!r}", 'write a point and what follows it, such as ".mpf"')
+    return extension
+
+
 def _read_block_numbers(table: Table) -> BlockNumbers:
     letter = table.text("letter", "N")
     numbers = BlockNumbers(
@@ -202,6 +210,9 @@ def _read_block_numbers(table: Table) -> BlockNumbers:
         table.flag("numbered", bool(letter)),
         table.text("unnumbered", ""),
     )
+    if numbers.highest < numbers.start:
+        what = f"is {numbers.highest}, but the numbers start at {numbers.start}"
+        table.add_problem("highest", what, "write a greater one")
     table.report_unread_keys()
     return numbers
 
@@ -316,7 +327,7 @@ def _read_subprogram_naming(table: Table) -> SubprogramNaming:
     letters = table.text("letters", "capital", one_of=("capital", "small"))
     first = table.integer("first_number", 0, at_least=0, at_most=9999)
     naming = SubprogramNaming(
-        extension=table.text("extension"),
+        extension=_read_extension(table),
         capitals=letters == "capital",
         max_length=4 if first else table.integer("longest_name", at_least=8),
         reserved_prefixes=table.texts("reserved", ()),

@@ -13,7 +13,7 @@ from typing import Final, TypeAlias
 
 from trunnion.definitions.merging import merge
 from trunnion.definitions.messages import as_written, did_you_mean
-from trunnion.definitions.source_lines import LocatedValue, key_lines, locate_values
+from trunnion.definitions.source_lines import KeyPath, LocatedValue, key_lines, locate_values
 from trunnion.definitions.table import Table
 from trunnion.errors import InputError, Problem, unusable_file
 
@@ -24,6 +24,9 @@ _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*")
 
 #: How messages begin about what a file has twice.
 _TWICE = ("Cannot overwrite a value", "Cannot declare")
+
+#: Python writes no whole number of many more in decimal digits.
+_MAX_BITS: Final = 10_000
 
 #: Longer names are no file's.
 _MAX_NAME: Final = 1000
@@ -95,11 +98,22 @@ def _parse(label: str, data: bytes) -> LocatedValue:
     try:
         lines = key_lines(text)
         raw = tomllib.loads(text)
+        _check_whole_numbers(raw, label, lines)
         return locate_values(raw, label, lines, (), 1)
     except RecursionError:
         raise InputError(Problem(label, 0, "nests too deeply", "a definition needs three levels")) from None
     except ValueError as error:  # TOMLDecodeError is one; so is a number with thousands of digits
         raise InputError(_syntax_problem(label, text, str(error))) from None
+
+
+def _check_whole_numbers(value: object, label: str, lines: Mapping[KeyPath, int], path: KeyPath = ()) -> None:
+    """Raise ``InputError`` for a whole number that no message could show; decimal ones the parser refuses itself."""
+    inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, item in inner:
+        _check_whole_numbers(item, label, lines, (*path, key))
+    if isinstance(value, int) and value.bit_length() > _MAX_BITS:
+        what = f"has a whole number of more than {_MAX_BITS} bits"
+        raise InputError(Problem(label, lines.get(path, 0), what, "write a number that a machine can have"))
 
 
 def _syntax_problem(label: str, text: str, message: str) -> Problem:

@@ -13,6 +13,7 @@ _BARE_KEY = re.compile(r"[A-Za-z0-9_-]+")
 _BLANKS = re.compile(r"[ \t]*+")
 _BLANK_LINES = re.compile(r"(?:[ \t\r\n]++|#[^\n]*+)*+")
 _UNQUOTED_VALUE = re.compile(r"[^,\]}#\n]*+")
+_COMMENT = re.compile(r"#[^\n]*+")
 
 #: What follows an opening quote, with the closing one. A multi-line string may end with up to two quotes of its own
 #: before the closing three.
@@ -65,7 +66,10 @@ def locate_values(
 
 
 class ValuePlace(NamedTuple):
-    """Where a key and its value stand in a TOML text: ``text[key:start]`` is the key, ``text[start:end]`` the value."""
+    """Where a key and its value stand in a TOML text: ``text[key:start]`` is the key, ``text[start:end]`` the value.
+
+    An item of an array has no key: ``key`` is ``start``.
+    """
 
     key: int
     start: int
@@ -76,14 +80,16 @@ class ValuePlace(NamedTuple):
 class Layout:
     """Where everything stands in a TOML text; the path of a table in an array has its index.
 
-    lines    line of every key, from 1
-    values   places of the values of ``key = value``
-    headers  offsets of the headers of tables, with the paths of the tables, in the order of the text
+    lines     line of every key, from 1
+    values    places of the values of ``key = value``, and of the items of arrays
+    headers   offsets of the headers of tables, with the paths of the tables, in the order of the text
+    comments  begin and end of every comment, from its ``#`` on, in the order of the text
     """
 
     lines: dict[KeyPath, int]
     values: dict[KeyPath, ValuePlace]
     headers: list[tuple[int, KeyPath]]
+    comments: list[tuple[int, int]]
 
 
 def layout(text: str) -> Layout:
@@ -99,7 +105,7 @@ def layout(text: str) -> Layout:
     try:
         return _Scanner(text).scan()
     except (IndexError, ValueError):
-        return Layout({}, {}, [])
+        return Layout({}, {}, [], [])
 
 
 def key_lines(text: str) -> dict[KeyPath, int]:
@@ -124,6 +130,7 @@ class _Scanner:
         self.found: dict[KeyPath, int] = {}
         self.values: dict[KeyPath, ValuePlace] = {}
         self.headers: list[tuple[int, KeyPath]] = []
+        self.comments: list[tuple[int, int]] = []
         self.arrays: dict[KeyPath, int] = {}
 
     def scan(self) -> Layout:
@@ -135,7 +142,7 @@ class _Scanner:
                 here = self._header(1, array=False)
             else:
                 self._pair(here)
-        return Layout(self.found, self.values, self.headers)
+        return Layout(self.found, self.values, self.headers, self.comments)
 
     def _note_line(self, path: KeyPath) -> None:
         self.line += self.text.count("\n", self.counted, self.at)
@@ -144,7 +151,9 @@ class _Scanner:
 
     def _skip_blanks(self, *, newlines: bool) -> bool:
         """Skip blanks (with newlines: also lines and comments); return whether text is left."""
+        start = self.at
         self._skip(_BLANK_LINES if newlines else _BLANKS)
+        self.comments += (match.span() for match in _COMMENT.finditer(self.text, start, self.at))
         return self.at < len(self.text)
 
     def _skip(self, pattern: re.Pattern[str]) -> None:
@@ -199,7 +208,11 @@ class _Scanner:
         self._skip_blanks(newlines=False)
         start = self.at
         self._value(path)
-        self.values.setdefault(path, ValuePlace(begin, start, start + len(self.text[start : self.at].rstrip())))
+        self._note_place(path, begin, start)
+
+    def _note_place(self, path: KeyPath, key: int, start: int) -> None:
+        """Note the value that begins at ``start`` and has just been skipped."""
+        self.values.setdefault(path, ValuePlace(key, start, start + len(self.text[start : self.at].rstrip())))
 
     def _value(self, path: KeyPath) -> None:
         self._skip_blanks(newlines=False)
@@ -221,7 +234,9 @@ class _Scanner:
                 self.at += 1  # also a bracket that closes nothing, which the TOML parser reports
             elif array:
                 self._note_line((*path, count))
+                start = self.at
                 self._value((*path, count))
+                self._note_place((*path, count), start, start)
                 count += 1
             else:
                 self._pair(path)

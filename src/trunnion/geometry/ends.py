@@ -2,13 +2,17 @@
 
 import math
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 from trunnion.errors import InputError, argument_problem
 
 Vector: TypeAlias = tuple[float, float, float]
 
 _CURE = "write natural, tangent:X,Y,Z (a direction) or derivative:X,Y,Z (by the parameter, which goes from 0 to 1)"
+
+
+#: Shorter vectors have no direction, and longer ones no curve.
+_LEAST: Final = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +75,6 @@ def parse_end(argument: str, text: object) -> End:
     except ValueError:
         raise InputError(argument_problem(argument, f"is {text!r}", _CURE)) from None
     length = math.hypot(x, y, z)
-    if kind not in ("tangent", "derivative") or not (math.isfinite(length) and length > 0.0):
+    if kind not in ("tangent", "derivative") or not _LEAST < length < 1.0 / _LEAST:
         raise InputError(argument_problem(argument, f"is {text!r}", _CURE))
     return Tangent((x, y, z), is_derivative=kind == "derivative")

@@ -13,7 +13,7 @@ LEAST_POINTS: Final = 5
 #: Powers of ten of the weight of the bending: from no effect to a straight line.
 _LEAST, _MOST = -20.0, 6.0
 
-_HALVINGS: Final = 32
+_HALVINGS: Final = 20
 
 
 def fair_points(points: Floats, parameters: Floats, most: float) -> Floats:

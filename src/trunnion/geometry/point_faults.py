@@ -6,7 +6,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.errors import Problem, Severity
-from trunnion.geometry.point_tables import PointTable
+from trunnion.geometry.point_tables import MOST_POINTS, PointTable, too_many
 
 #: Points that are nearer than this are the same, mm.
 SAME: Final = 1e-6
@@ -26,6 +26,9 @@ def point_faults(table: PointTable) -> Iterator[Problem]:
     if len(points) < _LEAST_POINTS:
         what = f"{table.called} has {len(points)} points"
         yield Problem(file, lines[0] if len(lines) else 0, what, f"give at least {_LEAST_POINTS}")
+        return
+    if len(points) > MOST_POINTS:
+        yield Problem(file, lines[MOST_POINTS], *too_many(len(points)))
         return
     steps = np.diff(points, axis=0)
     lengths = np.linalg.norm(steps, axis=1)

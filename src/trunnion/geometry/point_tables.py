@@ -23,6 +23,9 @@ from trunnion.encoding import EncodingDetector
 from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.wording import counted
 
+#: So many bytes tell whether a file is text.
+_HEAD: Final = 1000
+
 #: Larger files are no tables of measured points.
 _MOST_BYTES: Final = 64_000_000
 
@@ -30,7 +33,15 @@ _COLUMN: Final = re.compile(
     r"(?:(?P<curve>.{1,80})[_ .])?(?P<axis>[xyz])(?:[_ ]?[(\[]?(?P<unit>mm|inch|in)[)\]]?)?", re.IGNORECASE
 )
 
+#: Columns of a coordinate in a unit that is not read: nobody wants a curve left out for it.
+_OTHER_UNIT: Final = re.compile(
+    r"(?:.{1,80}[_ .])?[xyz][_ ]?[(\[]?(?P<unit>[nµμu]m|cm|dm|m|km|ft|feet|foot|inches|mils?|thou)[)\]]?", re.IGNORECASE
+)
+
 _INCH: Final = 25.4
+
+#: A curve has no more points, so that none takes minutes without a word.
+MOST_POINTS: Final = 20_000
 
 #: Columns of a table without names: X, Y and Z, after a number of the point if there is one.
 _UNNAMED: Final = {3: (0, 1, 2), 4: (1, 2, 3)}
@@ -92,6 +103,9 @@ def read_point_table(file: Path) -> list[PointTable]:
     if len(data) > _MOST_BYTES:
         what = f"is larger than {_MOST_BYTES // 1_000_000} MB"
         raise InputError(Problem(str(file), 0, what, "is it a table of points?"))
+    if b"\0" in data[:_HEAD]:
+        what = "is no text in UTF-8 or Latin-1: it holds zero bytes, as UTF-16 does"
+        raise InputError(Problem(str(file), 0, what, "save it as UTF-8"))
     detector = EncodingDetector()
     detector.add(data.removeprefix(b"\xef\xbb\xbf"))
     text = data.decode("utf-8-sig" if detector.encoding() == "utf-8" else detector.encoding(), "replace")
@@ -109,6 +123,8 @@ def parse_point_table(file: str, text: str) -> list[PointTable]:
     else:
         columns = _named(file, first_line, first)
         rows = rows[1:]
+    if len(rows) > MOST_POINTS:
+        raise InputError(Problem(file, rows[MOST_POINTS][0], *too_many(len(rows))))
     problems: list[Problem] = []
     tables = [_table(file, each, rows, len(first), problems) for each in columns]
     problems += _torn(file, rows, len(first))
@@ -117,6 +133,11 @@ def parse_point_table(file: str, text: str) -> list[PointTable]:
     if problems:
         raise InputError(sorted(problems, key=lambda one: one.line))
     return tables
+
+
+def too_many(count: int) -> tuple[str, str]:
+    """What is wrong with so many points, and the cure."""
+    return f"has {count} points, and {MOST_POINTS} make a curve at most", "leave points out, one of so many"
 
 
 def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
@@ -157,16 +178,20 @@ def _unnamed(file: str, line: int, cells: Sequence[str]) -> list[_Columns]:
 def _named(file: str, line: int, cells: Sequence[str]) -> list[_Columns]:
     """The curves that the names of columns tell of."""
     found: dict[str, dict[str, tuple[int, float]]] = {}
+    problems, curves = list[Problem](), []
     for place, cell in enumerate(cells):
         match = _COLUMN.fullmatch(cell)
         if match is None:
+            other = _OTHER_UNIT.fullmatch(cell)
+            if other is not None:
+                what = f"the column {cell} is in {other['unit']}"
+                problems.append(Problem(file, line, what, "write mm or inches, and call the column so: x_mm or x_in"))
             continue
         axes = found.setdefault(match["curve"] or "", {})
         axis, unit = match["axis"].lower(), (match["unit"] or "mm").lower()
         if axis in axes:
             raise InputError(Problem(file, line, f"has two columns for {cell}", "leave one of them out"))
         axes[axis] = place, 1.0 if unit == "mm" else _INCH
-    problems, curves = [], []
     for name, axes in found.items():
         missing = [axis for axis in "xyz" if axis not in axes]
         units = {unit for _, unit in axes.values()}
@@ -200,7 +225,7 @@ def _table(
         values = [_number(text) for text in texts]
         bad = [text for text, value in zip(texts, values, strict=True) if value is None or not math.isfinite(value)]
         if bad:
-            problems.append(Problem(file, line, f"{bad[0]!r} is not a number", "write X, Y and Z as numbers"))
+            problems.append(Problem(file, line, f"{bad[0]!r} is not a number", _number_cure(bad[0])))
             continue
         if ended:
             what = f"the curve {columns.name} goes on after it ended in line {ended}"
@@ -212,6 +237,14 @@ def _table(
         points.append(point)
         lines.append(line)
     return PointTable(file, columns.name, np.array(points, float).reshape(-1, 3), lines)
+
+
+def _number_cure(cell: str) -> str:
+    """What helps a cell that is no number: a comma may be meant as the decimal sign, and part columns instead."""
+    parts = cell.replace(",", ".").split()
+    if _number(cell) is None and parts and all(_number(part) is not None for part in parts):
+        return "write points for decimals, or part columns by semicolons"
+    return "write X, Y and Z as numbers"
 
 
 def _torn(file: str, rows: Sequence[tuple[int, list[str]]], width: int) -> Iterator[Problem]:

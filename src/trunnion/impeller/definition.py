@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Final
 
 from trunnion.definitions import Table, load_table
+from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem
 from trunnion.geometry.parameters import PARAMETERIZATIONS
 from trunnion.geometry.point_tables import PointTable, read_point_table, scaled
@@ -163,10 +164,16 @@ def _sections(blade: Table, path: Path) -> tuple[PointTable, ...]:
     scale = blade.number("scale", 1.0, above=0.0, at_most=1000.0)
     names = blade.texts("curves")
     if not file:
+        if "points" in blade and not blade.problems:
+            blade.add_problem("points", "is empty", "name a table of points")
         return ()
     place = Path(file)
+    cure = "name a file in the folder of the definition or below it"
     if place.is_absolute() or ".." in place.parts:
-        blade.add_problem("points", f"is {file!r}", "name a file in the folder of the definition or below it")
+        blade.add_problem("points", f"is {file!r}", cure)
+        return ()
+    if not is_within(path.parent / place, path.parent):
+        blade.add_problem("points", f"is {file!r}, which leads out of the folder of the definition", cure)
         return ()
     try:
         tables = {table.name: table for table in read_point_table(path.parent / place)}

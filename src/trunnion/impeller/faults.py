@@ -12,6 +12,7 @@ from trunnion.geometry.curves import BSplineCurve
 from trunnion.geometry.point_tables import PointTable
 from trunnion.impeller.blade import Blade
 from trunnion.impeller.definition import ImpellerDefinition
+from trunnion.impeller.fillet import FilletError
 from trunnion.impeller.profiles import Profile
 
 _SAMPLES: Final = 400
@@ -108,7 +109,7 @@ def blade_faults(
             yield definition.problem("stock.diameter_mm", f"{what} {across:.1f}", cure)
         else:
             what = f"the blade does not reach {body} near this point"
-            cure = f"let the blade be thinner, or {table.called} be smoother there"
+            cure = "does it lean too much here, or is it too thick? check the curves and the thicknesses"
             yield Problem(table.file, _line(table, place[k]), what, cure)
 
 
@@ -126,6 +127,12 @@ def fillet_faults(
             what = f"a fillet of {radius:g} mm has no room between two blades near this point; {gap[k]:.3f} mm has"
             yield Problem(table.file, _line(table, inside[k]), what, "make it smaller")
             return
+
+
+def no_place(definition: ImpellerDefinition, error: FilletError) -> Problem:
+    """A fillet that finds no place, at the row of the points that is nearest to where it finds none."""
+    table, (problem,) = definition.sections[0], error.problems
+    return Problem(table.file, _line(table, error.place), f"{problem.what} near this point", problem.cure)
 
 
 def _turn(angle: float) -> Floats:

@@ -27,6 +27,14 @@ _BELOW: Final = 0.25
 _IN_BALL: Final = 0.2
 
 
+class FilletError(InputError):
+    """A ball that does not touch blade and hub at ``place``, a point (3,) of the blade."""
+
+    def __init__(self, what: str, cure: str, place: Floats) -> None:
+        super().__init__(Problem("fillet", 0, what, cure))
+        self.place = place
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Fillet:
     """Stations along the root, (k,): from the trailing edge along one side, round the leading edge, and back.
@@ -99,8 +107,8 @@ def root_fillet(blade: Blade, hub: Profile, radius: float, stations: Stations) -
 
     Raises
     ------
-    InputError
-        If the ball does not touch blade and hub at each station.
+    FilletError
+        If the ball does not touch blade and hub at each station, with the first where it does not.
     """
     count = len(stations.part)
     low, high = np.full(count, blade.low), np.full(count, blade.high)
@@ -108,9 +116,11 @@ def root_fillet(blade: Blade, hub: Profile, radius: float, stations: Stations) -
     def gap(v: Floats) -> Floats:
         return hub.distances(stations.touching(blade, v, radius)[0])[0] - radius
 
-    if (gap(low) > 0.0).any() or (gap(high) < 0.0).any():
+    missing = (gap(low) > 0.0) | (gap(high) < 0.0)
+    if missing.any():
         what = f"a fillet of {radius:g} mm finds no place between blade and hub"
-        raise InputError(Problem("fillet", 0, what, "make it smaller, or let the blade's sections reach the hub"))
+        place = stations.balls(blade, np.zeros(count))[0][int(missing.argmax())]
+        raise FilletError(what, "make it smaller, or let the blade's sections reach the hub", place)
     v = crossings(gap, low, high)
     centre, normal = stations.touching(blade, v, radius)
     inside = _inside(blade, hub, stations, v, _BELOW * radius)

@@ -80,11 +80,29 @@ def order_problems(impeller: Impeller, chosen: Sequence[str] = ()) -> Iterator[P
         radius = _radius(impeller, step)
         is_form = step.kind in (StepKind.STOCK_FINISHING, StepKind.CHANNEL_ROUGHING)
         if step.kind is StepKind.STOCK_ROUGHING:
+            yield from _one_turn(impeller, step, radius)
             continue
         stands = before.form if is_form else max(before.hub, before.blades or 0.0)
         takes = radius + (step.step_down if is_form else 0.0)
         if stands > takes:
             yield _too_much(definition.file, step, definition.steps, k, (stands, radius))
+
+
+def _one_turn(impeller: Impeller, step: MachiningStep, radius: float) -> Iterator[Problem]:
+    """The warning about a step down that takes all that stands beside the form in one turn."""
+    definition, stock = impeller.definition, impeller.definition.stock
+    try:
+        heights, form = shroud_form(impeller, step.allowance)
+    except InputError:  # the step itself says so
+        return
+    stands = form < stock.diameter / 2.0
+    height = stock.top - float(heights[stands].min(initial=stock.top))
+    if step.step_down >= height > radius:
+        what = (
+            f"{step.name}: step_down_mm = {step.step_down:g} cuts the whole {height:.1f} mm beside the form in one turn"
+        )
+        cure = "give a step_down_mm that the tool can cut"
+        yield Problem(definition.file, step.line, what, cure, Severity.WARNING)
 
 
 def side_problems(

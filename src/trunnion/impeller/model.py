@@ -17,8 +17,8 @@ from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
 from trunnion.impeller.blade import Blade
 from trunnion.impeller.deviation import off_surfaces
-from trunnion.impeller.faults import fillet_faults
-from trunnion.impeller.fillet import Fillet, root_fillet, root_stations
+from trunnion.impeller.faults import fillet_faults, no_place
+from trunnion.impeller.fillet import Fillet, FilletError, root_fillet, root_stations
 from trunnion.impeller.impeller import Impeller, rotated
 from trunnion.impeller.meshing import blade_mesh, fillet_mesh, solid, turned_mesh, union
 from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
@@ -123,7 +123,10 @@ def _fillets(impeller: Impeller, tolerance: float) -> list[tuple[Blade, Fillet]]
     stations = root_stations(2 * _count(impeller, tolerance), 24, round_trailing=definition.trailing_edge == "round")
     found = []
     for blade in [impeller.blade] if impeller.splitter is None else [impeller.blade, impeller.splitter]:
-        fillet = root_fillet(blade, impeller.hub, definition.fillet, stations)
+        try:
+            fillet = root_fillet(blade, impeller.hub, definition.fillet, stations)
+        except FilletError as error:
+            raise InputError(no_place(definition, error)) from None
         found.append((blade, fillet))
     problems = list(fillet_faults(definition, found[0][1].centre, definition.fillet, blades))
     if problems:

@@ -18,6 +18,9 @@ from trunnion.simulation.tools.sizes import ToolKind, ToolSizes
 
 _GREATEST: Final = 1000.0
 
+#: Passes are no nearer to each other, mm.
+_LEAST: Final = 0.01
+
 #: Greatest angle between tool axis and Z where nothing is stated, degrees.
 _TILT: Final = 100.0
 
@@ -108,8 +111,9 @@ def read_steps(root: Table, tools: Sequence[LibraryTool]) -> tuple[MachiningStep
     """Read the tables ``[[operation]]``, in the order of machining; mistakes are added to the problems of ``root``."""
     found: list[MachiningStep] = []
     taken: dict[str, str] = {}
+    stated = [table.to_dict().get("number") for table in root.tables("tool")]
     for table in root.tables("operation"):
-        step = _read_step(table, {tool.number: tool for tool in tools})
+        step = _read_step(table, {tool.number: tool for tool in tools}, stated)
         if step is None:
             continue
         other = taken.setdefault(file_stem(step.name).casefold(), table.path)
@@ -143,8 +147,11 @@ def file_stem(name: str) -> str:
     return f"{stem}_" if DEVICE_NAME.fullmatch(stem) else stem
 
 
-def _read_step(table: Table, tools: Mapping[int | None, LibraryTool]) -> MachiningStep | None:
-    """The step of a table; None if its kind is not known, which the table then says."""
+def _read_step(table: Table, tools: Mapping[int | None, LibraryTool], stated: Sequence[object]) -> MachiningStep | None:
+    """The step of a table; None if its kind is not known, which the table then says.
+
+    ``stated`` are the numbers of all tools, those with mistakes too.
+    """
     word = table.text("kind", one_of=list(StepKind))
     if word not in list(StepKind):
         table.mark_read(*table.keys())
@@ -154,7 +161,7 @@ def _read_step(table: Table, tools: Mapping[int | None, LibraryTool]) -> Machini
     if tool in tools and tools[tool].sizes.kind not in _TOOLS[kind]:
         names = " or ".join(_TOOLS[kind])
         table.add_problem("tool", f"{tool} is a {tools[tool].sizes.kind} mill", f"{kind} wants {names}")
-    elif tool not in tools:
+    elif tool not in tools and tool not in stated:
         known = ", ".join(str(number) for number in tools if number is not None)
         table.add_problem(
             "tool", f"{tool} is not among the tools", f"give a [[tool]] of that number; there are {known}"
@@ -166,7 +173,7 @@ def _read_step(table: Table, tools: Mapping[int | None, LibraryTool]) -> Machini
         name=read_name(table, word.replace(" ", "_").upper()),
         tool=tool,
         stepover=Stepover() if kind is StepKind.FLANK_MILLING else _read_stepover(table),
-        step_down=table.number("step_down_mm", above=0.0, at_most=_GREATEST) if kind in _DEEP else 0.0,
+        step_down=table.number("step_down_mm", at_least=_LEAST, at_most=_GREATEST) if kind in _DEEP else 0.0,
         allowance=table.number("allowance_mm", 0.0, at_least=0.0, at_most=_GREATEST),
         hub_allowance=_read_hub_allowance(table, kind),
         rpm=table.number("rpm", above=0.0, at_most=200_000.0),
@@ -205,7 +212,7 @@ def _read_stepover(table: Table) -> Stepover:
         table.mark_read("stepover_mm", "scallop_mm")
         return Stepover(distance=1.0)
     if "stepover_mm" in table:
-        return Stepover(distance=table.number("stepover_mm", above=0.0, at_most=_GREATEST))
+        return Stepover(distance=table.number("stepover_mm", at_least=_LEAST, at_most=_GREATEST))
     return Stepover(scallop=table.number("scallop_mm", at_least=1e-5, at_most=1.0))
 
 

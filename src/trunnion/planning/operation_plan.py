@@ -4,10 +4,10 @@ from dataclasses import dataclass, field
 
 from trunnion.errors import Problem, Severity
 from trunnion.model.deviations import Deviations
-from trunnion.model.motion import Decision, Motion
+from trunnion.model.motion import Decision, MachiningMode, Motion
 from trunnion.model.toolpath import Operation
 from trunnion.planning.holes.operations import extract_rows
-from trunnion.planning.plan_problems import pose_problems, rewind_problems
+from trunnion.planning.plan_problems import pose_problems, rewind_problems, winding_problems
 from trunnion.planning.pole.handling import handle_pole
 from trunnion.planning.poses.decision_log import ChosenPoses, pose_decisions
 from trunnion.planning.poses.placement import OUT_OF_REACH
@@ -79,12 +79,14 @@ def plan_operation(prepared: PreparedOperation) -> PlannedOperation:
     near_pole = handle_pole(prepared, poses)
     poses = near_pole.poses
     chosen = ChosenPoses(machine, file, near_pole.operation, poses.rotary, poses.state, keep_slide_limits)
-    rewinds = find_rewinds(chosen, poses, options.clearance)
+    # Rapids are straight under TCP; without it each slide may arrive in its own time.
+    rewinds = find_rewinds(chosen, poses, options.clearance, at_rapid=prepared.mode is MachiningMode.TCP)
     feeds = limit_feeds(prepared.with_operation(near_pole.operation), poses, rewinds, near_pole.deviations)
     problems = (
         *near_pole.problems,
         *pose_problems(file, moves, poses, request),
         *rewind_problems(chosen, rewinds, request),
+        *winding_problems(chosen, request),
     )
     if options.allow_rewinds:
         widen_extremes(poses, machine, moves, rewinds)

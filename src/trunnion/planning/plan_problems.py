@@ -17,6 +17,8 @@ from trunnion.planning.poses.placement import BLOCKED, OUT_OF_REACH, REWIND
 from trunnion.planning.poses.selection import PlannedPoses
 from trunnion.planning.request import PlanRequest
 from trunnion.planning.retracts.rewind import Rewind, is_radius_compensated, retract_positions, slide_beyond_limits
+from trunnion.planning.rotary_positions import wound_turns
+from trunnion.wording import format_duration
 
 #: How many rows with the same trouble are named one by one.
 _NAMED: Final = 5
@@ -39,8 +41,9 @@ def spindle_speed_problems(file: str, operation: Operation, machine: Machine) ->
 
 
 def rewind_problems(chosen: ChosenPoses, rewinds: Sequence[Rewind], request: PlanRequest) -> Iterable[Problem]:
-    """Warnings about rewinds, or errors where they are not allowed or have no room."""
+    """One warning about all rewinds, or errors where they are not allowed or have no room."""
     machine, moves, options = chosen.machine, chosen.operation.moves, request.options
+    made: list[Rewind] = []
     for rewind in rewinds:
         line = int(moves.line[rewind.row])
         if not options.allow_rewinds:
@@ -50,8 +53,7 @@ def rewind_problems(chosen: ChosenPoses, rewinds: Sequence[Rewind], request: Pla
             what = f"the tool must rewind here, and its axis does not lead to the clearance {options.clearance}"
             yield Problem(chosen.file, line, what, "setting clearance=MM draws back by a distance")
             continue
-        what = f"the tool draws back {rewind.retract_distance:g} mm in the cut to rewind, {rewind.reason}"
-        yield Problem(chosen.file, line, what, "setting rewind=none refuses it", Severity.WARNING)
+        made.append(rewind)
         if is_radius_compensated(chosen.operation, rewind.row):
             what = "a rewind within cutter radius compensation"
             yield Problem(chosen.file, line, what, "output the path without CUTCOM, or split the operation")
@@ -62,6 +64,38 @@ def rewind_problems(chosen: ChosenPoses, rewinds: Sequence[Rewind], request: Pla
             value = values.max() if values.max() > machine.axes[column].high else values.min()
             what = f"on the retract for a rewind {limit_violation_text(machine, column, float(value))}"
             yield Problem(chosen.file, line, what, "setting clearance=MM draws back less; or move the workpiece")
+    if made:
+        yield _made_rewinds(chosen, made, options.reengage_feed_share)
+
+
+def _made_rewinds(chosen: ChosenPoses, rewinds: Sequence[Rewind], feed_share: float) -> Problem:
+    """The warning about rewinds: where they are, what they cost, and why the first one is needed."""
+    moves, first = chosen.operation.moves, rewinds[0]
+    what = f"the tool draws back {max(one.retract_distance for one in rewinds):g} mm in the cut to rewind"
+    if len(rewinds) > 1:
+        lines = [str(moves.line[one.row]) for one in rewinds]
+        named = ", ".join(lines[:_NAMED]) + (f" … {lines[-1]}" if len(lines) > _NAMED else "")
+        per_min = [not moves.per_rev[one.row] for one in rewinds]
+        seconds = sum(one.seconds(chosen.machine, float(moves.feed[one.row]), feed_share) for one in rewinds)
+        takes = f", some {format_duration(seconds)} in all" if all(per_min) else ""
+        what += f" {len(rewinds)} times, in lines {named}{takes}, each of which may leave a mark"
+    cure = "setting rewind=none refuses it"
+    return Problem(chosen.file, int(moves.line[first.row]), f"{what}, {first.reason}", cure, Severity.WARNING)
+
+
+def winding_problems(chosen: ChosenPoses, request: PlanRequest) -> Iterable[Problem]:
+    """A warning for each rotary axis that ends some turns from home, where it has to go back through all of them."""
+    machine = request.machine
+    for column, turns in wound_turns(machine, chosen.rotary):
+        axis = machine.axes[column]
+        takes = (
+            "" if axis.rapid is None else f", {format_duration(60.0 * 360.0 * turns / axis.rapid)} at its rapid speed"
+        )
+        what = f"{chosen.operation.name}: axis {axis.name} ends {turns:.0f} turns from home, and turns back{takes}"
+        cure = "change the path so that it does not wind the axis in one direction"
+        if axis.endless:
+            cure += '; or, if the control takes the shorter way home, write output = "0..360" for the axis'
+        yield Problem(chosen.file, int(chosen.operation.moves.line[-1]), what, cure, Severity.WARNING)
 
 
 def _forbidden_rewind(chosen: ChosenPoses, rewind: Rewind) -> Problem:

@@ -1,9 +1,14 @@
 """Positions of the two rotary axes: as they are displayed, as they wind, and the tool axes that they give."""
 
+from typing import Final
+
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, forward
+
+#: An axis that ends fewer turns from home is not worth a word.
+_FEWEST_TURNS: Final = 2.0
 
 
 def is_endless(machine: Machine) -> tuple[bool, bool]:
@@ -47,3 +52,12 @@ def tool_axes(machine: Machine, rotary: Floats) -> Floats:
     joints = np.zeros((len(rotary), 5))
     joints[:, list(machine.rotary)] = rotary
     return np.asarray(forward(machine, joints)[1])
+
+
+def wound_turns(machine: Machine, rotary: Floats) -> list[tuple[int, float]]:
+    """Columns of rotary axes that displayed positions (n, 2), degrees, leave turns away from home, and how many.
+
+    An axis that is displayed within one turn takes the shorter way home.
+    """
+    away = np.abs(rotary[-1] - machine.home[list(machine.rotary)]) / 360.0 if len(rotary) else np.zeros(2)
+    return [(c, turns) for c, turns in zip(machine.rotary, away.tolist(), strict=True) if turns >= _FEWEST_TURNS]

@@ -144,7 +144,7 @@ def _tool(tool: ToolUsage) -> str:
         f"<td class=n>{format_duration(tool.cutting_seconds)}</td>"
         f"<td class=n>{format_duration(tool.rapid_seconds)}</td>"
         f"<td class=n>{format_range(tool.rpm)}</td><td class=n>{format_range(tool.feed)}</td>"
-        f"<td class=n>{_block(tool.first)}</td></tr>"
+        f"<td class=n>{_from(tool.first)}</td></tr>"
     )
 
 
@@ -155,7 +155,7 @@ def _operation_table(content: ReportContent) -> str:
 
 
 def _operation(operation: OperationUsage) -> str:
-    first = _block(operation.first) if operation.first else ""
+    first = _from(operation.first) if operation.first else ""
     return (
         f'<tr><th scope=row title="{escape(operation.cl_file)}"><bdi>{escape(operation.name)}</bdi></th>'
         f"<td><bdi>{escape(operation.tool)}</bdi></td><td class=n>{operation.motions}</td>"
@@ -236,6 +236,11 @@ def _block(block: BlockReference) -> str:
     place = _number(block.number) or f"line {block.nc_line}"
     line = f"{block.file}:{block.nc_line}" if block.file else f"line {block.nc_line}"
     return f'<span title="{escape(line)}">{place}</span>'
+
+
+def _from(block: BlockReference) -> str:
+    """Return a block with its file, unless that is the main program."""
+    return (f"<bdi>{escape(block.file)}</bdi> " if block.file else "") + _block(block)
 
 
 def _number(number: int) -> str:

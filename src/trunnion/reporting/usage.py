@@ -74,10 +74,18 @@ def operation_usage(run: Run, operation: OperationRows, seconds: Floats, cutting
         seconds=math.fsum(seconds[rows]),
         cutting_seconds=math.fsum(seconds[rows][cutting[rows]]),
         rapid_seconds=math.fsum(seconds[rows][~cutting[rows]]),
-        first=block_reference(run, operation.first) if operation.end > operation.first else None,
+        first=block_reference(run, _first_row(run, operation)) if operation.end > operation.first else None,
     )
 
 
 def _range(values: Floats) -> tuple[float, float] | None:
     finite = values[np.isfinite(values)]
     return (float(finite.min()), float(finite.max())) if len(finite) else None
+
+
+def _first_row(run: Run, operation: OperationRows) -> int:
+    """The first row of an operation, in its own file where it has one: what ends the file before it leads to it too."""
+    if operation.first == 0:
+        return 0
+    others = np.flatnonzero(run.file[operation.first : operation.end] != run.file[operation.first - 1])
+    return operation.first + (int(others[0]) if len(others) else 0)

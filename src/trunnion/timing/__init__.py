@@ -2,6 +2,7 @@
 
 from trunnion.timing.axis_pieces import AxisPieces, axis_pieces
 from trunnion.timing.dynamics import AxisDynamics
+from trunnion.timing.fastest import AxisMotion, FastestRun, SmoothPath, fastest_run
 from trunnion.timing.path import Path
 from trunnion.timing.path_modes import CORNER_TOLERANCE
 from trunnion.timing.planner import piece_seconds
@@ -19,14 +20,18 @@ __all__ = [
     "KERNELS",
     "SAG",
     "AxisDynamics",
+    "AxisMotion",
     "AxisPieces",
+    "FastestRun",
     "MachineState",
     "Path",
     "RowFeeds",
     "RunTimer",
+    "SmoothPath",
     "TimedEvent",
     "TimedRun",
     "axis_pieces",
+    "fastest_run",
     "piece_seconds",
     "time_run",
 ]

@@ -5,6 +5,7 @@ import pytest
 
 from tests.support.locations import ROOT
 from trunnion import load_impeller
+from trunnion.errors import InputError
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.paths.passes import Stepover
 from trunnion.impeller.paths.shroud import shroud_finish, stock_roughing
@@ -41,6 +42,17 @@ def test_narrow_turns_follow_each_other_from_outside(impeller: Impeller) -> None
     inner = [float((np.hypot(one.centre[:, 0], one.centre[:, 1]) - 10.0).min()) for one in found.passes]
     assert len(inner) == 3
     assert all(outer - inside <= 5.0 + 1e-6 for outer, inside in zip([45.0, *inner], inner, strict=False))
+
+
+def test_countless_turns_are_refused_before_they_are_made(impeller: Impeller) -> None:
+    with pytest.raises(
+        InputError, match="million points, and 5 million are the most; let stepover_mm, step_down_mm or"
+    ):
+        stock_roughing(impeller, 10.0, 1e-7, 15.0, 0.3, 0.005)
+    with pytest.raises(InputError, match="million points"):
+        stock_roughing(impeller, 10.0, 1.5, 1e-9, 0.3, 0.005)
+    with pytest.raises(InputError, match="million points"):
+        shroud_finish(impeller, 5.0, Stepover(distance=1e-4), 0.0, 0.0, 0.005)
 
 
 @pytest.mark.parametrize("tilt", [5.0, 10.0, 45.0])

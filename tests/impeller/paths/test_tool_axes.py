@@ -1,6 +1,7 @@
 """Fields of tool axes between plates, in a wedge and on the published impeller, judged by arithmetic of their own."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from trunnion.arrays import Flags, Floats
 from trunnion.errors import InputError
 from trunnion.impeller.definition import read_impeller
 from trunnion.impeller.impeller import Impeller, build_impeller, rotated
+from trunnion.impeller.linear_program import solve_linear_program
 from trunnion.impeller.paths.cells import STEPS, cell_tree, joined
 from trunnion.impeller.paths.clearance import Obstacles, obstacles_of
 from trunnion.impeller.paths.clearance_kernel import BodyData
@@ -245,3 +247,20 @@ def test_a_tool_too_short_for_the_published_impeller_is_refused(published: tuple
 )
 def test_a_clearance_beyond_what_is_measured_is_told_as_such(distance: float, words: str) -> None:
     assert str(PartClearance(Role.HOLDER, "blade 1", distance, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))) == words
+
+
+def test_a_field_without_end_is_refused_and_one_that_only_bends_is_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    solver = "trunnion.impeller.paths.axis_field.solve_linear_program"
+    calls = []
+
+    def first_only(*arguments: Any) -> Floats | None:
+        calls.append(arguments)
+        return solve_linear_program(*arguments) if len(calls) % 2 else None
+
+    monkeypatch.setattr(solver, first_only)
+    found = choose_axes(floor(1.0), necked(4.0, 25.0), slot(3.0, 20.0))
+    assert len(calls) >= 2
+    assert found.share == 1.0
+    monkeypatch.setattr(solver, lambda *_: None)
+    with pytest.raises(InputError, match="limit of iterations"):
+        choose_axes(floor(1.0), necked(4.0, 25.0), slot(3.0, 20.0))

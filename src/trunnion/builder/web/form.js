@@ -20,10 +20,31 @@ export function pathText(path) {
   return path.map((step) => (Array.isArray(step) ? ` ${step[0]} ` : `.${step}`)).join("").replace(/^\./, "").replace(/ \./g, " · ");
 }
 
+/**
+ * Replace what stands in a part of the page; a button that has the focus keeps it, by its data-key.
+ * @param {Element} element
+ * @param {Node[]} children
+ */
+export function refill(element, children) {
+  const key = element.contains(document.activeElement) ? /** @type {HTMLElement} */ (document.activeElement).dataset.key : "";
+  element.replaceChildren(...children);
+  if (!key) return;
+  const again = Array.from(element.querySelectorAll("button")).find((each) => each.dataset.key === key);
+  // An axis that has come to an end of the order can only go back.
+  const other = /** @type {HTMLElement | null | undefined} */ (again?.parentElement?.querySelector("button:enabled"));
+  (again?.disabled ? other : again)?.focus();
+}
+
+/**
+ * @param {string[]} one
+ * @param {string[]} other
+ */
+const alike = (one, other) => one.length === other.length && one.every((text, k) => text === other[k]);
+
 export class Form {
   /**
    * @param {HTMLElement} element
-   * @param {(path: Path, value: any) => void} onChange
+   * @param {(path: Path, value: any, entered: string[]) => void} onChange entered: what settle takes
    * @param {(from: string) => void} onFocus
    */
   constructor(element, onChange, onFocus) {
@@ -31,42 +52,60 @@ export class Form {
     this.onChange = onChange;
     this.onFocus = onFocus;
     this.shape = "";
+    this.isBuilding = false;
     /** @type {Map<string, HTMLElement>} */
     this.rows = new Map();
+    /** @type {Map<string, FieldData>} */
+    this.fields = new Map();
+    /** What the user has entered and the definition does not have yet: no answer overwrites it. @type {Map<string, string[]>} */
+    this.held = new Map();
+    /** What of it is on its way. @type {Map<string, string[]>} */
+    this.sent = new Map();
+    this.order = document.createElement("div");
+    this.list = document.createElement("div");
+    element.replaceChildren(this.order, this.list);
   }
 
   /**
-   * Show fields; those that are there already keep their place and the focus.
+   * Show fields; those that are there already keep their place and the focus, and what is entered in them.
    * @param {FieldData[]} fields
    * @param {ProblemData[]} problems
+   * @param {{path: Path, what: string}[]} marks values that are still to be entered
    * @param {HTMLElement | null} before
    */
-  show(fields, problems, before) {
-    const shape = fields.map((each) => idOf(each.path) + each.kind).join() + (before ? before.textContent : "");
-    if (shape !== this.shape) this.#build(fields, before);
+  show(fields, problems, marks, before) {
+    if (this.order.textContent !== (before?.textContent ?? "")) refill(this.order, before ? [before] : []);
+    const shape = JSON.stringify(fields.map(({ path, kind, choices, note, allowed }) => [path, kind, choices, note, allowed]));
+    this.fields = new Map(fields.map((each) => [idOf(each.path), each]));
+    if (shape !== this.shape) this.#build(fields);
     this.shape = shape;
-    for (const field of fields) this.#fill(field, problems.filter((each) => covers(each.path, field.path)));
+    for (const field of fields) {
+      this.#fill(field, problems.filter((each) => covers(each.path, field.path)), marks.filter((each) => covers(each.path, field.path)));
+    }
   }
 
-  /**
-   * @param {FieldData[]} fields
-   * @param {HTMLElement | null} before
-   */
-  #build(fields, before) {
-    const focus = document.activeElement?.id;
+  /** @param {FieldData[]} fields */
+  #build(fields) {
+    const focus = /** @type {HTMLInputElement | null} */ (this.list.contains(document.activeElement) ? document.activeElement : null);
+    const { id, selectionStart, selectionEnd } = focus ?? { id: "", selectionStart: null, selectionEnd: null };
+    this.isBuilding = true;
     this.rows.clear();
-    this.element.replaceChildren(...(before ? [before] : []));
+    this.list.replaceChildren();
     let group = "";
     for (const field of fields) {
       const name = field.path.find(Array.isArray)?.[0] ?? "";
       const head = field.path[0] === "axis" ? name : name && `${field.path.at(-3)} ${name}`;
-      if (head !== group && head) this.element.append(Object.assign(document.createElement("h3"), { textContent: String(head) }));
+      if (head !== group && head) this.list.append(Object.assign(document.createElement("h3"), { textContent: String(head) }));
       group = String(head);
       const row = this.#row(field);
       this.rows.set(idOf(field.path), row);
-      this.element.append(row);
+      this.list.append(row);
+      this.#write(field, row);
     }
-    if (focus) document.getElementById(focus)?.focus();
+    this.isBuilding = false;
+    const again = /** @type {HTMLInputElement | null} */ (id ? document.getElementById(id) : null);
+    again?.focus();
+    if (again && typeof selectionStart === "number") again.setSelectionRange(selectionStart, selectionEnd);
   }
 
   /** @param {FieldData} field */
@@ -83,21 +122,24 @@ export class Form {
       input.id = inputs.childElementCount ? `${id}-${inputs.childElementCount}` : id;
       input.setAttribute("aria-describedby", `${id}-help`);
       if (inputs.childElementCount || field.size) input.setAttribute("aria-label", `${name} ${["X", "Y", "Z"][inputs.childElementCount] ?? ""}`);
+      input.addEventListener("input", () => this.held.set(idOf(field.path), texts(row)));
       input.addEventListener("change", () => {
-        row.dataset.pending = "true";
         const filled = texts(row).filter((text) => text.trim()).length;
-        if (filled === 0 || filled === texts(row).length) this.#send(field, row);
+        if (filled === 0 || filled === texts(row).length) this.#send(idOf(field.path));
       });
       input.addEventListener("focus", () => { if (row.dataset.from) this.onFocus(row.dataset.from); });
       inputs.append(input);
     }
     // Half a pair of numbers is no mistake yet while the user is on the way to the other half.
     row.addEventListener("focusout", (event) => {
-      if (row.dataset.pending && !row.contains(/** @type {Node | null} */ (event.relatedTarget))) this.#send(field, row);
+      if (!this.isBuilding && !row.contains(/** @type {Node | null} */ (event.relatedTarget))) this.#send(idOf(field.path));
     });
     const unit = Object.assign(document.createElement("span"), { className: "unit", textContent: field.unit });
     const reset = Object.assign(document.createElement("button"), { type: "button", className: "reset", textContent: "↺" });
-    reset.addEventListener("click", () => this.onChange(field.path, null));
+    reset.addEventListener("click", () => {
+      this.held.delete(idOf(field.path));
+      this.onChange(field.path, null, []);
+    });
     const place = Object.assign(document.createElement("code"), { textContent: pathText(field.path) });
     const told = Object.assign(document.createElement("p"), { id: `${id}-help`, className: "help", textContent: help });
     const from = Object.assign(document.createElement("span"), { className: "from" });
@@ -105,33 +147,63 @@ export class Form {
     error.setAttribute("role", "alert");
     const meta = Object.assign(document.createElement("span"), { className: "meta" });
     meta.append(place, from);
-    row.append(label, inputs, unit, reset, meta, told, error);
+    const mark = Object.assign(document.createElement("p"), { className: "mark warn" });
+    row.append(label, inputs, unit, reset, meta, told, mark, error);
     return row;
   }
 
   /**
+   * Send what is entered in a field, unless it is on its way, or the definition has it.
+   * @param {string} id
+   */
+  #send(id) {
+    const field = this.fields.get(id);
+    const entered = this.held.get(id);
+    if (!field || !entered || this.sent.get(id) === entered) return;
+    if (!this.sent.has(id) && alike(entered, shownTexts(field, entered.length))) {
+      this.held.delete(id);
+      return;
+    }
+    this.sent.set(id, entered);
+    this.onChange(field.path, readValue(field, entered), entered);
+  }
+
+  /** Send all that is entered. */
+  sendAll() { for (const id of this.held.keys()) this.#send(id); }
+
+  /**
+   * A change has had its answer: its field shows the definition again, unless the user has gone on in it.
+   * @param {Path} path
+   * @param {string[]} entered
+   */
+  settle(path, entered) {
+    for (const each of [this.held, this.sent]) if (each.get(idOf(path)) === entered) each.delete(idOf(path));
+  }
+
+  /**
+   * Write into the inputs of a row what they are to show.
    * @param {FieldData} field
    * @param {HTMLElement} row
    */
-  #send(field, row) {
-    delete row.dataset.pending;
-    this.onChange(field.path, readValue(field, row));
+  #write(field, row) {
+    const boxes = /** @type {HTMLInputElement[]} */ (Array.from(row.querySelectorAll(".inputs > *")));
+    const shown = this.held.get(idOf(field.path)) ?? shownTexts(field, boxes.length);
+    boxes.forEach((box, k) => {
+      const options = box instanceof HTMLSelectElement ? Array.from(box.options, (option) => option.value) : [shown[k]];
+      if (box instanceof HTMLSelectElement && !options.includes(shown[k])) box.append(new Option(shown[k], shown[k]));
+      if (box.value !== shown[k]) box.value = shown[k];
+    });
   }
 
   /**
    * @param {FieldData} field
    * @param {ProblemData[]} problems
+   * @param {{what: string}[]} marks
    */
-  #fill(field, problems) {
+  #fill(field, problems, marks) {
     const row = /** @type {HTMLElement} */ (this.rows.get(idOf(field.path)));
-    const values = Array.isArray(field.value) ? field.value : [field.value];
-    row.querySelectorAll(".inputs > *").forEach((input, k) => {
-      const shown = values.length > 1 || field.size || field.kind === "interval" ? values[k] : field.value;
-      const text = shown === null || shown === undefined ? "" : String(shown);
-      const box = /** @type {HTMLInputElement} */ (input);
-      if (box.value !== text) box.value = text;
-      box.setAttribute("aria-invalid", String(problems.length > 0));
-    });
+    this.#write(field, row);
+    row.querySelectorAll(".inputs > *").forEach((box) => box.setAttribute("aria-invalid", String(problems.length > 0)));
     row.classList.toggle("own", field.own);
     row.dataset.from = field.own ? field.from : "";
     const reset = /** @type {HTMLButtonElement} */ (row.querySelector(".reset"));
@@ -139,6 +211,7 @@ export class Form {
     reset.title = say("reset", String(field.inherited));
     reset.setAttribute("aria-label", reset.title);
     /** @type {HTMLElement} */ (row.querySelector(".from")).textContent = field.from ? (field.own ? say("own") : field.from) : say("notStated");
+    /** @type {HTMLElement} */ (row.querySelector(".mark")).textContent = marks.map((each) => each.what).join("\n");
     /** @type {HTMLElement} */ (row.querySelector(".error")).textContent = problems.map((each) => `${each.what}; ${each.cure}`).join("\n");
   }
 
@@ -179,8 +252,7 @@ function inputsOf(field) {
 function selectOf(field) {
   const select = document.createElement("select");
   const words = field.kind === "flag" ? ["true", "false"] : field.choices;
-  const extra = field.value !== null && field.kind === "choice" && !words.includes(field.value) ? [String(field.value)] : [];
-  for (const word of ["", ...words, ...extra]) select.append(new Option(word || "—", word));
+  for (const word of ["", ...words]) select.append(new Option(word || "—", word));
   return select;
 }
 
@@ -191,13 +263,22 @@ function selectOf(field) {
 function texts(row) { return Array.from(row.querySelectorAll(".inputs > *"), (input) => /** @type {HTMLInputElement} */ (input).value); }
 
 /**
- * What the user has entered; null: nothing.
+ * What stands in the inputs of a field when the definition alone is asked.
  * @param {FieldData} field
- * @param {HTMLElement} row
+ * @param {number} count of its inputs
  */
-function readValue(field, row) {
-  const entered = texts(row);
-  if (entered.every((text) => text.trim() === "")) return field.kind === "text" && field.inherited ? "" : null;
+function shownTexts(field, count) {
+  const values = Array.isArray(field.value) ? field.value : [field.value];
+  return Array.from({ length: count }, (_, k) => (values[k] === null || values[k] === undefined ? "" : String(values[k])));
+}
+
+/**
+ * The value that the user has entered; null: nothing.
+ * @param {FieldData} field
+ * @param {string[]} entered
+ */
+function readValue(field, entered) {
+  if (entered.every((text) => text.trim() === "")) return ["text", "lines"].includes(field.kind) && field.inherited ? "" : null;
   if (field.kind === "flag") return entered[0] === "true";
   if (field.kind === "text" || field.kind === "choice") return entered[0];
   if (field.kind === "lines") return entered[0].replace(/\r\n/g, "\n").replace(/\n?$/, "\n");

@@ -1,9 +1,11 @@
 // The page: fields, text, machine and sample are four views of one definition, which the server judges at every change.
 
 import { Editor } from "./editor.js";
-import { Form, covers } from "./form.js";
+import { Edits } from "./edits.js";
+import { Form, covers, refill } from "./form.js";
+import { Jog } from "./jog.js";
 import { Sample } from "./sample.js";
-import { COLOURS, Stage } from "./stage.js";
+import { Stage } from "./stage.js";
 import { LANGUAGE, say } from "./texts.js";
 
 /**
@@ -22,6 +24,7 @@ class Builder {
   /** @param {any} start */
   constructor(start) {
     this.start = start;
+    this.file = start.file;
     this.seen = start.seen;
     this.saved = start.text;
     this.page = "structure";
@@ -29,26 +32,29 @@ class Builder {
     this.data = null;
     /** @type {{name: string, content: string} | null} */
     this.cl = null;
-    this.asked = 0;
-    this.judged = 0;
+    this.unclear = "";
+    this.isSaving = false;
     this.sampled = 0;
     this.stage = new Stage(element("space"));
-    this.form = new Form(element("form"), (path, value) => this.change({ path, value }), (from) => this.editor.show(Number(from.split(":").at(-1))));
-    this.editor = new Editor(element("text"), element("gutter"), (text) => this.ask("judge", { text }));
-    this.sample = new Sample(element("program"), element("verdict"));
+    this.jogging = new Jog(element("jog"), element("pose"), this.stage);
+    this.form = new Form(element("form"), (path, value, entered) => this.change({ path, value }, () => this.form.settle(path, entered)), (from) => this.editor.show(Number(from.split(":").at(-1))));
+    /** @type {Editor} */
+    this.editor = new Editor(element("text"), element("gutter"), () => { this.unclear = ""; this.edits.typed(); this.tell("", false); }, () => this.edits.rested());
+    /** @type {Edits} */
+    this.edits = new Edits({ text: () => this.editor.text, post: (what, given) => this.post(what, given), show: (answer, edit) => this.show(answer, edit) });
+    this.sample = new Sample(element("program"), element("verdict"), element("checks"));
     this.#listen();
   }
 
   /**
-   * Post to the server; null: it is gone.
+   * Post to the server; null: it is gone. What it does not take has its status as "rejected".
    * @param {string} what
    * @param {any} given
    */
   async post(what, given) {
     try {
-      const answer = await fetch(what, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(given) });
-      if (answer.ok) return await answer.json();
-      throw new Error(`${what}: ${answer.status}`);
+      const answer = await fetch(what, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ file: this.file, ...given }) });
+      return answer.ok ? await answer.json() : { rejected: answer.status };
     } catch {
       this.tell(say("lost"), true);
       return null;
@@ -56,37 +62,49 @@ class Builder {
   }
 
   /**
-   * Ask for a judgement and show it, unless a later one has been asked for.
-   * @param {string} what
-   * @param {any} given
+   * @param {any} given what is to be changed
+   * @param {() => void} settle when it has had its answer
    */
-  async ask(what, given) {
-    const number = ++this.asked;
-    const data = await this.post(what, given);
-    if (data && number === this.asked) {
-      this.show(data);
-      this.judged = number;
-    }
-    return data;
+  change(given, settle = () => {}) {
+    if (this.edits.isIdle) this.unclear = "";
+    this.edits.add({ what: "change", given, settle });
   }
 
-  /** @param {any} change */
-  change(change) { return this.ask("change", { text: this.editor.text, ...change }); }
+  /**
+   * Show an answer about the text of the page, which a change replaces.
+   * @param {any} data
+   * @param {import("./edits.js").Edit | undefined} edit
+   */
+  show(data, edit) {
+    if (edit?.what === "begin") this.#beginsAnew();
+    if (data.rejected) this.unclear = say("rejected", data.rejected);
+    if (data.unclear) this.unclear = say(data.unclear);
+    if (!data.rejected) {
+      this.data = data;
+      this.editor.set(data.text);
+    }
+    if (this.data) this.#showData(this.data);
+    this.tell(this.unclear, Boolean(this.unclear));
+    if (!data.rejected && !this.edits.queue.length) this.runSample();
+  }
 
   /** @param {any} data */
-  show(data) {
-    this.data = data;
-    this.editor.set(data.text);
+  #showData(data) {
     this.editor.mark(data.problems);
     this.#showPages();
     this.#showPage();
     this.#showProblems();
     if (data.machine) {
       this.stage.show(data.machine, data.bodies);
-      this.#showJog();
+      this.jogging.show(data.remark);
     }
-    this.tell(data.unclear ? say("unclear") : "", Boolean(data.unclear));
-    this.runSample();
+  }
+
+  /** What was opened is another definition: it is not replaced unasked. */
+  #beginsAnew() {
+    if (!this.editor.text.trim()) return;
+    this.seen = this.file = "";
+    element("title").textContent = "machine.toml";
   }
 
   /**
@@ -101,9 +119,9 @@ class Builder {
 
   #showPages() {
     const { pages, problems } = this.data;
-    element("pages").replaceChildren(...Object.keys(pages).map((name) => {
+    refill(element("pages"), Object.keys(pages).map((name) => {
       const button = Object.assign(document.createElement("button"), { type: "button", textContent: say(PAGE_NAMES.get(name) ?? name) });
-      button.dataset.page = name;
+      button.dataset.page = button.dataset.key = name;
       if (name === this.page) button.setAttribute("aria-current", "page");
       const wrong = problems.some((/** @type {any} */ each) => pages[name].some((/** @type {any} */ field) => covers(each.path, field.path)));
       if (wrong) { button.className = "bad"; button.textContent += " ⚠"; }
@@ -114,6 +132,7 @@ class Builder {
 
   /** @param {string} page */
   goTo(page) {
+    this.form.sendAll();
     this.page = page;
     this.#showPages();
     this.#showPage();
@@ -122,7 +141,7 @@ class Builder {
   }
 
   #showPage() {
-    this.form.show(this.data.pages[this.page], this.data.problems, this.page === "structure" ? this.#order() : null);
+    this.form.show(this.data.pages[this.page], this.data.problems, this.data.marks, this.page === "structure" ? this.#order() : null);
   }
 
   /** The axes in their order, with the means to change it. */
@@ -135,6 +154,7 @@ class Builder {
       if (!this.data.extends) {
         for (const [by, sign, words] of /** @type {[number, string, string][]} */ ([[-1, "◀", "up"], [1, "▶", "down"]])) {
           const button = Object.assign(document.createElement("button"), { type: "button", textContent: sign, title: `${name}: ${say(words)}` });
+          button.dataset.key = `${name} ${by}`;
           button.disabled = by < 0 ? k === 0 : k === this.data.axes.length - 1;
           button.setAttribute("aria-label", button.title);
           button.addEventListener("click", () => this.change({ move: name, by }));
@@ -150,13 +170,15 @@ class Builder {
   }
 
   #showProblems() {
-    const { problems } = this.data;
-    element("mistakes").textContent = problems.length ? say(problems.length === 1 ? "mistake" : "mistakes", problems.length) : say("clean");
-    element("mistakes").className = problems.length ? "bad" : "good";
-    element("problems").replaceChildren(...problems.map((/** @type {any} */ each) => {
-      const item = document.createElement("li");
+    const { problems, marks } = this.data;
+    const found = problems.length ? say(problems.length === 1 ? "mistake" : "mistakes", problems.length) : say("clean");
+    element("mistakes").textContent = [found, ...(marks.length ? [say("toEnter", marks.length)] : [])].join(", ");
+    element("mistakes").className = problems.length ? "bad" : marks.length ? "warn" : "good";
+    refill(element("problems"), [...problems, ...marks].map((/** @type {any} */ each) => {
+      const item = Object.assign(document.createElement("li"), { className: each.cure === undefined ? "warn" : "" });
       const where = each.line ? `${each.line}: ` : each.place ? `${each.place}: ` : "";
-      const button = Object.assign(document.createElement("button"), { type: "button", textContent: `${where}${each.what}; ${each.cure}` });
+      const button = Object.assign(document.createElement("button"), { type: "button", textContent: `${where}${each.what}${each.cure ? `; ${each.cure}` : ""}` });
+      button.dataset.key = button.textContent ?? "";
       button.addEventListener("click", () => this.#goToProblem(each));
       item.append(button);
       return item;
@@ -170,86 +192,62 @@ class Builder {
     if (problem.line) this.editor.show(problem.line);
   }
 
-  #showJog() {
-    const { machine } = this.data;
-    const box = element("jog");
-    const shape = machine.axes.map((/** @type {any} */ axis) => [axis.name, axis.low, axis.high].join()).join(";");
-    if (box.dataset.shape !== shape) {
-      box.dataset.shape = shape;
-      box.replaceChildren(...machine.axes.map((/** @type {any} */ axis, /** @type {number} */ k) => this.#slider(axis, k)));
-      const home = Object.assign(document.createElement("button"), { type: "button", textContent: say("home") });
-      home.addEventListener("click", () => this.jog(this.data.machine.homes));
-      box.append(home);
-    }
-    this.jog(this.stage.values);
-  }
-
   /**
-   * @param {any} axis
-   * @param {number} k
-   */
-  #slider(axis, k) {
-    const row = document.createElement("label");
-    const name = Object.assign(document.createElement("span"), { textContent: axis.name });
-    name.style.borderColor = COLOURS[k];
-    const wide = axis.rotary ? 360 : 500;
-    const range = Object.assign(document.createElement("input"), { type: "range", min: String(axis.low ?? -wide), max: String(axis.high ?? wide), step: "any" });
-    range.dataset.axis = axis.name;
-    range.setAttribute("aria-label", `${say("jog")} ${axis.name}`);
-    range.addEventListener("input", () => this.jog(this.stage.values.map((value, j) => (j === k ? Number(range.value) : value))));
-    const box = Object.assign(document.createElement("input"), { type: "text", inputMode: "decimal" });
-    box.setAttribute("aria-label", `${axis.name} ${axis.rotary ? "°" : "mm"}`);
-    box.addEventListener("change", () => {
-      const value = Number(box.value);
-      this.jog(this.stage.values.map((old, j) => (j === k && Number.isFinite(value) ? value : old)));
-    });
-    row.append(name, range, box);
-    return row;
-  }
-
-  /**
-   * Move the machine, and say where the tool is.
+   * Move the machine.
    * @param {number[]} values
    */
-  jog(values) {
-    this.stage.jog(values);
-    const { machine } = this.data;
-    element("jog").querySelectorAll("label").forEach((/** @type {HTMLElement} */ row, /** @type {number} */ k) => {
-      const [range, box] = row.querySelectorAll("input");
-      range.value = String(values[k]);
-      box.value = values[k].toFixed(machine.axes[k].rotary ? 3 : 2);
-    });
-    const { tip, axis } = this.stage.tool();
-    const of = (/** @type {number[]} */ v, /** @type {number} */ digits) => v.map((x) => x.toFixed(digits)).join("  ");
-    element("pose").textContent = `${say("tip")} ${of(tip, 3)}   ${say("toolAxis")} ${of(axis, 6)}${machine.zero ? "" : `\n${say("zero")}`}${this.data.remark ? `\n${this.data.remark}` : ""}`;
-  }
+  jog(values) { this.jogging.move(values); }
 
   /** Post and prove the sample again, unless there are mistakes. */
   async runSample() {
     element("cl-name").textContent = this.cl?.name ?? say("sampleFile");
+    if (!this.data) return;
     const number = ++this.sampled;
+    const { text } = this.data;
     if (this.data.problems.length) { this.sample.clear(say("waiting")); this.isSampled(); return; }
     element("program").dataset.ready = "false";
-    const found = await this.post("sample", { text: this.editor.text, cl: this.cl?.content ?? null, clName: this.cl?.name ?? "", before: this.sample.lines.slice(0, 3000) });
-    if (found && number === this.sampled) { this.sample.show(found); this.isSampled(); }
+    const found = await this.post("sample", { text, cl: this.cl?.content ?? null, clName: this.cl?.name ?? "", before: this.sample.lines.slice(0, 3000) });
+    if (number !== this.sampled) return;
+    if (found && !found.rejected) this.sample.show(found, this.data.marks.length);
+    else this.sample.clear(found ? say("rejected", found.rejected) : say("lost"));
+    this.isSampled();
   }
 
   isSampled() { element("program").dataset.ready = "true"; }
 
   /** @param {boolean} replace */
   async save(replace) {
+    if (this.isSaving) return;
+    this.isSaving = true;
+    await this.#save(replace);
+    this.isSaving = false;
+  }
+
+  /** @param {boolean} replace */
+  async #save(replace) {
     const name = element("save-name").value.trim();
+    this.form.sendAll();
+    const isSettled = await this.edits.settled();
+    if (!isSettled || this.unclear) {
+      element("save-why").textContent = isSettled ? this.unclear : say("lost");
+      this.unclear = "";
+      return;
+    }
     const { text } = this.editor;
     const found = await this.post("save", { text, name, seen: this.seen, replace });
-    if (!found) return;
-    if (!found.saved) {
-      element("save-why").textContent = [say(found.why), ...(found.problems ?? [])].join("\n");
+    if (!found?.saved) {
+      const why = !found ? say("lost") : found.rejected ? say("rejected", found.rejected) : say(found.why);
+      element("save-why").textContent = [why, ...(found?.problems ?? [])].join("\n");
+      if (!found || found.rejected) return;
       element("save-replace").hidden = found.why !== "exists" && found.why !== "changed";
       return;
     }
     this.seen = found.seen;
     this.saved = text;
-    element("title").textContent = name;
+    this.file = element("title").textContent = name;
+    const address = new URL(location.href);
+    address.searchParams.set("file", name);
+    history.replaceState(null, "", address);
     element("saving").close();
     this.tell(found.mistakes ? say("savedBad", found.saved, found.mistakes) : say("saved", found.saved), found.mistakes > 0);
   }
@@ -259,6 +257,7 @@ class Builder {
     fill("begin-base", this.start.machines.map((/** @type {any} */ each) => [each.key, `${each.key}: ${each.name}`]));
     fill("begin-chain", this.start.chains.map((/** @type {any} */ each) => [each.key, each.order]));
     fill("begin-control", this.start.controls.map((/** @type {string} */ each) => [each, each]));
+    element("begin-why").textContent = this.editor.text === this.saved ? "" : say("replaced");
     element("begin").showModal();
   }
 
@@ -266,21 +265,31 @@ class Builder {
     element("title").textContent = this.start.title;
     element("start").addEventListener("click", () => this.begin());
     element("begin-cancel").addEventListener("click", () => element("begin").close());
-    element("begin-go").addEventListener("click", async () => {
+    element("begin").addEventListener("submit", async (/** @type {Event} */ event) => {
+      event.preventDefault();
       const way = /** @type {HTMLInputElement} */ (document.querySelector("input[name=way]:checked")).value;
       const given = { name: element("begin-name").value, base: way === "base" ? element("begin-base").value : "", chain: element("begin-chain").value, control: element("begin-control").value };
       element("begin").close();
       this.sample.lines = [];
-      await this.ask("begin", given);
+      // What is typed into the old definition now would be typed in vain.
+      document.body.inert = true;
+      this.edits.add({ what: "begin", given, settle: () => {} });
+      if (!await this.edits.settled()) this.edits.queue = this.edits.queue.filter((each) => each.what !== "begin");
+      document.body.inert = false;
+      element("start").focus();
     });
     element("save").addEventListener("click", () => {
+      if (!this.data) { this.begin(); return; }
       element("save-why").textContent = "";
       element("save-replace").hidden = true;
       element("save-name").value = element("title").textContent;
       element("saving").showModal();
       element("save-name").focus();
     });
-    element("save-go").addEventListener("click", () => this.save(false));
+    element("saving").addEventListener("submit", (/** @type {Event} */ event) => {
+      event.preventDefault();
+      this.save(false);
+    });
     element("save-replace").addEventListener("click", () => this.save(true));
     element("save-cancel").addEventListener("click", () => element("saving").close());
     element("cl").addEventListener("change", async () => {
@@ -293,9 +302,15 @@ class Builder {
       await this.runSample();
     });
     window.addEventListener("keydown", (event) => {
-      if (event.key === "s" && (event.ctrlKey || event.metaKey)) { event.preventDefault(); element("save").click(); }
+      const target = /** @type {HTMLElement} */ (event.target);
+      const isElsewhere = document.querySelector("dialog[open]") || (target.matches("input, select, textarea") && target !== this.editor.area);
+      if (!isElsewhere) this.editor.undoKey(event);
+      if (event.key !== "s" || !(event.ctrlKey || event.metaKey)) return;
+      event.preventDefault();
+      if (element("saving").open) this.save(false);
+      else if (!element("begin").open) element("save").click();
     });
-    window.addEventListener("beforeunload", (event) => { if (this.editor.text !== this.saved) event.preventDefault(); });
+    window.addEventListener("beforeunload", (event) => { if (this.editor.text !== this.saved || this.form.held.size || this.edits.queue.length) event.preventDefault(); });
   }
 }
 
@@ -305,5 +320,7 @@ document.documentElement.lang = LANGUAGE;
 const builder = new Builder(JSON.parse(element("scene").textContent));
 /** @type {any} */ (window).builder = builder;
 const ready = () => { document.documentElement.dataset.ready = "true"; };
-if (builder.start.text) builder.ask("judge", { text: builder.start.text }).then(ready);
-else { builder.begin(); ready(); }
+if (builder.start.text) {
+  builder.editor.set(builder.start.text);
+  builder.edits.rested().then(ready);
+} else { builder.begin(); ready(); }

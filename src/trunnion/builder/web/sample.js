@@ -6,18 +6,21 @@ export class Sample {
   /**
    * @param {HTMLElement} list
    * @param {HTMLElement} verdict
+   * @param {HTMLElement} checks what each check has seen
    */
-  constructor(list, verdict) {
+  constructor(list, verdict, checks) {
     this.list = list;
     this.verdict = verdict;
+    this.checks = checks;
     /** @type {string[]} */
     this.lines = [];
   }
 
   /** @param {{lines: string[], all: number, changed: number[], removed: number, checks: {key: string, passed: boolean, summary: string}[],
-   *   problems: {what: string, cure: string, line: number, error: boolean}[], passed: boolean}} found */
-  show(found) {
-    this.lines = found.lines;
+   *   problems: {what: string, cure: string, line: number, error: boolean}[], passed: boolean}} found
+   * @param {number} marks values that are still to be entered */
+  show(found, marks) {
+    if (found.lines.length) this.lines = found.lines;
     const changed = new Set(found.changed);
     const rows = found.lines.map((line, k) => {
       const row = Object.assign(document.createElement("div"), { textContent: line || " " });
@@ -26,19 +29,27 @@ export class Sample {
     });
     this.list.replaceChildren(...rows);
     this.list.querySelector(".new")?.scrollIntoView({ block: "center" });
-    const failed = found.checks.filter((each) => !each.passed).map((each) => `${each.key}: ${each.summary}`);
-    const told = found.problems.map((each) => `${each.what}${each.cure ? "; " + each.cure : ""}`);
+    const lines = (/** @type {string[]} */ texts, /** @type {string} */ kind) => texts.filter(Boolean).map((text) => Object.assign(document.createElement("div"), { textContent: text, className: kind }));
+    const told = (/** @type {boolean} */ isError) => found.problems.filter((each) => each.error === isError).map((each) => `${each.what}${each.cure ? "; " + each.cure : ""}`);
+    const checked = (/** @type {boolean} */ isPassed) => found.checks.filter((each) => each.passed === isPassed).map((each) => `${each.key}: ${each.summary}`);
+    const open = [...told(false), marks ? say("toEnter", marks) : ""];
     const head = found.passed ? say("passed", found.checks.length) : found.checks.length ? say("failed") : say("refused");
     const moved = found.changed.length + found.removed ? say("moved", found.changed.length, found.removed) : "";
     const cut = found.all > found.lines.length ? say("shown", found.lines.length, found.all) : "";
-    this.verdict.textContent = [head, moved, cut, ...failed, ...told].filter(Boolean).join("\n");
-    this.verdict.className = found.passed ? "good" : "bad";
+    this.verdict.replaceChildren(...lines([head], found.passed ? (open.some(Boolean) ? "warn" : "good") : "bad"), ...lines([...checked(false), ...told(true)], "bad"), ...lines(open, "warn"), ...lines([moved, cut], ""));
+    this.#showChecks(checked(true));
   }
 
   /** @param {string} why there is none */
   clear(why) {
     this.list.replaceChildren();
     this.verdict.textContent = why;
-    this.verdict.className = "";
+    this.#showChecks([]);
+  }
+
+  /** @param {string[]} passed */
+  #showChecks(passed) {
+    this.checks.hidden = !passed.length;
+    this.checks.querySelector("ul").replaceChildren(...passed.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
   }
 }

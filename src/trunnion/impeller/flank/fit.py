@@ -16,6 +16,7 @@ from trunnion.arrays import Floats
 from trunnion.extras import import_extra
 from trunnion.impeller.flank.deviations import Deviations, deviations_of, slopes_of
 from trunnion.impeller.flank.path import FlankPath, basis
+from trunnion.impeller.linear_program import SIMPLEX, solve_linear_program
 from trunnion.impeller.progress import Advance, ignore
 
 #: Local minima along the path of which each must not cut too much: the least is not always the same one.
@@ -168,11 +169,11 @@ def _step(
     ).tocsr()
     right = np.concatenate((*bounds, -bend, bend))
     cost = np.concatenate((np.zeros(moves), [1.0, _PENALTY], np.full(more, _SMOOTH / more)))
-    ranges = [(-region, region)] * moves + [(0.0, None)] * (2 + more)
-    solved = import_extra("scipy.optimize", "geometry").linprog(cost, matrix, right, bounds=ranges, method="highs")
-    if solved.x is None:
+    ranges: list[tuple[float | None, float | None]] = [(-region, region)] * moves + [(0.0, None)] * (2 + more)
+    solved = solve_linear_program(cost, matrix, right, ranges, SIMPLEX)
+    if solved is None:
         return np.zeros((2, count, 3)), np.inf
-    return solved.x[:moves].reshape(2, count, 3), float(solved.x[moves] + _PENALTY * solved.x[moves + 1])
+    return solved[:moves].reshape(2, count, 3), float(solved[moves] + _PENALTY * solved[moves + 1])
 
 
 def _rows(sparse: Any, change: Floats, left: float, beyond: float) -> Any:

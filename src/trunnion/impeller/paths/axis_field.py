@@ -17,6 +17,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.extras import import_extra
+from trunnion.impeller.linear_program import INTERIOR_POINT, solve_linear_program
 from trunnion.impeller.paths.axis_regions import Regions
 
 #: Degrees of the splines: along, across, layer.
@@ -113,8 +114,8 @@ class FieldFit:
 
 def fit_field(
     places: Floats, regions: Regions, spans: tuple[int, ...], lengths: Floats, *, is_closed: bool
-) -> FieldFit:
-    """The field that turns least.
+) -> FieldFit | None:
+    """The field that turns least; None if its linear program finds no end.
 
     Parameters
     ----------
@@ -143,7 +144,10 @@ def fit_field(
         inner, degree = (knots[k], degrees[k]) if closed[k] else (knots[k][1:-1], degrees[k] - 1)
         bend = _slopes(inner, degree, is_closed=closed[k]) * weight * float(lengths.max())
         second.append(_over_all(sparse, bend @ slope, k, sizes))
-    coefficients, rate, outside = _programs(sparse, basis, regions, sparse.vstack(first), sparse.vstack(second))
+    solved = _programs(sparse, basis, regions, sparse.vstack(first), sparse.vstack(second))
+    if solved is None:
+        return None
+    coefficients, rate, outside = solved
     return FieldFit(AxisField(knots, degrees, coefficients.reshape(*sizes, 3), is_closed), rate, outside)
 
 
@@ -153,9 +157,10 @@ def _over_all(sparse: Any, matrix: Floats, parameter: int, sizes: tuple[int, ...
     return sparse.kron(reduce(sparse.kron, parts), sparse.identity(3), format="csr")
 
 
-def _programs(sparse: Any, basis: Any, regions: Regions, first: Any, second: Any) -> tuple[Floats, float, float]:
+def _programs(sparse: Any, basis: Any, regions: Regions, first: Any, second: Any) -> tuple[Floats, float, float] | None:
     """Coefficients of the field, its rate, and how far it is out of its cones, by two linear programs.
 
+    None if the first one finds no end. Without the second one the field bends more than it must, and that is all.
     Unknowns are the coefficients, the step out of the cones, and the rate, then the bends.
     """
     there = np.flatnonzero(np.isfinite(regions.middle[:, 0]))
@@ -174,13 +179,15 @@ def _programs(sparse: Any, basis: Any, regions: Regions, first: Any, second: Any
     turns = [sparse.hstack((sign * first, _none(sparse, first, 1), -one)) for sign in (1.0, -1.0)]
     cost = np.r_[np.zeros(count), _OUTSIDE, 1.0]
     found = _solved(sparse, cost, [*conditions(1), *turns], [*limits, np.zeros(2 * steps)], count)
-    rate = float(found[count + 1])
+    if found is None:
+        return None
+    field, rate, out = found[:count], float(found[count + 1]), float(found[count])
     rows = [sparse.hstack((sign * second, _none(sparse, second, 1), -sparse.identity(bends))) for sign in (1.0, -1.0)]
     rows += [sparse.hstack((sign * first, _none(sparse, first, 1 + bends))) for sign in (1.0, -1.0)]
     limits += [np.zeros(2 * bends), np.full(2 * steps, _FASTER * rate + _STILL)]
     cost = np.r_[np.zeros(count), _OUTSIDE, np.full(bends, 1.0 / bends)]
     found = _solved(sparse, cost, [*conditions(bends), *rows], limits, count)
-    return found[:count], rate, float(found[count])
+    return (field, rate, out) if found is None else (found[:count], rate, float(found[count]))
 
 
 def _none(sparse: Any, beside: Any, columns: int) -> Any:
@@ -194,12 +201,6 @@ def _rows_of(sparse: Any, basis: Any, vectors: Floats) -> Any:
     ]
 
 
-def _solved(sparse: Any, cost: Floats, rows: list[Any], limits: list[Floats], free: int) -> Floats:
-    bounds = [(None, None)] * free + [(0.0, None)] * (len(cost) - free)
-    solve = import_extra("scipy.optimize", "impeller").linprog
-    found = solve(
-        cost, A_ub=sparse.vstack(rows).tocsc(), b_ub=np.concatenate(limits), bounds=bounds, method="highs-ipm"
-    )
-    if found.x is None:
-        raise ArithmeticError(f"the linear program of the tool axes has no solution: {found.message}")
-    return np.asarray(found.x)
+def _solved(sparse: Any, cost: Floats, rows: list[Any], limits: list[Floats], free: int) -> Floats | None:
+    bounds: list[tuple[float | None, float | None]] = [(None, None)] * free + [(0.0, None)] * (len(cost) - free)
+    return solve_linear_program(cost, sparse.vstack(rows).tocsc(), np.concatenate(limits), bounds, INTERIOR_POINT)

@@ -24,6 +24,9 @@ _PER_MM: Final = 20.0
 #: Rounds in which the side of a tool is kept out of the form.
 _ROUNDS: Final = 60
 
+#: A step has no more points.
+_MOST_POINTS: Final = 5_000_000
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TurnedPasses:
@@ -58,7 +61,7 @@ def stock_roughing(
     Raises
     ------
     InputError
-        If the stock has nothing outside of the shroud.
+        If the stock has nothing outside of the shroud, or the helices have too many points.
     """
     stock = impeller.definition.stock
     heights, form = shroud_form(impeller, allowance)
@@ -69,6 +72,7 @@ def stock_roughing(
         raise InputError(Problem(impeller.definition.file, 0, "no stock stands outside of the shroud", "leave it out"))
     lowest, top = float(heights[stands].min()), stock.top
     count = max(1, math.ceil((outside - float(limit[stands].min())) / widest - 1e-9))
+    _check_count(count * ((top - lowest) / step_down + 2.0), outside + radius, tolerance)
     passes = []
     for k in range(count):
         inner = outside - widest * (k + 1)
@@ -123,6 +127,7 @@ def shroud_finish(
     convex = np.einsum("ij,ij->i", np.diff(normal, axis=0), np.diff(np.column_stack((r, z)), axis=0)) > 0.0
     pitch = stepover.on(radius, float((bends * convex).max(initial=0.0)))
     turns = max(1, math.ceil(way[-1] / pitch - 1e-9))
+    _check_count(turns + 2.0, float(kept[:, 0].max()), tolerance)
     angle = _angles(float(kept[:, 0].max()), turns + 2.0, tolerance)
     at = np.clip(angle / (2.0 * math.pi) - 1.0, 0.0, turns) / turns * way[-1]  # a whole turn at either end
     r_at, z_at = (np.interp(at, way, kept[:, k]) for k in (0, 1))
@@ -166,6 +171,15 @@ def _kept_out(centre: Floats, lean: Floats, form: Floats, reach: float) -> Float
         if moved <= 1e-9:
             break
     return found
+
+
+def _check_count(turns: float, radius: float, tolerance: float) -> None:
+    """Raise ``InputError`` for turns of more points than there is memory for."""
+    count = turns * len(_angles(radius, 1.0, tolerance))
+    if count > _MOST_POINTS:
+        most = _MOST_POINTS / 1e6
+        what = f"{turns:.0f} turns have {count / 1e6:.0f} million points, and {most:.0f} million are the most"
+        raise InputError(Problem("", 0, what, "let stepover_mm, step_down_mm or tolerance_mm be greater"))
 
 
 def _angles(radius: float, turns: float, tolerance: float) -> Floats:

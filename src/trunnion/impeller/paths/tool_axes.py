@@ -154,6 +154,7 @@ class _Search:
         self._lengths = _lengths(family)
         self._nodes = _nodes(self.places, self._lengths)
         self._bad = self._nodes[:1]
+        self._has_end = True
 
     def field(self, body: ToolBody) -> AxisField | None:
         """A field that keeps a tool clear everywhere; None if none is found."""
@@ -184,6 +185,9 @@ class _Search:
     ) -> AxisField | None:
         for _ in range(_ROUNDS):
             fit = self._fit(nodes, regions, spans)
+            if fit is None:
+                self._bad, self._has_end = nodes, False
+                return None
             if fit.outside > _NEAR:
                 self._bad = nodes[[self._worst(fit, nodes, regions)]]
                 return None
@@ -204,7 +208,7 @@ class _Search:
             advance(1)
         return None
 
-    def _fit(self, nodes: Ints, regions: Regions, spans: tuple[int, ...]) -> FieldFit:
+    def _fit(self, nodes: Ints, regions: Regions, spans: tuple[int, ...]) -> FieldFit | None:
         # Passes that are near to each other may well differ in their axes.
         lengths = np.maximum(self._lengths, _LEAST_WIDTH * self._lengths[0])
         return fit_field(self.places[nodes], regions, spans, lengths, is_closed=self._is_closed)
@@ -274,6 +278,9 @@ class _Search:
                 return Problem(name, 0, what, _CURES[role])
             clear = margins >= 0.0
             clear[~clear.any(axis=1)] = True
+        if not self._has_end:
+            what = "no smooth field of tool axes was found within the limit of iterations"
+            return Problem(name, 0, what, "want other clearances or another tilt, or divide the step")
         what = f"tool axes that are clear {place} do not join with those beside it"
         return Problem(name, 0, what, "choose a longer or thinner tool, or divide the step")
 

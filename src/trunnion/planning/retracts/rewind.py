@@ -1,14 +1,15 @@
 """Rewinds in the cut: retract, turn the rotary axes, and return to where the cut was left.
 
-Three rows are inserted before the row that needs the rewind: a line along the tool axis to the clearance, a rapid in
-which only the rotary axes turn while the tip stays, and a line back to the same point under the same tool axis at a
-reduced feed. What is cut before and after is what would have been cut without the rewind.
+Rows are inserted before the row that needs the rewind: along the tool axis to the clearance, a rapid in which only the
+rotary axes turn while the tip stays, and back to the same point under the same tool axis. The first mm from the cut and
+the last mm to it are lines, these at a reduced feed. What is beyond them is rapids with TCP, under which rapids are
+straight, and lines without. What is cut before and after is what would have been cut without the rewind.
 """
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -22,13 +23,28 @@ from trunnion.planning.poses.limit_lookahead import LimitHit, continue_in_branch
 from trunnion.planning.poses.placement import REWIND
 from trunnion.planning.poses.selection import PlannedPoses
 from trunnion.planning.retracts.clearance import MIN_RETRACT, Clearance
-from trunnion.planning.rotary_positions import displayed_positions
+from trunnion.planning.rotary_positions import displayed_positions, is_endless
 
-#: Rows that a rewind adds.
-ROWS_PER_REWIND: Final = 3
+#: So near to the cut the tool moves at a feed in any case, mm; a shorter retract than twice that has no rapid.
+_NEAR_CUT: Final = 2.0
 
 #: Poses during the turn that are checked against the limits of the slides.
 _CHECKED_POSES: Final = 33
+
+
+class _Row(NamedTuple):
+    """A row that a rewind adds.
+
+    distance  from the cut at its end, mm
+    share     of the feed of the cut
+    turned    the rotary axes have turned at its end
+    """
+
+    distance: float
+    kind: Kind
+    phase: Phase
+    share: float
+    turned: bool
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,6 +55,7 @@ class Rewind:
     before            (2,) float64  displayed rotary positions until then, degrees
     after             (2,) float64  and from then on, under the same tool axis
     retract_distance  mm; infinite if the tool axis does not lead to the clearance
+    at_rapid          whether the tool moves at rapid away from the cut
     reason            why it is needed, for messages
     limit_hit         what would happen without it
     """
@@ -47,24 +64,66 @@ class Rewind:
     before: Floats
     after: Floats
     retract_distance: float
+    at_rapid: bool
     reason: str = ""
     limit_hit: LimitHit | None = None
 
+    @property
+    def distance(self) -> float:
+        """How far the tool retracts, mm; finite."""
+        return self.retract_distance if math.isfinite(self.retract_distance) else MIN_RETRACT
+
     def turning_point(self, moves: Moves) -> Floats:
         """(3,) float64: where the tip is while the rotary axes turn, mm."""
-        distance = self.retract_distance if math.isfinite(self.retract_distance) else MIN_RETRACT
-        return np.asarray(moves.tip[self.row - 1] + distance * moves.axis[self.row - 1])
+        return np.asarray(moves.tip[self.row - 1] + self.distance * moves.axis[self.row - 1])
+
+    def rows(self, reengage_feed_share: float) -> list[_Row]:
+        """The rows that are added."""
+        far, near = self.distance, _NEAR_CUT
+        turn = _Row(far, Kind.RAPID, Phase.TRAVERSE, 1.0, turned=True)
+        back = _Row(0.0, Kind.LINEAR, Phase.ENGAGE, reengage_feed_share, turned=True)
+        if not self.at_rapid or far < 2.0 * near:
+            return [_Row(far, Kind.LINEAR, Phase.RETRACT, 1.0, turned=False), turn, back]
+        return [
+            _Row(near, Kind.LINEAR, Phase.RETRACT, 1.0, turned=False),
+            _Row(far, Kind.RAPID, Phase.RETRACT, 1.0, turned=False),
+            turn,
+            _Row(near, Kind.RAPID, Phase.TRAVERSE, 1.0, turned=True),
+            back,
+        ]
+
+    def seconds(self, machine: Machine, feed: float, reengage_feed_share: float) -> float:
+        """How long it takes at a feed in mm/min, without acceleration; rapids count where the machine states theirs."""
+        slides = [axis.rapid for axis in machine.axes if not axis.is_rotary and axis.rapid]
+        minutes = at = 0.0
+        for row in self.rows(reengage_feed_share):
+            speed = row.share * feed if row.kind is Kind.LINEAR else min(slides, default=math.inf)
+            minutes += abs(row.distance - at) / speed if speed > 0.0 else 0.0
+            at = row.distance
+        rapids = [machine.axes[column].rapid or math.inf for column in machine.rotary]
+        turning = float(np.max(np.abs(self.turns(machine)) / rapids))
+        return 60.0 * (minutes + turning)
+
+    def turns(self, machine: Machine) -> Floats:
+        """How far the rotary axes turn, degrees, (2,): endless ones by the shorter way."""
+        turns = self.after - self.before
+        return np.where(is_endless(machine), turns - 360.0 * np.rint(turns / 360.0), turns)
 
 
-def find_rewinds(chosen: ChosenPoses, poses: PlannedPoses, clearance: Clearance) -> tuple[Rewind, ...]:
-    """The rewinds that the chosen poses need, each with the limit that makes it necessary."""
+def find_rewinds(
+    chosen: ChosenPoses, poses: PlannedPoses, clearance: Clearance, *, at_rapid: bool
+) -> tuple[Rewind, ...]:
+    """The rewinds that the chosen poses need, each with the limit that makes it necessary.
+
+    ``at_rapid``: rapids are straight, so that the tool may move at rapid away from the cut.
+    """
     machine, moves = chosen.machine, chosen.operation.moves
     rewinds = []
     for row in np.flatnonzero(poses.outcome == REWIND).tolist():
         before, after = int(chosen.branch(row - 1)), int(chosen.branch(row))
         hit = chosen.limit_ahead(row, before, poses.rotary[row - 1])
         reason = "the path asks for it" if hit is None else f"otherwise {hit.describe(machine, moves)}"
-        rewind = _rewind_at(machine, moves, row, after, poses.rotary, clearance)
+        rewind = replace(_rewind_at(machine, moves, row, after, poses.rotary, clearance), at_rapid=at_rapid)
         turn = f"{chosen.describe(rewind.before)} to {chosen.describe(rewind.after)}, {reason}"
         rewinds.append(replace(rewind, reason=turn, limit_hit=hit))
     return tuple(rewinds)
@@ -75,17 +134,13 @@ def _rewind_at(machine: Machine, moves: Moves, row: int, branch: int, rotary: Fl
     after = displayed_positions(machine, continue_in_branch(machine, moves, slice(row - 1, row), branch, rotary[row]))
     low, high = machine.limits[list(machine.rotary)].T
     distance = clearance.retract_distance(moves.tip[row - 1], moves.axis[row - 1])
-    return Rewind(row, rotary[row - 1], np.clip(after[0], low, high), distance)
+    return Rewind(row, rotary[row - 1], np.clip(after[0], low, high), distance, at_rapid=False)
 
 
 def retract_positions(machine: Machine, moves: Moves, rewind: Rewind) -> Floats:
     """(k, 5) float64: positions of all axes during the turn of a rewind, mm and degrees."""
     share = np.linspace(0.0, 1.0, _CHECKED_POSES)[:, None]
-    before, after = np.array(rewind.before), np.array(rewind.after)
-    for r, column in enumerate(machine.rotary):
-        if machine.axes[column].endless:
-            after[r] = before[r] + (after[r] - before[r]) - 360.0 * np.rint((after[r] - before[r]) / 360.0)
-    rotary = before + share * (after - before)
+    rotary = rewind.before + share * rewind.turns(machine)
     tip = np.repeat(rewind.turning_point(moves)[None], _CHECKED_POSES, axis=0)
     return slide_positions(machine, tip, rotary)
 
@@ -121,58 +176,62 @@ def insert_rewinds(
     """The operation and its rotary positions (n, 2), degrees, with the rows of all rewinds."""
     if not rewinds:
         return operation, rotary
-    rows = _rows(rewinds)
-    poses = np.concatenate([(rewind.before, rewind.after, rewind.after) for rewind in rewinds])
-    shifted = [replace(event, row=int(_new_row(rows, event.row))) for event in operation.events]
-    messages = [_message(operation, rewind, int(_new_row(rows, rewind.row)) - ROWS_PER_REWIND) for rewind in rewinds]
+    added = [rewind.rows(reengage_feed_share) for rewind in rewinds]
+    counts = np.array([len(rows) for rows in added])
+    poses = np.array(
+        [r.after if row.turned else r.before for r, rows in zip(rewinds, added, strict=True) for row in rows]
+    )
+    shifted = [replace(event, row=int(_new_row(rewinds, event.row))) for event in operation.events]
+    firsts = [int(_new_row(rewinds, rewind.row)) - int(count) for rewind, count in zip(rewinds, counts, strict=True)]
+    messages = [_message(operation, rewind, first) for rewind, first in zip(rewinds, firsts, strict=True)]
     return (
         replace(
             operation,
-            moves=_with_rows(operation.moves, rewinds, reengage_feed_share),
-            arcs=replace(operation.arcs, row=np.asarray(_new_row(rows, operation.arcs.row))),
+            moves=_with_rows(operation.moves, rewinds, added),
+            arcs=replace(operation.arcs, row=np.asarray(_new_row(rewinds, operation.arcs.row))),
             splines=Splines.empty(),  # operations with rewinds are simultaneous, and their splines lines
             events=tuple(sorted([*shifted, *messages], key=lambda event: event.row)),
         ),
-        np.insert(rotary, np.repeat(rows, ROWS_PER_REWIND), poses, axis=0),
+        np.insert(rotary, np.repeat(_rows(rewinds), counts), poses, axis=0),
     )
 
 
 def row_after_rewinds(row: int, rewinds: Sequence[Rewind]) -> int:
     """The index of a row of the operation once the rows of all rewinds are in."""
-    return int(_new_row(_rows(rewinds), row))
+    return int(_new_row(rewinds, row))
 
 
 def _rows(rewinds: Sequence[Rewind]) -> Ints:
     return np.array([rewind.row for rewind in rewinds], np.int64)
 
 
-def _new_row(rewind_rows: Ints, row: int | Ints) -> Ints:
-    return np.asarray(row + ROWS_PER_REWIND * np.searchsorted(rewind_rows, row, side="right"))
+def _new_row(rewinds: Sequence[Rewind], row: int | Ints) -> Ints:
+    before = np.cumsum([0, *(len(rewind.rows(1.0)) for rewind in rewinds)])
+    return np.asarray(row + before[np.searchsorted(_rows(rewinds), row, side="right")])
 
 
 def _message(operation: Operation, rewind: Rewind, row: int) -> Event:
     return Message(row, int(operation.moves.line[rewind.row - 1]), f"Rewind: {rewind.reason}")
 
 
-def _with_rows(moves: Moves, rewinds: Sequence[Rewind], reengage_feed_share: float) -> Moves:
-    rows = _rows(rewinds)
-    at, source = np.repeat(rows, ROWS_PER_REWIND), rows - 1
-    away = np.array([rewind.turning_point(moves) for rewind in rewinds])
-    tip = np.stack((away, away, moves.tip[source]), axis=1).reshape(-1, 3)
-    feed = moves.feed[rows]
+def _with_rows(moves: Moves, rewinds: Sequence[Rewind], added: Sequence[Sequence[_Row]]) -> Moves:
+    rows = [row for each in added for row in each]
+    at = np.repeat(_rows(rewinds), [len(each) for each in added])
+    source = at - 1
+    away = np.array([row.distance for row in rows])[:, None]
+    share = np.array([row.share for row in rows])
     return Moves(
-        np.insert(moves.tip, at, tip, axis=0),
-        np.insert(moves.axis, at, np.repeat(moves.axis[source], ROWS_PER_REWIND, axis=0), axis=0),
-        np.insert(moves.kind, at, np.tile([Kind.LINEAR, Kind.RAPID, Kind.LINEAR], len(rows))),
-        np.insert(moves.phase, at, np.tile([Phase.RETRACT, Phase.TRAVERSE, Phase.ENGAGE], len(rows))),
-        np.insert(moves.feed, at, np.stack((feed, feed, reengage_feed_share * feed), axis=1).ravel()),
-        np.insert(moves.per_rev, at, np.repeat(moves.per_rev[rows], ROWS_PER_REWIND)),
-        np.insert(moves.line, at, np.repeat(moves.line[source], ROWS_PER_REWIND)),
-        None if moves.normal is None else np.insert(moves.normal, at, _normals(moves.normal[source]), axis=0),
+        np.insert(moves.tip, at, moves.tip[source] + away * moves.axis[source], axis=0),
+        np.insert(moves.axis, at, moves.axis[source], axis=0),
+        np.insert(moves.kind, at, [row.kind for row in rows]),
+        np.insert(moves.phase, at, [row.phase for row in rows]),
+        np.insert(moves.feed, at, share * moves.feed[at]),
+        np.insert(moves.per_rev, at, moves.per_rev[at]),
+        np.insert(moves.line, at, moves.line[source]),
+        None if moves.normal is None else np.insert(moves.normal, at, _normals(moves.normal[source], away), axis=0),
     )
 
 
-def _normals(normal: Floats) -> Floats:
-    """(3 n, 3): surface normals of the inserted rows; only the third, back at the point, has that of its source."""
-    away = np.full_like(normal, np.nan)
-    return np.stack((away, away, normal), axis=1).reshape(-1, 3)
+def _normals(normal: Floats, away: Floats) -> Floats:
+    """(n, 3): surface normals of the inserted rows; only those back at the point have that of their source."""
+    return np.where(away > 0.0, np.nan, normal)

@@ -5,7 +5,7 @@ Frame: every mesh is in the machine frame with all axes at zero. Units: mm.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Final
@@ -14,7 +14,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.definitions.extends import is_within
-from trunnion.errors import InputError, Problem, Severity
+from trunnion.errors import InputError, Problem, Severity, unusable_file
 from trunnion.machines import BodyBox, BodyCylinder, BodyFile, Machine, MachineBody
 from trunnion.machines.links import SPINDLE, WORKPIECE
 from trunnion.simulation.meshes import TriangleMesh, box_mesh, cylinder_mesh, load_mesh, revolved_mesh
@@ -171,6 +171,8 @@ def _file_beside(shape: BodyFile) -> Path:
     if not is_within(path, definition.parent):
         cure = "put the mesh into the folder of the definition or below it"
         raise InputError(Problem(shape.file, 0, "leads out of the folder of the definition", cure))
+    if path.exists() and (unusable := unusable_file(path, "a mesh")):
+        raise InputError(replace(unusable, file=shape.file))
     return path
 
 

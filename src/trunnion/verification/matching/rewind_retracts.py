@@ -2,8 +2,9 @@
 
 A planner inserts them where a rotary axis must rewind, and no CL point belongs to them. They are recognized by what
 they do, in programs of any origin: motions between two CL points that leave the first along the tool axis away from the
-part, turn rotary axes only out there, and end where they began, under the same tool axis, at a feed. While the rotary
-axes turn the tip is held, by TCP or by slides that follow. Any other motion without a CL point stays a fault.
+part at a feed, turn rotary axes only out there, and end where they began, under the same tool axis, at a feed. There
+the tool may move along its axis at rapid with TCP, under which rapids are straight. While the rotary axes turn the tip
+is held, by TCP or by slides that follow. Any other motion without a CL point stays a fault.
 """
 
 from collections.abc import Sequence
@@ -17,7 +18,7 @@ from trunnion.model.feed_path import row_feed_path_lengths
 from trunnion.model.run import PositionChunk, Run
 from trunnion.model.toolpath import Kind
 
-#: How far from the part the rotary axes may turn at the earliest, mm, and how much they must turn, degrees.
+#: How far from the part rotary axes may turn and rapids go at the earliest, mm, and how much they must turn, degrees.
 _MIN_RETRACT, _MIN_TURN = 1.0, 1.0
 
 #: Smaller rotary motion is none, degrees; rounding of printed values is less.
@@ -145,7 +146,7 @@ def _holds_tip(run: Run, first: int, end: int, positions: PositionChunk) -> bool
 
 
 def _turns_outside_at_feed(run: Run, first: int, end: int, out: Floats, turns: Floats, near: float) -> bool:
-    """Whether the rotary axes turn away from the part only, and the tool goes out and back at a feed.
+    """Whether the rotary axes turn away from the part only, and the tool leaves it and comes back to it at a feed.
 
     It must not come back faster than the cut goes on.
 
@@ -153,10 +154,11 @@ def _turns_outside_at_feed(run: Run, first: int, end: int, out: Floats, turns: F
     turns  (end - first,)      rotary motion in each row, degrees
     """
     outside = (out[1:] >= _MIN_RETRACT) & (np.abs(np.diff(out)) <= near)
+    straight = (np.minimum(out[1:], out[:-1]) >= _MIN_RETRACT - near) & run.state.tcp.part(first, end)
     lines, rapids = run.kind[first:end] == Kind.LINEAR, run.kind[first:end] == Kind.RAPID
     feed = run.state.feed.part(first, end)
     turns_outside = bool((np.abs(np.cumsum(turns)) > _MIN_TURN).any()) and bool((outside | (turns <= _STILL)).all())
-    at_feed = bool((lines | (rapids & outside)).all()) and bool((feed[lines] > 0.0).all())
+    at_feed = bool((lines | (rapids & (outside | straight))).all()) and bool((feed[lines] > 0.0).all())
     return turns_outside and at_feed and _tip_feed(run, end - 1) <= _tip_feed(run, end) * (1.0 + _FEED_SHARE)
 
 

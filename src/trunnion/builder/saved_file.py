@@ -1,0 +1,96 @@
+"""The file of a definition on disk: what the page may read and write, and what it must not change in passing.
+
+In:     a folder, a name, the text of the page, whose lines end with a newline alone.
+Out:    the file as it is, and the file as it is saved: with its byte order mark and the line ends that it had.
+"""
+
+import difflib
+import re
+from pathlib import Path
+from typing import Final
+
+from trunnion.builder.draft import MOST_LETTERS
+from trunnion.definitions.extends import is_within
+from trunnion.errors import InputError, Problem, unusable_file
+
+#: A name that files have on every system: no folder, no device, nothing that Windows has no letter for.
+_FILE_NAME: Final = re.compile(
+    r"(?!(?:con|prn|aux|nul|com\d|lpt\d)\.)[^\x00-\x1f\x7f<>:\"/\\|?*]{1,120}\.toml", re.IGNORECASE
+)
+
+_MARK: Final = "\ufeff"
+
+#: Line ends of longer files are not found line by line: it takes the square of them.
+_MOST_COMPARED: Final = 5_000
+
+
+def is_file_name(name: str) -> bool:
+    """Return whether a definition can have this name, on any system."""
+    return name.endswith(".toml") and _FILE_NAME.fullmatch(name) is not None
+
+
+def check_place(file: Path) -> None:
+    """Check that a file, if it is there, can be read, and that no link leads from it out of its folder.
+
+    Raises
+    ------
+    InputError
+        If not.
+    """
+    if not is_within(file, file.parent):
+        cure = f"open {file.resolve()} itself, or choose another name"
+        raise InputError(Problem(str(file), 0, "is a link that leads out of its folder", cure))
+    if file.exists() and (unusable := unusable_file(file, "the TOML file of a machine")):
+        raise InputError(unusable)
+
+
+def read_raw(file: Path) -> str:
+    """Return the text of a file, with its byte order mark and its line ends.
+
+    Raises
+    ------
+    InputError
+        If it is not there, no regular file, too long, or not UTF-8.
+    """
+    if unusable := unusable_file(file, "the TOML file of a machine"):
+        raise InputError(unusable)
+    try:
+        with file.open(encoding="utf-8", newline="") as stream:
+            text = stream.read(MOST_LETTERS + 2)
+    except (OSError, UnicodeDecodeError) as error:
+        why = "is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else f"cannot be read: {error.strerror}"
+        raise InputError(Problem(str(file), 0, why, "choose the TOML file of a machine")) from None
+    if len(text) > MOST_LETTERS:
+        raise InputError(Problem(str(file), 0, f"has more than {MOST_LETTERS} letters", "edit the file itself"))
+    return text
+
+
+def page_text(raw: str) -> str:
+    """Return the text of a file as the page has it."""
+    return raw.removeprefix(_MARK).replace("\r\n", "\n")
+
+
+def file_text(text: str, old: str) -> str:
+    """Return a text of the page as the file gets it: each line that it had ends as before, new ones as most do.
+
+    Parameters
+    ----------
+    text
+        Of the page.
+    old
+        Of ``read_raw``; empty: there is no file yet.
+    """
+    mark = _MARK if old.startswith(_MARK) else ""
+    windows = old.count("\r\n")
+    most = "\r\n" if 2 * windows > old.count("\n") else "\n"
+    lines = text.split("\n")
+    ends = [most] * len(lines)
+    if 0 < windows < old.count("\n"):
+        had = old.removeprefix(_MARK).split("\n")
+        before = [line.removesuffix("\r") for line in had]
+        ended = ["\r\n" if line.endswith("\r") else "\n" for line in had[:-1]] + [most]
+        if max(len(lines), len(had)) <= _MOST_COMPARED:
+            for a, b, size in difflib.SequenceMatcher(None, before, lines, autojunk=False).get_matching_blocks():
+                ends[b : b + size] = ended[a : a + size]
+    ends[-1] = ""
+    return mark + "".join(line + end for line, end in zip(lines, ends, strict=True))

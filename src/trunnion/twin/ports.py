@@ -1,0 +1,30 @@
+"""Ports of this computer, taken before any work."""
+
+import socket
+
+from trunnion.errors import InputError, Problem
+
+
+def listen(what: str, host: str, port: int, option: str) -> socket.socket:
+    """Take a port; 0: a free one.
+
+    Parameters
+    ----------
+    what
+        What is served there, for the message.
+    host, port
+        An address of this computer, and the port.
+    option
+        The option that chooses another port, for the message.
+
+    Raises
+    ------
+    InputError
+        If it is taken, or the address is none of this computer's.
+    """
+    try:
+        return socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET)
+    except (OSError, OverflowError) as error:
+        fault = f"cannot be served on {host}, port {port}: {getattr(error, 'strerror', None) or error}"
+        cure = f"choose another one with {option}; 0 takes a free one"
+        raise InputError(Problem(what, 0, fault, cure)) from None

@@ -1,0 +1,239 @@
+"""Runs a twin: goes with the wall time through the program, and tells clients what the machine shows.
+
+Every end of a block is told, however fast the program runs: where clients cannot follow, the program waits for them.
+"""
+
+import asyncio
+import math
+import time
+from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
+from typing import Final, Protocol
+
+import numpy as np
+
+from trunnion.arrays import Floats, Ints
+from trunnion.twin.playback import Playback, PlayState, Stretch
+from trunnion.twin.snapshots import Snapshots, TwinProgram
+
+#: Times that are told before it is looked whether clients follow; queues of twice as many values lose none.
+_AT_A_TIME: Final = 4
+
+#: Seconds that the program waits for a client that fetches nothing any more.
+_PATIENCE: Final = 2.0
+
+#: Seconds between two looks at clients that do not follow.
+_LOOK: Final = 0.002
+
+_EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
+
+
+class Outlet(Protocol):
+    """Somebody who tells clients: OPC UA or MTConnect."""
+
+    async def show(self, snapshots: Snapshots, stamps: list[datetime], microseconds: list[int]) -> None:
+        """Tell what the machine shows at some times."""
+
+    async def changed(self, playback: Playback, wall: float) -> None:
+        """Tell what the program does now."""
+
+    async def message(self, text: str, stamp: datetime) -> None:
+        """Tell a message of the program."""
+
+    async def alarm(self, identifier: str, text: str, stamp: datetime) -> None:
+        """Tell an alarm of the machine."""
+
+    def lagging(self) -> dict[object, int]:
+        """Clients that do not follow, and how much each has fetched so far."""
+
+
+class WallClock:
+    """The wall time, which goes on evenly even if somebody sets the clock of the computer."""
+
+    def __init__(self) -> None:
+        self._offset = time.time() - time.monotonic()
+
+    def now(self) -> float:
+        """Seconds since 1970."""
+        return self._offset + time.monotonic()
+
+
+class Twin:
+    """A program that runs on a machine, and is operated by clients.
+
+    Parameters
+    ----------
+    program
+        What runs.
+    playback
+        Its clock.
+    period
+        Seconds of the wall between two samples; of the program, where it runs as fast as it can.
+    clock
+        The wall time, seconds since 1970.
+    """
+
+    def __init__(
+        self, program: TwinProgram, playback: Playback, period: float, clock: Callable[[], float] | None = None
+    ) -> None:
+        self.program, self.playback, self.period = program, playback, period
+        self.clock = clock or WallClock().now
+        self.outlets: list[Outlet] = []
+        self._last_stamp = 0
+        self._beyond = np.zeros(5, np.bool_)
+        self._lost: dict[object, int] = {}
+        self._told = -1.0
+        self._turn = asyncio.Lock()  # what is told is told in the order of its time, whoever asks
+
+    # What clients operate
+
+    async def start(self) -> bool:
+        """Start the program, or go on with it; whether it did not run."""
+        async with self._turn:
+            anew = self.playback.state in (PlayState.READY, PlayState.ENDED)
+            if not self.playback.start(self.clock()):
+                return False
+            if anew:
+                await self._show_start()
+            await self._tell_state()
+            return True
+
+    async def hold(self) -> bool:
+        """Hold all axes; whether the program was running."""
+        async with self._turn:
+            await self._advance()
+            if not self.playback.hold():
+                return False
+            await self._tell_state()
+            return True
+
+    async def reset(self) -> bool:
+        """Go back to the start of the program."""
+        async with self._turn:
+            self.playback.reset()
+            await self._show_start()
+            await self._tell_state()
+            return True
+
+    async def set_override(self, percent: float) -> bool:
+        """Set the feed override; whether it is between 0 and 100."""
+        if not 0.0 <= percent <= 100.0:
+            return False
+        async with self._turn:
+            await self._advance()  # what has passed until now went as it was before
+            self.playback.override = percent
+            await self._tell_state()
+            return True
+
+    # The run
+
+    async def run(self, *, started: bool = True) -> None:
+        """Go on until cancelled; ``started``: without waiting for a client to start the program."""
+        async with self._turn:
+            await self._show_start()
+            await self._tell_state()
+        if started:
+            await self.start()
+        while True:
+            await self._sleep()
+            async with self._turn:
+                await self._advance()
+
+    async def _advance(self) -> None:
+        """Tell what has run since the last time."""
+        state = self.playback.state
+        if await self._wait_for_clients():
+            self.playback.skip(self.clock())  # the program has waited as well
+        for stretch in self.playback.advance(self.clock()):
+            await self._tell(stretch)
+        if self.playback.state is not state or self.clock() - self._told >= 1.0:
+            await self._tell_state()
+
+    async def _sleep(self) -> None:
+        runs_free = self.playback.speed is None and self.playback.state is PlayState.RUNNING
+        left = self.period - math.fmod(self.clock(), self.period)
+        await asyncio.sleep(0.0 if runs_free else left)
+
+    async def _wait_for_clients(self) -> bool:
+        """Wait until all clients that still fetch have room; whether that took any time."""
+        waiting: dict[object, tuple[int, float]] = {}
+        while True:
+            behind = {client: fetched for outlet in self.outlets for client, fetched in outlet.lagging().items()}
+            # Who is given up counts again as soon as he fetches.
+            self._lost = {client: fetched for client, fetched in self._lost.items() if behind.get(client) == fetched}
+            now, missing = time.monotonic(), behind.keys() - self._lost.keys()
+            if not missing:
+                return bool(waiting)
+            for client in missing:
+                before, since = waiting.get(client, (-1, now))
+                waiting[client] = behind[client], since if before == behind[client] else now
+                if now - waiting[client][1] > _PATIENCE:
+                    self._lost[client] = behind[client]
+            await asyncio.sleep(_LOOK)
+
+    async def _tell(self, stretch: Stretch) -> None:
+        """Tell all ends of blocks in a stretch, and samples between them."""
+        rows, ends = self.playback.ends_within(stretch)
+        samples = self._samples(stretch)
+        seconds = np.concatenate((ends, samples))
+        ended = np.concatenate((rows, np.full(len(samples), -1)))
+        order = np.argsort(seconds, kind="stable")
+        seconds, ended = seconds[order], ended[order]
+        wall = stretch.wall(seconds)
+        for first in range(0, len(seconds), _AT_A_TIME):
+            part = slice(first, first + _AT_A_TIME)
+            await self._wait_for_clients()
+            await self._show(seconds[part], ended[part], wall[part])
+            await asyncio.sleep(0.0)
+        await self._tell_events(stretch)
+
+    def _samples(self, stretch: Stretch) -> Floats:
+        """Times between the ends of blocks at which the machine is looked at."""
+        period = self.period
+        if self.playback.speed is None:
+            grid = np.arange(math.floor(stretch.begin / period) + 1, math.floor(stretch.end / period) + 1) * period
+        else:
+            first, last = math.floor(stretch.wall_begin / period) + 1, math.floor(stretch.wall_end / period)
+            grid = stretch.program(np.arange(first, last + 1, dtype=np.float64) * period)
+        stands = self.playback.state is not PlayState.RUNNING
+        return np.append(grid, stretch.end) if stands else np.asarray(grid, np.float64)
+
+    async def _show(self, seconds: Floats, ended: Ints, wall: Floats) -> None:
+        snapshots = self.program.at(seconds, ended)
+        microseconds = []
+        for each in np.rint(wall * 1e6).astype(np.int64).tolist():
+            # Each time has a stamp of its own, so that what is told twice can be told apart from what changed.
+            self._last_stamp = max(each, self._last_stamp + 1)
+            microseconds.append(self._last_stamp)
+        stamps = [_EPOCH + timedelta(microseconds=each) for each in microseconds]
+        for outlet in self.outlets:
+            await outlet.show(snapshots, stamps, microseconds)
+        await self._watch_travel(snapshots, stamps)
+
+    async def _watch_travel(self, snapshots: Snapshots, stamps: list[datetime]) -> None:
+        """Tell when an axis leaves its travel."""
+        machine = self.program.machine
+        for k, beyond in enumerate(self.program.beyond_travel(snapshots)):
+            for column in np.flatnonzero(beyond & ~self._beyond).tolist():
+                axis, block = machine.axes[column], snapshots.blocks[k]
+                place = block.number or f"line {block.line}"
+                text = f"axis {axis.name} is beyond its travel of {axis.low:g} to {axis.high:g} in {place}"
+                for outlet in self.outlets:
+                    await outlet.alarm(f"travel {axis.name}", text, stamps[k])
+            self._beyond = beyond
+
+    async def _tell_events(self, stretch: Stretch) -> None:
+        for timed in self.program.events_within(stretch.begin, stretch.end):
+            if timed.event.kind == "message" and timed.event.value:
+                wall = float(stretch.wall(np.array([timed.seconds]))[0])
+                for outlet in self.outlets:
+                    await outlet.message(str(timed.event.value), _EPOCH + timedelta(seconds=wall))
+
+    async def _show_start(self) -> None:
+        self._beyond[:] = False
+        await self._show(np.zeros(1), np.full(1, -1), np.array([self.clock()]))
+
+    async def _tell_state(self) -> None:
+        self._told = self.clock()
+        for outlet in self.outlets:
+            await outlet.changed(self.playback, self._told)

@@ -1,0 +1,91 @@
+"""Serves a twin: OPC UA, and MTConnect beside it, until it is ended."""
+
+import asyncio
+import socket
+from collections.abc import Callable, Coroutine
+from dataclasses import dataclass
+
+from trunnion.twin.mtconnect.adapter import MTConnectAdapter
+from trunnion.twin.opcua.outlet import OpcUaOutlet
+from trunnion.twin.opcua.server import Security, TwinServer
+from trunnion.twin.playback import Playback
+from trunnion.twin.running import Twin
+from trunnion.twin.snapshots import TwinProgram
+
+
+@dataclass(frozen=True, slots=True)
+class TwinAddresses:
+    """Where a twin is served.
+
+    opcua        address of the OPC UA server
+    mtconnect    host and port of the MTConnect adapter; empty: there is none
+    fingerprint  of the server's certificate (SHA-1, as clients show it); empty: there is none
+    """
+
+    opcua: str
+    mtconnect: str
+    fingerprint: str
+
+
+@dataclass(frozen=True, slots=True)
+class Ports:
+    """Sockets that are taken already, and the address by which clients name this computer."""
+
+    host: str
+    opcua: socket.socket
+    mtconnect: socket.socket | None
+
+
+async def serve_program(
+    program: TwinProgram,
+    playback: Playback,
+    ports: Ports,
+    *,
+    period: float,
+    security: Security | None,
+    started: bool,
+    ready: Callable[[TwinAddresses], None],
+) -> None:
+    """Serve a program until cancelled.
+
+    Parameters
+    ----------
+    program, playback
+        What runs, and its clock.
+    ports
+        Where it is served.
+    period
+        Seconds between two samples.
+    security
+        Who may use it; None: anybody on this computer.
+    started
+        It runs at once; else a client starts it.
+    ready
+        Is called when clients can connect.
+    """
+    twin = Twin(program, playback, period)
+    server = TwinServer(program, twin, ports.opcua, ports.host, security)
+    publisher = await server.prepare(playback.speed)
+    twin.outlets.append(OpcUaOutlet(program, server, publisher, twin.clock()))
+    adapter = MTConnectAdapter(program, ports.mtconnect) if ports.mtconnect is not None else None
+    if adapter is not None:
+        twin.outlets.append(adapter)
+    try:
+        await server.start()
+        if adapter is not None:
+            await adapter.begin()
+        ready(TwinAddresses(server.address, adapter.address if adapter else "", server.fingerprint))
+        await twin.run(started=started)
+    finally:
+        if adapter is not None:
+            await adapter.end()
+        await server.stop()
+
+
+def run_until_ended(serving: Callable[[], Coroutine[None, None, None]]) -> None:
+    """Run a server until Ctrl-C, which is how it is meant to end."""
+    try:
+        asyncio.run(serving())
+    except KeyboardInterrupt as end:
+        if type(end) is not KeyboardInterrupt:  # another signal
+            raise

@@ -1,0 +1,51 @@
+"""Twins that run in a process of their own, as a user starts them, and programs in time."""
+
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from tests.support.locations import ROOT, YL569
+
+HUB_ROUGH = YL569 / "2_hub_rough.expected.mpf"
+BLADE_FINISH = YL569 / "3_blade_finish.expected.mpf"
+
+
+@dataclass(frozen=True)
+class ServedTwin:
+    """A command ``trunnion twin`` that serves; its addresses, and its process."""
+
+    opcua: str
+    mtconnect: tuple[str, int]
+    process: subprocess.Popen[str]
+
+
+@contextmanager
+def served(program: Path, *options: str, home: Path | None = None) -> Iterator[ServedTwin]:
+    """Serve a program on free ports until the end of the block."""
+    command = [sys.executable, "-m", "trunnion", "twin", str(program), "--machine", "yl569", "--port", "0"]
+    command += ["--adapter-port", "0", *options]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
+    if home is not None:
+        environment |= {"XDG_DATA_HOME": str(home), "LOCALAPPDATA": str(home)}
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment, encoding="utf-8")
+    try:
+        assert process.stderr is not None
+        told = []
+        for line in process.stderr:
+            told.append(line)
+            if "Ctrl-C" in line:
+                break
+        text = "".join(told)
+        opcua = re.search(r"opc\.tcp://\S+", text)
+        agents = re.search(r"connects to ([\d.]+):(\d+)", text)
+        assert opcua is not None, text
+        place = (agents[1], int(agents[2])) if agents else ("", 0)
+        yield ServedTwin(opcua[0], place, process)
+    finally:
+        process.terminate()
+        process.communicate()

@@ -1,0 +1,132 @@
+"""The fastest run: the published case, the closed form of a straight motion, and what no path or limits are."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.timing.published_path import LIMITS, PATH
+from trunnion.arrays import Flags, Floats
+from trunnion.timing import AxisDynamics, AxisMotion, FastestRun, SmoothPath, fastest_run
+
+
+@pytest.fixture(scope="module")
+def published() -> FastestRun:
+    return fastest_run(PATH, LIMITS)
+
+
+def dense_seconds(run: FastestRun) -> Floats:
+    """Times spread evenly, and both sides of the ends of all pieces."""
+    sides = [run.begins + shift for shift in (-1e-9, 0.0, 1e-9)]
+    return np.sort(np.clip(np.concatenate((np.linspace(0.0, run.duration, 60001), *sides)), 0.0, run.duration))
+
+
+def greatest_share(motion: AxisMotion, limits: AxisDynamics) -> float:
+    pairs = (
+        (motion.velocity, limits.speed), (motion.acceleration, limits.acceleration), (motion.jerk, limits.jerk),
+    )  # fmt: skip
+    return max(float((np.abs(values) / limit).max()) for values, limit in pairs)
+
+
+def test_the_published_case_takes_at_most_8_3_seconds(published: FastestRun) -> None:
+    assert 7.11 < published.duration <= 8.3
+
+
+def test_no_axis_exceeds_a_limit_anywhere(published: FastestRun) -> None:
+    share = greatest_share(published.at(dense_seconds(published)), LIMITS)
+    assert 0.999 < share <= 1.0 + 1e-6
+
+
+def test_the_run_begins_and_ends_at_rest_at_the_ends_of_the_path(published: FastestRun) -> None:
+    motion = published.at(np.array([0.0, published.duration]))
+    ends = PATH.derivatives(np.array([0.0, 1.0]), np.array([False, True]))[0]
+    assert motion.position == pytest.approx(ends, abs=1e-12)
+    assert np.abs(motion.velocity).max() < 1e-12
+    assert np.abs(motion.acceleration).max() < 1e-9
+
+
+def test_velocities_accelerations_and_jerks_are_those_of_the_positions_in_time(published: FastestRun) -> None:
+    step = 2e-5
+    seconds = np.linspace(0.01, published.duration - 0.01, 1999)
+    far = np.abs(seconds[:, None] - published.begins).min(axis=1) > 2.0 * step
+    before, now, after = (published.at(seconds[far] + shift) for shift in (-step, 0.0, step))
+    chain = (
+        (before.position, after.position, now.velocity), (before.velocity, after.velocity, now.acceleration),
+        (before.acceleration, after.acceleration, now.jerk),
+    )  # fmt: skip
+    for low, high, derivative in chain:
+        assert (high - low) / (2.0 * step) == pytest.approx(derivative, rel=1e-4, abs=2e-2)
+
+
+def test_the_parameter_only_grows(published: FastestRun) -> None:
+    assert (np.diff(published.at(np.linspace(0.0, published.duration, 5001)).parameter) > 0.0).all()
+
+
+def straight(steps: Floats) -> SmoothPath:
+    def derivatives(parameter: Floats, before: Flags) -> Floats:
+        found = np.zeros((4, len(parameter), len(steps)))
+        found[0], found[1] = parameter[:, None] * steps, steps
+        return found
+
+    return SmoothPath(derivatives, np.array([0.0, 1.0]))
+
+
+def s_curve_seconds(length: float, speed: float, acceleration: float, jerk: float) -> float:
+    """The fastest motion over a length from rest to rest: the textbook's, with up to seven phases."""
+    ramp = min(math.cbrt(length / (2.0 * jerk)), math.sqrt(speed / jerk), acceleration / jerk)
+    # jerk * ramp * (2 ramp^2 + 3 ramp even + even^2) = length without a part at full speed
+    reach = length / (jerk * ramp)
+    even = 0.5 * (math.sqrt(max(ramp**2 + 4.0 * reach, 0.0)) - 3.0 * ramp)
+    even = max(min(even, speed / (jerk * ramp) - ramp), 0.0)
+    top = jerk * ramp * (ramp + even)
+    rest = length - jerk * ramp * (2.0 * ramp**2 + 3.0 * ramp * even + even**2)
+    return 4.0 * ramp + 2.0 * even + max(rest, 0.0) / top
+
+
+@settings(deadline=None, max_examples=6)
+@given(
+    length=st.floats(0.1, 2000.0),
+    speed=st.floats(1.0, 500.0),
+    acceleration=st.floats(10.0, 5000.0),
+    jerk=st.floats(100.0, 50000.0),
+    shares=st.lists(st.floats(-1.0, 1.0), min_size=4, max_size=4),
+)
+def test_a_straight_motion_is_the_s_curve_of_its_farthest_axis(
+    length: float, speed: float, acceleration: float, jerk: float, shares: list[float]
+) -> None:
+    limits = AxisDynamics(np.full(5, speed), np.full(5, acceleration), np.full(5, jerk))
+    run = fastest_run(straight(length * np.array([1.0, *shares])), limits, 40)
+    least = s_curve_seconds(length, speed, acceleration, jerk)
+    assert least * (1.0 - 1e-9) <= run.duration <= 1.05 * least
+    assert greatest_share(run.at(dense_seconds(run)), limits) <= 1.0 + 1e-6
+
+
+def test_a_hundred_times_slower_axes_take_a_hundred_times_as_long() -> None:
+    slow = AxisDynamics(LIMITS.speed / 100.0, LIMITS.acceleration / 1e4, LIMITS.jerk / 1e6)
+    assert fastest_run(PATH, slow, 40).duration == pytest.approx(
+        100.0 * fastest_run(PATH, LIMITS, 40).duration, rel=1e-4
+    )
+
+
+def test_an_axis_without_limits_does_not_count() -> None:
+    none = np.array([math.inf, 1.0, 1.0, 1.0, 1.0])
+    limits = AxisDynamics(100.0 * none, 1000.0 * none, 10000.0 * none)
+    run = fastest_run(straight(np.array([1e4, 10.0, 0.0, 0.0, 0.0])), limits, 40)
+    alone = fastest_run(straight(np.array([0.0, 10.0, 0.0, 0.0, 0.0])), limits, 40)
+    assert run.duration == pytest.approx(alone.duration, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("path", "jerk", "message"),
+    [
+        (straight(np.ones(5)), math.inf, "no axis has a limit of its jerk"),
+        (straight(np.ones(5)), 0.0, "limits must be positive"),
+        (straight(np.zeros(5)), 1000.0, "does not move"),
+        (straight(np.full(5, np.nan)), 1000.0, "is not finite"),
+    ],
+)  # fmt: skip
+def test_paths_and_limits_without_a_fastest_run_are_refused(path: SmoothPath, jerk: float, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        fastest_run(path, AxisDynamics(np.full(5, 100.0), np.full(5, 1000.0), np.full(5, jerk)), 20)
