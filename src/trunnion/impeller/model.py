@@ -120,7 +120,10 @@ def _fillets(impeller: Impeller, tolerance: float) -> list[tuple[Blade, Fillet]]
         If one finds no place.
     """
     definition, blades = impeller.definition, list(impeller.blades())
-    stations = root_stations(2 * _count(impeller, tolerance), 24, round_trailing=definition.trailing_edge == "round")
+    # The ball goes round the edges on a circle that is by its own radius larger than theirs.
+    around = _segments(definition.hub_thickness / 2.0 + definition.fillet, tolerance) // 2
+    is_round = definition.trailing_edge == "round"
+    stations = root_stations(2 * _count(impeller, tolerance), max(around, 24), round_trailing=is_round)
     found = []
     for blade in [impeller.blade] if impeller.splitter is None else [impeller.blade, impeller.splitter]:
         try:

@@ -106,7 +106,11 @@ def impeller_solid(impeller: Impeller, tolerance: float) -> ImpellerSolid:
     file = impeller.definition.file
     with ThreadPoolExecutor(1) as beside:
         waiting = beside.submit(impeller_model, impeller, _MESH * impeller.definition.stock.diameter)
-        made, deviation = _within(impeller, tolerance)
+        try:
+            made, deviation = _within(impeller, tolerance)
+        except InputError:
+            waiting.result()  # what makes no mesh either is named with its line
+            raise
         mesh = waiting.result().mesh
     if abs(made.volume - mesh.volume) > _VOLUME * mesh.volume:
         what = f"its solid has {made.volume:.1f} mm³, its mesh {mesh.volume:.1f} mm³"
