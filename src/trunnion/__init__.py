@@ -24,6 +24,7 @@ Functions
     cut_impeller   definition, machine -> CL files and one proven program of all operations
     load_impeller  definition and measured points -> Impeller: blades, hub and shroud as surfaces
     model_impeller Impeller -> ImpellerModel: a closed mesh
+    write_impeller_step  Impeller -> STEP file of a solid, and ImpellerSolid: how good it is
     write_report   Verification -> page or data
     write_plot     ClDescription -> page with the path in space
     write_view     NC program -> page that shows it on its machine, block by block
@@ -52,6 +53,7 @@ if TYPE_CHECKING:
     from trunnion.api.impeller_cutting import cut_impeller as cut_impeller
     from trunnion.api.impellers import load_impeller as load_impeller
     from trunnion.api.impellers import model_impeller as model_impeller
+    from trunnion.api.impellers import write_impeller_step as write_impeller_step
     from trunnion.api.observer import Observer as Observer
     from trunnion.api.planning import plan as plan
     from trunnion.api.plotting import write_plot as write_plot
@@ -77,6 +79,7 @@ if TYPE_CHECKING:
     from trunnion.geometry.spans import Span as Span
     from trunnion.impeller.impeller import Impeller as Impeller
     from trunnion.impeller.model import ImpellerModel as ImpellerModel
+    from trunnion.impeller.solid.making import ImpellerSolid as ImpellerSolid
     from trunnion.machines.machine import Axis as Axis
     from trunnion.machines.machine import Machine as Machine
     from trunnion.model.motion import Decision as Decision
@@ -106,6 +109,7 @@ _MODULES: Final = {
     "Impeller": "impeller.impeller",
     "ImpellerCut": "api.impeller_cutting",
     "ImpellerModel": "impeller.model",
+    "ImpellerSolid": "impeller.solid.making",
     "InputError": "errors",
     "Machine": "machines.machine",
     "MachineDescription": "api.describing_machine",
@@ -145,6 +149,7 @@ _MODULES: Final = {
     "simulate": "api.simulating",
     "verify": "api.verifying",
     "write_curve_picture": "api.curves",
+    "write_impeller_step": "api.impellers",
     "write_plot": "api.plotting",
     "write_report": "api.reports",
     "write_view": "api.viewing",
@@ -163,6 +168,7 @@ __all__ = [
     "Impeller",
     "ImpellerCut",
     "ImpellerModel",
+    "ImpellerSolid",
     "InputError",
     "Machine",
     "MachineDescription",
@@ -203,6 +209,7 @@ __all__ = [
     "simulate",
     "verify",
     "write_curve_picture",
+    "write_impeller_step",
     "write_plot",
     "write_report",
     "write_view",

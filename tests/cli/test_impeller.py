@@ -25,8 +25,8 @@ def test_a_model_is_written_and_described(tmp_path: Path, capfd: Capture) -> Non
     ("arguments", "what"),
     [
         (
-            [IMPELLER, "--output", "part.step"],
-            'ends in ".step", a format that is not written; end it in one of .stl, .ply, .3mf, .glb',
+            [IMPELLER, "--output", "part.iges"],
+            'ends in ".iges", a format that is not written; end it in one of .stl, .ply, .3mf, .glb, .png, .step, .stp',
         ),
         ([IMPELLER, "--tolerance", "5"], "--tolerance: error: is 5.0; give a number from 0.0001 to 1"),
         (["none.toml"], "none.toml: error: file not found; give the path of an impeller definition\n"),

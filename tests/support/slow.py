@@ -11,7 +11,7 @@ SLOW = (
     "impeller/flank",
     "impeller/paths/test_blade_finish.py", "impeller/paths/test_channel.py", "impeller/paths/test_clearance.py",
     "impeller/paths/test_root_blend.py", "impeller/paths/test_tool_axes.py",
-    "impeller/test_machining.py", "impeller/test_model.py", "jit/test_kernels.py", "linuxcnc",
+    "impeller/solid", "impeller/test_machining.py", "impeller/test_model.py", "jit/test_kernels.py", "linuxcnc",
     "machines/test_chains.py", "machines/test_turn_clearance.py", "matrix",
     "output/families/fanuc/test_haas.py", "output/families/fanuc/test_programs.py",
     "output/families/fanuc/test_vectors.py", "output/families/fidia/test_programs.py",

@@ -1,13 +1,18 @@
-"""Impellers: from a definition and measured points to surfaces and a closed mesh."""
+"""Impellers: from a definition and measured points to surfaces, a closed mesh, and a STEP file."""
 
 import math
+from pathlib import Path
 
 from trunnion.api.arguments import check_path, wrong_argument
 from trunnion.api.reading import FilePath
+from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
+from trunnion.files import atomic_file
 from trunnion.impeller.definition import read_impeller
 from trunnion.impeller.impeller import Impeller, build_impeller
 from trunnion.impeller.model import ImpellerModel, impeller_model
+from trunnion.impeller.solid.making import ImpellerSolid, impeller_solid
+from trunnion.simulation.meshes import STEP_ENDINGS
 
 
 def load_impeller(impeller: FilePath) -> Impeller:
@@ -71,6 +76,50 @@ def model_impeller(impeller: Impeller | FilePath, *, tolerance: float = 0.01) ->
     >>> round(model.volume, -3)
     84000.0
     """
-    if not (isinstance(tolerance, int | float) and math.isfinite(tolerance) and 1e-4 <= tolerance <= 1.0):
-        raise wrong_argument("tolerance", tolerance, "give a number from 0.0001 to 1")
-    return impeller_model(impeller if isinstance(impeller, Impeller) else load_impeller(impeller), float(tolerance))
+    return impeller_model(_loaded(impeller), _checked(tolerance))
+
+
+def write_impeller_step(impeller: Impeller | FilePath, output: FilePath, *, tolerance: float = 0.005) -> ImpellerSolid:
+    """Write an impeller as a STEP file (AP214): one closed solid with exact surfaces.
+
+    Parameters
+    ----------
+    impeller
+        Of ``trunnion.load_impeller``, or its definition.
+    output
+        The file, whose name ends in .stp or .step.
+    tolerance
+        mm: how far faces and edges may be off the surfaces.
+
+    Returns
+    -------
+    ImpellerSolid
+        The solid as it was read back from the file's bytes: its volume, its faces, and how far they are off.
+
+    Raises
+    ------
+    InputError
+        As ``load_impeller``; if no valid solid of the mesh's volume is made of it, with the cause; if the extra ``cad``
+        is not installed, or the file cannot be written. There is no file then, and an older one stays.
+    """
+    path = check_path("output", output)
+    if path.suffix.lower() not in STEP_ENDINGS:
+        raise InputError(Problem(str(path), 0, "is not the name of a STEP file", "end it in .stp or .step"))
+    wanted = _checked(tolerance)
+    found = _loaded(impeller)
+    definition = found.definition
+    solid = impeller_solid(found, wanted)
+    points = {Path(table.file) for table in definition.sections}
+    with atomic_file(path, inputs=[definition.file, *points]) as stream:
+        stream.write(solid.step)
+    return solid
+
+
+def _loaded(impeller: Impeller | FilePath) -> Impeller:
+    return impeller if isinstance(impeller, Impeller) else load_impeller(impeller)
+
+
+def _checked(tolerance: object) -> float:
+    if isinstance(tolerance, int | float) and math.isfinite(tolerance) and 1e-4 <= tolerance <= 1.0:
+        return float(tolerance)
+    raise wrong_argument("tolerance", tolerance, "give a number from 0.0001 to 1")

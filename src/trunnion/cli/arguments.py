@@ -419,15 +419,20 @@ def _add_impeller(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "step",
         choices=("model", "cut"),
-        help="model: a closed mesh of it; cut: CL files and a proven program",
+        help="model: a closed mesh or solid of it; cut: CL files and a proven program",
     )
     parser.add_argument("file", metavar="IMPELLER", help="definition of the impeller (.toml)")
     parser.add_argument(
         "--output",
         metavar="FILE|FOLDER",
-        help="the mesh (.stl, .ply, .3mf or .glb) or a picture of it (.png); folder of a cut",
+        help="the mesh (.stl, .ply, .3mf or .glb), a picture of it (.png), or a STEP file (.stp); folder of a cut",
     )
-    parser.add_argument("--tolerance", type=_tolerance, metavar="MM", help="model: how far facets may be off; 0.01")
+    parser.add_argument(
+        "--tolerance",
+        type=_tolerance,
+        metavar="MM",
+        help="model: how far facets may be off, 0.01; of STEP: faces, 0.005",
+    )
     parser.add_argument("--machine", metavar="NAME_OR_FILE", help="cut: machine that runs the program")
     parser.add_argument(
         "--operation", action="append", default=[], metavar="NAME", dest="operations",

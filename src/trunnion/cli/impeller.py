@@ -6,19 +6,23 @@ from pathlib import Path
 from typing import Final
 
 from trunnion.api.impeller_cutting import CutStep, ImpellerCut, cut_impeller
-from trunnion.api.impellers import load_impeller, model_impeller
+from trunnion.api.impellers import load_impeller, model_impeller, write_impeller_step
 from trunnion.api.simulation_data import simulation_data
 from trunnion.cli.results import as_json, print_result
 from trunnion.cli.simulate import simulation_lines
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import InputError, argument_problem
-from trunnion.simulation.meshes import check_mesh_name, save_mesh
+from trunnion.impeller.impeller import Impeller
+from trunnion.simulation.meshes import STEP_ENDINGS, TriangleMesh, check_mesh_name, save_mesh
 from trunnion.wording import counted, format_duration, one_line
 
 _DECIMALS: Final = 6
 
 #: Width of the facets' errors where none is stated, mm.
 _TOLERANCE: Final = 0.01
+
+#: The same of the faces of a STEP file, mm.
+_OF_FACES: Final = 0.005
 
 #: Options of the other step.
 _OF_CUT: Final = ("machine", "operations", "cell", "settings")
@@ -36,9 +40,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def model(arguments: argparse.Namespace) -> int:
-    """Make the mesh of an impeller, and say how good it is."""
+    """Make an impeller a mesh or a solid, and say how good it is."""
     if arguments.output is not None:
-        check_mesh_name(arguments.output)
+        check_mesh_name(arguments.output, STEP_ENDINGS)
+        if Path(arguments.output).suffix.lower() in STEP_ENDINGS:
+            return _solid(arguments)
     tolerance = _TOLERANCE if arguments.tolerance is None else arguments.tolerance
     impeller = load_impeller(arguments.file)
     Terminal().problems(impeller.remarks)
@@ -48,29 +54,61 @@ def model(arguments: argparse.Namespace) -> int:
         points = {Path(table.file) for table in definition.sections}
         save_mesh(found.mesh, arguments.output, inputs=[arguments.file, *points])
     facets = len(found.mesh.faces)
-    low, high = found.mesh.bounds.tolist()
     if arguments.json:
-        data = {
-            "schema": 1,
-            "name": definition.name,
-            "blades": definition.number,
-            "splitters": 0 if impeller.splitter is None else definition.number,
-            "volume_mm3": round(found.volume, _DECIMALS),
-            "facets": facets,
-            "deviation_mm": round(found.deviation, _DECIMALS),
-            "extents": [low, high],
-        }
-        print_result(as_json(data))
+        print_result(as_json(_model_data(impeller, found.volume, {"facets": facets}, found.deviation, found.mesh)))
         return 0
-    splitters = "" if impeller.splitter is None else f" and {definition.number} splitters"
-    size = " x ".join(f"{b - a:.3f}" for a, b in zip(low, high, strict=True))
     lines = (
-        f"{definition.name}: {definition.number} blades{splitters}, {size} mm",
+        _head(impeller, found.mesh),
         f"volume {found.volume:.1f} mm³, {facets} facets, a closed solid",
         f"facets are at most {found.deviation:.4f} mm off the exact surfaces, {tolerance:g} mm were asked",
     )
     print_result(*map(one_line, lines))
     return 0
+
+
+def _solid(arguments: argparse.Namespace) -> int:
+    """Write a STEP file."""
+    tolerance = _OF_FACES if arguments.tolerance is None else arguments.tolerance
+    impeller = load_impeller(arguments.file)
+    Terminal().problems(impeller.remarks)
+    found = write_impeller_step(impeller, arguments.output, tolerance=tolerance)
+    if arguments.json:
+        print_result(as_json(_model_data(impeller, found.volume, {"faces": found.faces}, found.deviation, found.mesh)))
+        return 0
+    lines = (
+        _head(impeller, found.mesh),
+        f"volume {found.volume:.1f} mm³, {found.faces} faces, a valid closed solid; its mesh has "
+        f"{found.mesh.volume:.1f} mm³",
+        f"faces are at most {found.deviation:.4f} mm off the exact surfaces, {tolerance:g} mm were asked",
+    )
+    print_result(*map(one_line, lines))
+    return 0
+
+
+def _model_data(
+    impeller: Impeller, volume: float, parts: dict[str, int], deviation: float, mesh: TriangleMesh
+) -> dict[str, object]:
+    """A model as data; ``parts`` counts what it consists of."""
+    definition = impeller.definition
+    return {
+        "schema": 1,
+        "name": definition.name,
+        "blades": definition.number,
+        "splitters": 0 if impeller.splitter is None else definition.number,
+        "volume_mm3": round(volume, _DECIMALS),
+        **parts,
+        "deviation_mm": round(deviation, _DECIMALS),
+        "extents": mesh.bounds.tolist(),
+    }
+
+
+def _head(impeller: Impeller, mesh: TriangleMesh) -> str:
+    """What it is, and how large."""
+    definition = impeller.definition
+    splitters = "" if impeller.splitter is None else f" and {definition.number} splitters"
+    low, high = mesh.bounds.tolist()
+    size = " x ".join(f"{b - a:.3f}" for a, b in zip(low, high, strict=True))
+    return f"{definition.name}: {definition.number} blades{splitters}, {size} mm"
 
 
 def cut(arguments: argparse.Namespace) -> int:

@@ -16,6 +16,7 @@ from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
 from trunnion.impeller.blade import Blade
+from trunnion.impeller.deviation import off_surfaces
 from trunnion.impeller.faults import fillet_faults, no_place
 from trunnion.impeller.fillet import Fillet, FilletError, root_fillet, root_stations
 from trunnion.impeller.impeller import Impeller, rotated
@@ -27,9 +28,6 @@ _SHARE: Final = 0.4
 
 #: The deviation is measured at so many vertices and middles of facets, or a few more.
 _SAMPLES: Final = 20_000
-
-#: A point so near to a surface is on it, mm.
-_CLOSE: Final = 1e-6
 
 #: Rings of points round a blade, from below the hub to above the shroud.
 _RINGS: Final = 33
@@ -88,7 +86,8 @@ def impeller_model(impeller: Impeller, tolerance: float) -> ImpellerModel:
     if not is_closed(mesh.faces):
         what = "its bodies make no closed solid"
         raise InputError(Problem(definition.file, 0, what, "check curves, thicknesses, fillet and stock"))
-    deviation = _deviation(impeller, mesh, fillets)
+    points = np.vstack((mesh.vertices, mesh.vertices[mesh.faces].mean(axis=1)))
+    deviation = float(off_surfaces(impeller, points[:: max(1, len(points) // _SAMPLES)], fillets).max())
     if deviation > tolerance:
         what = f"its facets would be {deviation:.4f} mm off the exact surfaces, and {tolerance:g} mm are asked for"
         raise InputError(Problem(definition.file, 0, what, "check curves and thicknesses: does the blade meet itself?"))
@@ -121,7 +120,10 @@ def _fillets(impeller: Impeller, tolerance: float) -> list[tuple[Blade, Fillet]]
         If one finds no place.
     """
     definition, blades = impeller.definition, list(impeller.blades())
-    stations = root_stations(2 * _count(impeller, tolerance), 24, round_trailing=definition.trailing_edge == "round")
+    # The ball goes round the edges on a circle that is by its own radius larger than theirs.
+    around = _segments(definition.hub_thickness / 2.0 + definition.fillet, tolerance) // 2
+    is_round = definition.trailing_edge == "round"
+    stations = root_stations(2 * _count(impeller, tolerance), max(around, 24), round_trailing=is_round)
     found = []
     for blade in [impeller.blade] if impeller.splitter is None else [impeller.blade, impeller.splitter]:
         try:
@@ -170,43 +172,11 @@ def _cylinder(radius: float, top: float, bottom: float) -> Floats:
 
 
 def _below(outline: Floats, bottom: float) -> Floats:
-    """The outline of the body below a profile: from the axis along the profile, down, and back to the axis."""
+    """The outline of the body below a profile: from the axis along the profile, down, and back to the axis.
+
+    ``bottom`` is lower where the profile is: an outline that crosses itself would turn the body inside out.
+    """
     first, last = outline[0], outline[-1]
+    bottom = min(bottom, float(outline[:, 1].min()) - 1.0)
     start = outline if first[0] <= 1e-9 else np.vstack(([[0.0, first[1]]], outline))
     return np.vstack((start, [[last[0], bottom], [0.0, bottom]]))
-
-
-def _deviation(impeller: Impeller, mesh: TriangleMesh, fillets: list[tuple[Blade, Fillet]]) -> float:
-    """How far vertices and middles of facets are from the nearest exact surface, mm."""
-    points = np.vstack((mesh.vertices, mesh.vertices[mesh.faces].mean(axis=1)))
-    points = points[:: max(1, len(points) // _SAMPLES)]
-    stock = impeller.definition.stock
-    radius = np.hypot(points[:, 0], points[:, 1])
-    turned = [radius - stock.diameter / 2.0, points[:, 2] - stock.top, points[:, 2] - stock.bottom]
-    if stock.bore:
-        turned.append(radius - stock.bore / 2.0)
-    turned += [impeller.hub.distances(points)[0], impeller.shroud.distances(points)[0]]
-    off = np.abs(np.stack(turned)).min(axis=0)
-    for blade, angle in impeller.blades():
-        rows = np.flatnonzero(off > _CLOSE)
-        back = rotated(points[rows], -angle)
-        fillet = next(found for own, found in fillets if own is blade)
-        found = np.minimum(
-            np.abs(_from_path(fillet, back) - impeller.definition.fillet), np.abs(blade.distances(back)[0])
-        )
-        off[rows] = np.minimum(off[rows], found)
-    return float(off.max())
-
-
-def _from_path(fillet: Fillet, points: Floats) -> Floats:
-    """Distance (k,) of points to the path of a fillet's ball, mm: chords between its stations."""
-    centre = np.vstack((fillet.centre, fillet.centre[:1])) if fillet.is_closed else fillet.centre
-    _, nearest = import_extra("scipy.spatial", "impeller").cKDTree(centre).query(points)
-    best = np.full(len(points), np.inf)
-    for first in (nearest - 1, nearest):
-        k = np.clip(first, 0, len(centre) - 2)
-        along = centre[k + 1] - centre[k]
-        square = np.maximum(np.einsum("ij,ij->i", along, along), 1e-24)
-        share = np.clip(np.einsum("ij,ij->i", points - centre[k], along) / square, 0.0, 1.0)
-        best = np.minimum(best, np.linalg.norm(points - centre[k] - share[:, None] * along, axis=1))
-    return best

@@ -3,7 +3,7 @@
 import json
 import os
 import struct
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Final
 
@@ -20,13 +20,13 @@ _GLB_ARRAY: Final = 34962
 _GLB_ELEMENTS: Final = 34963
 
 
-def check_mesh_name(path: str | Path) -> None:
-    """Raise ``InputError`` if the ending of a name says no format that is written."""
+def check_mesh_name(path: str | Path, others: Sequence[str] = ()) -> None:
+    """Raise ``InputError`` if the ending of a name says no format that is written; ``others`` are written elsewhere."""
     ending = Path(path).suffix.lower()
-    if ending not in _WRITERS:
+    if ending not in (*_WRITERS, *others):
         unknown = f'ends in "{Path(path).suffix}", a format that is not written'
         what = unknown if ending else "has no ending that names a format"
-        raise InputError(Problem(str(path), 0, what, f"end it in one of {', '.join(_WRITERS)}"))
+        raise InputError(Problem(str(path), 0, what, f"end it in one of {', '.join((*_WRITERS, *others))}"))
 
 
 def save_mesh(mesh: TriangleMesh, path: str | Path, *, inputs: Iterable[str | os.PathLike[str]] = ()) -> None:
