@@ -1,6 +1,7 @@
 """The fastest run: the published case, the closed form of a straight motion, and what no path or limits are."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from hypothesis import strategies as st
 
 from tests.timing.published_path import LIMITS, PATH
 from trunnion.arrays import Flags, Floats
+from trunnion.extras import import_extra
 from trunnion.timing import AxisDynamics, AxisMotion, FastestRun, SmoothPath, fastest_run
 
 
@@ -103,6 +105,36 @@ def test_a_straight_motion_is_the_s_curve_of_its_farthest_axis(
     assert greatest_share(run.at(dense_seconds(run)), limits) <= 1.0 + 1e-6
 
 
+def cubic(knots: Floats, points: Floats) -> SmoothPath:
+    """A cubic B-spline through the space of the axes; each of its spans by its own Taylor series."""
+    breaks = knots[3:-3]
+    spline = import_extra("scipy.interpolate", "geometry").BSpline(knots, points, 3)
+
+    def derivatives(parameter: Floats, before: Flags) -> Floats:
+        inner = breaks[1:-1]
+        span = np.where(before, np.searchsorted(inner, parameter), np.searchsorted(inner, parameter, side="right"))
+        middle = 0.5 * (breaks[span] + breaks[span + 1])
+        h = (parameter - middle)[:, None]
+        d0, d1, d2, d3 = (spline(middle, order) for order in range(4))
+        return np.stack((d0 + h * (d1 + h / 2 * (d2 + h / 3 * d3)), d1 + h * (d2 + h / 2 * d3), d2 + h * d3, d3))
+
+    return SmoothPath(derivatives, breaks)
+
+
+@settings(deadline=None, max_examples=8)
+@given(seed=st.integers(0, 2**32 - 1), inner=st.integers(0, 12), pieces=st.integers(1, 60))
+def test_on_any_spline_no_limit_is_exceeded_and_one_is_nearly_reached(seed: int, inner: int, pieces: int) -> None:
+    random = np.random.default_rng(seed)
+    places = (np.sort(random.permutation(200)[:inner]) + 1.0) / 202.0
+    points = random.normal(size=(inner + 4, 5)) * 10.0 ** random.uniform(-2.0, 3.0, 5)
+    speed, acceleration, jerk = (10.0 ** random.uniform(low, low + 3.0, 5) for low in (0.0, 1.0, 2.0))
+    limits = AxisDynamics(speed, acceleration, jerk)
+    run = fastest_run(cubic(np.concatenate((np.zeros(4), places, np.ones(4))), points), limits, pieces)
+    assert 0.7 < greatest_share(run.at(dense_seconds(run)), limits) <= 1.0 + 1e-6
+    longest = zip(np.abs(points[-1] - points[0]), limits.speed, limits.acceleration, limits.jerk, strict=True)
+    assert run.duration >= max(s_curve_seconds(*one) for one in longest)
+
+
 def test_a_hundred_times_slower_axes_take_a_hundred_times_as_long() -> None:
     slow = AxisDynamics(LIMITS.speed / 100.0, LIMITS.acceleration / 1e4, LIMITS.jerk / 1e6)
     assert fastest_run(PATH, slow, 40).duration == pytest.approx(
@@ -125,6 +157,7 @@ def test_an_axis_without_limits_does_not_count() -> None:
         (straight(np.ones(5)), 0.0, "limits must be positive"),
         (straight(np.zeros(5)), 1000.0, "does not move"),
         (straight(np.full(5, np.nan)), 1000.0, "is not finite"),
+        (replace(straight(np.ones(5)), breaks=np.array([0.0, 0.5, 0.5, 1.0])), 1000.0, "breaks must ascend"),
     ],
 )  # fmt: skip
 def test_paths_and_limits_without_a_fastest_run_are_refused(path: SmoothPath, jerk: float, message: str) -> None:

@@ -93,7 +93,7 @@ class FastestRun:
         )
 
     def _places(self, seconds: Floats) -> Floats:
-        """Places (n,) that are reached at these times: bisection first, then Newton, within each piece."""
+        """Places (n,) that are reached at these times: Newton's method, kept within each piece by bisection."""
         piece = np.clip(np.searchsorted(self.begins, seconds, side="right") - 1, 0, len(self.edges) - 2)
         low, high = self.edges[piece], self.edges[piece + 1]
         begin, left = low, seconds - self.begins[piece]
@@ -134,13 +134,16 @@ def fastest_run(path: SmoothPath, limits: AxisDynamics, pieces: int = 200) -> Fa
     InputError
         If SciPy is not installed.
     ValueError
-        If no jerk is limited, or a limit is not positive, or the path does not move or is not finite.
+        If no jerk is limited, a limit is not positive, breaks do not ascend, or the path does not move or is not
+        finite.
     """
     table = np.stack((limits.speed, limits.acceleration, limits.jerk))
     if not (table > 0.0).all():
         raise ValueError("limits must be positive")
     if not limits.has_jerk:
         raise ValueError("no axis has a limit of its jerk")
+    if len(path.breaks) < 2 or not (np.diff(path.breaks) > 0.0).all():
+        raise ValueError("breaks must ascend")
     breaks = _unwarp((path.breaks - path.breaks[0]) / (path.breaks[-1] - path.breaks[0]))
     rates, coefficients, unit = None, np.zeros(0), 1.0
     for level in range(_COARSER, -1, -1):
