@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.interpolate import BSpline
 
 from tests.impeller.solid.impellers import changed
 from trunnion.api.impellers import load_impeller
 from trunnion.arrays import Floats
 from trunnion.errors import InputError
+from trunnion.extras import import_extra
 from trunnion.impeller.impeller import rotated
 from trunnion.impeller.solid.impeller_body import impeller_body
 from trunnion.impeller.solid.root_loop import Density
@@ -29,6 +29,8 @@ from trunnion.impeller.solid.shapes import (
     SplineSurface,
     Surface,
 )
+
+BSpline = import_extra("scipy.interpolate", "impeller").BSpline
 
 COARSE = Density(65, 9, 7, 5)
 

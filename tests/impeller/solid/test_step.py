@@ -17,7 +17,9 @@ from trunnion.impeller.fillet import root_fillet, root_stations
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.meshing import solid
 from trunnion.impeller.solid import making
+from trunnion.impeller.solid.impeller_body import impeller_body
 from trunnion.impeller.solid.order import Made, Order, Refusal
+from trunnion.impeller.solid.root_loop import Density
 from trunnion.simulation.meshes import TriangleMesh, judge_mesh, load_mesh
 
 pytestmark = pytest.mark.skipif(
@@ -89,7 +91,7 @@ def test_the_published_impeller_is_one_solid_of_exact_surfaces(tmp_path: Path) -
 def test_the_same_order_gives_the_same_bytes(tmp_path: Path) -> None:
     changes = (("number = 6", "number = 2"), ("fillet_mm = 2.0", "fillet_mm = 1.0"))
     impeller = trunnion.load_impeller(changed(tmp_path, "impeller", *changes))
-    body, angles = making.impeller_body(impeller, making.Density(65, 9, 7, 5))
+    body, angles = impeller_body(impeller, Density(65, 9, 7, 5))
     order = Order(body, impeller.definition.stock, making._free_angle(angles), "PART")
     one, other = making._asked(order), making._asked(order)
     assert isinstance(one, Made)
@@ -127,7 +129,7 @@ def test_what_is_no_such_solid_leaves_no_file(
 def test_a_kernel_that_fails_is_told(child: str, what: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(making, "_CHILD", child)
     monkeypatch.setattr(making, "_LONGEST", 0.5 if "sleep" in child else 60.0)
-    monkeypatch.setattr(making, "_DENSITIES", (making.Density(33, 5, 5, 4),))
+    monkeypatch.setattr(making, "_DENSITIES", (Density(33, 5, 5, 4),))
     with pytest.raises(trunnion.InputError, match=re.escape(what)):
         making._within(trunnion.load_impeller(EXAMPLES / "impeller.toml"), 0.005)
 

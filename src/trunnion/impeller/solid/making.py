@@ -17,7 +17,6 @@ from typing import Final
 
 import numpy as np
 
-import trunnion
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
@@ -160,7 +159,7 @@ def _asked(order: Order) -> Made | Refusal:
         If it cannot be loaded, or does not come to an end.
     """
     # -P: no module of the current folder is run.
-    command = [sys.executable, "-P", "-c", _CHILD, str(Path(trunnion.__file__).parents[1])]
+    command = [sys.executable, "-P", "-c", _CHILD, str(Path(__file__).parents[3])]
     try:
         done = subprocess.run(command, input=pickle.dumps(order), capture_output=True, check=False, timeout=_LONGEST)
     except subprocess.TimeoutExpired:
