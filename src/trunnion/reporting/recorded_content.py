@@ -81,22 +81,18 @@ def _series(verification: Verification, found: RecordedComparison, elapsed: Floa
     for gap in np.flatnonzero(recording.marked(Mark.GAP)).tolist():
         after = int(np.searchsorted(shown, gap))
         marks += [(max(after - 1, 0), _GAP), *([(after, _AFTER_GAP)] if after < len(shown) else [])]
-    row = found.row[shown]
-    block, number = (
-        np.where(row >= 0, column[row], nothing) for column, nothing in ((run.line, 0), (run.block_number, -1))
-    )
-    cl = (
-        verification.cl_line[row]
-        if len(verification.cl_line) == len(run) and len(run)
-        else np.zeros(len(row), np.int32)
-    )
+    rows = found.row[shown]
+    # Row -1, of positions that were not compared, takes what is appended.
+    block, number = np.append(run.line, 0)[rows], np.append(run.block_number, -1)[rows]
+    has_cl = len(verification.cl_line) == len(run)
+    cl = np.append(verification.cl_line, 0)[rows] if has_cl else np.zeros(len(rows), np.int64)
     values = {f"axis{k}": column[shown].astype(np.float32) for k, (_, column) in enumerate(curves.values())}
     if SPINDLE in recording.values:
         values[SPINDLE] = np.nan_to_num(recording.values[SPINDLE][shown]).astype(np.float32)
     return PlotSeries(
         seconds=np.diff(elapsed[shown], prepend=elapsed[shown][:1]).astype(np.float32),
         values=values,
-        lines={"block": _as_int32(block), "number": _as_int32(number), "cl": _as_int32(np.where(row >= 0, cl, 0))},
+        lines={"block": _as_int32(block), "number": _as_int32(number), "cl": _as_int32(cl)},
         plots=tuple(_plots(verification, curves, SPINDLE in recording.values)),
         files=tuple(clean(Path(file).name) for file in run.files),
         tool_changes=tuple(marks),

@@ -1,6 +1,7 @@
 """``trunnion record`` on a twin that runs the golden program of the blade at 50 times its speed."""
 
 import asyncio
+import io
 import os
 import re
 import signal
@@ -15,6 +16,7 @@ from asyncua import Client, ua
 from tests.support.locations import ROOT
 from tests.support.twins import BLADE_FINISH, served
 from trunnion import verify
+from trunnion.api.twin import add_twin_user
 from trunnion.cli import main
 from trunnion.model.recording import Mark, Recording
 from trunnion.twin.recording.reading import read_recording
@@ -145,3 +147,28 @@ def test_what_cannot_be_recorded_is_told(
     assert main(["record", *arguments, "--output", str(tmp_path / "a.csv")]) == 2
     assert message in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_machine_off_this_computer_is_recorded_by_a_user_who_trusts_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    users, output = tmp_path / "users", tmp_path / "a.csv"
+    add_twin_user("ada", "correct horse", operator=False, users=users)
+    for name in ("XDG_DATA_HOME", "LOCALAPPDATA"):
+        monkeypatch.setenv(name, str(tmp_path))
+    options = ("--host", "0.0.0.0", "--users", str(users), "--hold", "--no-mtconnect")
+    with served(BLADE_FINISH, *options, home=tmp_path / "server") as twin:
+        address = twin.opcua.replace("0.0.0.0", "127.0.0.1")
+        command = ["record", address, "--output", str(output), "--seconds", "1", "--secure"]
+        assert main(command) == 2
+        found = re.search(r"--trust ([0-9A-F]{40})", capsys.readouterr().err)
+        assert found is not None
+        assert main([*command, "--trust", "00" * 20]) == 2
+        assert main([*command, "--trust", found[1]]) == 2  # nobody
+        assert main([*command[:-1], "--trust", found[1]]) == 2  # the channel is not encrypted
+        for password, code in (("wrong horse", 2), ("correct horse", 0)):
+            monkeypatch.setattr("sys.stdin", io.StringIO(password + "\n"))
+            assert main([*command, "--trust", found[1], "--user", "ada"]) == code
+        assert len(read_recording(output)) > 0
+        out, err = capsys.readouterr()
+        assert "horse" not in out + err
