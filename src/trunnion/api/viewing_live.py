@@ -86,7 +86,7 @@ class LiveMachine:
             return None
         line = shown.get(LINE)
         file = self._files.get(PurePath(str(shown.get(PROGRAM) or "")).name, 0)
-        return LivePose(known, int(line) if isinstance(line, float) and 0.0 < line < 2**31 else 0, file)
+        return LivePose(tuple(values), int(line) if isinstance(line, float) and 0.0 < line < 2**31 else 0, file)
 
 
 def machine_content(machine: MachineLike, title: str, **given: Any) -> ViewContent:
