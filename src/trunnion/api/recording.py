@@ -112,7 +112,7 @@ def machine_feed(
     if not SHORTEST_RATE <= _number("rate", rate) <= LONGEST_RATE:
         raise wrong_argument("rate", rate, "give milliseconds from 5 to 60000")
     if user and not secure:
-        raise InputError(argument_problem("user", "needs a channel that is encrypted", "add --secure"))
+        raise InputError(argument_problem("user", "needs a channel that is encrypted", "add secure=True"))
     listed = load_nodes(check_path("nodes", nodes))
     import_extra("asyncua", "twin")
     from trunnion.twin.recording.client import Access
@@ -139,7 +139,9 @@ def check_address(address: object) -> None:
     if parts is None or not usable:
         raise wrong_argument("address", address, cure)
     if "@" in parts.netloc:
-        raise InputError(argument_problem("address", "has a user in it", "give the user by --user, and no password"))
+        raise InputError(
+            argument_problem("address", "has a user in it", "give the user with argument user=NAME, and no password")
+        )
 
 
 def read_recording(file: FilePath) -> Recording:
@@ -167,7 +169,9 @@ def as_recording(recorded: object) -> Recording:
 def _folder() -> Path:
     folder = user_data()
     if folder is None:
-        raise InputError(Problem("trunnion", 0, "you have no folder for data", "set HOME, or record without --secure"))
+        raise InputError(
+            Problem("trunnion", 0, "you have no folder for data", "set HOME, or record without secure=True")
+        )
     return folder / "trunnion" / "twin"
 
 

@@ -103,10 +103,10 @@ def serve_twin(
         raise wrong_argument("rate", rate, "give milliseconds from 5 to 60000")
     security = None if is_loopback(host) else _security(users)
     with ExitStack() as closing:
-        served = closing.enter_context(listen("OPC UA", host, port, "--port"))
+        served = closing.enter_context(listen("OPC UA", host, port, "port"))
         adapter = None
         if adapter_port is not None:
-            adapter = closing.enter_context(listen("MTConnect", "127.0.0.1", adapter_port, "--adapter-port"))
+            adapter = closing.enter_context(listen("MTConnect", "127.0.0.1", adapter_port, "adapter_port"))
         program = twin_program(nc, machine=machine, subprograms=subprograms, zero=zero, tool_length=tool_length)
         playback = Playback(program.timed, speed=speed, loop=loop)
         ports = Ports(host, served, adapter)
@@ -212,7 +212,7 @@ def add_twin_user(name: str, password: str, *, operator: bool = True, users: Fil
 def _folder() -> Path:
     folder = user_data()
     if folder is None:
-        raise InputError(Problem("trunnion", 0, "you have no folder for data", "name a file with --users"))
+        raise InputError(Problem("trunnion", 0, "you have no folder for data", "name a file with argument users=FILE"))
     return folder / "trunnion" / "twin"
 
 
@@ -223,7 +223,7 @@ def _security(users: FilePath | None) -> "Security":
     path = users_file(users)
     found = read_users(path)
     if not len(found):
-        cure = "add one with trunnion twin --add-user NAME"
+        cure = "add one with argument add_user=NAME"
         raise InputError(Problem(str(path), 0, "has no user, and other computers need one", cure))
     return Security(found, _folder())
 

@@ -52,7 +52,7 @@ class LiveMachine:
             missing = [name for name in self._machine.names if name not in feed.names]
             if missing:
                 what = f"does not show the axes {', '.join(missing)}"
-                cure = f"choose a list of nodes (--nodes) with the axes of {self._machine.key}"
+                cure = f"choose a list of nodes with argument nodes=FILE that has the axes of {self._machine.key}"
                 raise InputError(Problem("the machine", 0, what, cure))
 
         asyncio.run(connect())

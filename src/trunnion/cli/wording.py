@@ -21,14 +21,17 @@ _OPTIONS: Final = {
     "second": "NC",
 }
 
-#: A setting, such as ``setting tool=5``; and an argument that is switched on, such as ``force=True``.
+#: A setting, such as ``setting tool=5``; an argument with a value, such as ``argument trust=ABC``; and one that is
+#: switched on, such as ``force=True``.
 _SETTING: Final = re.compile(r"\bsetting (?=[a-z][a-z_0-9]*=)")
+_VALUE: Final = re.compile(r"\bargument ([a-z_]+)=")
 _SWITCH: Final = re.compile(r"\b([a-z_]+)=True\b")
 
 
 def in_command_words(text: str) -> str:
     """A text of the library in the words of the command line."""
-    return _SWITCH.sub(lambda found: _option(found[1]), _SETTING.sub("--set ", text))
+    text = _VALUE.sub(lambda found: f"{_option(found[1])} ", _SETTING.sub("--set ", text))
+    return _SWITCH.sub(lambda found: _option(found[1]), text)
 
 
 def problem_line(problem: Problem) -> str:

@@ -5,7 +5,7 @@ import socket
 from trunnion.errors import InputError, Problem
 
 
-def listen(what: str, host: str, port: int, option: str) -> socket.socket:
+def listen(what: str, host: str, port: int, argument: str) -> socket.socket:
     """Take a port; 0: a free one.
 
     Parameters
@@ -14,8 +14,8 @@ def listen(what: str, host: str, port: int, option: str) -> socket.socket:
         What is served there, for the message.
     host, port
         An address of this computer, and the port.
-    option
-        The option that chooses another port, for the message.
+    argument
+        The argument that chooses another port, for the message.
 
     Raises
     ------
@@ -26,5 +26,5 @@ def listen(what: str, host: str, port: int, option: str) -> socket.socket:
         return socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET)
     except (OSError, OverflowError) as error:
         fault = f"cannot be served on {host}, port {port}: {getattr(error, 'strerror', None) or error}"
-        cure = f"choose another one with {option}; 0 takes a free one"
+        cure = f"choose another one with argument {argument}=NUMBER; 0 takes a free one"
         raise InputError(Problem(what, 0, fault, cure)) from None

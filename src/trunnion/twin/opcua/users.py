@@ -118,7 +118,7 @@ def _read(path: Path) -> list[StoredUser]:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         what = getattr(error, "strerror", None) or "it is no text in UTF-8"
-        cure = "add a user with trunnion twin --add-user NAME"
+        cure = "add a user with argument add_user=NAME"
         raise InputError(Problem(str(path), 0, f"the file of users cannot be read: {what}", cure)) from None
     users, problems = [], []
     for number, line in enumerate(text.splitlines(), 1):
@@ -127,7 +127,7 @@ def _read(path: Path) -> list[StoredUser]:
         user = _parsed(line)
         if user is None:
             what = "is no user; a line is name:role:scrypt:N:r:p:salt:hash"
-            problems.append(Problem(str(path), number, what, "remove it, and add the user again with --add-user"))
+            problems.append(Problem(str(path), number, what, "remove it, and add the user again with add_user=True"))
         else:
             users.append(user)
     if problems:

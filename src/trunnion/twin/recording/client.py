@@ -271,7 +271,7 @@ async def _secure(client: Any, access: Access) -> None:
     fingerprint = hashlib.sha1(certificate, usedforsecurity=False).hexdigest().upper()
     if fingerprint != access.fingerprint.replace(":", "").replace(" ", "").upper():
         what = f"has a certificate with the fingerprint {fingerprint}, which is not trusted"
-        cure = f"compare it with what the machine shows, and give --trust {fingerprint}"
+        cure = f"compare it with what the machine shows, and give argument trust={fingerprint}"
         raise InputError(Problem(access.address, 0, what, cure))
     own = client_certificate(access.folder)
     client.application_uri = own.application
