@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.timing.published_path import LIMITS, PATH
+from tests.support.published_path import LIMITS, PATH
 from trunnion.arrays import Flags, Floats
 from trunnion.extras import import_extra
 from trunnion.timing import AxisDynamics, AxisMotion, FastestRun, SmoothPath, fastest_run
