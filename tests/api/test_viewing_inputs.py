@@ -31,7 +31,7 @@ def test_there_are_files_of_both_kinds() -> None:
 def test_a_cl_file_is_posted_for_the_machine() -> None:
     content = prepare_view(CL, machine="dmu65", settings={"program": "BLADE"})
     posted = post(CL, machine="dmu65", settings={"program": "BLADE"})
-    assert content.texts == ((posted.text or "").encode(),)
+    assert content.texts == ((posted.text or "").encode(), CL.read_bytes())
     assert len(content.columns["cl"]) == len(posted.run or ())
     assert content.columns["cl"].max() > 20
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.impeller.solid.impellers import changed
+from tests.support.example_impellers import changed
 from trunnion.api.impellers import load_impeller
 from trunnion.arrays import Floats
 from trunnion.errors import InputError

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import trunnion
-from tests.impeller.solid.impellers import EXAMPLES, changed
+from tests.support.example_impellers import EXAMPLES, changed
 from trunnion.cli import main
 from trunnion.impeller.deviation import off_surfaces
 from trunnion.impeller.fillet import root_fillet, root_stations

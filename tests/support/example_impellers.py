@@ -3,7 +3,7 @@
 import shutil
 from pathlib import Path
 
-EXAMPLES = Path(__file__).resolve().parents[3] / "examples" / "impeller"
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "impeller"
 
 
 def changed(folder: Path, example: str, *changes: tuple[str, str]) -> Path:
