@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from trunnion.api.reading import MachineLike, as_machine
 from trunnion.api.viewing import prepare_view
 from trunnion.errors import InputError, Problem
-from trunnion.model.recording import LINE, PROGRAM
+from trunnion.model.recording import LINE, PROGRAM, Mark
 from trunnion.viewer.content import ViewContent
 from trunnion.viewer.live import LivePose
 
@@ -71,7 +71,7 @@ class LiveMachine:
                 async for rows in feed.rows():
                     for row in rows[-1:]:
                         shown = dict(zip(feed.names, row.values, strict=True))
-                        if row.source is None and row.marks:
+                        if Mark.GAP in row.marks:
                             yield None
                         elif (pose := self._pose(shown)) is not None:
                             yield pose

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from trunnion.files import OutputPlace
+from trunnion.model.recording import Mark
 from trunnion.twin.recording.feed import MachineFeed
 from trunnion.twin.recording.files import RecordingWriter
 
@@ -85,7 +86,7 @@ class _Recording:
                     found = await asyncio.wait_for(anext(rows), left)
                 except TimeoutError:
                     break
-                self.gaps += sum(1 for row in found if row.source is None and row.marks)
+                self.gaps += sum(Mark.GAP in row.marks for row in found)
                 writer.add(found)
         finally:
             await rows.aclose()
