@@ -28,7 +28,7 @@ def test_other_computers_need_a_user_and_an_encrypted_channel(tmp_path: Path) ->
 async def connected(twin: ServedTwin, home: Path, user: str, password: str) -> Client:
     """A client with a certificate of its own, as a user."""
     address = twin.opcua.replace("0.0.0.0", "127.0.0.1")
-    client = Client(address, timeout=60)
+    client = Client(address, timeout=120, watchdog_intervall=600)
     client.application_uri = "urn:test:client"
     made = server_certificate(home / "client", client.application_uri, "client")
     client.set_user(user)
@@ -63,7 +63,7 @@ def nobody_else_comes_in(twin: ServedTwin, home: Path) -> None:
 
 
 def a_channel_without_security_tells_the_endpoints_and_nothing_else(twin: ServedTwin) -> None:
-    client = Client(twin.opcua.replace("0.0.0.0", "127.0.0.1"), timeout=60)
+    client = Client(twin.opcua.replace("0.0.0.0", "127.0.0.1"), timeout=120)
     endpoints = asyncio.run(client.connect_and_get_server_endpoints())
     assert {each.SecurityMode for each in endpoints} == {ua.MessageSecurityMode.SignAndEncrypt}
     assert {token.TokenType for each in endpoints for token in each.UserIdentityTokens} == {ua.UserTokenType.UserName}

@@ -152,7 +152,7 @@ def test_clients_who_mean_harm_do_none(tmp_path: Path) -> None:
 
 
 async def read_state(twin: ServedTwin) -> str:
-    async with Client(twin.opcua, timeout=60) as client:
+    async with Client(twin.opcua, timeout=120, watchdog_intervall=600) as client:
         space = await client.get_namespace_index("urn:trunnion:twin")
         return str(await client.get_node(ua.NodeId("Twin.State", space)).read_value())
 
@@ -163,7 +163,7 @@ async def flood(twin: ServedTwin) -> None:
         _, writer = await asyncio.open_connection(*address_of(twin))
         writer.write(HELLO)
         writer.transport.abort()
-    async with Client(twin.opcua, timeout=60) as client:
+    async with Client(twin.opcua, timeout=120, watchdog_intervall=600) as client:
         space = await client.get_namespace_index("urn:trunnion:twin")
         node = client.get_node(ua.NodeId("Twin.ProgramTime", space))
         subscription = await client.create_subscription(1.0, Counter())
