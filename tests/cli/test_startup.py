@@ -27,7 +27,10 @@ def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> Non
         "trunnion.cli",
         "trunnion.cli.arguments",
         "trunnion.cli.process",
+        "trunnion.cli.twin_arguments",
         "trunnion.errors",
+        "trunnion.twin",
+        "trunnion.twin.limits",
         "trunnion.wording",
     }
 

@@ -70,7 +70,7 @@ def test_a_main_program_is_proven_with_its_subprogram_where_that_is_named(
     sub.write_text(wrong, encoding="utf-8")
     code, out, _ = verify(capfd, main_program, "--with", sub, "--cl", CL)
     assert code == 1
-    assert f"{main_program}:52 (N520), {CL}:20: BLADE.SPF: the tip is 0.100000 mm off" in out
+    assert f"{sub}:52 (N520), {CL}:20: the tip is 0.100000 mm off" in out
 
 
 def test_what_the_cl_file_does_not_say_can_be_said(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
