@@ -62,6 +62,7 @@ class Page {
     this.time = 0;
     this.playing = false;
     this.shownFile = -1;
+    this.placesAsked = 0;
     /** Whether the text of that file is there, and still wanted. */
     this.opening = Promise.resolve(true);
     /** @type {number[]} */
@@ -237,7 +238,17 @@ class Page {
   /** @param {number} row */
   async #showLine(row) {
     if (!this.program.rows) await this.#showFile(Math.max(this.shownFile, 0));
-    else if (await this.#showFile(this.program.file[row])) this.listing.show(this.program.line[this.row]);
+    else await this.#showPlace(this.program.file[row], this.program.line[row]);
+  }
+
+  /**
+   * Show a line of a file, unless another one has been asked for when its text is there.
+   * @param {number} file
+   * @param {number} line from 1
+   */
+  async #showPlace(file, line) {
+    const place = ++this.placesAsked;
+    if (await this.#showFile(file) && place === this.placesAsked) this.listing.show(line);
   }
 
   /**
@@ -268,7 +279,7 @@ class Page {
    */
   async goToFinding(finding) {
     this.goToRow(finding.row);
-    if (finding.line > 0 && await this.#showFile(finding.file)) this.listing.show(finding.line);
+    if (finding.line > 0) await this.#showPlace(finding.file, finding.line);
   }
 
   /**
@@ -386,6 +397,7 @@ class Page {
   goToLine(line) {
     const row = this.program.rowOfLine(this.shownFile, line, this.row);
     this.goToRow(row);
+    this.placesAsked++;
     this.listing.show(line);
   }
 
