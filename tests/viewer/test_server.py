@@ -281,7 +281,7 @@ def test_garbage_leaves_the_server_alive(port: int, garbage: bytes) -> None:
 
 
 def test_a_port_that_is_taken_is_told(port: int) -> None:
-    with pytest.raises(InputError, match="choose another port"):
+    with pytest.raises(InputError, match="the port is taken; choose another port"):
         listen("127.0.0.1", port)
-    with pytest.raises(InputError, match="choose another port"):
+    with pytest.raises(InputError, match="choose a port from 1 to 65535"):
         listen("127.0.0.1", 70_000)
