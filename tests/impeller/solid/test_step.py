@@ -120,6 +120,7 @@ def test_what_is_no_such_solid_leaves_no_file(
     answer: Made | Refusal, what: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(making, "_asked", lambda _order: answer)
+    monkeypatch.setattr(making, "_DENSITIES", (Density(33, 5, 5, 4),))
     file = tmp_path / "part.stp"
     file.write_text("older", "utf-8")
     with pytest.raises(trunnion.InputError, match=what):
