@@ -120,7 +120,7 @@ def root_fillet(blade: Blade, hub: Profile, radius: float, stations: Stations) -
     if missing.any():
         what = f"a fillet of {radius:g} mm finds no place between blade and hub"
         place = stations.balls(blade, np.zeros(count))[0][int(missing.argmax())]
-        raise FilletError(what, "make it smaller, or let the blade's sections reach the hub", place)
+        raise FilletError(what, "make it smaller or the blade thinner, or let its sections reach the hub", place)
     v = crossings(gap, low, high)
     centre, normal = stations.touching(blade, v, radius)
     inside = _inside(blade, hub, stations, v, _BELOW * radius)
