@@ -27,6 +27,7 @@ Functions
     write_impeller_step  Impeller -> STEP file of a solid, and ImpellerSolid: how good it is
     write_report   Verification -> page or data
     write_plot     ClDescription -> page with the path in space
+    verify_manifest  manifest of a post -> ManifestCheck: are its files still the same
     write_view     NC program -> page that shows it on its machine, block by block
 
 They print nothing and raise ``TrunnionError``. Names are imported when they are first used.
@@ -54,6 +55,8 @@ if TYPE_CHECKING:
     from trunnion.api.impellers import load_impeller as load_impeller
     from trunnion.api.impellers import model_impeller as model_impeller
     from trunnion.api.impellers import write_impeller_step as write_impeller_step
+    from trunnion.api.manifests import ManifestCheck as ManifestCheck
+    from trunnion.api.manifests import verify_manifest as verify_manifest
     from trunnion.api.observer import Observer as Observer
     from trunnion.api.planning import plan as plan
     from trunnion.api.plotting import write_plot as write_plot
@@ -113,6 +116,7 @@ _MODULES: Final = {
     "InputError": "errors",
     "Machine": "machines.machine",
     "MachineDescription": "api.describing_machine",
+    "ManifestCheck": "api.manifests",
     "Motion": "model.motion",
     "Observer": "api.observer",
     "Operation": "model.toolpath",
@@ -148,6 +152,7 @@ _MODULES: Final = {
     "read_program": "api.reading",
     "simulate": "api.simulating",
     "verify": "api.verifying",
+    "verify_manifest": "api.manifests",
     "write_curve_picture": "api.curves",
     "write_impeller_step": "api.impellers",
     "write_plot": "api.plotting",
@@ -172,6 +177,7 @@ __all__ = [
     "InputError",
     "Machine",
     "MachineDescription",
+    "ManifestCheck",
     "Motion",
     "Observer",
     "Operation",
@@ -208,6 +214,7 @@ __all__ = [
     "read_program",
     "simulate",
     "verify",
+    "verify_manifest",
     "write_curve_picture",
     "write_impeller_step",
     "write_plot",

@@ -33,8 +33,8 @@ def write(target: Any, text: bytes, *subprograms: str, fail: BaseException | Non
     """Write a program, its subprograms and its report, or fail before the end."""
     with atomic_output(target, **given) as files:
         fill(files, text, *subprograms)
-        if "report" in given:
-            files.add_report(given["report"]).write(text)
+        for paper in given.get("papers", ()):
+            files.add_paper(paper).write(text)
         if fail is not None:
             raise fail
 
@@ -82,17 +82,17 @@ def test_a_report_appears_with_its_program(tmp_path: Path) -> None:
     (tmp_path / "reports").mkdir()
     program, report = tmp_path / "p.mpf", resolve_output(tmp_path / "reports" / "r.html")
     for text in (b"one", b"two"):
-        with atomic_output(str(program), report=report) as files:
+        with atomic_output(str(program), papers=[report]) as files:
             fill(files, text)
-            files.add_report(report).write(text)
+            files.add_paper(report).write(text)
             assert not report.path.exists() or report.path.read_bytes() != text
         assert (program.read_bytes(), contents(tmp_path / "reports")) == (text, {"r.html": text})
-    with pytest.raises(InputError, match="would be written twice"), atomic_output(str(report.path), report=report):
+    with pytest.raises(InputError, match="would be written twice"), atomic_output(str(report.path), papers=[report]):
         pass
     stream = io.BytesIO()
-    with atomic_output(stream, report=report) as files:
+    with atomic_output(stream, papers=[report]) as files:
         fill(files, b"three")
-        files.add_report(report).write(b"three")
+        files.add_paper(report).write(b"three")
     assert (stream.getvalue(), contents(tmp_path / "reports")) == (b"three", {"r.html": b"three"})
 
 
@@ -269,9 +269,9 @@ def test_where_folders_are_on_other_disks_files_are_copied_beside_their_places(
     (tmp_path / "other").mkdir()
     report = resolve_output(tmp_path / "other" / "r.json")
     for _ in range(2):
-        with atomic_output(str(tmp_path / "p.mpf"), report=report) as files:
+        with atomic_output(str(tmp_path / "p.mpf"), papers=[report]) as files:
             fill(files, b"new", "A.SPF")
-            files.add_report(report).write(b"new")
+            files.add_paper(report).write(b"new")
     assert len(moved) == 7
     for source, target in moved:
         assert source.parent in target.parents or target.parent in source.parents
@@ -315,10 +315,10 @@ def write_interrupted(line: int, folder: Path) -> bool:
     tracer = sys.gettrace()
     sys.settrace(interrupting)
     try:
-        with atomic_output(str(folder / "p.mpf"), report=report) as files:
+        with atomic_output(str(folder / "p.mpf"), papers=[report]) as files:
             fill(files, b"new", "A.SPF", "B.SPF")
             files.start_sync()
-            files.add_report(report).write(b"new")
+            files.add_paper(report).write(b"new")
     except KeyboardInterrupt:
         assert interrupting.came
     finally:
@@ -379,7 +379,7 @@ def test_a_failing_move_is_undone_whatever_it_fails_of(tmp_path: Path, monkeypat
                 patch.setattr(Path, "replace", fail)
                 expected = InputError if isinstance(error, OSError) else type(error)
                 with pytest.raises(expected):
-                    write(str(tmp_path / "p.mpf"), b"new", "A.SPF", "B.SPF", report=report)
+                    write(str(tmp_path / "p.mpf"), b"new", "A.SPF", "B.SPF", papers=[report])
             assert contents(tmp_path) == dict.fromkeys(("A.SPF", "p.mpf", "r.html"), b"old")
 
 

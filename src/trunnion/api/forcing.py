@@ -69,7 +69,8 @@ def write_forced(
         _write(program, notices, target, subprograms)
         files = target.files
         others = [*files.other_paths, *job.beside]
-        proof = prove(readers.run_program(files.path, job.machine, subprograms=others))
+        run = readers.run_program(files.path, job.machine, subprograms=others, encoding=job.encoding)
+        proof = prove(run)
         before, notices = notices, _notices(proof)
         if _line_count(program, notices) == _line_count(program, before):
             if notices != before:

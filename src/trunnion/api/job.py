@@ -1,12 +1,14 @@
 """A post before its first CL file is read: machine, control and options, made of its settings."""
 
 import math
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from trunnion.api.paper_files import PaperFiles
 from trunnion.api.run_settings import RUN_SETTINGS
 from trunnion.api.settings import (
     Settings,
@@ -55,10 +57,10 @@ class PostJob:
     settings      all of them, as text
     own_settings  those of single operations, by their names
     force         write a program that must not run, with notices in its head
-    report        file of the report; None: there is none
+    papers        where its papers go
     columns       work out the columns of the verification
     beside        files of subprograms that exist already and that templates call
-    simulation    stock and all else that the program is simulated with; None: it is not
+    simulation    stock and all else that the program is simulated with; None: it is not; and the files of that
     forcing       what a refusal says of ``force``; empty where it cannot be asked for
     """
 
@@ -68,17 +70,23 @@ class PostJob:
     options: PlanOptions
     settings: Mapping[str, str]
     force: bool = False
-    report: Path | None = None
+    papers: PaperFiles = field(default_factory=PaperFiles)
     columns: bool = False
     own_settings: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     beside: tuple[Path, ...] = ()
     simulation: "SimulationInput | None" = None
+    simulation_files: tuple[str | os.PathLike[str], ...] = ()
     forcing: str = "force=True writes it"
 
     @property
     def printed(self) -> dict[str, str]:
         """The settings that templates print."""
         return {key: value for key, value in self.settings.items() if key not in RUN_SETTINGS or key in PROGRAM_CHOICES}
+
+    @property
+    def encoding(self) -> str:
+        """What names and texts of the program are written in."""
+        return self.settings.get("encoding") or self.control.settings.get("encoding") or "utf-8"
 
     @property
     def planned_machine(self) -> Machine:
@@ -128,7 +136,7 @@ def prepare(
     *,
     force: bool = False,
     explain: bool = False,
-    report: Path | None = None,
+    papers: PaperFiles | None = None,
     columns: bool = False,
 ) -> PostJob:
     """Check the settings of a post, and make the job of it.
@@ -144,13 +152,32 @@ def prepare(
     control = in_units(control, texts.get("units") or control.settings.get("units", MM))
     texts, own = split_by_operation(texts, control, machine)
     check_settings(texts, control, machine)
-    if texts.get("numbers") == "off":
-        control = replace(control, block_numbers=replace(control.block_numbers, numbered=False))
+    control = _with_numbers(control, texts.get("numbers"))
     control = _with_first_number(control, texts)
     machine = apply_setup(machine, texts)
-    options = parse_plan_options(texts, control, explain or report is not None)
+    papers = papers or PaperFiles()
+    options = parse_plan_options(texts, control, explain or papers.report is not None)
     capabilities = control_capabilities(control, texts)
-    return PostJob(machine, control, capabilities, options, texts, force, report, columns or report is not None, own)
+    return PostJob(machine, control, capabilities, options, texts, force, papers, columns or papers.need_columns, own)
+
+
+def _with_numbers(control: Control, asked: str | None) -> Control:
+    """The control with the setting ``numbers``; None: as its definition says.
+
+    Raises
+    ------
+    InputError
+        If operations alone are to have numbers, and the control needs one before each block.
+    """
+    numbers = control.block_numbers
+    if asked == "operations" and not numbers.letter:
+        cure = "leave it out: its numbers have no letter, and stand before every block"
+        raise InputError(argument_problem("settings", f"numbers is operations, and {control.name} has no such", cure))
+    if asked is None or (asked == "on" and not numbers.letter):
+        return control
+    every = numbers.every if asked == "off" else 1
+    changed = replace(numbers, numbered=asked != "off", every=every, at_operations=asked == "operations")
+    return replace(control, block_numbers=changed)
 
 
 def _with_first_number(control: Control, settings: Mapping[str, str]) -> Control:

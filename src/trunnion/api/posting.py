@@ -7,7 +7,6 @@ Out:    the program: planned, written, read back, run and compared with its tool
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trunnion.api import kernels
@@ -18,10 +17,12 @@ from trunnion.api.input_files import cl_files, definition_files
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.machining_times import operation_times, prints_times, write_times
 from trunnion.api.observer import SILENT, Observer
+from trunnion.api.paper_files import PaperFiles, paper_files
+from trunnion.api.papers import write_papers
 from trunnion.api.planning import load_toolpaths, plan_program
 from trunnion.api.post_result import PostResult, ProofFailedError
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
-from trunnion.api.reports import add_report, check_report_name, write_refusal
+from trunnion.api.reports import write_refusal
 from trunnion.api.settings import Settings
 from trunnion.api.targets import OutputLike, Target, open_target
 from trunnion.api.writing import read_back_while_writing, write
@@ -46,6 +47,9 @@ def post(
     force: bool = False,
     explain: bool = False,
     report: FilePath | None = None,
+    sheet: FilePath | None = None,
+    listing: FilePath | None = None,
+    manifest: FilePath | None = None,
     columns: bool = True,
     subprograms: Sequence[FilePath] = (),
     simulation: "SimulationLike | None" = None,
@@ -78,6 +82,13 @@ def post(
         Record why the axes were planned as they are (``decisions``).
     report
         File of a report, ``.html`` or ``.json``. It appears together with the program, and alone where that is refused.
+    sheet
+        File of the setup sheet, ``.html`` or ``.json``, which appears together with the program; docs/paper.md.
+    listing
+        File of a listing of all motions, as text.
+    manifest
+        File of the manifest, ``.json``, in the folder of the program: checksums of all files, and what they were made
+        from. ``trunnion.verify_manifest`` checks it.
     columns
         Work out the columns of the verification: ``seconds`` (n,), ``tip_feed`` (n,) in mm/min and ``cl_line`` (n,). A
         report needs them; without them a program of any length takes little memory.
@@ -119,8 +130,8 @@ def post(
     """
     return post_beside(
         cl, (), machine=machine, output=output, settings=settings, strict=strict, force=force, explain=explain,
-        report=report, columns=columns, subprograms=subprograms, simulation=simulation,
-        observer=observer,
+        papers=paper_files(report, sheet, listing, manifest, output), columns=columns, subprograms=subprograms,
+        simulation=simulation, observer=observer,
     )  # fmt: skip
 
 
@@ -134,7 +145,7 @@ def post_beside(
     strict: bool,
     force: bool,
     explain: bool,
-    report: FilePath | None,
+    papers: PaperFiles,
     columns: bool,
     subprograms: Sequence[FilePath],
     observer: Observer,
@@ -142,20 +153,18 @@ def post_beside(
 ) -> PostResult:
     """Post CL files as ``post`` does, and write over none of the other files of the same work."""
     check_observer(observer)
-    if report is not None:
-        check_report_name(report)
     loaded = as_machine(machine)
-    place = None if report is None else Path(report)
-    job = prepare(loaded, settings, force=force, explain=explain, report=place, columns=columns)
+    job = prepare(loaded, settings, force=force, explain=explain, papers=papers, columns=columns)
     existing = check_paths("subprograms", subprograms)
     job = replace(job, beside=tuple(existing))
     inputs = [*cl_files(cl), *definition_files(machine, loaded), *existing, *others]
     if simulation is not None:
         from trunnion.api.posted_simulation import simulation_files, simulation_input
 
-        job = replace(job, simulation=simulation_input(simulation, job.machine))
-        inputs += simulation_files(simulation)
-    with open_target(output, report=report, inputs=inputs) as target:
+        read = tuple(simulation_files(simulation))
+        job = replace(job, simulation=simulation_input(simulation, job.machine), simulation_files=read)
+        inputs += read
+    with open_target(output, papers=papers.by_name(), inputs=inputs) as target:
         compile_ahead(kernels.POSTING)
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
         toolpaths = load_toolpaths(cl, job, strict, observer)
@@ -167,7 +176,9 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
     """Plan, write and prove a program; errors as ``post`` raises them."""
     subprograms = job.subprograms(target.files, target.path)
     divided = subprograms is not None
-    reading = read_back_while_writing(target.files, job.machine, divided=divided, beside=job.beside)
+    reading = read_back_while_writing(
+        target.files, job.machine, encoding=job.encoding, divided=divided, beside=job.beside
+    )
     try:
         with reading as (progress, run):
             program, planned, problems = plan_program(toolpaths, job, observer)
@@ -175,8 +186,8 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
             write(program, target.files.main, progress, subprograms, observer)
             expected = expectation(program, job.options)
     except TrunnionError as error:
-        if job.report is not None:
-            write_refusal(error.problems, job.machine, target.name, job.report)
+        if job.papers.report is not None:
+            write_refusal(error.problems, job.machine, target.name, job.papers.report)
         raise
     columns = job.columns or program.has_time_tokens
 
@@ -205,15 +216,16 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
     remarks = [remark for toolpath in toolpaths for remark in toolpath.remarks]
     result = PostResult(tuple(toolpaths), planned, verification, (*remarks, *problems), simulation=simulated)
     if proof.failed and not job.force:
-        if job.report is not None:
-            result.write_report(job.report)
+        if job.papers.report is not None:
+            result.write_report(job.papers.report)
         raise _proof_failed(result, job.forcing)
     if program.has_time_tokens:
         write_times(target.files, program, times)
-    if target.report is not None and verification is not None:
-        sink = target.files.add_report(target.report)
-        add_report(verification, sink, target.report.name, result.decisions, simulated)
-    return replace(result, output=target.path, subprograms=target.subprograms, _memory=target.memory)
+    if target.papers:
+        write_papers(target, program, job, result, verification)
+    return replace(
+        result, encoding=job.encoding, output=target.path, subprograms=target.subprograms, _memory=target.memory
+    )
 
 
 def _with_simulation(
@@ -248,7 +260,8 @@ def _prove(
 def _nothing_checked(job: PostJob, target: Target) -> Problem:
     """The warning of a forced program that no reader can read."""
     what = "it is written by force, and nothing has been checked"
-    lost = "" if job.report is None else ": there is no report"
+    without = ["setup sheet" if name == "sheet" else name for name in job.papers.by_name() if name != "manifest"]
+    lost = f": there is no {' and no '.join(without)}" if without else ""
     return Problem(target.name, 0, f"{what}{lost}", severity=Severity.WARNING)
 
 

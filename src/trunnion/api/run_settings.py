@@ -106,7 +106,18 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         form="DEGREES",
         example="0.05",
     ),
-    "numbers": _choice("With off blocks have no numbers.", "on", "off"),
+    "numbers": _choice(
+        "Which blocks have numbers: all, none, or only the first of each operation.",
+        "on",
+        "off",
+        "operations",
+        default="as the control's definition says",
+    ),
+    "listing": _choice(
+        "What the listing has besides the tip and both rotary axes: nothing, or the positions of the slides.",
+        "tip",
+        "slides",
+    ),
     "programs": _choice(
         "One file with all operations, or a main program that calls a subprogram for each operation.",
         "one",

@@ -22,7 +22,7 @@ from trunnion.output.subprograms import SubprogramOutput
 
 @contextmanager
 def read_back_while_writing(
-    files: OutputFiles, machine: Machine, *, divided: bool, beside: Sequence[Path] = ()
+    files: OutputFiles, machine: Machine, *, encoding: str, divided: bool, beside: Sequence[Path] = ()
 ) -> Iterator[tuple[WriteProgress, Future[Run | None]]]:
     """Run a program while its file is being written; the reader is set up while the program is planned.
 
@@ -35,6 +35,8 @@ def read_back_while_writing(
         Where the program is written.
     machine
         Runs it.
+    encoding
+        Of its texts.
     divided
         The program calls subprograms: the run waits for all files, as calls stand before what they call.
     beside
@@ -51,7 +53,7 @@ def read_back_while_writing(
     with ThreadPoolExecutor(1) as executor:
         # Without a word the reader would wait forever: an interruption of the first one leaves the second.
         try:
-            run = executor.submit(_run, files, machine, progress, divided or bool(beside), beside)
+            run = executor.submit(_run, files, machine, encoding, progress, divided or bool(beside), beside)
             yield progress, run
             files.start_sync()
             progress.finish()
@@ -63,13 +65,19 @@ def read_back_while_writing(
 
 
 def _run(
-    files: OutputFiles, machine: Machine, progress: WriteProgress, waits: bool, beside: Sequence[Path]
+    files: OutputFiles,
+    machine: Machine,
+    encoding: str,
+    progress: WriteProgress,
+    waits: bool,
+    beside: Sequence[Path],
 ) -> Run | None:
     if not readers.can_read(machine):
         return None
     if waits:
         progress.wait_until_finished()
-    return readers.run_program(files.path, machine, subprograms=[*files.other_paths, *beside], write_progress=progress)
+    others = [*files.other_paths, *beside]
+    return readers.run_program(files.path, machine, subprograms=others, encoding=encoding, write_progress=progress)
 
 
 def write(

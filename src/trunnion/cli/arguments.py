@@ -190,6 +190,9 @@ def _add_post(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--force", action="store_true", help="write a program that must not run; its head says so")
     parser.add_argument("--explain", action="store_true", help="say why the axes were planned as they are")
     parser.add_argument("--report", metavar="FILE", help="what was checked, as a page (.html) or data (.json)")
+    parser.add_argument("--sheet", metavar="FILE", help="setup sheet to print (.html), or its data (.json)")
+    parser.add_argument("--listing", metavar="FILE", help="every motion as text: X Y Z, rotary axes, S, F")
+    parser.add_argument("--manifest", metavar="FILE", help="checksums of all files (.json), beside the program")
     parser.add_argument(
         "--simulate", action="store_true", help="cut stock with the program too, and refuse what it must not do"
     )
@@ -199,8 +202,8 @@ def _add_post(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_verify(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="NC", help="NC program")
-    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs it")
+    parser.add_argument("file", metavar="NC", help="NC program; or the manifest of a post (.json)")
+    parser.add_argument("--machine", metavar="NAME_OR_FILE", help="machine that runs it; not for a manifest")
     _add_subprograms(parser, "it")
     parser.add_argument(
         "--cl", action="append", default=[], metavar="CL",

@@ -4,8 +4,10 @@ import argparse
 from collections.abc import Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
+from typing import Final
 
 from trunnion.api.input_files import definition_files
+from trunnion.api.paper_files import paper_files
 from trunnion.api.post_result import PostResult
 from trunnion.api.posting import post_beside
 from trunnion.api.reading import load_machine
@@ -19,17 +21,21 @@ from trunnion.machines import Machine
 from trunnion.model.toolpath import Toolpath
 from trunnion.wording import counted
 
+#: Papers of a program by their options.
+_PAPERS: Final = {"report": "report", "sheet": "setup sheet", "listing": "listing", "manifest": "manifest"}
+
 
 def post(arguments: argparse.Namespace, toolpaths: Iterator[list[Toolpath]]) -> int:
     """Post every CL file, whose toolpaths come file after file; 1 if one of the programs is forced."""
     machine = load_machine(arguments.machine)
     targets = _files_by_target(arguments, machine)
-    if arguments.report is not None and len(targets) > 1:
-        what = f"one report for {len(targets)} programs"
-        raise InputError(Problem(arguments.report, 0, what, "post them one at a time, or leave --report out"))
+    papers = {name: getattr(arguments, name) for name in _PAPERS if getattr(arguments, name) is not None}
+    for name, file in papers.items():
+        if len(targets) > 1:
+            what = f"one {_PAPERS[name]} for {len(targets)} programs"
+            raise InputError(Problem(file, 0, what, f"post them one at a time, or leave --{name} out"))
     read = [*named_files(arguments.files), *definition_files(arguments.machine, machine)]
-    report = [] if arguments.report is None else [arguments.report]
-    check_outputs([*(target for target in targets if target != "-"), *report], read)
+    check_outputs([*(target for target in targets if target != "-"), *papers.values()], read)
     if output_folder(arguments.output) is not None:
         for target in targets:
             check_unnamed(target, alone=len(targets) == 1)
@@ -46,7 +52,7 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[list[Toolpath]]) -> 
             strict=arguments.strict,
             force=arguments.force,
             explain=arguments.explain,
-            report=arguments.report,
+            papers=paper_files(**{name: papers.get(name) for name in _PAPERS}, output=output_place(target)),
             columns=False,
             subprograms=arguments.subprograms,
             simulation=_simulation(arguments),

@@ -209,7 +209,12 @@ def _read_block_numbers(table: Table) -> BlockNumbers:
         table.integer("highest", 99999999, at_least=1, at_most=99999999),
         table.flag("numbered", bool(letter)),
         table.text("unnumbered", ""),
+        table.integer("every", 1, at_least=1),
+        table.text("at", "blocks", one_of=("blocks", "operations")) == "operations",
     )
+    for key in ("every", "at"):
+        if not letter and key in table:
+            table.add_problem(key, "is given, and numbers without a letter stand before every block", "leave it out")
     if numbers.highest < numbers.start:
         what = f"is {numbers.highest}, but the numbers start at {numbers.start}"
         table.add_problem("highest", what, "write a greater one")

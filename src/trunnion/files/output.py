@@ -58,7 +58,7 @@ class OutputFiles:
         self._place, self._claims, self._earlier = place, claims or Claims(), earlier
         self.main: BinaryIO = _open(self.path, place.name if place else name)
         self._subprograms: dict[Path, tuple[BinaryIO, OutputPlace]] = {}
-        self._report: tuple[Path, BinaryIO, OutputPlace] | None = None
+        self._papers: list[tuple[Path, BinaryIO, OutputPlace]] = []
         self._sync_thread: ThreadPoolExecutor | None = None
 
     def add_file(self, name: str, other_name: str = "") -> BinaryIO:
@@ -96,17 +96,17 @@ class OutputFiles:
             raise InputError(Problem(place.name, 0, what, cure))
         return place
 
-    def add_report(self, place: OutputPlace) -> BinaryIO:
-        """Begin a report of the first file, which appears with it, and return its sink."""
-        assert self._report is None, "one report"
-        folder = self.path.parent / ".report"
+    def add_paper(self, place: OutputPlace) -> BinaryIO:
+        """Begin a report or another file about the first one, which appears with it, and return its sink."""
+        folder = self.path.parent / f".paper{len(self._papers)}"
         try:
             folder.mkdir()
         except OSError as error:
             raise cannot_write(place.name, error) from None
         path = folder / place.path.name
-        self._report = path, _open(path, place.name), place
-        return self._report[1]
+        sink = _open(path, place.name)
+        self._papers.append((path, sink, place))
+        return sink
 
     def protect(self, files: Iterable[str | os.PathLike[str]]) -> None:
         """Never write over these files.
@@ -122,6 +122,11 @@ class OutputFiles:
     def other_paths(self) -> list[Path]:
         """Paths of the further files, in the order in which they were begun."""
         return list(self._subprograms)
+
+    @property
+    def papers(self) -> list[tuple[Path, OutputPlace]]:
+        """Paths of the papers and their places, in the order in which they were begun."""
+        return [(path, place) for path, _, place in self._papers]
 
     def flush(self) -> None:
         """Make everything written readable at the paths."""
@@ -167,27 +172,27 @@ class OutputFiles:
         files = [(path, place) for path, (_, place) in self._subprograms.items()]
         if self._place is not None and stream is None:
             files.append((self.path, self._place))
-        report = [] if self._report is None else [(self._report[0], self._report[2])]
-        files += [(path, place) for path, place in report if not place.is_stream]
+        papers = self.papers
+        files += [(path, place) for path, place in papers if not place.is_stream]
         moves = [(hidden.bring(path, place), place) for path, place in files]
         if stream is not None:
             _send(self.path, stream, self._place.name if self._place else stream_name(stream))
-        for path, place in report:
+        for path, place in papers:
             if place.is_stream:
                 with open_stream(place) as device:
                     _send(path, device, place.name)
         if moves:
-            move_all(moves, [place for _, place in report])
+            move_all(moves, [place for _, place in papers])
         if self._earlier is not None and stream is None:
-            others = {place.path for _, place in report}
+            others = {place.path for _, place in papers}
             self._earlier.remember(place.path for _, place in files if place.path not in others)
 
     def sinks(self) -> list[BinaryIO]:
-        """Return the sinks of all files of the program, the first file's first; not that of its report."""
+        """Return the sinks of all files of the program, the first file's first; not those of its papers."""
         return [self.main, *(sink for sink, _ in self._subprograms.values())]
 
     def _all_sinks(self) -> list[BinaryIO]:
-        return [*self.sinks(), *([] if self._report is None else [self._report[1]])]
+        return [*self.sinks(), *(sink for _, sink, _ in self._papers)]
 
 
 def _open(path: Path, known_as: str) -> BinaryIO:
@@ -210,7 +215,7 @@ def _send(path: Path, stream: BinaryIO, name: str) -> None:
 def atomic_output(
     target: str | os.PathLike[str] | Destination,
     *,
-    report: OutputPlace | None = None,
+    papers: Iterable[OutputPlace] = (),
     inputs: Iterable[str | os.PathLike[str]] = (),
     is_job: bool = False,
 ) -> Iterator[OutputFiles]:
@@ -220,8 +225,8 @@ def atomic_output(
     ----------
     target
         Of the first file: a path, whose folder takes the others, or a stream, which takes one file only.
-    report
-        A file that will be written as well: none of the others may be it.
+    papers
+        Files that will be written as well (``add_paper``): none of the others may be one of them.
     inputs
         Files that are read: none of them is written over.
     is_job
@@ -237,7 +242,7 @@ def atomic_output(
     place = resolve_output(target) if isinstance(target, str | os.PathLike) else target
     claims = Claims()
     claims.read(inputs)
-    for each in (place, report):
+    for each in (place, *papers):
         if isinstance(each, OutputPlace):
             claims.write(each)
     hidden = HiddenFolders()

@@ -180,9 +180,9 @@ class EventWriter:
             formats = self._control.number_formats(self._motion.three_axis)
             blocks.write_lines(self._family.dwell(event, rpm, formats))
         elif isinstance(event, Message):
-            blocks.write_lines(self._family.message(event))
+            blocks.write_lines(self._family.message(replace(event, text=self._program.spelled(event.text))))
         elif isinstance(event, Insert):
-            blocks.write_lines([event.text])
+            blocks.write_lines([event.text], as_they_are=True)
             blocks.writer.forget()  # the text may have changed anything
         elif isinstance(event, SelectTool):
             if self._program.effective_setting("preselect") != "on":  # else the next tool is selected after a change
@@ -201,7 +201,8 @@ class EventWriter:
         if self._spindle_turns and not event.optional:
             self._blocks.write_event(SpindleOff(event.row, event.line))
             self._spindle_turns = False
-        self._blocks.write_lines(self._family.stop(event, self._control.codes))
+        spelled = replace(event, text=self._program.spelled(event.text))
+        self._blocks.write_lines(self._family.stop(spelled, self._control.codes))
         self._blocks.writer.forget("coolant", *(("spindle",) if event.optional else ()))
         if event.row == len(self._motion.operation.moves):
             return

@@ -105,7 +105,7 @@ class TemplateValues:
             "length_number": str(self.length_register(operation, loaded) or tool),
         }
         return {
-            name: self._family.escape_comment(value) if isinstance(value, str) else value
+            name: self._family.escape_comment(self._program.spelled(value)) if isinstance(value, str) else value
             for name, value in found.items()
         }
 
@@ -158,13 +158,22 @@ class TemplateValues:
         if not prints_times(self._program):
             return dict.fromkeys(names)
         operation = sum(motion.starts_operation for motion in self._program.motions[: number + 1 or None])
-        if self._program.has_time_tokens:
-            own, total = _time_token(operation), _time_token(0)
-        else:
-            self._seconds = self._seconds or estimated_seconds(self._program)
-            own, total = format_duration(self._seconds[operation - 1]), format_duration(sum(self._seconds))
+        own, total = self._time_text(operation), self._time_text(0)
         shown = (own, total) if self._program.effective_setting("times") == "on" else (None, None)
         return dict(zip(names, (own, total, *shown), strict=True))
+
+    def operation_times(self) -> list[str | None]:
+        """The machining time of each operation, or what stands for it; None where the program has no times."""
+        count = sum(motion.starts_operation for motion in self._program.motions)
+        shown = prints_times(self._program)
+        return [self._time_text(number) if shown else None for number in range(1, count + 1)]
+
+    def _time_text(self, number: int) -> str:
+        """The machining time of an operation, counted from 1, or of the program (0); or what stands for it."""
+        if self._program.has_time_tokens:
+            return _time_token(number)
+        self._seconds = self._seconds or estimated_seconds(self._program)
+        return format_duration(self._seconds[number - 1] if number else sum(self._seconds))
 
     def _plane_values(self, motion: Motion) -> dict[str, Value]:
         """The origin of a tilted plane, and which of the two rotary positions the machine takes there.
@@ -278,11 +287,12 @@ class TemplateValues:
 
 
 def prints_times(program: Program) -> bool:
-    """Return whether a template of the control prints machining times."""
+    """Return whether a template of the control, or the list of operations, has machining times."""
     setting = program.effective_setting("times")
     fields = {name for template in program.control.templates.values() for name, _ in template.fields()}
     wanted = {"time", "total_time"} | ({"time_shown", "total_time_shown"} if setting == "on" else set())
-    return setting != "off" and bool(fields & wanted)
+    listed = program.effective_setting("operation_list") == "on"
+    return setting != "off" and (listed or bool(fields & wanted))
 
 
 def estimated_seconds(program: Program) -> list[float]:

@@ -23,12 +23,18 @@ def cut_extents(motions: Sequence[Motion]) -> tuple[Floats, Floats] | None:
     lower, upper
         (3,) each, whole millimetres, at least 1 mm apart in every direction; None if nothing is cut.
     """
+    box = cut_box(motions)
+    if box is None:
+        return None
+    low, high = np.floor(box[0]), np.ceil(box[1])
+    return low, np.maximum(high, low + 1.0)
+
+
+def cut_box(motions: Sequence[Motion]) -> tuple[Floats, Floats] | None:
+    """Return the same corners as they are, mm; None if nothing is cut."""
     points = [point for motion in motions for point in _cut_points(motion)]
     cut = np.concatenate(points) if points else np.zeros((0, 3))
-    if not len(cut):
-        return None
-    low, high = np.floor(cut.min(axis=0)), np.ceil(cut.max(axis=0))
-    return low, np.maximum(high, low + 1.0)
+    return (cut.min(axis=0), cut.max(axis=0)) if len(cut) else None
 
 
 def _cut_points(motion: Motion) -> list[Floats]:
