@@ -62,7 +62,7 @@ def case(name: str) -> tuple[PostJob, Toolpath]:
 
 def write_and_run(program: Program, files: OutputFiles) -> Run | None:
     """Write a program and run it meanwhile."""
-    with read_back_while_writing(files, program.machine, divided=False) as (progress, run):
+    with read_back_while_writing(files, program.machine, encoding="utf-8", divided=False) as (progress, run):
         write(program, files.main, progress)
     return run.result()
 

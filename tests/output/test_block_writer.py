@@ -91,7 +91,7 @@ def test_the_kernel_writes_what_its_slow_twin_writes(rows: list[Row], numbers: B
                 TEXTS,
                 {k: row[-1] for k, row in enumerate(part) if row[-1]},
             )
-    assert sink.getvalue().decode() == slow_blocks(rows, numbers)
+    assert sink.getvalue() == slow_blocks(rows, numbers, form)
 
 
 def written(writer: BlockWriter, sink: io.BytesIO, x: float) -> str:

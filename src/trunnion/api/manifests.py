@@ -130,10 +130,10 @@ def _entry(name: str, path: Path, what: str) -> dict[str, object]:
 def _inputs(files: Iterable[FilePath]) -> list[dict[str, object]]:
     """Files that were read, each once; without checksums where they are none on the disk, as what came from stdin."""
     found: dict[str, dict[str, object]] = {}
-    for file in map(os.fspath, files):
+    for file in files:
         path = Path(file)
         known = {"bytes": path.stat().st_size, "sha256": checksum(path)} if path.is_file() else {}
-        found.setdefault(os.path.realpath(file), {"name": clean(path.name), **known})
+        found.setdefault(os.path.realpath(path), {"name": clean(path.name), **known})
     return list(found.values())
 
 

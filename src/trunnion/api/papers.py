@@ -46,11 +46,8 @@ def write_papers(
             from trunnion.reporting.listing import listing
 
             slides = job.settings.get("listing") == "slides"
-            sink.writelines(
-                listing(
-                    verification.run, Path(target.name).name, verification.operations, slides=slides, made_by=MADE_BY
-                )
-            )
+            name = Path(target.name).name
+            sink.writelines(listing(verification.run, name, verification.operations, slides=slides, made_by=MADE_BY))
     if "manifest" in target.papers:
         from trunnion.api.manifests import manifest_bytes
 

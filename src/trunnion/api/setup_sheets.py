@@ -19,7 +19,7 @@ from trunnion.output.program import Program
 from trunnion.output.template_values import TemplateValues
 from trunnion.reporting.content import collect_content
 from trunnion.reporting.path_drawing import DrawnBody, path_drawing
-from trunnion.reporting.setup_sheet import SetupSheet, SheetFile, SheetOperation, SheetTool, cleaned, cut_ranges
+from trunnion.reporting.setup_sheet import SetupSheet, SheetFile, SheetOperation, SheetTool, cut_ranges
 from trunnion.reporting.text import clean
 from trunnion.reporting.usage import OperationUsage
 from trunnion.verification import Verification
@@ -80,26 +80,17 @@ def _operations(
     groups = [program.motions[first:end] for first, end in pairwise([*starts, len(program.motions)])]
     rows = zip(groups, verification.operations, usages, calls, strict=True)
     for number, (motions, own, usage, call) in enumerate(rows, 1):
-        ranges = cut_ranges(verification.run, own)
-        yield cleaned(
-            SheetOperation(
-                number=number,
-                name=own.name,
-                method=program.method_of(motions[0].operation),
-                mode=", ".join(dict.fromkeys(motion.mode.value for motion in motions)),
-                tool=call,
-                cl_file=own.cl_file,
-                seconds=usage.seconds,
-                cutting_seconds=usage.cutting_seconds,
-                box=_box(motions),
-                rotary=ranges.rotary,
-                rpm=ranges.rpm,
-                sense=ranges.sense,
-                feed=ranges.feed,
-                feed_per_rev=ranges.feed_per_rev,
-                coolant=ranges.coolant,
-                start=ranges.start,
-            )
+        yield SheetOperation(
+            number=number,
+            name=clean(own.name),
+            method=clean(program.method_of(motions[0].operation)),
+            mode=", ".join(dict.fromkeys(motion.mode.value for motion in motions)),
+            tool=clean(call),
+            cl_file=clean(own.cl_file),
+            seconds=usage.seconds,
+            cutting_seconds=usage.cutting_seconds,
+            box=_box(motions),
+            cuts=cut_ranges(verification.run, own),
         )
 
 
@@ -121,22 +112,20 @@ def _tools(
     for call, used in tools.items():
         _, register, operation = calls[used[0]]
         tool = operation.tool
-        yield cleaned(
-            SheetTool(
-                call=call,
-                name=tool.name,
-                kind=_kind(tool),
-                diameter=tool.diameter,
-                corner_radius=tool.corner_radius,
-                length=tool.length,
-                flute_length=tool.flute_length,
-                stick_out=tool.extension,
-                set_length=tool.set_length,
-                holder=tool.holder,
-                register=register if by_register else 0,
-                operations=tuple(number + 1 for number in used),
-                seconds=sum(operations[number].cutting_seconds for number in used),
-            )
+        yield SheetTool(
+            call=clean(call),
+            name=clean(tool.name),
+            kind=_kind(tool),
+            diameter=tool.diameter,
+            corner_radius=tool.corner_radius,
+            length=tool.length,
+            flute_length=tool.flute_length,
+            stick_out=tool.extension,
+            set_length=tool.set_length,
+            holder=clean(tool.holder),
+            register=register if by_register else 0,
+            operations=tuple(number + 1 for number in used),
+            seconds=sum(operations[number].cutting_seconds for number in used),
         )
 
 

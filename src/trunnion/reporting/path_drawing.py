@@ -105,18 +105,19 @@ def _path_data(points: Floats, cutting: Ints) -> Iterator[tuple[str, str]]:
         if len(lines) <= _MOST_LINES:
             break
         step *= 2
-    for kind, chosen in (("rapid", is_cut == 0), ("cut", is_cut == 1)):
-        yield kind, _polylines(lines[chosen], step)
+    yield "rapid", _polylines(lines[np.flatnonzero(is_cut == 0)], step)
+    yield "cut", _polylines(lines[np.flatnonzero(is_cut == 1)], step)
 
 
 def _lines(points: Floats, cutting: Ints, step: float) -> tuple[Ints, Ints]:
     """Lines between points in whole steps, (k, 4), without those that are points or drawn already; 1 for cuts, (k,)."""
-    finite = np.isfinite(points).all(axis=1)
+    finite = np.all(np.isfinite(points), axis=1)
     whole = np.rint(np.where(finite[:, None], points, 0.0) / step).astype(np.int64)
     lines = np.concatenate((whole[:-1], whole[1:]), axis=1)
-    kept = finite[:-1] & finite[1:] & (whole[:-1] != whole[1:]).any(axis=1)
+    kept = finite[:-1] & finite[1:] & np.any(whole[:-1] != whole[1:], axis=1)
     lines, is_cut = lines[kept], cutting[1:][kept]
-    turned = np.where((lines[:, :2] > lines[:, 2:]).any(axis=1)[:, None], lines[:, [2, 3, 0, 1]], lines)
+    back = (lines[:, 0] > lines[:, 2]) | ((lines[:, 0] == lines[:, 2]) & (lines[:, 1] > lines[:, 3]))
+    turned = np.where(back[:, None], lines[:, [2, 3, 0, 1]], lines)
     _, first = np.unique(np.column_stack((turned, is_cut)), axis=0, return_index=True)
     order = np.sort(first)
     return lines[order], is_cut[order]
@@ -151,7 +152,7 @@ def _feature_edges(body: DrawnBody) -> Floats:
     order = np.lexsort((ends[:, 1], ends[:, 0]))
     ends, of = ends[order], of[order]
     twin = np.zeros(len(ends), np.bool_)
-    twin[:-1] = (ends[:-1] == ends[1:]).all(axis=1)
+    twin[:-1] = np.all(ends[:-1] == ends[1:], axis=1)
     smooth = np.zeros(len(ends), np.bool_)
     pairs = np.flatnonzero(twin)
     smooth[pairs] = np.einsum("ij,ij->i", normal[of[pairs]], normal[of[pairs + 1]]) > _SMOOTH

@@ -7,8 +7,7 @@ Units:  mm, degrees, seconds, rev/min; feeds mm/min and mm/rev.
 Text from outside is cleaned here of characters that no file can hold.
 """
 
-from dataclasses import dataclass, replace
-from typing import TypeVar
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -22,8 +21,6 @@ from trunnion.verification.results import OperationRows
 
 #: A lowest and a highest value.
 Range = tuple[float, float]
-
-T = TypeVar("T", "SheetTool", "SheetOperation")
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,13 +51,28 @@ class SheetTool:
 
 
 @dataclass(frozen=True, slots=True)
+class CutRanges:
+    """What a run does in the cuts of one operation, and where that begins.
+
+    rotary  range of the primary and of the secondary rotary axis
+    start   its first block
+    """
+
+    rotary: tuple[Range | None, Range | None]
+    rpm: Range | None
+    sense: str
+    feed: Range | None
+    feed_per_rev: Range | None
+    coolant: str
+    start: BlockReference | None
+
+
+@dataclass(frozen=True, slots=True)
 class SheetOperation:
     """An operation: ``box`` has the lower and the upper corner of what the tip cuts, None if nothing.
 
     mode     such as ``three-axis``; several where it has several
     seconds  with what leads to it; ``cutting_seconds`` in cuts
-    rotary   range of the primary and of the secondary rotary axis in cuts
-    start    its first block
     """
 
     number: int
@@ -72,13 +84,7 @@ class SheetOperation:
     seconds: float
     cutting_seconds: float
     box: tuple[tuple[float, float, float], tuple[float, float, float]] | None
-    rotary: tuple[Range | None, Range | None]
-    rpm: Range | None
-    sense: str
-    feed: Range | None
-    feed_per_rev: Range | None
-    coolant: str
-    start: BlockReference | None
+    cuts: CutRanges
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,25 +126,6 @@ class SetupSheet:
     to_check: tuple[str, ...]
     files: tuple[SheetFile, ...]
     picture: str
-
-
-def cleaned(entry: T) -> T:
-    """Return a tool or an operation with texts that every file can hold."""
-    texts = {name: getattr(entry, name) for name in entry.__dataclass_fields__}
-    return replace(entry, **{name: clean(text) for name, text in texts.items() if isinstance(text, str)})
-
-
-@dataclass(frozen=True, slots=True)
-class CutRanges:
-    """What a run does in the cuts of one operation, and where that begins."""
-
-    rotary: tuple[Range | None, Range | None]
-    rpm: Range | None
-    sense: str
-    feed: Range | None
-    feed_per_rev: Range | None
-    coolant: str
-    start: BlockReference | None
 
 
 def cut_ranges(run: Run, operation: OperationRows) -> CutRanges:

@@ -95,8 +95,8 @@ def sheet_json(sheet: SetupSheet) -> bytes:
 
 def _operation_data(operation: SheetOperation, rotary: Sequence[str]) -> dict[str, object]:
     data = asdict(operation)
-    data["rotary"] = dict(zip(rotary, operation.rotary, strict=True))
-    return data
+    found: dict[str, object] = {**data.pop("cuts"), **data}
+    return {**found, "rotary": dict(zip(rotary, operation.cuts.rotary, strict=True))}
 
 
 def _axis_data(axis: AxisExtent) -> dict[str, object]:
@@ -196,16 +196,16 @@ def _operation(each: SheetOperation, names: Sequence[str]) -> str:
             for name, low, high in zip("XYZ", *each.box, strict=True)
         ]
     )
-    box += [f"{escape(name)} {_degrees(turn)}" for name, turn in zip(names, each.rotary, strict=True) if turn]
-    feeds = [format_range(each.feed)] if each.feed else []
-    feeds += [f"{format_range(each.feed_per_rev)} mm/rev"] if each.feed_per_rev else []
-    sense = f"<br><small>{escape(each.sense)}</small>" if each.sense and each.sense != "clockwise" else ""
+    box += [f"{escape(name)} {_degrees(turn)}" for name, turn in zip(names, each.cuts.rotary, strict=True) if turn]
+    feeds = [format_range(each.cuts.feed)] if each.cuts.feed else []
+    feeds += [f"{format_range(each.cuts.feed_per_rev)} mm/rev"] if each.cuts.feed_per_rev else []
+    sense = "" if each.cuts.sense in ("", "clockwise") else f"<br><small>{escape(each.cuts.sense)}</small>"
     return (
         f"<tr><td>{each.number}</td><th scope=row><bdi>{escape(each.name)}</bdi><br><small>{facts}</small></th>"
-        f"<td><bdi>{escape(each.tool)}</bdi></td><td class=n>{_block(each.start)}</td>"
+        f"<td><bdi>{escape(each.tool)}</bdi></td><td class=n>{_block(each.cuts.start)}</td>"
         f"<td class=n>{format_duration(each.seconds)}</td><td class=n>{format_duration(each.cutting_seconds)}</td>"
         f"<td>{'<br>'.join(box)}</td><td class=n>{'<br>'.join(feeds)}</td>"
-        f"<td class=n>{format_range(each.rpm)}{sense}</td><td>{escape(each.coolant)}</td></tr>"
+        f"<td class=n>{format_range(each.cuts.rpm)}{sense}</td><td>{escape(each.cuts.coolant)}</td></tr>"
     )
 
 

@@ -235,7 +235,8 @@ class Interpreter(ABC, Generic[A]):
     def _record_comment(self, line: int, comment: str | None) -> None:
         if comment is not None:
             self._counter.count_records(1, len(comment))
-            self._comments.append(Comment(line, self.control.row, comment, self.control.modal.file.current))
+            file = self.control.modal.file.current
+            self._comments.append(Comment(line, self.control.row, comment.rstrip("\r"), file))
 
     # Limits
 
