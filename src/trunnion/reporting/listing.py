@@ -20,6 +20,7 @@ from trunnion.model.toolpath import Kind
 from trunnion.reporting.known_tips import KnownTips
 from trunnion.reporting.text import clean
 from trunnion.verification.results import OperationRows
+from trunnion.wording import one_line
 
 #: Decimals of positions, speeds and feeds: finer positions are printed by few controls.
 _POSITION_DECIMALS: Final = 4
@@ -71,7 +72,7 @@ def listing(
     made_by
         What made it, in words.
     """
-    yield "".join(f"; {line}\n" for line in _head(run, clean(program), slides, made_by)).encode()
+    yield "".join(f"; {line}\n" for line in _head(run, _word(program), slides, made_by)).encode()
     lines, numbers = run.line, run.block_number
     marks = _marks(run, operations)
     placed = all(run.machine.is_placed(k) for k in run.machine.linear)
@@ -104,9 +105,9 @@ def _rotary(run: Run) -> tuple[int, int]:
 
 def _head(run: Run, program: str, slides: bool, made_by: str) -> Iterator[str]:
     machine = run.machine
-    names = [clean(machine.axes[k].name) for k in _rotary(run)]
+    names = [_word(machine.axes[k].name) for k in _rotary(run)]
     yield f"LISTING OF {program}: what the control does with it, one line a motion"
-    yield f"Machine: {clean(machine.name)}" + (f". Made by {made_by}" if made_by else "")
+    yield f"Machine: {_word(machine.name)}" + (f". Made by {made_by}" if made_by else "")
     yield "X Y Z: tip of the tool in the workpiece, mm, at the end of the motion, with and without TCP"
     yield f"{names[0]}: primary rotary axis, {names[1]}: secondary rotary axis, as the machine shows them, degrees"
     if slides:
@@ -120,9 +121,9 @@ def _head(run: Run, program: str, slides: bool, made_by: str) -> Iterator[str]:
 
 def _marks(run: Run, operations: Sequence[OperationRows]) -> list[tuple[int, str]]:
     """Lines before rows, in order: where operation, tool and file change."""
-    found = [(each.first, 1, f"operation {number}: {clean(each.name)}") for number, each in enumerate(operations, 1)]
-    found += [(row, 2, f"tool {clean(run.tools[int(value)])}") for row, value in _changes(run, "tool") if value]
-    files = [clean(Path(file).name) for file in run.files]
+    found = [(each.first, 1, f"operation {number}: {_word(each.name)}") for number, each in enumerate(operations, 1)]
+    found += [(row, 2, f"tool {_word(run.tools[int(value)])}") for row, value in _changes(run, "tool") if value]
+    files = [_word(Path(file).name) for file in run.files]
     found += [(row, 0, f"file {files[int(value)]}") for row, value in _changes(run, "file") if len(files) > 1]
     return [(row, text) for row, _, text in sorted(found)]
 
@@ -149,6 +150,11 @@ def _with_marks(text: bytes, ends: Ints, first: int, marks: Sequence[tuple[int, 
             yield text[done:start] + _mark(mark)
             done = start
     yield text[done:]
+
+
+def _word(text: str) -> str:
+    """Text from outside as a part of a line."""
+    return one_line(clean(text))
 
 
 def _mark(text: str) -> bytes:
