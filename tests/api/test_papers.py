@@ -126,6 +126,16 @@ def test_the_sheet_prints_on_a4(folder: Path, browser: Any) -> None:
     page.close()
 
 
+def test_what_is_simulated_is_drawn(folder: Path) -> None:
+    post(folder, sheet=folder / "drawn.html", listing=None, manifest=None, report=None, force=True,
+         simulation={"stock": "box:60,60,30,-20,-30,-26", "cell": 4.0})  # fmt: skip
+    source = (folder / "drawn.html").read_text(encoding="utf-8")
+    (stock,) = re.findall(r'<path class="stock" d="([^"]*)"', source)
+    assert stock.count("L") == 12
+    assert "The simulation (" in source
+    assert "no simulation" not in source
+
+
 # The manifest
 
 

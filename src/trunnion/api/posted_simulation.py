@@ -24,6 +24,8 @@ from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.simulation.findings import What
+from trunnion.simulation.meshes import TriangleMesh, load_mesh
+from trunnion.simulation.meshes.primitives import box_mesh, cylinder_mesh
 from trunnion.simulation.stock.solids import stock_shape
 from trunnion.verification import Check, Place
 from trunnion.wording import counted
@@ -66,6 +68,23 @@ def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput
     if not _is_mesh(found.stock):
         stock_shape(found.stock)  # what cannot be is told before any work
     return found
+
+
+def simulated_bodies(given: SimulationInput) -> Iterator[tuple[str, TriangleMesh]]:
+    """Yield what the program is simulated with: ``stock``, ``part`` and ``fixture``, each with its mesh.
+
+    Meshes are read again, and nothing is told of them: the simulation has done it.
+    """
+    shape, setup = stock_shape(given.stock), given.setups[0]
+    if shape.mesh is not None:
+        yield "stock", shape.mesh
+    elif shape.is_cylinder:
+        yield "stock", cylinder_mesh(float(shape.high[0] - shape.low[0]), float(shape.low[2]), float(shape.high[2]))
+    else:
+        yield "stock", box_mesh(shape.low, shape.high)
+    for kind, meshes in (("part", [] if setup.part is None else [setup.part]), ("fixture", setup.fixtures)):
+        for mesh in meshes:
+            yield kind, mesh if isinstance(mesh, TriangleMesh) else load_mesh(mesh)
 
 
 def _is_mesh(stock: object) -> bool:

@@ -153,7 +153,7 @@ def _start(program: Program, run: Run, operations: Sequence[SheetOperation], rot
         turned = ", ".join(f"{name} {joints[k] + 0.0:.3f}°" for name, k in axes)
         yield f"The rotary axes stand at {turned} where the first cut ends."
     if program.effective_setting("restart") == "on":
-        yield "Every operation calls its tool and its speed: the program can be entered at the blocks above."
+        yield "Every operation calls its tool and its speed: the program can be entered where an operation begins."
     else:
         yield "The program is for a start at its beginning: what an operation does not say again, the one before said."
 

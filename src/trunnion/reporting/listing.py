@@ -27,12 +27,11 @@ _POSITION_DECIMALS: Final = 4
 _SPEED_DECIMALS: Final = 1
 _FEED_DECIMALS: Final = 3
 
-#: Characters that a number takes, with a blank before it, and the number of a line.
-_WIDTH: Final = 13
+#: Characters that numbers take, with a blank before them: positions and feeds, lines, block numbers, speeds.
+_WIDTH: Final = 12
 _LINE_WIDTH: Final = 9
-
-#: Numbers that fit are smaller than this.
-_MOST: Final = 1e6
+_NUMBER_WIDTH: Final = 10
+_SPEED_WIDTH: Final = 9
 
 #: What the feed counts, and how a motion is made: by ``Run.feed_mode`` and ``Kind``, from their least values.
 _LEAST_FEED_MODE: Final = 93
@@ -53,6 +52,12 @@ class Column:
     values: Floats
     decimals: int
     width: int = _WIDTH
+
+    @property
+    def fits(self) -> bool:
+        """Whether all numbers leave room for a sign and a blank before them."""
+        most = float(np.nanmax(np.abs(self.values), initial=0.0)) * 10**self.decimals
+        return bool(most + 1.0 < 10.0 ** (self.width - 2 - (self.decimals > 0)))
 
 
 def listing(
@@ -84,13 +89,13 @@ def listing(
         feed = np.where(kind == Kind.RAPID, np.nan, state.feed.part(first, end))
         joints = [*_rotary(run), *(run.machine.linear if slides else ())]
         number = np.where(numbers[rows] < 0, np.nan, numbers[rows])
-        columns = [Column(lines[rows].astype(np.float64), 0, _LINE_WIDTH), Column(number, 0)]
+        columns = [Column(lines[rows].astype(np.float64), 0, _LINE_WIDTH), Column(number, 0, _NUMBER_WIDTH)]
         is_known = known.part(first, end)
         columns += [Column(np.where(is_known, poses.tip[1:, k], np.nan), _POSITION_DECIMALS) for k in range(3)]
         for k in joints:
             shown = is_known | placed | (k in run.machine.rotary)
             columns.append(Column(np.where(shown, poses.joints[1:, k], np.nan), _POSITION_DECIMALS))
-        columns += [Column(speed, _SPEED_DECIMALS), Column(feed, _FEED_DECIMALS)]
+        columns += [Column(speed, _SPEED_DECIMALS, _SPEED_WIDTH), Column(feed, _FEED_DECIMALS)]
         unit = np.where(np.isfinite(feed), state.feed_mode.part(first, end).astype(np.int64) - _LEAST_FEED_MODE, 0)
         in_machine = state.machine_frame.part(first, end).astype(np.int64)
         text, ends = row_texts(columns, _TEXTS, len(_FEED_UNITS) * (kind + len(_KINDS) * in_machine) + unit)
@@ -115,8 +120,10 @@ def _head(run: Run, program: str, slides: bool, made_by: str) -> Iterator[str]:
         yield "SX SY SZ: slides, mm, " + ("as the machine shows them" if placed else "counted from the workpiece zero")
     yield "machine: the block states positions of the machine; the tip is known again when X, Y and Z are programmed"
     yield "S: rev/min, 0 where the spindle stands. F: as programmed; a rapid has none"
+    widths = [_LINE_WIDTH, _NUMBER_WIDTH, *[_WIDTH] * (8 if slides else 5), _SPEED_WIDTH, _WIDTH]
     heads = ["LINE", "N", "X", "Y", "Z", *names, *(("SX", "SY", "SZ") if slides else ()), "S", "F"]
-    yield f"{heads[0]:>{_LINE_WIDTH}}"[2:] + "".join(f"{head:>{_WIDTH}}" for head in heads[1:]) + "         MOTION"
+    texts = (head.rjust(width) for head, width in zip(heads, widths, strict=True))
+    yield "".join(texts)[2:] + "         MOTION"
 
 
 def _marks(run: Run, operations: Sequence[OperationRows]) -> list[tuple[int, str]]:
@@ -176,7 +183,7 @@ def row_texts(columns: Sequence[Column], texts: Sequence[str], text_of: Ints) ->
     text, ends
         All lines, and where each ends, (n,) int64.
     """
-    if any(len(each.values) and np.nanmax(np.abs(each.values), initial=0.0) >= _MOST for each in columns):
+    if not all(each.fits for each in columns):
         return _slow_row_texts(columns, texts, text_of)
     ends_of_lines = np.array([list(f" {text}\n".encode()) for text in texts], np.uint8)
     parts = [_fixed(each) for each in columns]

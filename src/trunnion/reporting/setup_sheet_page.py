@@ -181,7 +181,7 @@ def _tool(tool: SheetTool) -> str:
 
 def _operations(sheet: SetupSheet) -> str:
     rows = [_operation(each, sheet.rotary) for each in sheet.operations]
-    heads = ("No.", "Operation", "Tool", "#Starts at", "#Time", "#In cuts", "Cuts from … to, mm and °",
+    heads = ("No.", "Operation", "Tool", "#First motion", "#Time", "#In cuts", "Cuts from … to, mm and °",
              "#F mm/min", "#S rev/min", "Coolant")  # fmt: skip
     return _section("Operations", _table(heads, rows))
 
@@ -204,7 +204,7 @@ def _operation(each: SheetOperation, names: Sequence[str]) -> str:
         f"<tr><td>{each.number}</td><th scope=row><bdi>{escape(each.name)}</bdi><br><small>{facts}</small></th>"
         f"<td><bdi>{escape(each.tool)}</bdi></td><td class=n>{_block(each.cuts.start)}</td>"
         f"<td class=n>{format_duration(each.seconds)}</td><td class=n>{format_duration(each.cutting_seconds)}</td>"
-        f"<td>{'<br>'.join(box)}</td><td class=n>{'<br>'.join(feeds)}</td>"
+        f"<td class=cuts>{'<br>'.join(box)}</td><td class=n>{'<br>'.join(feeds)}</td>"
         f"<td class=n>{format_range(each.cuts.rpm)}{sense}</td><td>{escape(each.cuts.coolant)}</td></tr>"
     )
 
