@@ -136,6 +136,15 @@ def problems_of(folder: Path, cl: str, machine: str = "yl569", **settings: str) 
     return list(caught.value.problems)
 
 
+def test_capitals_that_an_encoding_lacks_stay_small(tmp_path: Path) -> None:
+    text = posted(tmp_path, "yl569", with_name("lǎng ß µ ÿ"), encoding="gbk", comments="capitals").text
+    assert text is not None
+    assert "LǎNG SS U Y" in text
+    latin = posted(tmp_path, "yl569", with_name("maß µ ÿ é"), encoding="latin-1", comments="capitals").text
+    assert latin is not None
+    assert "MAß µ ÿ É" in latin
+
+
 def test_a_tool_is_never_called_by_another_name(tmp_path: Path) -> None:
     cl = with_name("OP1").replace("TOOL,D10", "TOOL,FRÄSER")
     (problem,) = problems_of(tmp_path, cl, encoding="ascii", tool_call="name")

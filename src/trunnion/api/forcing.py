@@ -89,4 +89,4 @@ def _write(program: Program, notices: Sequence[str], target: Target, subprograms
 
 
 def _line_count(program: Program, notices: Sequence[str]) -> int:
-    return sum(len(program.control.family.comment(text)) for text in notices)
+    return sum(len(program.control.family.comment(program.spelled(text))) for text in notices)

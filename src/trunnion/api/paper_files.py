@@ -1,5 +1,6 @@
 """Where the papers of a post go: report, setup sheet, listing and manifest."""
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -51,8 +52,8 @@ def paper_files(
         check_output_name("sheet", sheet, (".html", ".json"), "a setup sheet is a page or data")
     if manifest is not None:
         place = check_output_name("manifest", manifest, (".json",), "a manifest is data")
-        program = Path(output) if isinstance(output, str | Path) else None
-        if program is None or program.resolve().parent != place.path.parent:
+        program = Path(output) if isinstance(output, str | os.PathLike) else None
+        if program is None or program.parent.resolve() != Path(manifest).parent.resolve():
             cure = "name a file in the folder of the program, and write the program to a file"
             raise InputError(Problem(place.name, 0, "a manifest tells of the files beside it", cure))
     places = (None if each is None else Path(each) for each in (report, sheet, listing, manifest))

@@ -34,6 +34,7 @@ from trunnion.output.holes.hole_blocks import write_holes
 from trunnion.output.program import Program
 from trunnion.output.template_values import spindle_values
 from trunnion.output.template_writer import TemplateWriter
+from trunnion.transliteration import spelled
 
 #: A line of a template that switches something and moves nothing.
 _SWITCHING_LINE: Final = re.compile(r"M\d+|\{\w+\}")
@@ -45,6 +46,7 @@ class EventWriter:
     def __init__(self, program: Program, blocks: MotionBlockWriter, templates: TemplateWriter) -> None:
         self._program, self._control = program, program.control
         self._family: FamilyWriter = program.control.family
+        self._encoding = program.text_form.encoding
         self._blocks, self._templates = blocks, templates
         self._starts_spindle_by_template = SPINDLE_ON in program.control.templates
         # Before the blocks that may be skipped: the tool height, None for home; the file's size, and the modal state.
@@ -180,7 +182,7 @@ class EventWriter:
             formats = self._control.number_formats(self._motion.three_axis)
             blocks.write_lines(self._family.dwell(event, rpm, formats))
         elif isinstance(event, Message):
-            blocks.write_lines(self._family.message(replace(event, text=self._program.spelled(event.text))))
+            blocks.write_lines(self._family.message(replace(event, text=spelled(event.text, self._encoding))))
         elif isinstance(event, Insert):
             blocks.write_lines([event.text], as_they_are=True)
             blocks.writer.forget()  # the text may have changed anything
@@ -201,8 +203,8 @@ class EventWriter:
         if self._spindle_turns and not event.optional:
             self._blocks.write_event(SpindleOff(event.row, event.line))
             self._spindle_turns = False
-        spelled = replace(event, text=self._program.spelled(event.text))
-        self._blocks.write_lines(self._family.stop(spelled, self._control.codes))
+        said = replace(event, text=spelled(event.text, self._encoding))
+        self._blocks.write_lines(self._family.stop(said, self._control.codes))
         self._blocks.writer.forget("coolant", *(("spindle",) if event.optional else ()))
         if event.row == len(self._motion.operation.moves):
             return

@@ -26,6 +26,9 @@ _MOST_EDGES: Final = 4000
 _FINEST: Final = 0.25
 _ARC_PIECES: Final = 24
 
+#: Pieces of all arcs, unless these are so many that each has four.
+_MOST_ARC_PIECES: Final = 1 << 21
+
 #: Rows that are looked at together.
 _CHUNK: Final = 1 << 16
 
@@ -84,10 +87,11 @@ def _view() -> Floats:
 def _known_tips(run: Run) -> tuple[Floats, Ints]:
     """Tips along the path, (k, 3), NaN where it is broken; and 1 for those that a cut leads to, (k,)."""
     known, tips, cutting = KnownTips(run), [np.zeros((0, 3))], [np.zeros(0, np.int64)]
+    of_arc = min(_ARC_PIECES, max(4, _MOST_ARC_PIECES // max(int(np.count_nonzero(run.kind == Kind.ARC)), 1)))
     for first in range(0, len(run), _CHUNK):
         rows = slice(first, min(first + _CHUNK, len(run)))
         kind = run.kind[rows]
-        pieces = np.where(kind == Kind.ARC, _ARC_PIECES, 1).astype(np.int64)
+        pieces = np.where(kind == Kind.ARC, of_arc, 1).astype(np.int64)
         samples = subdivide(run, pieces, rows)
         of = samples.row - first
         here = np.where(known.part(rows.start, rows.stop)[of, None], samples.tip, np.nan)

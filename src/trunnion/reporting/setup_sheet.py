@@ -7,6 +7,7 @@ Units:  mm, degrees, seconds, rev/min; feeds mm/min and mm/rev.
 Text from outside is cleaned here of characters that no file can hold.
 """
 
+from bisect import bisect_left
 from dataclasses import dataclass
 
 import numpy as np
@@ -136,18 +137,16 @@ def cut_ranges(run: Run, operation: OperationRows) -> CutRanges:
     spindle = run.spindle[rows][cuts]
     senses = [word for sign, word in ((1, "clockwise"), (-1, "counterclockwise"), (0, "standing")) if sign in spindle]
     joints = run.joints[rows]
-    coolants = [
-        str(event.value)
-        for event in run.events
-        if event.kind == "coolant" and operation.first <= event.before_row < max(operation.end, operation.first + 1)
-    ]
+    first = bisect_left(run.events, operation.first, key=lambda event: event.before_row)
+    end = bisect_left(run.events, operation.end, key=lambda event: event.before_row)
+    coolants = [str(event.value) for event in run.events[first:end] if event.kind == "coolant"]
     return CutRanges(
         rotary=(_range(joints[:, run.machine.primary], cuts), _range(joints[:, run.machine.secondary], cuts)),
         rpm=_range(run.rpm[rows], cuts & (run.spindle[rows] != 0)),
         sense=", ".join(senses),
         feed=_range(feed, cuts & (mode == 94)),
         feed_per_rev=_range(feed, cuts & (mode == 95)),
-        coolant=clean(", ".join(dict.fromkeys(each for each in coolants if each.upper() not in ("OFF", "NONE", "")))),
+        coolant=clean(", ".join(dict.fromkeys(each for each in coolants if each != "off"))),
         start=block_reference(run, operation.first) if operation.end > operation.first else None,
     )
 

@@ -57,10 +57,6 @@ _SHORTEN: Final = (
 )
 
 
-#: Latin-1 has the small letter alone.
-_WITHOUT_CAPITAL: Final = "ÿµ"
-
-
 class MotionBlockWriter:
     """Writes the motion blocks of a program.
 
@@ -198,7 +194,14 @@ class MotionBlockWriter:
             if letter := lacking(line, self._encoding):
                 what = f"the definition of {self.control.name} writes {line!r}: {self._encoding} has no {letter!r}"
                 raise InputError(Problem(self._file, 0, what, "change it there, or write setting encoding=utf-8"))
-        return [self.family.COMMENTS.sub(_capitals, line) for line in lines] if self._capitals else list(lines)
+        return [self.family.COMMENTS.sub(self._in_capitals, line) for line in lines] if self._capitals else list(lines)
+
+    def _in_capitals(self, comment: re.Match[str]) -> str:
+        """A comment without small letters, but those whose capital is two letters or is lacking in the encoding."""
+        if comment[1] is None:
+            return comment[0]
+        capitals = ((each, each.upper()) for each in comment[0])
+        return "".join(big if len(big) == 1 and not lacking(big, self._encoding) else small for small, big in capitals)
 
     def write_block(self, words: Mapping[str, int]) -> None:
         """Write one block of words, as counts; none if all of them are active."""
@@ -407,10 +410,3 @@ class MotionBlockWriter:
             missing = {w: c for w, c in self._words_to_repeat.items() if present.get(w, ABSENT) == ABSENT}
             table.set_words(0, missing)
             self._words_to_repeat = {}
-
-
-def _capitals(match: re.Match[str]) -> str:
-    """A comment without small letters; one whose capital is two letters, or is lacking in some encoding, stays."""
-    if match[1] is None:
-        return match[0]
-    return "".join(each if each in _WITHOUT_CAPITAL or len(each.upper()) > 1 else each.upper() for each in match[0])

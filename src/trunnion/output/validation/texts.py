@@ -7,14 +7,14 @@ from trunnion.errors import InputError, Problem, Severity
 from trunnion.model.toolpath import Insert, Message, Operation, Stop
 from trunnion.output.program import Program
 from trunnion.output.template_values import TemplateValues
-from trunnion.transliteration import lacking
+from trunnion.transliteration import lacking, spelled
 
 
 def text_problems(program: Program) -> list[Problem]:
     """Return a warning for each text that is transliterated, and an error for one that must stay as it is."""
-    found: dict[str, Problem] = {}
+    encoding, found = program.text_form.encoding, dict[str, Problem]()
     for what, text, file, line in (*_texts(program), *_settings(program)):
-        written = program.spelled(text)
+        written = spelled(text, encoding)
         if written != text and text not in found:
             why = f"is written {written!r}: {_missing(program, text)}"
             found[text] = Problem(file, line, f"{what} {text!r} {why}", _cure(program), Severity.WARNING)
