@@ -184,6 +184,17 @@ def verify_manifest(manifest: FilePath, *, cl: Sequence[FilePath] = ()) -> Manif
     ------
     InputError
         When it is no manifest, or a file cannot be read.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> from pathlib import Path
+    >>> Path("build").mkdir(exist_ok=True)
+    >>> posted = trunnion.post(
+    ...     "tests/golden/yl569/2_hub_rough.cls", machine="yl569", output="build/hub.mpf", manifest="build/hub.json"
+    ... )
+    >>> trunnion.verify_manifest("build/hub.json").passed
+    True
     """
     path = check_path("manifest", manifest)
     data = _read(path)
@@ -254,4 +265,4 @@ def _sum_of(file: Path) -> str:
 
 
 def _fault(path: Path, why: str) -> InputError:
-    return InputError(Problem(str(path), 0, f"{_NO_MANIFEST}: {why}", "name one that post --manifest has written"))
+    return InputError(Problem(str(path), 0, f"{_NO_MANIFEST}: {why}", "name the manifest that a post has written"))

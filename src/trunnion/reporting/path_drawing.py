@@ -122,8 +122,11 @@ def _lines(points: Floats, cutting: Ints, step: float) -> tuple[Ints, Ints]:
     lines, is_cut = lines[kept], cutting[1:][kept]
     back = (lines[:, 0] > lines[:, 2]) | ((lines[:, 0] == lines[:, 2]) & (lines[:, 1] > lines[:, 3]))
     turned = np.where(back[:, None], lines[:, [2, 3, 0, 1]], lines)
-    _, first = np.unique(np.column_stack((turned, is_cut)), axis=0, return_index=True)
-    order = np.sort(first)
+    base = int(whole.max(initial=0)) + 1  # points are within the drawing
+    key = is_cut
+    for column in turned.T:
+        key = key * base + column
+    order = np.sort(np.unique(key, return_index=True)[1])
     return lines[order], is_cut[order]
 
 
