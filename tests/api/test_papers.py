@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import os
 import re
 from html.parser import HTMLParser
 from pathlib import Path
@@ -242,6 +243,21 @@ def test_what_is_no_manifest_is_told(data: bytes, tmp_path: Path, capsys: pytest
     path.write_bytes(data)
     assert main(["verify", str(path)]) == 2
     assert "is no manifest of a post" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs pipes with names")
+def test_nobody_waits_for_a_pipe(folder: Path, tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "job.json")
+    with pytest.raises(InputError, match="is not a regular file"):
+        trunnion.verify_manifest(tmp_path / "job.json")
+    post(folder)
+    with pytest.raises(InputError, match="is not a regular file"):
+        trunnion.verify_manifest(folder / "job.json", cl=[tmp_path / "job.json"])
+    (folder / "job.lpt").unlink()
+    os.mkfifo(folder / "job.lpt")
+    found = trunnion.verify_manifest(folder / "job.json")
+    assert [file.fault for file in found.files if file.what == "listing"] == ["is missing"]
+    (folder / "job.lpt").unlink()
 
 
 def test_papers_that_cannot_be(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -205,16 +205,14 @@ def verify_manifest(manifest: FilePath, *, cl: Sequence[FilePath] = ()) -> Manif
     stated = _entries(path, inputs if isinstance(inputs, dict) else {}, "cl")
     sums = {entry.get("sha256") for entry in stated}
     for file in check_paths("cl", cl):
-        if problem := unusable_file(file, "a CL file"):
-            raise InputError(problem)
+        _check_file(file, "a CL file")
         fault = "" if _sum_of(file) in sums else "is not what the program was made from"
         found.append(ManifestFile(clean(file.name), "cl", fault))
     return ManifestCheck(tuple(found), data.get("may_run") is True)
 
 
 def _read(path: Path) -> dict[str, Any]:
-    if problem := unusable_file(path, "a manifest"):
-        raise InputError(problem)
+    _check_file(path, "a manifest")
     try:
         with path.open("rb") as file:
             text = file.read(_MOST_BYTES + 1)
@@ -255,6 +253,12 @@ def _checked(manifest: Path, entry: dict[str, Any]) -> ManifestFile:
 def _is_plain(name: str) -> bool:
     """Whether a name leads to no other folder, on no system."""
     return name not in ("", ".", "..") and not any(letter in "/\\:\0" or ord(letter) < 32 for letter in name)
+
+
+def _check_file(path: Path, what: str) -> None:
+    """Raise ``InputError`` for what is no file on the disk; a pipe would let the caller wait."""
+    if problem := unusable_file(path, what):
+        raise InputError(problem)
 
 
 def _sum_of(file: Path) -> str:
