@@ -20,7 +20,7 @@ value = st.one_of(
 )
 
 
-@settings(deadline=None)
+@settings(deadline=None, max_examples=40)
 @given(st.lists(st.tuples(value, value, st.integers(0, 99999), st.integers(0, 1)), min_size=1, max_size=40))
 def test_rows_are_written_as_one_by_one(rows: list[tuple[float, float, int, int]]) -> None:
     table = np.array(rows, np.float64)

@@ -3,7 +3,8 @@
 #: Files that take more than some three seconds of processor time, and folders of them: whole matrices, judges, fuzzing,
 #: and long property tests.
 SLOW = (
-    "api/test_impeller_cutting.py", "api/test_impellers_on_machines.py", "api/test_same_as_command.py",
+    "api/test_impeller_cutting.py", "api/test_impellers_on_machines.py", "api/test_papers.py",
+    "api/test_same_as_command.py",
     "api/test_viewing_stock.py",
     "builder/test_browser.py", "cl/test_scan.py", "cl/test_surface_normals.py", "cl/test_write.py",
     "conversion/test_angles.py", "conversion/test_leaving_the_part.py", "conversion/test_pairs.py",
@@ -22,7 +23,7 @@ SLOW = (
     "output/families/sinumerik/test_planes.py", "output/test_approach_in_planes.py", "output/test_block_skip.py",
     "output/test_feeds_as_printed.py", "output/test_hole_positions.py", "output/test_holes.py",
     "output/test_holes_as_motion.py", "output/test_planes_at_limits.py", "output/test_small_tilts.py",
-    "output/test_subprograms.py", "output/test_tools_and_times.py", "output/test_turns_and_circles.py",
+    "output/test_subprograms.py", "output/test_text_output.py", "output/test_tools_and_times.py", "output/test_turns_and_circles.py",
     "output/test_vectors.py", "planning/test_default_points.py", "planning/test_everywhere.py",
     "planning/test_linearization.py", "planning/test_optimizer.py", "planning/test_pole.py",
     "planning/test_read_back.py", "planning/test_rewind_without_tcp.py", "planning/test_without_tcp.py",
