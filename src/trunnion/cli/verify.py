@@ -22,9 +22,9 @@ _MANY_ERRORS: Final = 5
 
 def run(arguments: argparse.Namespace) -> int:
     """Verify one program; 0 if every check has passed, else 1."""
-    if arguments.file.lower().endswith(".json"):
-        return _run_manifest(arguments)
     if arguments.machine is None:
+        if arguments.file.lower().endswith(".json"):
+            return _run_manifest(arguments)
         raise InputError(argument_problem("machine", "is missing", "name the machine that runs the program"))
     machine = load_machine(arguments.machine)
     if arguments.report is not None:
@@ -63,7 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run_manifest(arguments: argparse.Namespace) -> int:
     """Compare the files of a post with its manifest; 0 if all are the same and proven, else 1."""
-    for name in ("machine", "subprograms", "recorded", "report", "zero", "tool_length", "span", "span_tip", "tool"):
+    for name in ("subprograms", "recorded", "report", "zero", "tool_length", "span", "span_tip", "tool"):
         if getattr(arguments, name):
             what, cure = "says nothing about a manifest", "leave it out; --cl compares CL files, too"
             raise InputError(argument_problem(name, what, cure))
