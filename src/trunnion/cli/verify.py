@@ -63,7 +63,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run_manifest(arguments: argparse.Namespace) -> int:
     """Compare the files of a post with its manifest; 0 if all are the same and proven, else 1."""
-    for name in ("subprograms", "recorded", "report", "zero", "tool_length", "span", "span_tip", "tool"):
+    others = ("subprograms", "recorded", "report", "zero", "tool_length", "span", "span_tip", "tool", "offset", "edge")
+    for name in (*others, "units", "dialect"):
         if getattr(arguments, name):
             what, cure = "says nothing about a manifest", "leave it out; --cl compares CL files, too"
             raise InputError(argument_problem(name, what, cure))
