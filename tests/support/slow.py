@@ -31,7 +31,7 @@ SLOW = (
     "readers/families/linuxcnc/test_judge.py", "readers/families/linuxcnc/test_programs.py",
     "readers/families/sinumerik/test_flow.py", "readers/test_growing.py", "readers/test_kernels.py",
     "readers/test_time.py", "reporting/test_plot_series.py", "reporting/test_write.py", "timing/test_fastest.py",
-    "twin/recording/test_breaks.py", "twin/recording/test_record.py",
+    "twin/recording/test_breaks.py", "twin/recording/test_network.py", "twin/recording/test_record.py",
     "verification/test_declared_deviations.py", "verification/test_declared_deviations_random.py",
     "verification/test_events.py", "verification/test_matching.py", "verification/test_mutations.py",
     "twin/test_security.py", "twin/test_served.py",
