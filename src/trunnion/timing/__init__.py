@@ -1,6 +1,6 @@
 """Timing: a run as motion in time, under the speeds, accelerations and jerks of the axes of its machine."""
 
-from trunnion.timing.axis_pieces import AxisPieces, axis_pieces
+from trunnion.timing.axis_pieces import MOST_PIECES, AxisPieces, axis_pieces
 from trunnion.timing.dynamics import AxisDynamics
 from trunnion.timing.fastest import AxisMotion, FastestRun, SmoothPath, fastest_run
 from trunnion.timing.path import Path
@@ -18,6 +18,7 @@ KERNELS = (fill_feeds, plan_speeds)
 __all__ = [
     "CORNER_TOLERANCE",
     "KERNELS",
+    "MOST_PIECES",
     "SAG",
     "AxisDynamics",
     "AxisMotion",
