@@ -1,6 +1,7 @@
 """``trunnion record`` on a twin that runs the golden program of the blade at 50 times its speed."""
 
 import asyncio
+import csv
 import io
 import json
 import os
@@ -8,6 +9,7 @@ import re
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +20,7 @@ from asyncua import Client, ua
 from tests.support.locations import ROOT
 from tests.support.recordings import IMPELLER, impeller
 from tests.support.twins import BLADE_FINISH, served
-from trunnion import verify
+from trunnion import read_program, verify
 from trunnion.api.twin import add_twin_user
 from trunnion.cli import main
 from trunnion.model.recording import Mark, Recording
@@ -49,6 +51,17 @@ def wait_for(process: subprocess.Popen[str], words: str) -> None:
     raise AssertionError("".join(told))
 
 
+def wait_for_line(journal: Path, recorder: subprocess.Popen[str]) -> None:
+    """Wait until the last motion has been written: what a server that is killed has not sent, nobody can record."""
+    last = float(read_program(BLADE_FINISH, machine="yl569").line[-1])
+    while recorder.poll() is None:
+        with journal.open(encoding="utf-8", newline="") as file:
+            if any(row["line"] and float(row["line"]) >= last for row in csv.DictReader(file)):
+                return
+        time.sleep(0.1)
+    raise AssertionError("the recorder has ended")
+
+
 async def run_program(address: str) -> None:
     """Run the program of a twin to its end."""
     async with Client(address) as client:
@@ -67,6 +80,7 @@ def recording_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with served(BLADE_FINISH, "--speed", "50", "--hold", "--no-mtconnect") as twin:
         recorder = started(twin.opcua, file)
         asyncio.run(run_program(twin.opcua))
+        wait_for_line(file.with_name("blade.parquet.csv"), recorder)
         twin.process.kill()
     wait_for(recorder, "the connection is broken")
     port = twin.opcua.rpartition(":")[2].partition("/")[0]
