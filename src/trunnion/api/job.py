@@ -191,6 +191,13 @@ def parse_plan_options(settings: Mapping[str, str], control: Control, explain: b
         raise InputError(argument_problem("settings", "tcp is on, and the machine's control has none", "write tcp=off"))
     mode, mode_by_operation = _mode_setting(settings.get("mode", "auto"), tcp)
     numbers = {key: number_setting(settings, key) for key in ("pole_angle", "tip_tolerance", "axis_tolerance")}
+    fastest, limit = settings.get("feed") == "fastest", number_setting(settings, "feed_limit")
+    lower_feed = settings.get("lower_feed", "no") == "yes"
+    if limit is not None and not fastest:
+        raise InputError(argument_problem("settings", "feed_limit is for feed=fastest only", "write feed=fastest too"))
+    if fastest and lower_feed:
+        what = "lower_feed is yes, and feed=fastest keeps all axes within their speeds"
+        raise InputError(argument_problem("settings", what, "leave lower_feed out"))
     known: dict[str, Any] = {key: value for key, value in numbers.items() if value is not None}
     if "clearance" in settings:
         known["clearance"] = _parse_clearance(settings["clearance"])
@@ -201,7 +208,9 @@ def parse_plan_options(settings: Mapping[str, str], control: Control, explain: b
         mode_by_operation=mode_by_operation,
         pole_strategy=PoleStrategy(settings.get("pole", "off")),
         absolute_frame=settings.get("frame", "first") == "absolute",
-        lower_feed=settings.get("lower_feed", "no") == "yes",
+        lower_feed=lower_feed,
+        fastest_feed=fastest,
+        feed_limit=limit,
         tcp=tcp,
         holes_as_motion=settings.get("cycles", "on") == "off",
         default_axis_tolerance=control.axis_tolerance,

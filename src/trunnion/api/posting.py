@@ -7,6 +7,7 @@ Out:    the program: planned, written, read back, run and compared with its tool
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,7 +19,7 @@ from trunnion.api.input_files import cl_files, definition_files
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.machining_times import operation_times, prints_times, write_times
 from trunnion.api.observer import SILENT, Observer
-from trunnion.api.planning import load_toolpaths, plan_program
+from trunnion.api.planning import load_toolpaths, new_problems, plan_program
 from trunnion.api.post_result import PostResult, ProofFailedError
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.api.reports import add_report, check_report_name, write_refusal
@@ -167,13 +168,27 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
     """Plan, write and prove a program; errors as ``post`` raises them."""
     subprograms = job.subprograms(target.files, target.path)
     divided = subprograms is not None
-    reading = read_back_while_writing(target.files, job.machine, divided=divided, beside=job.beside)
+    reading = partial(read_back_while_writing, target.files, job.machine, divided=divided, beside=job.beside)
     try:
-        with reading as (progress, run):
+        with reading() as (progress, running):
             program, planned, problems = plan_program(toolpaths, job, observer)
             program = replace(program, has_time_tokens=prints_times(program))
             write(program, target.files.main, progress, subprograms, observer)
-            expected = expectation(program, job.options)
+        run = running.result()
+        if job.options.fastest_feed:
+            from trunnion.api.fastest_feeds import unlimited_axes, with_reached_feeds  # few posts ask for it
+
+            program = with_reached_feeds(program, run, toolpaths, job.options)
+            found = [*unlimited_axes(job.machine), *new_problems(program, problems)]
+            observer.problems(found)
+            problems += found
+            planned = replace(planned, motions=tuple(program.motions))
+            del run, running
+            target.files.restart()
+            with reading() as (progress, running):
+                write(program, target.files.main, progress, subprograms, observer)
+            run = running.result()
+        expected = expectation(program, job.options)
     except TrunnionError as error:
         if job.report is not None:
             write_refusal(error.problems, job.machine, target.name, job.report)
@@ -186,7 +201,7 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
         quiet = Untold(observer) if job.force else observer
         return _with_simulation(job, run, target.name, toolpaths, verification, quiet)
 
-    proof = prove(run.result())
+    proof = prove(run)
     if job.force and proof.failed:
         proof = write_forced(program, proof, prove, job, target, subprograms)
     verification, simulated = proof.verification, proof.simulation

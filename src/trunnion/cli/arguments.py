@@ -47,6 +47,9 @@ DIALECTS = ("clsf", "ncl", "solidworks", "clt", "catia", "fusion", "apt")
 #: Those that are written.
 WRITTEN_DIALECTS = ("clsf", "catia", "ncl")
 
+#: Values of the setting ``feed``.
+FEEDS = ("programmed", "fastest")
+
 
 #: Tolerances, cells and scales are less.
 _GREATEST: Final = 1e6
@@ -123,10 +126,11 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
     arguments, unknown = parser.parse_known_args(list(argv))
     if unknown:
         commands[arguments.command].error(_not_expected(unknown, arguments.command))
-    if getattr(arguments, "dialect", None) and "settings" in arguments:
-        if "dialect" in dict(arguments.settings):
-            parser.error("--dialect and --set dialect=… are the same: give one of them")
-        arguments.settings = [*arguments.settings, ("dialect", arguments.dialect)]
+    for key in ("dialect", "feed"):
+        if getattr(arguments, key, None) and "settings" in arguments:
+            if key in dict(arguments.settings):
+                parser.error(f"--{key} and --set {key}=… are the same: give one of them")
+            arguments.settings = [*arguments.settings, (key, getattr(arguments, key))]
     return arguments
 
 
@@ -185,6 +189,9 @@ def _add_post(parser: argparse.ArgumentParser) -> None:
     _add_subprograms(parser, "a template")
     parser.add_argument(
         "--dialect", choices=DIALECTS, help="what the CL files are written in; by default their content decides"
+    )
+    parser.add_argument(
+        "--feed", choices=FEEDS, help="fastest: of each block what the axes reach, within the feed of the CL file"
     )
     parser.add_argument("--strict", action="store_true", help="unknown CL statements are errors at once")
     parser.add_argument("--force", action="store_true", help="write a program that must not run; its head says so")

@@ -5,7 +5,8 @@ from trunnion.timing.dynamics import AxisDynamics
 from trunnion.timing.fastest import AxisMotion, FastestRun, SmoothPath, fastest_run
 from trunnion.timing.path import Path
 from trunnion.timing.path_modes import CORNER_TOLERANCE
-from trunnion.timing.planner import piece_seconds
+from trunnion.timing.planner import piece_seconds, timed_pieces
+from trunnion.timing.reached_feeds import ReachedFeeds, reached_feeds
 from trunnion.timing.row_feeds import RowFeeds, fill_feeds
 from trunnion.timing.row_interpolation import SAG
 from trunnion.timing.run_timer import RunTimer
@@ -26,6 +27,7 @@ __all__ = [
     "FastestRun",
     "MachineState",
     "Path",
+    "ReachedFeeds",
     "RowFeeds",
     "RunTimer",
     "SmoothPath",
@@ -34,5 +36,7 @@ __all__ = [
     "axis_pieces",
     "fastest_run",
     "piece_seconds",
+    "reached_feeds",
     "time_run",
+    "timed_pieces",
 ]
