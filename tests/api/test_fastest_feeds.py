@@ -13,13 +13,14 @@ from hypothesis import strategies as st
 
 import trunnion
 from tests.support.published_path import LIMITS, PATH
+from tests.support.rewind_paths import round_part
 from tests.support.verifying import CL_FOOT, CL_HEAD
 from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.fastest_feeds import rounded_down, with_reached_feeds
 from trunnion.api.job import prepare
 from trunnion.api.planning import plan_program
+from trunnion.api.settings import Settings, SettingValue
 from trunnion.cl import read_cl
-from trunnion.controls import load_control
 from trunnion.controls.words import NumberFormat
 from trunnion.errors import InputError
 from trunnion.machines import Machine, load_machine
@@ -32,7 +33,7 @@ from trunnion.timing import fastest_run
 from trunnion.verification import Check, Verification, verify
 
 GOLDEN = Path("tests/golden")
-FASTEST = {"feed": "fastest"}
+FASTEST: dict[str, str] = {"feed": "fastest"}
 
 
 def check_of(found: trunnion.PostResult | Verification, key: str) -> Check:
@@ -195,18 +196,22 @@ def test_feeds_are_those_that_the_axes_reach_by_closed_form(tmp_path: Path) -> N
 
 
 FAMILIES = ["yl569", "dmu65", "haas_umc750", "hs664rt", "matsuura_mx330", "mikron_600u", "linuxcnc_5axis", "xyzbc_trt"]
-PLACED = {"zero": (0.0, 0.0, 0.0), "tool_length": 100.0}
+
+#: What these controls lack.
+NOT_TOLD = {("linuxcnc_5axis", "on"), ("hs664rt", "off")}
+
+PLACED: dict[str, SettingValue] = {"zero": (0.0, 0.0, 0.0), "tool_length": 100.0}
 
 
-@pytest.mark.parametrize("name", FAMILIES)
-@pytest.mark.parametrize("tcp", ["on", "off"])
+@pytest.mark.parametrize(
+    ("name", "tcp"),
+    [(name, tcp) for name in FAMILIES for tcp in ("on", "off") if (name, tcp) not in NOT_TOLD],
+)
 def test_every_family_of_controls(name: str, tcp: str, tmp_path: Path) -> None:
     source = tmp_path / "waves.cls"
     source.write_text(waves(), encoding="utf-8")
     machine = able(name)
-    if tcp == "on" and not load_control(machine.control).tcp:
-        pytest.skip("no TCP")
-    settings = {**PLACED, "tcp": tcp}
+    settings: Settings = {**PLACED, "tcp": tcp}
     before = trunnion.post(source, machine=machine, settings=settings)
     found = trunnion.post(source, machine=machine, settings={**settings, **FASTEST})
     summary = check_of(found, "reach").summary
@@ -228,22 +233,71 @@ def test_every_family_of_controls(name: str, tcp: str, tmp_path: Path) -> None:
     ],
     ids=["arcs", "cycles", "holes as motion", "inches", "points between"],
 )
-def test_arcs_holes_inches_and_points_between(cl: str, settings: dict[str, object]) -> None:
-    found = trunnion.post(GOLDEN / cl, machine=able("yl569"), settings={**FASTEST, **settings})  # type: ignore[dict-item]
+def test_arcs_holes_inches_and_points_between(cl: str, settings: Settings) -> None:
+    found = trunnion.post(GOLDEN / cl, machine=able("yl569"), settings={**FASTEST, **settings})
     assert found.passed
     assert "at 0 of" not in check_of(found, "reach").summary
 
 
+def _feeds_before_cycles(text: str) -> list[str]:
+    """The F in force at each call of a cycle."""
+    feed, found = "", []
+    for line in text.splitlines():
+        feed = feed_word(line) or feed
+        if "MCALL CYCLE" in line:
+            found.append(feed)
+    return found
+
+
 def test_feeds_of_cycles_stay() -> None:
     plain, fast = (
-        trunnion.post(GOLDEN / "fanuc/flange.cls", machine=able("yl569"), settings=settings).text
+        trunnion.post(GOLDEN / "fanuc/flange.cls", machine=able("yl569"), settings=settings)
         for settings in ({}, {**FASTEST, "feed_limit": 20000})
     )
-    assert plain is not None
-    assert fast is not None
-    holes = [[line.split(" ", 1)[1] for line in text.splitlines() if "G8" in line] for text in (plain, fast)]
+    assert check_of(plain, "holes").summary == check_of(fast, "holes").summary
+    holes = [_feeds_before_cycles(found.text or "") for found in (plain, fast)]
     assert holes[0] == holes[1]
     assert holes[0]
+
+
+SPLINE = """GOTO/0,0,5,0,0,1
+NURBS/
+KNOT/0.25,0.5,1.0000000
+CNTRL/0,1,5
+CNTRL/1,2,5
+CNTRL/2,2,5
+CNTRL/3,1,6
+CNTRL/3,0,5
+"""
+
+
+def test_a_spline_has_one_feed(tmp_path: Path) -> None:
+    """The highest that is reached in it; as lines each has its own."""
+    source = tmp_path / "spline.cls"
+    source.write_text(CL_HEAD.replace("500.0", "6000.0") + SPLINE + CL_FOOT, encoding="utf-8")
+    feeds = []
+    for splines in ("polynomial", "linearize"):
+        settings = {**FASTEST, "splines": splines}
+        run = trunnion.post(source, machine=able("yl569"), settings=settings).run
+        assert run is not None
+        feeds.append(run.feed[(run.kind != 0) & (run.tip[:, 2] < 6.0) & (run.tip[:, 0] > 0.0)])
+    assert len(np.unique(feeds[0])) == 1
+    assert 100.0 < feeds[0][0] < 6000.0
+    assert len(np.unique(feeds[1])) > 5
+
+
+def test_rewinds_keep_their_feeds(tmp_path: Path) -> None:
+    """Rows of a rewind lead to no point of the CL file, and the feeds behind them belong to the right points."""
+    moves = round_part(400)
+    points = [",".join(f"{value:.9f}" for value in point) for point in np.hstack((moves.tip, moves.axis)).tolist()]
+    head = CL_HEAD.replace("500.0", "20000.0").replace("GOTO/0.0,0.0,50.0,0.0,0.0,1.0\n", f"GOTO/{points[0]}\n")
+    source = tmp_path / "round.cls"
+    source.write_text(head + "".join(f"GOTO/{point}\n" for point in points) + CL_FOOT, encoding="utf-8")
+    found = trunnion.post(source, machine=able("generic_head_head_ca"), settings=FASTEST)
+    assert any("rewind" in problem.what for problem in found.problems)
+    assert found.passed
+    rows = [motion.cl_rows for motion in found.motions if motion.cl_rows is not None]
+    assert (np.concatenate(rows) == -1).any()
 
 
 def test_a_program_in_several_files(tmp_path: Path) -> None:
@@ -262,8 +316,7 @@ def test_a_program_in_several_files(tmp_path: Path) -> None:
 def test_feeds_per_revolution_stay(tmp_path: Path) -> None:
     source = tmp_path / "turn.cls"
     source.write_text(waves().replace("FEDRAT/MMPM,6000.0", "FEDRAT/MMPR,6.0"), encoding="utf-8")
-    settings = ({}, FASTEST)
-    plain, fast = (trunnion.post(source, machine=able("yl569"), settings=each) for each in settings)
+    plain, fast = (trunnion.post(source, machine=able("yl569"), settings=each) for each in ({}, FASTEST))
     assert fast.text == plain.text
     assert check_of(fast, "reach").summary == "nothing is cut at a feed per minute"
 
@@ -358,7 +411,8 @@ def test_the_published_path(tmp_path: Path) -> None:
     source, machine = published(tmp_path, 401)
     least = fastest_run(PATH, LIMITS, 100).duration
     seconds = []
-    for settings in ({}, FASTEST, {**FASTEST, "feed_limit": 20000}):
+    every: tuple[Settings, ...] = ({}, FASTEST, {**FASTEST, "feed_limit": 20000})
+    for settings in every:
         found = trunnion.post(source, machine=machine, settings=settings)
         assert found.passed
         assert found.verification is not None
