@@ -83,7 +83,21 @@ def _with_feeds(motion: Motion, reached: Floats, number_format: NumberFormat) ->
     lower = found < moves.feed * (1.0 - _REACHED)
     feed = moves.feed.copy()
     feed[lower] = np.minimum(rounded_down(found[lower], number_format), feed[lower])
+    _lower_rewinds(motion, feed, number_format)
     return replace(motion, operation=replace(motion.operation, moves=replace(moves, feed=feed)))
+
+
+def _lower_rewinds(motion: Motion, feed: Floats, number_format: NumberFormat) -> None:
+    """Lower the feeds of rewinds, which are shares of that of the cut behind them, as much as this one."""
+    moves, cl_rows = motion.operation.moves, motion.cl_rows
+    assert cl_rows is not None
+    rows = np.flatnonzero((cl_rows < 0) & (moves.kind != Kind.RAPID) & ~moves.per_rev)
+    after = np.flatnonzero(cl_rows >= 0)
+    rows = rows[rows < after[-1]] if len(after) else rows[:0]
+    cut = after[np.searchsorted(after, rows)]
+    lower = feed[cut] < moves.feed[cut]
+    rows, cut = rows[lower], cut[lower]
+    feed[rows] = np.minimum(rounded_down(feed[rows] * feed[cut] / moves.feed[cut], number_format), feed[rows])
 
 
 def _rows_at_feed(motion: Motion) -> tuple[Ints, Ints]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Phase
 from trunnion.timing import reached_feeds
@@ -48,12 +48,26 @@ def reached_rows(run: Run, expected: ExpectedPath, matching: Matching, limit: fl
     guided = leads_to >= 0
     given = np.full(len(run), np.nan)
     given[guided] = most[leads_to[guided]]
+    _fill_rewinds(run, given, guided, matching)
     found = reached_feeds(run, given)
     known = np.flatnonzero(guided & np.isfinite(given) & np.isfinite(found.feed))
     feed = np.full(len(most), -np.inf)
     np.maximum.at(feed, leads_to[known], found.feed[known])
     feed[np.isinf(feed)] = np.nan
     return ReachedRows(most, feed, float(found.seconds.sum()))
+
+
+def _fill_rewinds(run: Run, given: Floats, guided: Flags, matching: Matching) -> None:
+    """Give lines without a CL row, which rewind an axis, the greatest feed of the cut that they lead back to.
+
+    Their own is a share of the feed that this cut has, which is what is to be found.
+    """
+    after = np.flatnonzero(guided)
+    rows = np.array(matching.extra, np.int64)
+    rows = rows[run.kind[rows] != Kind.RAPID]
+    following = np.searchsorted(after, rows)
+    known = following < len(after)
+    given[rows[known]] = given[after[following[known]]]
 
 
 def greatest_feeds(expected: ExpectedPath, limit: float | None) -> Floats:
