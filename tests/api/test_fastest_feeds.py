@@ -21,6 +21,7 @@ from trunnion.api.job import prepare
 from trunnion.api.planning import plan_program
 from trunnion.api.settings import Settings, SettingValue
 from trunnion.cl import read_cl
+from trunnion.cli import main
 from trunnion.controls.words import NumberFormat
 from trunnion.errors import InputError
 from trunnion.machines import Machine, load_machine
@@ -250,10 +251,8 @@ def _feeds_before_cycles(text: str) -> list[str]:
 
 
 def test_feeds_of_cycles_stay() -> None:
-    plain, fast = (
-        trunnion.post(GOLDEN / "fanuc/flange.cls", machine=able("yl569"), settings=settings)
-        for settings in ({}, {**FASTEST, "feed_limit": 20000})
-    )
+    every: tuple[Settings, ...] = ({}, {**FASTEST, "feed_limit": 20000})
+    plain, fast = (trunnion.post(GOLDEN / "fanuc/flange.cls", machine=able("yl569"), settings=each) for each in every)
     assert check_of(plain, "holes").summary == check_of(fast, "holes").summary
     holes = [_feeds_before_cycles(found.text or "") for found in (plain, fast)]
     assert holes[0] == holes[1]
@@ -311,6 +310,20 @@ def test_a_program_in_several_files(tmp_path: Path) -> None:
     assert sorted(file.name for file in tmp_path.iterdir()) == sorted(
         [file.name for file in found.subprograms] + ["main.mpf"]
     )
+
+
+def test_no_feed_is_lowered_to_that_of_rapids(tmp_path: Path) -> None:
+    """On a Fidia a line at the rapid feed is a rapid."""
+    source = tmp_path / "waves.cls"
+    source.write_text(waves(), encoding="utf-8")
+    run = trunnion.post(source, machine=able("hs664rt"), settings=FASTEST).run
+    assert run is not None
+    feeds = run.feed[run.kind != 0]
+    rapid = float(np.median(feeds[feeds < 2000.0]))
+    found = trunnion.post(source, machine=able("hs664rt"), settings={**FASTEST, "rapid_feed": rapid})
+    assert found.passed
+    assert found.run is not None
+    assert ((found.run.feed > 0.98 * rapid) & (found.run.feed < rapid) & (found.run.kind != 0)).any()
 
 
 def test_feeds_per_revolution_stay(tmp_path: Path) -> None:
@@ -425,3 +438,18 @@ def test_the_published_path(tmp_path: Path) -> None:
     plain, bounded, limited = seconds
     assert least < plain < bounded < 1.05 * plain
     assert least < limited < 1.15 * plain
+
+
+def test_the_command_line_says_it_by_an_option_or_a_setting(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    source = tmp_path / "waves.cls"
+    source.write_text(waves(rows=5), encoding="utf-8")
+    post = ["post", str(source), "--machine", "xyzac_trt", "--output"]
+    for name, words in (("one", ["--feed", "fastest"]), ("two", ["--set", "feed=fastest"])):
+        assert main([*post, str(tmp_path / f"{name}.ngc"), *words]) == 0
+        assert "reach         ok    lower than in the CL file at" in capsys.readouterr().err
+    one, two = ((tmp_path / f"{name}.ngc").read_bytes() for name in ("one", "two"))
+    assert one == two
+    with pytest.raises(SystemExit):
+        main([*post, str(tmp_path / "three.ngc"), "--feed", "fastest", "--set", "feed=programmed"])
+    assert "--feed and --set feed=… are the same" in capsys.readouterr().err
+    assert not (tmp_path / "three.ngc").exists()

@@ -3,6 +3,7 @@
 #: Files that take more than some three seconds of processor time, and folders of them: whole matrices, judges, fuzzing,
 #: and long property tests.
 SLOW = (
+    "api/test_fastest_feeds.py",
     "api/test_impeller_cutting.py", "api/test_impellers_on_machines.py", "api/test_same_as_command.py",
     "api/test_viewing_stock.py",
     "builder/test_browser.py", "cl/test_scan.py", "cl/test_surface_normals.py", "cl/test_write.py",

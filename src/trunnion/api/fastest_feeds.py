@@ -62,18 +62,15 @@ def with_reached_feeds(
         groups[-1].append(motion)
     motions: list[Motion] = []
     for group, feeds, cl_feeds in zip(groups, reached, own, strict=True):
-        slower = [_with_feeds(motion, feeds, _feed_format(program, motion)) for motion in group]
+        slower = [_with_feeds(program, motion, feeds) for motion in group]
         motions += [_declared(slower, cl_feeds), *slower[1:]]
     return replace(program, motions=motions)
 
 
-def _feed_format(program: Program, motion: Motion) -> NumberFormat:
-    return program.control.number_formats(motion.three_axis)["feed"]
-
-
-def _with_feeds(motion: Motion, reached: Floats, number_format: NumberFormat) -> Motion:
+def _with_feeds(program: Program, motion: Motion, reached: Floats) -> Motion:
     """A motion with what is ``reached`` at the rows of its CL file, (n,), where that is less than its feeds."""
     moves, splines = motion.operation.moves, motion.operation.splines
+    number_format = program.control.number_formats(motion.three_axis)["feed"]
     rows, at = _rows_at_feed(motion)
     found = np.full(len(moves), np.nan)
     found[at] = reached[rows]
@@ -84,6 +81,8 @@ def _with_feeds(motion: Motion, reached: Floats, number_format: NumberFormat) ->
     feed = moves.feed.copy()
     feed[lower] = np.minimum(rounded_down(found[lower], number_format), feed[lower])
     _lower_rewinds(motion, feed, number_format)
+    if rapid := program.effective_setting("rapid_feed"):  # a line at this feed is a rapid
+        feed[(feed < moves.feed) & (np.abs(feed - float(rapid)) < number_format.digit)] -= number_format.digit
     return replace(motion, operation=replace(motion.operation, moves=replace(moves, feed=feed)))
 
 

@@ -182,7 +182,7 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         "With feed=fastest: the greatest feed of cuts, in place of those of the CL file. Tool and material must bear "
         "it.",
         "the feeds of the CL file",
-        bounds=(0.1, 1e6),
+        bounds=(0.1, 99999.0),
         form="MM_MIN",
         example="8000",
     ),
