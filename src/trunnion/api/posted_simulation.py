@@ -13,8 +13,8 @@ from typing import Any, Final, TypeAlias
 
 from trunnion.api.arguments import check_path
 from trunnion.api.observer import Observer
+from trunnion.api.project_file import is_project, project_files, read_project
 from trunnion.api.reading import FilePath, as_machine
-from trunnion.api.simulation_project import is_project, project_files, read_project
 from trunnion.api.simulation_result import SimulationFinding, SimulationResult
 from trunnion.api.simulation_setups import SetupInput, SimulationInput
 from trunnion.api.simulation_steps import simulate_setups

@@ -27,7 +27,7 @@ from trunnion.api.settings import Settings
 from trunnion.api.targets import OutputLike, Target, open_target
 from trunnion.api.writing import read_back_while_writing, write
 from trunnion.errors import Problem, Severity, TrunnionError
-from trunnion.files import file_on_disk
+from trunnion.files import OutputGroup, file_on_disk
 from trunnion.jit import compile_ahead
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
@@ -140,8 +140,12 @@ def post_beside(
     subprograms: Sequence[FilePath],
     observer: Observer,
     simulation: "SimulationLike | None" = None,
+    group: OutputGroup | None = None,
 ) -> PostResult:
-    """Post CL files as ``post`` does, and write over none of the other files of the same work."""
+    """Post CL files as ``post`` does, and write over none of the other files of the same work.
+
+    The program appears with those of the ``group``, if there is one.
+    """
     check_observer(observer)
     if report is not None:
         check_report_name(report)
@@ -156,7 +160,7 @@ def post_beside(
 
         job = replace(job, simulation=simulation_input(simulation, job.machine))
         inputs += simulation_files(simulation)
-    with open_target(output, report=report, inputs=inputs) as target:
+    with open_target(output, report=report, inputs=inputs, group=group) as target:
         compile_ahead(kernels.POSTING)
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
         toolpaths = load_toolpaths(cl, job, strict, observer)

@@ -7,8 +7,8 @@ from typing import Any, Final, Literal
 
 from trunnion.api.arguments import check_observer
 from trunnion.api.observer import SILENT, Observer
+from trunnion.api.project_file import is_project, read_project
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike
-from trunnion.api.simulation_project import is_project, read_project
 from trunnion.api.simulation_result import SimulationResult
 from trunnion.api.simulation_setups import Places, SetupInput, SimulationInput, listed
 from trunnion.api.simulation_steps import simulate_setups

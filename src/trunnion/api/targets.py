@@ -10,7 +10,7 @@ from typing import BinaryIO, TypeAlias
 
 from trunnion.api.arguments import check_path
 from trunnion.errors import InputError, Problem
-from trunnion.files import OutputFiles, OutputPlace, atomic_output, check_stream, resolve_output
+from trunnion.files import OutputFiles, OutputGroup, OutputPlace, atomic_output, check_stream, resolve_output
 
 #: A file by its path, a stream that takes bytes, or None: the result keeps the text.
 OutputLike: TypeAlias = str | os.PathLike[str] | BinaryIO | None
@@ -55,7 +55,11 @@ def check_output_name(argument: str, file: object, endings: Sequence[str], what:
 
 @contextmanager
 def open_target(
-    place: OutputLike, *, report: str | os.PathLike[str] | None = None, inputs: Iterable[str | os.PathLike[str]] = ()
+    place: OutputLike,
+    *,
+    report: str | os.PathLike[str] | None = None,
+    inputs: Iterable[str | os.PathLike[str]] = (),
+    group: OutputGroup | None = None,
 ) -> Iterator[Target]:
     """Open the place of a result.
 
@@ -67,6 +71,8 @@ def open_target(
         File of its report, which appears with it.
     inputs
         Files that are read: none of them is written over.
+    group
+        Of jobs whose files appear together; None: the files of this one appear when the block ends.
 
     Raises
     ------
@@ -74,6 +80,12 @@ def open_target(
         When a file cannot be written; this is found out before anything is computed.
     """
     beside = None if report is None else resolve_output(report)
+    if group is not None:
+        assert isinstance(place, str | os.PathLike), "streams take one result alone"
+        found = resolve_output(place)
+        with group.open(found, report=beside, inputs=inputs) as files:
+            yield Target(files, found.name, Path(place), report=beside)
+        return
     if isinstance(place, str | os.PathLike):
         found = resolve_output(place)
         path = None if found.is_stream else Path(place)
