@@ -40,6 +40,9 @@ _MODES: Final = {
     "tcp": MachiningMode.TCP,
 }
 
+#: What a refusal says of ``force``.
+FORCING: Final = "force=True writes it"
+
 #: What gives subprograms other numbers.
 _OTHER_NUMBERS: Final = "begin with another number by setting first_number=2001"
 
@@ -73,7 +76,7 @@ class PostJob:
     own_settings: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     beside: tuple[Path, ...] = ()
     simulation: "SimulationInput | None" = None
-    forcing: str = "force=True writes it"
+    forcing: str = FORCING
 
     @property
     def printed(self) -> dict[str, str]:

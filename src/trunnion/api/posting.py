@@ -16,7 +16,7 @@ from trunnion.api.arguments import check_observer, check_paths
 from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.forcing import Proof, Untold, write_forced
 from trunnion.api.input_files import cl_files, definition_files
-from trunnion.api.job import PostJob, prepare
+from trunnion.api.job import FORCING, PostJob, prepare
 from trunnion.api.machining_times import operation_times, prints_times, write_times
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.planning import load_toolpaths, new_problems, plan_program
@@ -141,10 +141,11 @@ def post_beside(
     observer: Observer,
     simulation: "SimulationLike | None" = None,
     group: OutputGroup | None = None,
+    forcing: str = FORCING,
 ) -> PostResult:
     """Post CL files as ``post`` does, and write over none of the other files of the same work.
 
-    The program appears with those of the ``group``, if there is one.
+    The program appears with those of the ``group``, if there is one. What a refusal says of ``force`` is ``forcing``.
     """
     check_observer(observer)
     if report is not None:
@@ -153,7 +154,7 @@ def post_beside(
     place = None if report is None else Path(report)
     job = prepare(loaded, settings, force=force, explain=explain, report=place, columns=columns)
     existing = check_paths("subprograms", subprograms)
-    job = replace(job, beside=tuple(existing))
+    job = replace(job, beside=tuple(existing), forcing=forcing)
     inputs = [*cl_files(cl), *definition_files(machine, loaded), *existing, *others]
     if simulation is not None:
         from trunnion.api.posted_simulation import simulation_files, simulation_input

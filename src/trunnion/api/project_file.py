@@ -79,9 +79,22 @@ def project_files(given: Iterable[FilePath], elsewhere: Collection[str] = ()) ->
     InputError
         If a project cannot be read.
     """
-    projects = [read_project(Path(each), ("machine", "stock", *elsewhere)) for each in given if is_project(Path(each))]
-    named = [name for each in projects for setup in each.setups for name in _named_files(setup)]
-    return [*named, *(str(each.stock) for each in projects)]
+    projects = [
+        _read(Path(each), ("machine", "stock", *elsewhere), is_posted=False) for each in given if is_project(Path(each))
+    ]
+    outputs = [str(setup.output) for each in projects for setup in each.setups]
+    return [*outputs, *(name for each in projects for name in named_files(each))]
+
+
+def named_files(project: Project) -> list[FilePath]:
+    """All files that a project names and that are read, but for programs that it posts itself."""
+    setups = [
+        replace(each, programs=() if posted else each.programs)
+        for each, posted in zip(project.simulation.setups, project.posted, strict=True)
+    ]
+    released = [name for each in project.setups for name in each.released]
+    named = [name for each in setups for name in _named_files(each)]
+    return [*named, str(project.simulation.stock), *released, *project.hooks]
 
 
 def _named_files(setup: SetupInput) -> Iterator[FilePath]:

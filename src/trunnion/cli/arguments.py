@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import Any, Final, cast
 
 from trunnion import __version__
+from trunnion.cli.post_arguments import post_mistake
 from trunnion.cli.twin_arguments import add_machine_access, add_record, add_twin
 
 
@@ -126,6 +127,8 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
     arguments, unknown = parser.parse_known_args(list(argv))
     if unknown:
         commands[arguments.command].error(_not_expected(unknown, arguments.command))
+    if arguments.command == "post" and (wrong := post_mistake(arguments)):
+        commands["post"].error(wrong)
     for key in ("dialect", "feed"):
         if getattr(arguments, key, None) and "settings" in arguments:
             if key in dict(arguments.settings):
@@ -155,6 +158,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     parser.add_argument("--version", action="version", version=f"trunnion {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True, dest="command")
     _add_post(commands.add_parser("post", help="write the NC program of one or more CL files"))
+    _add_test(commands.add_parser("test", help="post the projects of a folder again, and compare with what is there"))
     _add_verify(
         commands.add_parser("verify", help="prove an NC program: read it, run it, compare it with its CL files")
     )
@@ -177,8 +181,10 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
 
 
 def _add_post(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("files", nargs="+", metavar="CL", help="CL file")
-    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="shipped machine, or a TOML file")
+    parser.add_argument(
+        "files", nargs="+", metavar="CL|PROJECT", help="CL file; or one project (.toml), which states all but --set"
+    )
+    parser.add_argument("--machine", metavar="NAME_OR_FILE", help="shipped machine, or a TOML file")
     parser.add_argument(
         "--output", metavar="FILE|-|FOLDER", help="program, stdout, or a folder: one program per CL file"
     )
@@ -197,12 +203,21 @@ def _add_post(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--force", action="store_true", help="write a program that must not run; its head says so")
     parser.add_argument("--explain", action="store_true", help="say why the axes were planned as they are")
     parser.add_argument("--report", metavar="FILE", help="what was checked, as a page (.html) or data (.json)")
+    parser.add_argument("--watch", action="store_true", help="post again whenever a file that is read changes")
     parser.add_argument(
         "--simulate", action="store_true", help="cut stock with the program too, and refuse what it must not do"
     )
     parser.add_argument("--project", metavar="PROJECT", help="project file (.toml) that states what --simulate takes")
     _add_stock(parser)
     parser.set_defaults(run=_lazy_command("startup", "run"))
+
+
+def _add_test(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "folder", metavar="FOLDER|PROJECT", help="every part.toml and case.toml in it and below; or one project"
+    )
+    parser.add_argument("--accept", action="store_true", help="show what differs, and take the new programs over")
+    parser.set_defaults(run=_lazy_command("cases", "run"))
 
 
 def _add_verify(parser: argparse.ArgumentParser) -> None:

@@ -1,0 +1,256 @@
+"""Posting a project: the programs of all its set-ups appear together, once each is proven, or none of them.
+
+In:     a project.
+Out:    its programs, what the checks of the project found, and an error where one of them must not run.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from trunnion.api.arguments import check_observer, check_path
+from trunnion.api.dividing import operation_programs, programs_of_operations
+from trunnion.api.input_files import definition_files
+from trunnion.api.job import prepare
+from trunnion.api.observer import SILENT, Observer
+from trunnion.api.planning import load_toolpaths
+from trunnion.api.post_result import PostResult
+from trunnion.api.posting import post_beside
+from trunnion.api.project import Division, PostedSetup, Project
+from trunnion.api.project_checks import check_project
+from trunnion.api.project_file import load_project, named_files
+from trunnion.api.reading import FilePath, ToolpathLike, as_machine
+from trunnion.api.settings import Settings, SettingValue
+from trunnion.errors import ArgumentName, InputError, Problem, RefusedError, Severity, TrunnionError
+from trunnion.files import EarlierJob, OutputGroup, check_outputs, output_group, resolve_output
+from trunnion.machines import Machine
+
+if TYPE_CHECKING:  # imported where a project is simulated
+    from trunnion.api.simulation_result import SimulationResult
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ProjectResult:
+    """A project that was posted: every program of it is proven, and written.
+
+    project     as it was read
+    posted      set-ups of which something was posted, each with its programs in their order
+    simulation  of all set-ups; None: it was not asked for
+    problems    what the checks of the project warn of; each program has its own warnings
+    """
+
+    project: Project
+    posted: tuple[tuple[PostedSetup, tuple[PostResult, ...]], ...]
+    simulation: "SimulationResult | None" = None
+    problems: tuple[Problem, ...] = ()
+
+    @property
+    def results(self) -> tuple[PostResult, ...]:
+        """Every program, in the order of set-ups."""
+        return tuple(result for _, results in self.posted for result in results)
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The files of all programs and of their subprograms."""
+        return tuple(
+            file for each in self.results for file in (each.output, *each.subprograms) if file is not None
+        )  # fmt: skip
+
+
+def post_project(
+    project: FilePath,
+    *,
+    settings: Settings | None = None,
+    strict: bool = False,
+    explain: bool = False,
+    observer: Observer = SILENT,
+) -> ProjectResult:
+    """Post all that a project states, and prove, simulate and compare it as the project asks for.
+
+    Parameters
+    ----------
+    project
+        Its file (``.toml``; docs/projects.md).
+    settings
+        In place of those of the project, for all set-ups.
+    strict
+        Raise an error for unknown CL statements even if the definition says what becomes of them.
+    explain
+        Record why the axes were planned as they are.
+    observer
+        Receives the progress, warnings, and the plan and the proof of each program.
+
+    Returns
+    -------
+    ProjectResult
+        ``files``, the programs in ``results`` and the ``simulation``. Each program is proven.
+
+    Raises
+    ------
+    InputError
+        When the project, a file, a machine or a setting cannot be used.
+    RefusedError
+        When a program must not run, or a check of the project refuses it. No file of the project is written then.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> result = trunnion.post_project("examples/project/part.toml")
+    >>> [file.name for file in result.files]
+    ['plate_top.mpf', 'plate_bottom.mpf']
+    """
+    check_observer(observer)
+    loaded = load_project(check_path("project", project))
+    with output_group() as group:
+        return post_into(group, loaded, settings=settings, strict=strict, explain=explain, observer=observer)
+
+
+def project_inputs(project: Project) -> list[FilePath]:
+    """All files that posting a project reads, those of its machines' definitions too.
+
+    Raises
+    ------
+    InputError
+        If a machine cannot be loaded.
+    """
+    named = [project.path, *named_files(project)]
+    for machine in dict.fromkeys(each.machine for each in project.setups):
+        named += definition_files(machine, as_machine(machine))
+    return named
+
+
+def post_into(
+    group: OutputGroup, project: Project, *, settings: Settings | None, strict: bool, explain: bool, observer: Observer
+) -> ProjectResult:
+    """Post a project; its files appear with those of the ``group``. Errors are those of ``post_project``.
+
+    A set-up that is refused does not hide what is wrong with the next ones.
+    """
+    _check_hooks(project)
+    inputs = project_inputs(project)
+    reports = [each.report for each in project.setups if each.report is not None]
+    check_outputs([*(each.output for each in project.setups), *reports], inputs)
+    post = _SetupPost(group, project, inputs, dict(settings or {}), strict or project.strict, explain, observer)
+    posted, errors = list[tuple[PostedSetup, tuple[PostResult, ...]]](), list[TrunnionError]()
+    for setup in project.setups:
+        try:
+            observer.setup(setup.name)
+            with _told_in_project(setup, settings or {}):
+                posted.append((setup, tuple(post.programs(setup))))
+        except TrunnionError as error:
+            errors.append(error)
+    if errors:
+        raise _joined(errors)
+    simulation, found = check_project(project, posted, observer)
+    found += _left_over(posted)
+    refused = [problem for problem in found if problem.severity is Severity.ERROR]
+    warnings = [problem for problem in found if problem.severity is Severity.WARNING]
+    observer.problems(warnings)
+    if refused:
+        nothing = Problem(str(project.path), 0, "no program of the project is written")
+        raise RefusedError([*refused, nothing])
+    return ProjectResult(project, tuple(posted), simulation, tuple(warnings))
+
+
+def _check_hooks(project: Project) -> None:
+    """Raise ``InputError`` for hooks, which nothing takes yet."""
+    if project.hooks:
+        what, cure = "states hooks, and they are not known here", "leave the key hooks out"
+        raise InputError(Problem(str(project.path), 0, what, cure))
+
+
+@dataclass(frozen=True, slots=True)
+class _SetupPost:
+    """Posts set-ups of a project: what all of them share."""
+
+    group: OutputGroup
+    project: Project
+    inputs: Sequence[FilePath]
+    settings: Mapping[str, SettingValue]
+    strict: bool
+    explain: bool
+    observer: Observer
+
+    def programs(self, setup: PostedSetup) -> Iterator[PostResult]:
+        """Post the programs of a set-up, one after the other."""
+        machine = as_machine(setup.machine)
+        settings = {**setup.settings, **self.settings}
+        if setup.division is not Division.OPERATIONS:
+            if setup.division is Division.SUBPROGRAMS:
+                settings["programs"] = "operations"
+            yield self._program(setup, machine, setup.cl, settings, setup.output, setup.report)
+            return
+        if setup.report is not None:
+            what = "is one report, and every operation has a program of its own"
+            raise InputError(Problem(str(setup.report), 0, what, "leave it out, or write one program"))
+        job = prepare(machine, settings)
+        toolpaths = load_toolpaths(setup.cl, job, self.strict, Observer())
+        for each in operation_programs(toolpaths, job, setup.output):
+            _check_unnamed(each.output)
+            yield self._program(setup, machine, each.toolpath, each.settings, each.output, None)
+
+    def _program(
+        self,
+        setup: PostedSetup,
+        machine: Machine,
+        cl: ToolpathLike | Sequence[ToolpathLike],
+        settings: Settings,
+        output: Path,
+        report: Path | None,
+    ) -> PostResult:
+        return post_beside(
+            cl, self.inputs, machine=machine, output=output, settings=settings, strict=self.strict, force=False,
+            explain=self.explain, report=report, columns=self.project.checks.longest_s is not None,
+            subprograms=setup.subprograms, observer=self.observer, group=self.group, forcing="",
+        )  # fmt: skip
+
+
+def _check_unnamed(output: Path) -> None:
+    """Raise ``InputError`` if a file whose name nobody chose is there, and is not as a post has written it."""
+    place = resolve_output(output).path
+    if place.exists() and not EarlierJob(place).wrote(place):
+        what = "would be replaced, although no post has written it as it is"
+        raise InputError(Problem(str(output), 0, what, "remove it, or give the project's output another name"))
+
+
+def _left_over(posted: Sequence[tuple[PostedSetup, tuple[PostResult, ...]]]) -> list[Problem]:
+    """Warnings of programs of operations that the CL files no longer have."""
+    found = []
+    for setup, results in posted:
+        if setup.division is not Division.OPERATIONS:
+            continue
+        written = {result.output.name for result in results if result.output is not None}
+        for file in programs_of_operations(setup.output):
+            if file.name not in written:
+                what = "is the program of an operation that the CL files no longer have"
+                found.append(Problem(str(file), 0, what, "remove it from here and from the control", Severity.WARNING))
+    return found
+
+
+@contextmanager
+def _told_in_project(setup: PostedSetup, given: Settings) -> Iterator[None]:
+    """Tell problems with settings where the project states them; those that are ``given`` otherwise as they are."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError([_in_project(problem, setup, given) for problem in error.problems]) from None
+
+
+def _in_project(problem: Problem, setup: PostedSetup, given: Settings) -> Problem:
+    if not isinstance(problem.file, ArgumentName) or problem.file != "settings":
+        return problem
+    name = problem.what.partition(" ")[0]
+    if name in given:
+        return problem
+    file, line, key = setup.places.get(name, setup.places["settings"])
+    return replace(problem, file=file, line=line, what=f"{key}: {problem.what}")
+
+
+def _joined(errors: Sequence[TrunnionError]) -> TrunnionError:
+    """All errors as one: a refusal only if there is no other."""
+    if len(errors) == 1:
+        return errors[0]
+    kind = RefusedError if all(isinstance(error, RefusedError) for error in errors) else InputError
+    return kind(dict.fromkeys(problem for error in errors for problem in error.problems))
