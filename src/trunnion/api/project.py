@@ -82,6 +82,7 @@ class Project:
     checks      what is judged after the posts
     hooks       files of hooks, in their order
     strict      unknown CL statements are errors
+    into        folder that takes its programs, as they lie in its own; None: that is it
     """
 
     path: Path
@@ -90,6 +91,7 @@ class Project:
     checks: ProjectChecks = ProjectChecks()
     hooks: tuple[str, ...] = ()
     strict: bool = False
+    into: Path | None = None
 
     @property
     def folder(self) -> Path:
@@ -107,4 +109,4 @@ class Project:
             each and replace(each, output=folder / each.output.relative_to(self.folder), report=None)
             for each in self.posted
         ]
-        return replace(self, posted=tuple(posted))
+        return replace(self, posted=tuple(posted), into=folder)

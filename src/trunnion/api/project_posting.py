@@ -23,6 +23,7 @@ from trunnion.api.project_checks import check_project
 from trunnion.api.project_file import load_project, named_files
 from trunnion.api.reading import FilePath, ToolpathLike, as_machine
 from trunnion.api.settings import Settings, SettingValue
+from trunnion.definitions.extends import is_within
 from trunnion.errors import ArgumentName, InputError, Problem, RefusedError, Severity, TrunnionError
 from trunnion.files import EarlierJob, OutputGroup, check_outputs, output_group, resolve_output
 from trunnion.machines import Machine
@@ -54,9 +55,12 @@ class ProjectResult:
     @property
     def files(self) -> tuple[Path, ...]:
         """The files of all programs and of their subprograms."""
-        return tuple(
-            file for each in self.results for file in (each.output, *each.subprograms) if file is not None
-        )  # fmt: skip
+        return tuple(file for each in self.results for file in files_of(each))
+
+
+def files_of(program: PostResult) -> list[Path]:
+    """The file of a program, and those of its subprograms."""
+    return [*([] if program.output is None else [program.output]), *program.subprograms]
 
 
 def post_project(
@@ -143,6 +147,7 @@ def post_into(
             errors.append(error)
     if errors:
         raise _joined(errors)
+    check_within([file for _, results in posted for each in results for file in files_of(each)], project)
     simulation, found = check_project(project, posted, observer)
     found += _left_over(posted)
     refused = [problem for problem in found if problem.severity is Severity.ERROR]
@@ -152,6 +157,14 @@ def post_into(
         nothing = Problem(str(project.path), 0, "no program of the project is written")
         raise RefusedError([*refused, nothing])
     return ProjectResult(project, tuple(posted), simulation, tuple(warnings))
+
+
+def check_within(files: Sequence[Path], project: Project) -> None:
+    """Raise ``InputError`` for files of subprograms and operations that links lead out of the folder."""
+    folder = project.into or project.folder
+    what, cure = "leads out of the folder of the project", "remove the link"
+    if outside := [file for file in files if not is_within(file, folder)]:
+        raise InputError([Problem(str(file), 0, what, cure) for file in outside])
 
 
 def _check_hooks(project: Project) -> None:

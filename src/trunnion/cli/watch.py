@@ -107,8 +107,7 @@ class _Told:
         """Say that programs which are there are not those of the files as they are now."""
         old = [name for name in self._work.outputs() if Path(name).is_file()]
         if old:
-            is_are = "is still the program" if len(old) == 1 else "are still the programs"
-            tell(f"{', '.join(old)}: warning: {is_are} of before: do not run what does not belong to these files")
+            tell(f"{', '.join(old)}: warning: of before this change: do not run until it is posted again")
 
 
 class _ChangedError(InputError):
