@@ -182,6 +182,8 @@ class _Reader:
         }
         until = table.integer("until", None, at_least=0)
         setups[-1]["until"] = until
+        if until is not None and self._is_posted and checks.simulate is not Judgement.OFF:
+            table.add_problem("until", "ends the simulation early, and whole programs are posted", "leave it out")
         posted = tuple(setup["posted"] for setup in setups)
         simulated = [SetupInput(**{key: setup[key] for key in setup if key not in _OF_POST}) for setup in setups]
         if self._is_posted and not any(posted) and not table.problems:

@@ -97,13 +97,6 @@ def post_project(
         When the project, a file, a machine or a setting cannot be used.
     RefusedError
         When a program must not run, or a check of the project refuses it. No file of the project is written then.
-
-    Examples
-    --------
-    >>> import trunnion
-    >>> result = trunnion.post_project("examples/project/part.toml")
-    >>> [file.name for file in result.files]
-    ['plate_top.mpf', 'plate_bottom.mpf']
     """
     check_observer(observer)
     loaded = load_project(check_path("project", project))
@@ -257,7 +250,10 @@ def _in_project(problem: Problem, setup: PostedSetup, given: Settings) -> Proble
     name = problem.what.partition(" ")[0]
     if name in given:
         return problem
-    file, line, key = setup.places.get(name, setup.places["settings"])
+    if name in setup.places:
+        file, line, key = setup.places[name]
+        return replace(problem, file=file, line=line, what=f"{key}{problem.what.removeprefix(name)}")
+    file, line, key = setup.places["settings"]
     return replace(problem, file=file, line=line, what=f"{key}: {problem.what}")
 
 

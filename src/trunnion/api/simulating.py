@@ -49,8 +49,8 @@ def simulate(
     ----------
     nc
         A program or several, in the order in which they cut the same stock: paths, or their runs. Or one project file
-        (``.toml`` with a table ``[simulation]``), which has programs, stock and all others; what is given here stands
-        in place of it.
+        (``.toml``; docs/projects.md), which has programs, stock and all others; what is given here stands in place of
+        it.
     machine
         The machine that runs them: a name, a path or a ``Machine``. Only a project may leave it out, and ``stock``.
     stock

@@ -67,14 +67,15 @@ def watch(watched: Watched, waiting: Waiting) -> None:
 
 
 def mentioned_files(definition: Path) -> set[str]:
-    """What the texts of a definition that cannot be used may name: files whose coming may put it right."""
+    """What the texts of a definition may name; of one that cannot be used, files whose coming may put it right."""
     try:
         with definition.open("rb") as stream:
             content = tomllib.loads(stream.read(MAX_FILE_BYTES).decode("utf-8-sig"))
     except (OSError, ValueError, RecursionError):
         return set()
     texts = (text for text in _texts(content) if text and len(text) < _LONGEST_NAME and text.isprintable())
-    return {str(definition.parent / text) for text in texts}
+    paths = [definition.parent / text for text in texts]
+    return {str(path) for each in paths for path in (each, each.with_name(f"{each.name}.toml"))}
 
 
 def _texts(value: object) -> Iterator[str]:

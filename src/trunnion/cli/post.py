@@ -48,7 +48,7 @@ def post(
     for target, files in targets.items():
         result = post_beside(
             chain.from_iterable(islice(toolpaths, len(files))),
-            [*read, *written],
+            read if group is not None else [*read, *written],  # a group knows what its jobs write
             machine=machine,
             output=output_place(target),
             settings=dict(arguments.settings),

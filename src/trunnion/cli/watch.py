@@ -125,6 +125,11 @@ def _failure(error: TrunnionError | OSError, is_unchanged: bool) -> str:
     return f"NOT posted: {kind} ({counted(len(error.problems), 'message')})"
 
 
+def _of_definition(machine: str) -> set[str]:
+    """The file of a machine, and what it may extend: also files of which no value counts yet."""
+    return {machine, *mentioned_files(Path(machine))} if machine.endswith(".toml") else set()
+
+
 class _ProjectWork:
     """A project that is posted again."""
 
@@ -139,6 +144,7 @@ class _ProjectWork:
         try:
             self._project = load_project(Path(self.name))
             self._files = {str(file) for file in project_inputs(self._project)}
+            self._files.update(*(_of_definition(each.machine) for each in self._project.setups))
         except (TrunnionError, OSError):
             self._files |= {self.name, *mentioned_files(Path(self.name))}
         return set(self._files)
@@ -174,13 +180,12 @@ class _FilesWork:
     def files(self) -> set[str]:
         """CL files, definitions, and what the simulation reads."""
         given = self._arguments
-        named = {*map(file_on_disk, given.files), *given.subprograms}
+        named = {*map(file_on_disk, given.files), *given.subprograms, *_of_definition(given.machine)}
         try:
             found = definition_files(given.machine, load_machine(given.machine))
             self._definitions = {str(file) for file in found}
-        except (TrunnionError, OSError):
-            if given.machine.endswith(".toml"):
-                self._definitions |= {given.machine, *mentioned_files(Path(given.machine))}
+        except (TrunnionError, OSError):  # those that it had before stay
+            pass
         try:
             named |= {str(file) for file in simulation_files(simulation_of(given) or {})}
         except (TrunnionError, OSError):  # a project that is broken; posting will tell
