@@ -40,8 +40,8 @@ def run(arguments: argparse.Namespace) -> int:
 def follow(arguments: argparse.Namespace, waiting: Waiting, now: Callable[[], datetime] = datetime.now) -> int:
     """Post as ``run`` does, where time passes as ``waiting`` says."""
     work: _Work = _ProjectWork(arguments) if names_project(arguments.files) else _FilesWork(arguments)
-    tell(f"{work.name}: watched; Ctrl-C ends it")
     try:
+        tell(f"{work.name}: watched; Ctrl-C ends it")
         watch(_Told(work, now), waiting)
     except Ended:
         raise
