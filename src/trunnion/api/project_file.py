@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from trunnion.api.project import Division, Judgement, PostedSetup, Project, ProjectChecks
-from trunnion.api.project_paths import ProjectPaths
+from trunnion.api.project_paths import ProjectPaths, is_file
 from trunnion.api.reading import FilePath, as_machine
 from trunnion.api.settings import SettingValue, as_texts, work_offset_setting
 from trunnion.api.simulation_setups import SetupInput, SimulationInput, listed, with_place
@@ -299,7 +299,7 @@ class _Reader:
         if division is not Division.ONE:
             what = "becomes several files, whose names are known only while it is posted"
             table.add_problem("output", what, 'write simulate = "refuse" in [checks], and post the project')
-        elif not output.is_file():
+        elif not is_file(output):
             cure = f"post it first: trunnion post {self._path.name}"
             table.add_problem("output", f'names "{table.text("output")}", and there is no such file yet', cure)
 

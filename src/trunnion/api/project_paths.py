@@ -1,6 +1,7 @@
 """The files that a project names, to read and to write: they lie beside the project or below, wherever links go."""
 
 import re
+from collections.abc import Callable
 from pathlib import Path, PurePosixPath
 from typing import Final
 
@@ -37,7 +38,7 @@ class ProjectPaths:
                 table.add_problem(key, 'is ""', "name a file in the folder of the project or below it")
             return None
         location = self._located(table, key, name)
-        if name.endswith("/") or location.is_dir():
+        if name.endswith("/") or _answer(Path.is_dir, location):
             table.add_problem(key, f'"{name[:100]}" is a folder', "name a file in it")
         return location
 
@@ -47,7 +48,7 @@ class ProjectPaths:
             return ""
         told = len(table.problems)
         location = self._located(table, key, name)
-        if len(table.problems) == told and not location.is_file():
+        if len(table.problems) == told and not is_file(location):
             table.add_problem(key, f'names "{name}", and there is no such file', _WITHIN)
         return str(location)
 
@@ -60,3 +61,15 @@ class ProjectPaths:
             table.add_problem(key, f'"{name[:100]}" leads out of the folder of the project', _WITHIN)
             return self._folder / "outside"
         return location
+
+
+def is_file(location: Path) -> bool:
+    """Whether a path is that of a file; one that is too long for the system, or a link that goes round, is not."""
+    return _answer(Path.is_file, location)
+
+
+def _answer(question: Callable[[Path], bool], location: Path) -> bool:
+    try:
+        return question(location)
+    except (OSError, RuntimeError, ValueError):
+        return False
