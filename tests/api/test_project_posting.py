@@ -124,6 +124,9 @@ def test_settings_are_told_where_the_project_states_them(tmp_path: Path) -> None
     assert found.startswith(f"{path}:5: error: zero_mm is '0.0,0.0,1000000.0'")
     path.write_text(PROJECT.replace("title", "titel"))
     assert problems(path)[0].startswith(f"{path}:4: error: settings.titel is not a setting")
+    path.write_text(PROJECT.replace("title = ", "split = 20480, title = "))
+    (found,) = problems(path)
+    assert found.endswith('settings.split divides subprograms, and there are none; write divide = "subprograms" too')
     with pytest.raises(trunnion.InputError, match=r"^settings: error: pole is 'no'"):
         trunnion.post_project(project(tmp_path), settings={"pole": "no"})
 
@@ -191,6 +194,16 @@ def test_a_simulation_runs_through_all_set_ups_and_refuses(tmp_path: Path) -> No
     # The same project, simulated as it lies there.
     alone = trunnion.simulate(path)
     assert [each.removed for each in alone.setups] == [each.removed for each in found.simulation.setups]
+
+
+def test_what_a_simulation_lacks_is_told_by_its_key(tmp_path: Path) -> None:
+    by_hand = SETUPS.replace('cl = ["bottom.cls"]\noutput = "bottom.mpf"', 'programs = ["hand.mpf"]')
+    path = project(tmp_path, 'checks = { simulate = "warn" }\n' + by_hand)
+    alone = trunnion.post(tmp_path / "top.cls", machine="yl569")
+    assert alone.text is not None
+    (tmp_path / "hand.mpf").write_text(alone.text)
+    (found,) = problems(path)
+    assert found.startswith(f"{path}: error: tools: nothing says the form of tool 1")
 
 
 def test_a_program_is_compared_with_the_released_one(tmp_path: Path, capsys: Capture) -> None:

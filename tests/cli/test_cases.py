@@ -151,3 +151,16 @@ def test_the_example_comes_out_and_is_what_the_page_shows(capsys: Capture) -> No
     found = trunnion.simulate(folder / "part.toml")
     assert found.passed
     assert [one.removed for one in found.operations] == pytest.approx([8000.0, 5000.0, 6400.0], rel=1e-3)
+
+
+def test_accepting_makes_the_programs_of_a_clone_those_of_the_project(tmp_path: Path, capsys: Capture) -> None:
+    first = project(tmp_path / "first", PROJECT + 'divide = "subprograms"\n')
+    trunnion.post_project(first)
+    clone = project(tmp_path / "clone", first.read_text())
+    for program in (*first.parent.glob("*.mpf"), *first.parent.glob("*.spf")):
+        clone.with_name(program.name).write_bytes(program.read_bytes())
+    with pytest.raises(trunnion.InputError, match=r"would be replaced, although top\.mpf has not written it"):
+        trunnion.post_project(clone)
+    code, out, _ = tried(capsys, clone, "--accept")
+    assert (code, "accepted" in out) == (0, False)
+    assert len(trunnion.post_project(clone).files) == 3

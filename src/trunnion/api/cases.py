@@ -23,7 +23,7 @@ from trunnion.api.project_posting import ProjectResult, check_within, files_of, 
 from trunnion.api.text_difference import TextDifference, text_difference
 from trunnion.api.writing import named_run
 from trunnion.errors import InputError, Problem, TrunnionError
-from trunnion.files import output_group, resolve_output
+from trunnion.files import EarlierJob, output_group, resolve_output
 
 #: What projects are called that are cases.
 CASE_NAMES: Final = ("case.toml", "part.toml")
@@ -77,6 +77,7 @@ class Case:
     warnings: tuple[Problem, ...] = ()
     error: TrunnionError | None = None
     _new: tuple[tuple[Path, Path], ...] = ()
+    _programs: tuple[tuple[Path, ...], ...] = ()
     _inputs: tuple[str, ...] = ()
 
     @property
@@ -85,7 +86,9 @@ class Case:
         return self.error is None and not self.changed and not self.gone
 
     def accept(self) -> list[Path]:
-        """Write the programs as they are now, all or none of them; returns those that changed.
+        """Write the programs as they are now, all or none of them; returns the files that changed.
+
+        They count then as what this project has posted, as after a clone of somebody else's.
 
         Raises
         ------
@@ -93,13 +96,16 @@ class Case:
             If a file cannot be written.
         """
         assert self.error is None, "what must not run is never accepted"
-        changed = {each.file for program in self.changed for each in program.files}
+        changed = {each.file for differing in self.changed for each in differing.files}
         with output_group(remembers=False) as group:
             for new, place in self._new:
                 if place in changed:
                     with group.open(resolve_output(place), inputs=self._inputs) as files, new.open("rb") as source:
                         while piece := source.read(1 << 20):
                             files.main.write(piece)
+        for program in self._programs:
+            places = [resolve_output(file).path for file in program]
+            EarlierJob(places[0]).remember(places)
         return sorted(changed)
 
 
@@ -155,8 +161,9 @@ def _compared(path: Path, folder: Path) -> Case:
     differing = {each.file for program in changed if program for each in program.files}
     same = tuple(place for place in places.values() if place not in differing)
     gone = tuple(_gone(project, result, places))
+    programs = tuple(tuple(places[file] for file in files_of(program)) for program in result.results)
     return Case(
-        path, same, tuple(filter(None, changed)), gone, result.problems, None, tuple(places.items()), inputs
+        path, same, tuple(filter(None, changed)), gone, result.problems, None, tuple(places.items()), programs, inputs
     )  # fmt: skip
 
 

@@ -11,6 +11,7 @@ names, and these by a post alone.
 import os
 import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
@@ -18,12 +19,13 @@ from typing import Any, Final
 
 from trunnion.api.project import Division, Judgement, PostedSetup, Project, ProjectChecks
 from trunnion.api.project_paths import ProjectPaths, is_file
+from trunnion.api.project_settings import read_settings
 from trunnion.api.reading import FilePath, as_machine
-from trunnion.api.settings import SettingValue, as_texts, work_offset_setting
+from trunnion.api.settings import work_offset_setting
 from trunnion.api.simulation_setups import SetupInput, SimulationInput, listed, with_place
 from trunnion.definitions import Table, load_table
 from trunnion.definitions.extends import MAX_FILE_BYTES
-from trunnion.errors import InputError, Problem, unusable_file
+from trunnion.errors import ArgumentName, InputError, Problem, unusable_file
 from trunnion.machines import shipped_machines
 from trunnion.model.toolpath import Toolpath
 from trunnion.simulation.stock.solids import stock_shape
@@ -38,9 +40,6 @@ _MOST_SETUPS: Final = 100
 
 #: Keys of which a project has at least one, as no other definition does.
 _KEYS_OF_PROJECTS: Final = ("setup", "programs", "cl", "output", "stock")
-
-#: Settings that have a key of their own, which the simulation reads too.
-_OWN_KEYS: Final = {"zero": "zero_mm", "tool_length": "tool_length_mm", "programs": "divide"}
 
 #: What a set-up has besides the arguments of its simulation.
 _OF_POST: Final = ("division", "settings", "setting_places", "posted")
@@ -262,7 +261,7 @@ class _Reader:
         """How a set-up is posted, as far as set-ups may share it; added to what is ``found``."""
         if "divide" in table or "division" not in found:
             found["division"] = Division(table.text("divide", Division.ONE, one_of=tuple(Division)))
-        settings, places = _settings(table)
+        settings, places = read_settings(table)
         found["settings"] = {**found.get("settings", {}), **settings}
         found["setting_places"] = {**found.get("setting_places", {}), **places}
 
@@ -286,6 +285,8 @@ class _Reader:
             table.mark_read("programs")
         if not found["cl"] and "cl" not in table:
             table.add_problem("cl", "is missing", 'name the CL files that are posted: cl = ["one.cls"]')
+        if report is not None and found["division"] is Division.OPERATIONS:
+            table.add_problem("report", "is one report, and every operation has a program of its own", "leave it out")
         if not self._is_posted and "nc" not in self._elsewhere:
             self._check_is_posted(table, output, found["division"])
         named = {key: found[key] for key in ("name", "cl", "machine", "division", "settings", "subprograms")}
@@ -317,33 +318,19 @@ class _Reader:
         return table.text("machine", "", one_of=shipped_machines()) if name else ""
 
 
-def _settings(table: Table) -> tuple[dict[str, SettingValue], dict[str, tuple[str, int, str]]]:
-    """Settings that a table states, in its own keys and in its table ``settings``; and where."""
-    own = table.table("settings")
-    found: dict[str, Any] = {}
-    places = {"settings": (*table.location("settings" if "settings" in table else ""), own.path)}
-    for name, value in own.to_dict().items():
-        if key := _OWN_KEYS.get(name):
-            own.add_problem(name, f"is said by the key {key}", f"write {key} beside the table of settings")
-            continue
-        try:
-            as_texts({name: value})  # type: ignore[dict-item]  # of any type: that is what is judged
-        except InputError as error:
-            own.problems.extend(
-                replace(each, file=own.location(name)[0], line=own.location(name)[1]) for each in error.problems
-            )
-            continue
-        found[name], places[name] = value, (*own.location(name), own.key_path(name))
-    own.mark_read(*own.keys())
-    for name, key in (("zero", "zero_mm"), ("tool_length", "tool_length_mm"), ("work_offset", "work_offset")):
-        if key not in table:
-            continue
-        if name in found:
-            own.add_problem(name, f"is said by the key {key} too", "write one of them")
-        stated = table.to_dict()[key]
-        if isinstance(stated, str | float | int | list):  # anything else is a mistake that is told already
-            found[name], places[name] = stated, (*table.location(key), table.key_path(key))
-    return found, places
+@contextmanager
+def told_by_keys(path: Path) -> Iterator[None]:
+    """Tell problems with arguments that a project does not state as those of the keys that it lacks."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError([_by_key(problem, path) for problem in error.problems]) from None
+
+
+def _by_key(problem: Problem, path: Path) -> Problem:
+    if not isinstance(problem.file, ArgumentName):
+        return problem
+    return replace(problem, file=str(path), what=f"{_KEYS.get(problem.file, problem.file)}: {problem.what}")
 
 
 def _try(table: Table, check: Callable[..., object], *values: object) -> None:

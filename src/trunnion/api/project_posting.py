@@ -5,8 +5,7 @@ Out:    its programs, what the checks of the project found, and an error where o
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,11 +19,12 @@ from trunnion.api.post_result import PostResult
 from trunnion.api.posting import post_beside
 from trunnion.api.project import Division, PostedSetup, Project
 from trunnion.api.project_checks import check_project
-from trunnion.api.project_file import load_project, named_files
+from trunnion.api.project_file import load_project, named_files, told_by_keys
+from trunnion.api.project_settings import told_in_project
 from trunnion.api.reading import FilePath, ToolpathLike, as_machine
 from trunnion.api.settings import Settings, SettingValue
 from trunnion.definitions.extends import is_within
-from trunnion.errors import ArgumentName, InputError, Problem, RefusedError, Severity, TrunnionError
+from trunnion.errors import InputError, Problem, RefusedError, Severity, TrunnionError
 from trunnion.files import EarlierJob, OutputGroup, check_outputs, output_group, resolve_output
 from trunnion.machines import Machine
 
@@ -134,14 +134,15 @@ def post_into(
     for setup in project.setups:
         try:
             observer.setup(setup.name)
-            with _told_in_project(setup, settings or {}):
+            with told_in_project(setup, settings or {}):
                 posted.append((setup, tuple(post.programs(setup))))
         except TrunnionError as error:
             errors.append(error)
     if errors:
         raise _joined(errors)
     check_within([file for _, results in posted for each in results for file in files_of(each)], project)
-    simulation, found = check_project(project, posted, observer)
+    with told_by_keys(project.path):
+        simulation, found = check_project(project, posted, observer)
     found += _left_over(posted)
     refused = [problem for problem in found if problem.severity is Severity.ERROR]
     warnings = [problem for problem in found if problem.severity is Severity.WARNING]
@@ -188,9 +189,6 @@ class _SetupPost:
                 settings["programs"] = "operations"
             yield self._program(setup, machine, setup.cl, settings, setup.output, setup.report)
             return
-        if setup.report is not None:
-            what = "is one report, and every operation has a program of its own"
-            raise InputError(Problem(str(setup.report), 0, what, "leave it out, or write one program"))
         job = prepare(machine, settings)
         toolpaths = load_toolpaths(setup.cl, job, self.strict, Observer())
         for each in operation_programs(toolpaths, job, setup.output):
@@ -233,28 +231,6 @@ def _left_over(posted: Sequence[tuple[PostedSetup, tuple[PostResult, ...]]]) -> 
                 what = "is the program of an operation that the CL files no longer have"
                 found.append(Problem(str(file), 0, what, "remove it from here and from the control", Severity.WARNING))
     return found
-
-
-@contextmanager
-def _told_in_project(setup: PostedSetup, given: Settings) -> Iterator[None]:
-    """Tell problems with settings where the project states them; those that are ``given`` otherwise as they are."""
-    try:
-        yield
-    except InputError as error:
-        raise InputError([_in_project(problem, setup, given) for problem in error.problems]) from None
-
-
-def _in_project(problem: Problem, setup: PostedSetup, given: Settings) -> Problem:
-    if not isinstance(problem.file, ArgumentName) or problem.file != "settings":
-        return problem
-    name = problem.what.partition(" ")[0]
-    if name in given:
-        return problem
-    if name in setup.places:
-        file, line, key = setup.places[name]
-        return replace(problem, file=file, line=line, what=f"{key}{problem.what.removeprefix(name)}")
-    file, line, key = setup.places["settings"]
-    return replace(problem, file=file, line=line, what=f"{key}: {problem.what}")
 
 
 def _joined(errors: Sequence[TrunnionError]) -> TrunnionError:

@@ -69,6 +69,8 @@ def watch(watched: Watched, waiting: Waiting) -> None:
 def mentioned_files(definition: Path) -> set[str]:
     """What the texts of a definition may name; of one that cannot be used, files whose coming may put it right."""
     try:
+        if not definition.is_file():  # a pipe would be waited for
+            return set()
         with definition.open("rb") as stream:
             content = tomllib.loads(stream.read(MAX_FILE_BYTES).decode("utf-8-sig"))
     except (OSError, ValueError, RecursionError):
