@@ -139,3 +139,17 @@ def test_programs_that_are_not_posted_yet_cannot_be_simulated(tmp_path: Path) ->
     path.write_text(SETUPS.replace('name = "top"', 'name = "top"\ndivide = "operations"'))
     with pytest.raises(trunnion.InputError, match="becomes several files, whose names are known only"):
         read_project(path)
+
+
+def test_a_project_that_would_take_forever_to_judge_is_refused(tmp_path: Path) -> None:
+    names = str(["top.cls"] * 900)
+    setups = "".join(f'[[setup]]\ncl = {names}\nfixtures = {names}\noutput = "{k}.mpf"\n' for k in range(50))
+    (found,) = told(project(tmp_path, f'machine = "yl569"\n{setups}'))
+    assert "is beyond the 10000 files" in found[1]
+    many = "".join(f"k{k} = 1\n" for k in range(600))
+    assert (
+        "settings has 600 keys" in told(project(tmp_path, f"{PROJECT.rsplit('settings')[0]}[settings]\n{many}"))[0][1]
+    )
+    unknown = told(project(tmp_path, PROJECT + many))
+    assert len(unknown) == 101
+    assert "has 600 keys that are not known here" in unknown[0][1]

@@ -7,9 +7,11 @@ from typing import Final
 
 from trunnion.definitions import Table
 from trunnion.definitions.extends import is_within
+from trunnion.errors import InputError, Problem
 
-#: Files that one key may name.
+#: Files that one key may name, and a project.
 _MOST_FILES: Final = 1000
+_MOST_NAMES: Final = 10_000
 
 #: The cure of a name that leads elsewhere.
 _WITHIN: Final = "write the path of a file in the folder of the project or below it"
@@ -20,6 +22,7 @@ class ProjectPaths:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
+        self._count = 0
 
     def files(self, table: Table, key: str, *, required: bool = False) -> tuple[str, ...]:
         names = table.texts(key) if required else table.texts(key, ())
@@ -54,6 +57,10 @@ class ProjectPaths:
 
     def _located(self, table: Table, key: str, name: str) -> Path:
         """The path that a name in a project leads to; one that leads out of its folder is a mistake."""
+        self._count += 1
+        if self._count > _MOST_NAMES:  # asking the system about each takes a while
+            what = f"{table.key_path(key)} is beyond the {_MOST_NAMES} files that a project may name"
+            raise InputError(Problem(*table.location(key), what, "write several projects"))
         pure = PurePosixPath(name)
         location = self._folder / pure
         outside = pure.is_absolute() or ".." in pure.parts or re.search(r"[\\:\x00-\x1f]", name) or len(name) > 1000

@@ -10,6 +10,9 @@ from trunnion.api.settings import Settings, SettingValue, as_texts
 from trunnion.definitions import Table
 from trunnion.errors import ArgumentName, InputError, Problem
 
+#: Settings that a table may have.
+_MOST_SETTINGS: Final = 500
+
 #: Settings that have a key of their own, which the simulation reads too.
 _OWN_KEYS: Final = {"zero": "zero_mm", "tool_length": "tool_length_mm", "programs": "divide"}
 
@@ -19,7 +22,11 @@ def read_settings(table: Table) -> tuple[dict[str, SettingValue], dict[str, tupl
     own = table.table("settings")
     found: dict[str, Any] = {}
     places = {"settings": (*table.location("settings" if "settings" in table else ""), own.path)}
-    for name, value in own.to_dict().items():
+    stated = own.to_dict()
+    if len(stated) > _MOST_SETTINGS:
+        table.add_problem("settings", f"has {len(stated)} keys", f"no control has more than {_MOST_SETTINGS}")
+        stated = {}
+    for name, value in stated.items():
         if key := _OWN_KEYS.get(name):
             own.add_problem(name, f"is said by the key {key}", f"write {key} beside the table of settings")
             continue
@@ -37,9 +44,9 @@ def read_settings(table: Table) -> tuple[dict[str, SettingValue], dict[str, tupl
             continue
         if name in found:
             own.add_problem(name, f"is said by the key {key} too", "write one of them")
-        stated = table.to_dict()[key]
-        if isinstance(stated, str | float | int | list):  # anything else is a mistake that is told already
-            found[name], places[name] = stated, (*table.location(key), table.key_path(key))
+        value = table.to_dict()[key]
+        if isinstance(value, str | float | int | list):  # anything else is a mistake that is told already
+            found[name], places[name] = value, (*table.location(key), table.key_path(key))
     return found, places
 
 

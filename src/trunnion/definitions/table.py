@@ -19,6 +19,9 @@ class Required:
 
 REQUIRED: Final = Required()
 
+#: Keys that are not known and are told one by one: for each a similar one is looked for.
+_MOST_UNREAD: Final = 100
+
 _NO_NAMES: Final[Mapping[str, str]] = MappingProxyType({})
 
 #: No length, angle, speed or count of a definition is greater; squares of what is do not overflow.
@@ -132,9 +135,10 @@ class Table:
 
     def report_unread_keys(self) -> None:
         """Note each key that has not been read; call it when the table has been read."""
-        for key in self._values:
-            if key in self.read_keys:
-                continue
+        unread = [key for key in self._values if key not in self.read_keys]
+        if len(unread) > _MOST_UNREAD:
+            self.add_problem("", f"has {len(unread)} keys that are not known here; the first are told")
+        for key in unread[:_MOST_UNREAD]:
             same_stem = (known for known in self.read_keys if without_unit(known) == without_unit(key))
             similar = next((known for known in same_stem if unit_of(known)), "")
             if similar and unit_of(key) != unit_of(similar):
