@@ -85,8 +85,12 @@ def test_a_project_of_subprograms_and_one_of_a_program_each(tmp_path: Path) -> N
     [
         (operation("A", end="CUTCOM/LEFT\n") + operation("B"), "A leaves on what line"),
         (operation("A") + operation("B", origin="0.0,0.0,10.0"), "B is in another coordinate system than A"),
+        (
+            operation("A") + operation("B").replace("MILL,10.0", "MILL,6.0"),
+            "operations A and B both call tool 1, and their CL data differ",
+        ),
     ],
-    ids=["compensation", "zero"],
+    ids=["compensation", "zero", "tool"],
 )
 def test_an_operation_that_does_not_stand_alone_gets_no_program_of_its_own(
     tmp_path: Path, cl: str, words: str

@@ -12,9 +12,11 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Final
 
+from trunnion import readers
 from trunnion.api.job import PostJob
 from trunnion.api.settings import check_operation_names
-from trunnion.errors import InputError, Problem, RefusedError, argument_problem
+from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem
+from trunnion.model.motion import Motion
 from trunnion.model.toolpath import (
     BlockSkip,
     CutterComp,
@@ -27,6 +29,8 @@ from trunnion.model.toolpath import (
     SpindleOn,
     Toolpath,
 )
+from trunnion.output.program import Program
+from trunnion.output.validation.tools import tool_conflicts
 
 #: Letters of an operation that the name of its file repeats.
 _MOST_LETTERS: Final = 40
@@ -78,6 +82,27 @@ def operation_programs(toolpaths: Sequence[Toolpath], job: PostJob, output: Path
         name = f"{output.stem}_{number}_{_plain(operation.name)}".rstrip("_") + output.suffix
         own = replace(toolpath, operations=(operation,), remarks=remarks)
         found.append(OperationProgram(own, settings, output.with_name(name)))
+    return found
+
+
+def check_tools(motions: Sequence[Motion], job: PostJob, file: str) -> list[Problem]:
+    """Hold the tools of operations against each other as in one program: the operator puts them into one magazine.
+
+    Returns
+    -------
+    list
+        Warnings of tools that have several names.
+
+    Raises
+    ------
+    RefusedError
+        If operations call one tool and state different ones.
+    """
+    program = Program(job.machine, job.control, motions, job.printed, file, own_settings=job.own_settings)
+    by_register = readers.can_read(job.machine) and readers.reader_of(job.machine).uses_length_numbers
+    found = tool_conflicts(program, uses_length_numbers=by_register)
+    if errors := [problem for problem in found if problem.severity is Severity.ERROR]:
+        raise RefusedError(errors)
     return found
 
 

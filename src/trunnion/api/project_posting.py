@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trunnion.api.arguments import check_observer, check_path
-from trunnion.api.dividing import operation_programs, programs_of_operations
+from trunnion.api.dividing import check_tools, operation_programs, programs_of_operations
 from trunnion.api.input_files import definition_files
 from trunnion.api.job import prepare
 from trunnion.api.observer import SILENT, Observer
@@ -27,6 +27,7 @@ from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem, RefusedError, Severity, TrunnionError
 from trunnion.files import EarlierJob, OutputGroup, check_outputs, output_group, resolve_output
 from trunnion.machines import Machine
+from trunnion.model.motion import Motion
 
 if TYPE_CHECKING:  # imported where a project is simulated
     from trunnion.api.simulation_result import SimulationResult
@@ -191,9 +192,13 @@ class _SetupPost:
             return
         job = prepare(machine, settings)
         toolpaths = load_toolpaths(setup.cl, job, self.strict, Observer())
+        motions: list[Motion] = []
         for each in operation_programs(toolpaths, job, setup.output):
             _check_unnamed(each.output)
-            yield self._program(setup, machine, each.toolpath, each.settings, each.output, None)
+            result = self._program(setup, machine, each.toolpath, each.settings, each.output, None)
+            motions += result.motions
+            yield result
+        self.observer.problems(check_tools(motions, job, toolpaths[0].file))
 
     def _program(
         self,
