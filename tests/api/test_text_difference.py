@@ -59,6 +59,20 @@ def test_the_heads_of_pieces_have_the_lines_of_the_texts(tmp_path: Path) -> None
     )  # fmt: skip
 
 
+def test_block_numbers_that_move_hide_nothing_else(tmp_path: Path) -> None:
+    lines = [f"X{k}." for k in range(30)]
+    old = [f"N{10 * k} {line}" for k, line in enumerate(lines, 1)]
+    more = [*lines[:9], "M8", *lines[9:]]
+    found = compared(tmp_path, as_bytes(old), as_bytes([f"N{10 * k} {line}" for k, line in enumerate(more, 1)]))
+    assert found == TextDifference(
+        "0 lines removed, 1 added, and block numbers behind them",
+        ("@@ -8,4 +8,5 @@", " X7.", " X8.", "+M8", " X9.", " X10."),
+    )
+    moved = [f"N{5 * k} {line}" for k, line in enumerate(lines, 1)]
+    found = compared(tmp_path, as_bytes(old), as_bytes(moved))
+    assert found == TextDifference("nothing but block numbers from line 1 on")
+
+
 def test_a_few_lines_of_a_long_text_are_counted(tmp_path: Path) -> None:
     old = numbered(5000)
     new = [*old[:9], "N10 X0.", *old[10:4000], "N4001 X0.", *old[4001:]]

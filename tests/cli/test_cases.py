@@ -132,7 +132,11 @@ def test_an_old_program_that_nobody_can_read_is_told(case: Path, capsys: Capture
 
 
 @pytest.mark.parametrize(
-    ("place", "words"), [("", "has no case: no case.toml or part.toml"), ("none", "is no folder, and no project")]
+    ("place", "words"),
+    [
+        ("", "has no case: no case.toml, part.toml or file that ends in .case.toml"),
+        ("none", "is no folder, and no project"),
+    ],
 )
 def test_a_folder_without_cases_is_an_error(tmp_path: Path, place: str, words: str, capsys: Capture) -> None:
     (tmp_path / ".hidden").mkdir()
@@ -164,3 +168,20 @@ def test_accepting_makes_the_programs_of_a_clone_those_of_the_project(tmp_path: 
     code, out, _ = tried(capsys, clone, "--accept")
     assert (code, "accepted" in out) == (0, False)
     assert len(trunnion.post_project(clone).files) == 3
+
+
+def test_cases_that_share_a_definition_stand_above_it(tmp_path: Path, capsys: Capture) -> None:
+    own = tmp_path / "machines" / "own.toml"
+    own.parent.mkdir()
+    own.write_text('extends = "yl569"\n')
+    for name in ("blade", "flange"):
+        project(tmp_path / name)
+        text = PROJECT.replace("yl569", "machines/own.toml").replace("top.", f"{name}/top.")
+        (tmp_path / f"{name}.case.toml").write_text(text)
+        (tmp_path / name / "part.toml").unlink()
+    assert tried(capsys, tmp_path, "--accept")[0] == 0
+    own.write_text('extends = "yl569"\n[control.settings]\nwork_offset = "G57"\n')
+    code, out, _ = tried(capsys, tmp_path)
+    assert code == 1
+    assert out.count("DIFFERENT: top.mpf: text: ") == out.count("and block numbers behind them") == 2
+    assert out.count("motion DIFFERS") == 2

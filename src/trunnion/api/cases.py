@@ -25,8 +25,9 @@ from trunnion.api.writing import named_run
 from trunnion.errors import InputError, Problem, TrunnionError
 from trunnion.files import EarlierJob, output_group, resolve_output
 
-#: What projects are called that are cases.
-CASE_NAMES: Final = ("case.toml", "part.toml")
+#: What projects are called that are cases, and how the names of others end.
+_NAMES: Final = ("case.toml", "part.toml")
+_ENDING: Final = ".case.toml"
 
 #: Cases that a folder may have.
 _MOST_CASES: Final = 10_000
@@ -124,11 +125,11 @@ def find_cases(place: Path) -> list[Path]:
     found: list[Path] = []
     for folder, below, names in os.walk(place):
         below[:] = sorted(name for name in below if not name.startswith("."))
-        found += [Path(folder) / name for name in CASE_NAMES if name in names]
+        found += [Path(folder) / name for name in sorted(names) if name in _NAMES or name.endswith(_ENDING)]
         if len(found) > _MOST_CASES:
             raise InputError(Problem(str(place), 0, f"has more than {_MOST_CASES} cases", "test a part of it"))
     if not found:
-        what = f"has no case: no {' or '.join(CASE_NAMES)} in it or below"
+        what = f"has no case: no {', '.join(_NAMES)} or file that ends in {_ENDING} in it or below"
         raise InputError(Problem(str(place), 0, what, "write a project for each case (docs/projects.md)"))
     return found
 

@@ -27,6 +27,9 @@ _MOST_LETTERS: Final = 200
 #: The number of a first line in the head of a piece of a unified diff.
 _PLACE: Final = re.compile(r"([-+])([0-9]+)")
 
+#: The number of a block: N100 of most controls, 100 of Klartext.
+_BLOCK_NUMBER: Final = re.compile(rb"^[N:]?[0-9]+ ")
+
 #: Longer lines are taken for several.
 _LONGEST_LINE: Final = 10_000
 
@@ -87,11 +90,25 @@ def _of_all(context: list[bytes], was: list[bytes], now: list[bytes], first: int
     """The difference of short rests of two texts."""
     if [line.rstrip(b"\r\n") for line in was] == [line.rstrip(b"\r\n") for line in now]:
         return _of_line_ends(first)
-    shown = _diff(context, was, now, first)
+    with_numbers = _diff(context, was, now, first)
+    without = _diff(_unnumbered(context), _unnumbered(was), _unnumbered(now), first)
+    is_moved = _changes(without) < _changes(with_numbers)
+    shown = without if is_moved else with_numbers
+    if not shown:
+        return TextDifference(f"nothing but block numbers from line {first} on")
     added = sum(line.startswith("+") for line in shown)
-    removed = sum(line.startswith("-") for line in shown)
-    summary = f"{counted(removed, 'line')} removed, {added} added"
+    summary = f"{counted(_changes(shown) - added, 'line')} removed, {added} added"
+    summary += ", and block numbers behind them" if is_moved else ""
     return TextDifference(summary, tuple(shown[:_MOST_SHOWN]), len(shown) > _MOST_SHOWN)
+
+
+def _unnumbered(lines: list[bytes]) -> list[bytes]:
+    """Lines without their block numbers: one line more gives all that follow other ones."""
+    return [_BLOCK_NUMBER.sub(b"", line) for line in lines]
+
+
+def _changes(diff: list[str]) -> int:
+    return sum(line.startswith(("+", "-")) for line in diff)
 
 
 def _of_line_ends(first: int) -> TextDifference:
@@ -120,7 +137,7 @@ def _by_numbers(
             f"{counted(changed, 'line')} changed", tuple(shown[:_MOST_SHOWN]), 3 * changed > len(shown)
         )
     summary = f"from line {first} on; {lines_before} lines before, {lines_after} now"
-    beginning = _diff(context, was, now, first)
+    beginning = _diff(_unnumbered(context), _unnumbered(was), _unnumbered(now), first)
     return TextDifference(summary, tuple(beginning[:_MOST_SHOWN]), is_cut=True)
 
 

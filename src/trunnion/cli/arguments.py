@@ -214,7 +214,9 @@ def _add_post(parser: argparse.ArgumentParser) -> None:
 
 def _add_test(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "folder", metavar="FOLDER|PROJECT", help="every part.toml and case.toml in it and below; or one project"
+        "folder",
+        metavar="FOLDER|PROJECT",
+        help="every part.toml, case.toml and NAME.case.toml in it and below; or one project",
     )
     parser.add_argument("--accept", action="store_true", help="show what differs, and take the new programs over")
     parser.set_defaults(run=_lazy_command("cases", "run"))
