@@ -131,6 +131,9 @@ def test_settings_are_told_where_the_project_states_them(tmp_path: Path) -> None
     path.write_text(PROJECT.replace("title = ", "split = 20480, title = "))
     (found,) = problems(path)
     assert found.endswith('settings.split divides subprograms, and there are none; write divide = "subprograms" too')
+    path.write_text(PROJECT.replace("yl569", "hs664rt").replace("top.mpf", "top.nc") + 'divide = "subprograms"\n')
+    (found,) = problems(path)
+    assert found.startswith(f'{path}:5: error: divide is "subprograms", and Fidia')
     with pytest.raises(trunnion.InputError, match=r"^settings: error: pole is 'no'"):
         trunnion.post_project(project(tmp_path), settings={"pole": "no"})
 

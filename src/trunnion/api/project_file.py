@@ -262,6 +262,8 @@ class _Reader:
         if "divide" in table or "division" not in found:
             found["division"] = Division(table.text("divide", Division.ONE, one_of=tuple(Division)))
         settings, places = read_settings(table)
+        if "divide" in table:
+            places["programs"] = (*table.location("divide"), table.key_path("divide"))
         found["settings"] = {**found.get("settings", {}), **settings}
         found["setting_places"] = {**found.get("setting_places", {}), **places}
 

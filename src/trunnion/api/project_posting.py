@@ -221,7 +221,9 @@ def _check_unnamed(output: Path) -> None:
     place = resolve_output(output).path
     if place.exists() and not EarlierJob(place).wrote(place):
         what = "would be replaced, although no post has written it as it is"
-        raise InputError(Problem(str(output), 0, what, "remove it, or give the project's output another name"))
+        raise InputError(
+            Problem(str(output), 0, what, "remove it, or take the new one over: trunnion test PROJECT --accept")
+        )
 
 
 def _left_over(posted: Sequence[tuple[PostedSetup, tuple[PostResult, ...]]]) -> list[Problem]:

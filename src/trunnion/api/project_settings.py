@@ -65,7 +65,9 @@ def _in_project(problem: Problem, setup: PostedSetup, given: Settings) -> Proble
     name = problem.what.partition(" ")[0]
     if name in given:
         return problem
-    problem = replace(problem, cure=problem.cure.replace("programs=operations", 'divide = "subprograms"'))
+    what = problem.what.replace("programs is operations", 'programs is "subprograms"')  # the words of divide
+    cure = problem.cure.replace("programs=operations", 'divide = "subprograms"')
+    problem = replace(problem, what=what, cure=cure)
     if name in setup.places:
         file, line, key = setup.places[name]
         return replace(problem, file=file, line=line, what=f"{key}{problem.what.removeprefix(name)}")
