@@ -186,9 +186,9 @@ def test_what_a_project_states_is_not_said_beside_it(options: list[str], words: 
 def test_a_simulation_runs_through_all_set_ups_and_refuses(tmp_path: Path) -> None:
     cl = TWO.replace("GOTO/0.0,0.0,50.0", "GOTO/0.0,0.0,-5.0")  # at rapid into the stock
     path = project(tmp_path, 'checks = { simulate = "refuse" }\n' + SETUPS, bottom=cl)
-    (first, nothing) = problems(path, trunnion.RefusedError)
+    (first, *_, nothing) = problems(path, trunnion.RefusedError)
     assert first.startswith(f"{tmp_path / 'bottom.mpf'}:")
-    assert "the simulation finds: " in first
+    assert "the simulation finds: rapid through stock: tool 1, stock: " in first
     assert "no program of the project is written" in nothing
     assert texts(tmp_path) == {}
     path.write_text('checks = { simulate = "warn" }\n' + SETUPS)
@@ -196,7 +196,7 @@ def test_a_simulation_runs_through_all_set_ups_and_refuses(tmp_path: Path) -> No
     assert found.simulation is not None
     assert [each.setup for each in found.simulation.setups] == ["top", "bottom"]
     assert not found.simulation.passed
-    assert ["the simulation finds" in each.what for each in found.problems] == [True]
+    assert {"the simulation finds" in each.what for each in found.problems} == {True}
     assert list(texts(tmp_path)) == ["bottom.mpf", "top.mpf"]
     # The same project, simulated as it lies there.
     alone = trunnion.simulate(path)

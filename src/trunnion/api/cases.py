@@ -156,7 +156,7 @@ def _compared(path: Path, folder: Path) -> Case:
         setup.output.parent.mkdir(parents=True, exist_ok=True)
     with output_group(remembers=False) as group:
         result = post_into(group, aside, settings=None, strict=False, explain=False, observer=SILENT)
-    places = {file: project.folder / file.relative_to(folder) for file in result.files}
+    places = {file: aside.place_of(file) for file in result.files}
     check_within(list(places.values()), project)
     changed = [_changed(program, setup, places) for setup, programs in result.posted for program in programs]
     differing = {each.file for program in changed if program for each in program.files}

@@ -103,6 +103,10 @@ class Project:
         """Those in which something is posted."""
         return [each for each in self.posted if each is not None]
 
+    def place_of(self, output: Path) -> Path:
+        """Where a file that is written lies in the project's own folder."""
+        return output if self.into is None else self.folder / output.relative_to(self.into)
+
     def writing_to(self, folder: Path) -> "Project":
         """The same project with its programs in another folder, where they lie as in its own; without reports."""
         posted = [

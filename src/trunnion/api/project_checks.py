@@ -23,6 +23,9 @@ from trunnion.wording import counted, format_duration
 if TYPE_CHECKING:  # imported where a project is simulated
     from trunnion.api.simulation_result import SimulationResult
 
+#: Findings of a set-up that are told one by one.
+_MOST_TOLD = 10
+
 #: The severity of what a check finds.
 _SEVERITIES = {Judgement.WARN: Severity.WARNING, Judgement.REFUSE: Severity.ERROR}
 
@@ -48,34 +51,43 @@ def check_project(
     found = list[Problem]()
     for setup, results in posted:
         if checks.longest_s is not None:
-            found += _too_long(results, checks.longest_s)
+            found += _too_long(project, results)
         if checks.released is not Judgement.OFF and setup.released:
             severity = _SEVERITIES[checks.released]
-            found += [replace(each, severity=severity) for each in _compare_released(setup, results)]
+            found += [replace(each, severity=severity) for each in _compare_released(project, setup, results)]
     if checks.simulate is Judgement.OFF:
         return None, found
     simulation, problems = _simulate(project, posted, observer)
     return simulation, [*found, *(replace(each, severity=_SEVERITIES[checks.simulate]) for each in problems)]
 
 
-def posted_run(result: PostResult) -> Run:
+def _name(project: Project, result: PostResult) -> str:
+    assert result.output is not None, "every program of a project has a file"
+    return str(project.place_of(result.output))
+
+
+def _run(project: Project, result: PostResult) -> Run:
     """The run of a program under the name that it will have."""
     assert result.run is not None, "nothing is posted here that nobody reads"
-    return named_run(result.run, str(result.output))
+    return named_run(result.run, _name(project, result))
 
 
-def _too_long(results: Sequence[PostResult], longest: float) -> Iterator[Problem]:
+def _too_long(project: Project, results: Sequence[PostResult]) -> Iterator[Problem]:
     """Programs that take longer than they may."""
+    longest = project.checks.longest_s
+    assert longest is not None
     for result in results:
         assert result.verification is not None
         seconds, known = durations(result.verification)
         if seconds.sum() > longest:
             least = "" if known.all() else "at least "
             what = f"takes {least}{format_duration(float(seconds.sum()))}, and may take {format_duration(longest)}"
-            yield Problem(str(result.output), 0, what, "divide the work, or raise longest_s of [checks]")
+            yield Problem(_name(project, result), 0, what, "divide the work, or raise longest_s of [checks]")
 
 
-def _compare_released(setup: PostedSetup, results: Sequence[PostResult]) -> Iterator[Problem]:
+def _compare_released(
+    project: Project, setup: PostedSetup, results: Sequence[PostResult]
+) -> Iterator[Problem]:  # fmt: skip
     """Programs that move otherwise than the released ones."""
     if setup.division is not Division.OPERATIONS:
         pairs = [(results[0], setup.released[0], setup.released[1:])]
@@ -83,47 +95,57 @@ def _compare_released(setup: PostedSetup, results: Sequence[PostResult]) -> Iter
         pairs = [(result, released, ()) for result, released in zip(results, setup.released, strict=False)]
         if len(results) != len(setup.released):
             what = f"becomes {counted(len(results), 'program')}, and {len(setup.released)} are released"
-            yield Problem(str(setup.output), 0, what, "look at what CAM has changed, then release the new ones")
+            yield Problem(
+                str(project.place_of(setup.output)), 0, what, "look at what CAM has changed, then release the new ones"
+            )
     for result, released, beside in pairs:
-        run = posted_run(result)
+        run = _run(project, result)
         compared = diff(
             released, run, machine=run.machine, subprograms=[*beside, *setup.subprograms],
         )  # fmt: skip
         if not compared.same:
             what = f"does not move as {Path(released).name} does: {'; '.join(compared.lines())}"
-            yield Problem(str(result.output), 0, what, "look at both, then release the new one")
+            yield Problem(_name(project, result), 0, what, "look at both, then release the new one")
 
 
 def _simulate(
     project: Project, posted: Sequence[tuple[PostedSetup, Sequence[PostResult]]], observer: Observer
 ) -> tuple["SimulationResult", list[Problem]]:
     """Cut the stock in all set-ups one after another, and say what must not be."""
-    from trunnion.api.posted_simulation import simulation_checks
     from trunnion.api.simulation_steps import simulate_setups
 
     waiting = iter(posted)
     setups = [
-        each if setup is None else _with_runs(each, next(waiting)[1])
+        each if setup is None else _with_runs(project, each, next(waiting)[1])
         for each, setup in zip(project.simulation.setups, project.posted, strict=True)
     ]
     found = simulate_setups(replace(project.simulation, setups=setups), observer)
-    problems = []
-    for one, setup in zip(found.setups or (found,), setups, strict=False):
-        first = setup.programs[0]
-        name = first.files[0] if isinstance(first, Run) else str(first)
-        for check in simulation_checks(one):
-            if not check.passed:
-                line = check.places[0].nc_line if check.places else 0
-                cure = f"trunnion simulate {project.path.name} shows more of it"
-                what = f"the simulation finds: {check.summary} ({check.key})"
-                problems.append(Problem(name, max(line, 0), what, cure))
-    return found, problems
+    return found, [
+        problem for one in found.setups or (found,) for problem in _found(one, f"trunnion simulate {project.path.name}")
+    ]
 
 
-def _with_runs(setup: SetupInput, results: Sequence[PostResult]) -> SetupInput:
+def _found(simulated: "SimulationResult", command: str) -> Iterator[Problem]:
+    """What a set-up must not do, each at its program and line; ``command`` shows more of it."""
+    for finding in simulated.findings[:_MOST_TOLD]:
+        x, y, z = finding.place
+        between = f"{finding.kind}: {finding.between[0]}, {finding.between[1]}"
+        what = f"the simulation finds: {between}: {finding.depth:.3f} mm deep at X{x:.3f} Y{y:.3f} Z{z:.3f}"
+        yield Problem(finding.file, finding.line, what)
+    if len(simulated.findings) > _MOST_TOLD:
+        more = counted(len(simulated.findings) - _MOST_TOLD, "finding")
+        yield Problem(simulated.programs[0], 0, f"the simulation has {more} more", f"{command} shows them")
+    yield from (remark for remark in simulated.remarks if remark.severity is Severity.ERROR)
+    gouge = simulated.gouge
+    if gouge is not None and gouge.largest > simulated.limit and not simulated.findings:
+        what = f"the simulation finds up to {gouge.largest:.3f} mm missing from the part"
+        yield Problem(simulated.programs[0], 0, what, f"{command} shows where")
+
+
+def _with_runs(project: Project, setup: SetupInput, results: Sequence[PostResult]) -> SetupInput:
     """A set-up with the programs that have been posted for it, on their machine as it was set up."""
     toolpaths = [toolpath for result in results for toolpath in result.toolpaths]
-    runs = [posted_run(result) for result in results]
+    runs = [_run(project, result) for result in results]
     return replace(
         setup, programs=runs, machine=runs[0].machine, cl=toolpaths, subprograms=(), zero=None, tool_length=None
     )  # fmt: skip
