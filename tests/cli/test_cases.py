@@ -93,6 +93,16 @@ def test_a_program_that_must_not_run_is_never_accepted(case: Path, capsys: Captu
     assert contents(case.parent) == before
 
 
+def test_what_a_simulation_refuses_is_told_by_the_names_of_the_case(tmp_path: Path, capsys: Capture) -> None:
+    into_stock = operation("A").replace("GOTO/0.0,0.0,50.0", "GOTO/0.0,0.0,-5.0")
+    checked = 'stock = "box:60,60,20,-10,-30,-20"\ncell_mm = 2.0\n[checks]\nsimulate = "refuse"\n'
+    path = project(tmp_path, PROJECT + checked, top=into_stock)
+    code, out, err = tried(capsys, path)
+    assert (code, "REFUSED" in out) == (1, True)
+    assert f"{tmp_path / 'top.mpf'}:" in err
+    assert "trunnion-" not in err
+
+
 def test_one_case_does_not_stop_the_others(case: Path, capsys: Capture) -> None:
     broken = project(case.parent.parent / "broken", PROJECT.replace("yl569", "none"))
     code, out, err = tried(capsys, case.parent.parent)
