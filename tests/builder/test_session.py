@@ -128,7 +128,7 @@ def test_a_comment_of_the_users_own_is_no_mark(session: BuilderSession) -> None:
         (["spindle", "max_rpm"], 5999, "6000"),
         (["control", "settings", "work_offset"], "2", "work_offset"),
         (["control", "coolant", "ON"], 26, ""),
-        (["control", "block_numbers", "letter"], "L", ""),
+        (["control", "codes", "plane_xy"], 18, ""),
     ],
 )
 def test_a_sample_that_is_refused_has_a_reason(session: BuilderSession, path: list[Any], value: Any, told: str) -> None:

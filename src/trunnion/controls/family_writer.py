@@ -67,6 +67,7 @@ class FamilyWriter(Protocol):
     SETTING_FIELDS    settings that act through values of its templates alone -> those values; where no template of a
                       definition prints one of them, the setting has no effect
     TEMPLATE_FIELDS   values that its templates may print besides the common ones: the keys of ``template_values``
+    BLOCK_NUMBER_LETTERS  what may stand before a block number; empty among them: numbers without a letter, or none
     """
 
     WORDS: tuple[str, ...]
@@ -78,6 +79,7 @@ class FamilyWriter(Protocol):
     SETTING_FIELDS: Mapping[str, tuple[str, ...]]
     TEMPLATE_FIELDS: frozenset[str]
     LINE_COMMENTS: tuple[str, ...]
+    BLOCK_NUMBER_LETTERS: tuple[str, ...]
 
     def comment(self, text: str) -> list[str]:
         """Return a text as comment lines, whatever characters are in it."""

@@ -18,7 +18,7 @@ SHAPES: Final = ("box", "cylinder", "file")
 #: Endings of meshes that a body may be.
 MESH_ENDINGS: Final = (".stl", ".obj", ".ply", ".3mf", ".glb")
 
-_COLOUR = re.compile(r"#[0-9a-fA-F]{6}")
+_COLOUR: Final = "#[0-9a-fA-F]{6}"
 
 #: The keys of each shape besides those that every body has.
 _OF_SHAPE: Final = {
@@ -52,9 +52,7 @@ def _body(entry: Table, axis_names: Sequence[str]) -> MachineBody:
             "name", "begins or ends with blanks, or has letters that cannot be printed", "write it plainly"
         )
     link = entry.text("link", one_of=(*axis_names, *FIXED_LINKS))
-    colour = entry.text("colour", PLAIN_COLOUR)
-    if not _COLOUR.fullmatch(colour):
-        entry.add_problem("colour", f'is "{colour}"', 'write "#rrggbb", such as "#9aa0a6"')
+    colour = entry.text("colour", PLAIN_COLOUR, pattern=_COLOUR, form='"#rrggbb", such as "#9aa0a6"')
     shape = entry.text("shape", one_of=SHAPES)
     file, unit = entry.text("file", None), entry.text("unit", None, one_of=("mm", "inch", "m"))
     size, centre = entry.vector("size_mm", 3, None), entry.vector("centre_mm", 3, None)

@@ -34,6 +34,7 @@ SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {}
 SETTING_MEANINGS: Mapping[str, str] = {}
 SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {}
 LINE_COMMENTS: tuple[str, ...] = ("; ",)
+BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 
 #: Bytes of a text in one line: a line has room for 255, with the block number and what surrounds the text.
