@@ -131,7 +131,11 @@ def _read(path: Path, elsewhere: Collection[str], *, is_posted: bool) -> Project
         raise InputError(Problem(str(path), 0, "is a project by its content", "let its name end in .toml"))
     if unusable := unusable_file(path, "a project"):
         raise InputError(unusable)
-    root = load_table(path, files(__package__), kind="project")
+    return read_project_table(load_table(path, files(__package__), kind="project"), path, elsewhere, is_posted=is_posted)
+
+
+def read_project_table(root: Table, path: Path, elsewhere: Collection[str] = (), *, is_posted: bool = True) -> Project:
+    """Read the table of a project that stands, or would stand, in the file ``path``; errors as ``load_project``."""
     if "simulation" not in root and not any(key in root for key in _KEYS_OF_PROJECTS):
         what = f"is no project: it has none of the keys {', '.join(_KEYS_OF_PROJECTS)}, and no table [simulation]"
         raise InputError(Problem(str(path), 0, what, "give the path of a project, or name the files themselves"))

@@ -37,7 +37,6 @@ from trunnion.definitions.twin_keys import report_twins, statement_form
 from trunnion.families import FAMILIES, load_writer
 from trunnion.model.axis_tolerance import AxisTolerance
 
-
 #: What may stand for 0: nothing, which is as other numbers, or a text that a control reads as 0.
 _ZERO: Final = r"([+-]?(0{1,2}(\.0{0,4})?|\.0{1,4}))?"
 
@@ -128,10 +127,8 @@ def load_control(own: Table) -> Control:
 
 
 def _load_family(table: Table) -> FamilyWriter:
-    key = table.text("family")
-    if key not in FAMILIES:
-        known = ", ".join(FAMILIES)
-        table.add_problem("family", f"is {key!r}, for which no programs can be written yet", f"write one of {known}")
+    key = table.text("family", one_of=tuple(FAMILIES))
+    if not key:
         table.raise_problems()
     table.mark_read("reading", "known")  # only for the readers of programs
     family: FamilyWriter = load_writer(key)
