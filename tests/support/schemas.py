@@ -52,6 +52,7 @@ class Kind:
     docs      pages with tables of keys: page, heading above the first table, what stands before the keys
     variants  arrays of tables of several sorts -> the key that says which
     extends   a file may extend another one
+    needs     keys that a loader wants before it asks for others
     """
 
     title: str
@@ -61,6 +62,7 @@ class Kind:
     docs: Sequence[tuple[str, str, str]]
     variants: Mapping[str, str] = field(default_factory=dict)
     extends: bool = False
+    needs: Sequence[str] = ()
 
 
 def _read_control(table: Table, path: Path) -> None:
@@ -87,13 +89,13 @@ KINDS: Final[Mapping[str, Kind]] = {
         [("definitions.md", heading, "") for heading in (
             "#### Keys of a control", "`[[control.format]]`, a", "`[[control.word]]`, a", "Other tables:",
         )],
-        extends=True,
+        extends=True, needs=("family",),
     ),
     "simulation": Kind(
         "simulation project", lambda table, path: read_project_table(table, path),
         [str(ROOT / "examples" / "simulation" / "plate.toml"), str(COMPLETE / "simulation.toml"),
-         str(COMPLETE / "simulation_least.toml")], COMPLETE,
-        [("simulation.md", "A file is a project if", "simulation.")],
+         str(COMPLETE / "simulation_setups.toml")], COMPLETE,
+        [("simulation.md", "A file is a project if", "simulation.")], needs=("simulation",),
     ),
     "tools": Kind(
         "tool library", read_library_table,
@@ -144,6 +146,7 @@ def schema(name: str) -> Json:
         "title": f"Trunnion: {kind.title}",
         **_object(root, "", meanings, kind),
     }
+    root.required |= set(kind.needs)
     complete = _complete(root)
     if not kind.extends:
         return {**found, **_merged(found, complete)}
@@ -208,9 +211,12 @@ def _tree(name: str) -> Node:
             node.asked.setdefault(key, []).append(expected)
             keys[key] = keys.get(key, True) and expected.required
             values.setdefault((run, path), _at(content, path))
-    for steps, tables in instances.items():
+    for steps, tables in sorted(instances.items(), key=lambda each: -len(each[0])):
         node = _node(root, steps)
         node.required = set.intersection(*({key for key, needed in keys.items() if needed} for keys in tables.values()))
+        for key in set.intersection(*(set(keys) for keys in tables.values())) - {"*"}:
+            if node.asked[key][0].form is Form.TABLE and _node(root, (*steps, key)).required - {"*"}:
+                node.required.add(key)  # a table that must have something in it
         decides = kind.variants.get(".".join(steps))
         for place, keys in tables.items() if decides else ():
             sort = (values.get(place) or {}).get(decides)
