@@ -285,7 +285,7 @@ def _property(node: Node, key: str, path: str, meanings: Mapping[str, str], kind
         by_form.setdefault(expected.form, []).append(expected)
     child = node.children.get(key, Node())
     choices = [_value(form, each, child, path, meanings, kind) for form, each in by_form.items()]
-    found = choices[0] if len(choices) == 1 else {"anyOf": choices}
+    found: Json = choices[0] if len(choices) == 1 else {"anyOf": choices}
     above, _, last = path.rpartition(".")
     if meaning := meanings.get(path) or meanings.get(f"{above.rpartition('.')[0]}.{last}"):
         found = {"description": meaning, **found}
@@ -310,7 +310,9 @@ def _value(
             return _text(asked)
         case Form.NUMBER:
             bounds = _bounds(asked)
-            return {key: value for key, value in number.items() if key != "minimum" or "exclusiveMinimum" not in bounds} | bounds
+            return {
+                key: value for key, value in number.items() if key != "minimum" or "exclusiveMinimum" not in bounds
+            } | bounds
         case Form.WHOLE:
             whole: Json = {"type": "integer", **_bounds(asked)}
             words = [each.nothing for each in asked if each.nothing]
@@ -395,7 +397,9 @@ def _meanings(kind: Kind) -> dict[str, str]:
         assert table, heading
         for row in table.group().splitlines()[2:]:
             cells = [cell.strip() for cell in re.split(r"(?<!\\)\|", row.strip().strip("|"))]
-            keys = re.findall(r"`\[*([A-Za-z][A-Za-z0-9_.]*)\]*`", cells[1] if "in a text" in table.group() else cells[0])
+            keys = re.findall(
+                r"`\[*([A-Za-z][A-Za-z0-9_.]*)\]*`", cells[1] if "in a text" in table.group() else cells[0]
+            )
             for key in keys:
                 key = key.removeprefix("control.") if kind.title.startswith("control") else key
                 found.setdefault(before + key, _words(cells[-1]))

@@ -45,7 +45,10 @@ _OPTION: Final = re.compile(r"--[a-z][a-z-]*")
 #: Dialects of CL files; listed here, so that a command line is taken apart before any reader is imported.
 DIALECTS = ("clsf", "ncl", "solidworks", "clt", "catia", "fusion", "apt")
 
-#: Those that are written.
+#: Kinds of files that there are schemas of; listed here for the same reason.
+SCHEMAS = ("machine", "control", "simulation", "tools", "impeller", "nodes")
+
+#: Dialects that are written.
 WRITTEN_DIALECTS = ("clsf", "catia", "ncl")
 
 #: Values of the setting ``feed``.
@@ -174,9 +177,11 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     _add_info(commands.add_parser("info", help="show what CL files hold; no machine is needed"))
     _add_curve(commands.add_parser("curve", help="fit curves to measured points; no machine is needed"))
     _add_impeller(commands.add_parser("impeller", help="make an impeller from measured points"))
+    _add_new(commands.add_parser("new", help="write the definition of a machine that is like a shipped one"))
     _add_machines(commands.add_parser("machines", help="list the machines, or print one definition"))
     _add_controls(commands.add_parser("controls", help="list the controls, or explain one with all its settings"))
     _add_check(commands.add_parser("check", help="validate the definition of a machine or a control"))
+    _add_schema(commands.add_parser("schema", help="print the JSON Schema of definitions or projects, for editors"))
     return parser, commands.choices
 
 
@@ -476,6 +481,9 @@ def _add_impeller(parser: argparse.ArgumentParser) -> None:
 
 def _add_machines(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", nargs="?", metavar="NAME", help="machine whose definition is printed")
+    parser.add_argument(
+        "--resolved", action="store_true", help="with all that it extends, and the file and line of each value"
+    )
     parser.set_defaults(run=_lazy_command("definitions", "machines"))
 
 
@@ -483,6 +491,17 @@ def _add_controls(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", nargs="?", metavar="NAME_OR_FILE", help="control to explain, or a machine's")
     parser.add_argument("--json", action="store_true", help="data in place of text")
     parser.set_defaults(run=_lazy_command("controls", "controls"))
+
+
+def _add_new(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("name", metavar="NAME", help="name of the machine: NAME.toml is written")
+    parser.add_argument("--like", required=True, metavar="MACHINE", help="shipped machine that it extends")
+    parser.set_defaults(run=_lazy_command("new", "new"))
+
+
+def _add_schema(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("kind", choices=SCHEMAS, help="what the files are")
+    parser.set_defaults(run=_lazy_command("new", "schema"))
 
 
 def _add_check(parser: argparse.ArgumentParser) -> None:

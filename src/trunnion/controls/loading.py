@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from importlib.resources import files
 from importlib.resources.abc import Traversable
@@ -32,8 +33,9 @@ from trunnion.controls.vocabulary import (
     WITHOUT_TCP,
 )
 from trunnion.controls.words import BlockNumbers, NumberFormat
-from trunnion.definitions import Table, definition_names, resolve_extends
+from trunnion.definitions import LocatedValue, Table, definition_names, resolve_extends
 from trunnion.definitions.twin_keys import report_twins, statement_form
+from trunnion.errors import InputError
 from trunnion.families import FAMILIES, load_writer
 from trunnion.model.axis_tolerance import AxisTolerance
 
@@ -367,3 +369,16 @@ def _read_templates(table: Table, names: Sequence[str]) -> dict[str, Template]:
         found[name] = Template(name, tuple(text.strip("\n").split("\n")) if text.strip() else (), file, line)
     table.report_unread_keys()
     return found
+
+
+def with_control(table: Table) -> LocatedValue:
+    """Return the definition of a machine with its control merged onto what that extends, or as it is if that fails."""
+    root = table.content
+    with suppress(InputError):
+        control = resolve_extends(table.unread_copy().table("control"), control_library())
+        assert isinstance(root.value, dict)
+        root = LocatedValue({**root.value, "control": control.content}, root.file, root.line)
+        own = table.unread_copy().table("control").content.value
+        if isinstance(own, dict) and "extends" in own and isinstance(control.content.value, dict):
+            control.content.value["extends"] = own["extends"]
+    return root

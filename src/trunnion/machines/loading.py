@@ -12,7 +12,9 @@ from pathlib import Path, PurePath
 from typing import Final, NamedTuple
 
 from trunnion.definitions import Table, definition_names, load_table
+from trunnion.definitions.messages import did_you_mean
 from trunnion.definitions.twin_keys import report_twins, statement_form
+from trunnion.errors import InputError, Problem
 from trunnion.machines.body_tables import read_bodies
 from trunnion.machines.chain_checks import check_chain
 from trunnion.machines.machine import (
@@ -43,6 +45,17 @@ def machine_library() -> Traversable:
 def shipped_machines() -> list[str]:
     """Names of the shipped machines, sorted."""
     return definition_names(machine_library())
+
+
+def check_is_shipped(name: str) -> None:
+    """Raise ``InputError`` for a name that is not that of a shipped machine."""
+    names = shipped_machines()
+    if name not in names:
+        near = did_you_mean(name, names)
+        cure = f"{near} " if near else ""
+        raise InputError(
+            Problem(name, 0, "there is no shipped machine of this name", f"{cure}write one of {', '.join(names)}")
+        )
 
 
 def load_machine(name_or_path: str | Path, overrides: Mapping[str, object] | None = None) -> Machine:
