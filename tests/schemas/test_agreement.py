@@ -41,7 +41,9 @@ JUDGED = {
         r"there is no format", r"(word\[\d+\]\.format|by_method\[\d+\]\.setting|word\[\d+\]\.name|letter) is ",
         r"format\[\d+\].name is", r"word has no entry", r"calls$", r"templates\.\w+ (is missing|is not a key|prints)",
         r"rule of no setting", r"extension is ", r"explains no setting", r"numbers start at", r"numbers without a letter",
-        r"settings\.\w+ is ", r"units\.mm is missing", r"subprograms\.longest_name is (missing|not a)", r"codes\.\w+ is (missing|not a)",
+        r"settings\.\w+ is ", r"units\.mm is missing",
+        r"subprograms\.longest_name is (missing|not a)",
+        r"codes\.\w+ is (missing|not a)",
         r"word\[\d+\]\.(letter|format) is (missing|not a key)", r"has no words for that", r"by_method\[\d+\]\.value",
         r"setting_rules\.\w+\.\w+ is not a key", r"in_force\.\w+ is not a key", r"reading\.\w+ is not a key",
         r"reading\.words\.\S+ is (not|no word)", r"known\.\S+ (has no effect|is a word)", r"settings is missing",
@@ -50,7 +52,8 @@ JUDGED = {
                    r"(machine|programs) is missing", r"tools"],
     "tools": BETWEEN_SIZES,
     "impeller": [*BETWEEN_SIZES, r"(points|curves|name) is ", r"names '", r"way is ", r"is not among the tools",
-                 r"needs either", r"^tool is missing", r"wants", r"flutes of tool", r"not less than the diameter", r"a wall would stay"],
+                 r"needs either", r"^tool is missing", r"wants", r"flutes of tool",
+                 r"not less than the diameter", r"a wall would stay"],
     "nodes": [r"is empty", r"is given beside", r"does not say which variable", r"has no namespace"],
 }  # fmt: skip
 

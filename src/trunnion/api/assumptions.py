@@ -17,7 +17,8 @@ from trunnion.machines.loading import machine_library
 #: Keys of axes that no two machines of a type share for certain, and what they are.
 _MEASURED: Final = {
     "point_mm": "the lines about which axes turn", "limits_mm": "travel", "limits_deg": "travel",
-    "home_mm": "home", "home_deg": "home",
+    "home_mm": "home", "home_deg": "home", "rapid_mm_min": "rapid traverse", "rapid_deg_min": "rapid traverse",
+    "acceleration_mm_s2": "acceleration", "acceleration_deg_s2": "acceleration",
 }  # fmt: skip
 
 
@@ -73,10 +74,18 @@ def _inherited(table: Table) -> Iterator[str]:
             if key in axis and file.startswith(library):
                 found.setdefault(Path(file).name, {}).setdefault(what, []).append(axis.text("name"))
     spindle, zero = table.table("spindle"), table.table("workpiece")
-    for part, key, what in ((spindle, "gauge_point_mm", "gauge point"), (zero, "zero_mm", "workpiece zero")):
+    singles = (
+        (spindle, "gauge_point_mm", "gauge point"), (spindle, "max_rpm", "highest spindle speed"),
+        (zero, "zero_mm", "workpiece zero"),
+    )  # fmt: skip
+    for part, key, what in singles:
         file, _ = part.location(key)
         if key in part and file.startswith(library):
             found.setdefault(Path(file).name, {})[what] = []
+    for body in table.tables("body"):
+        file, _ = body.location("name")
+        if file.startswith(library):
+            found.setdefault(Path(file).name, {})["bodies of the simulation"] = []
     for name, things in found.items():
         told = [f"{what} ({', '.join(dict.fromkeys(axes))})" if axes else what for what, axes in things.items()]
         yield f"From {name}, which is another machine until you have compared it with yours: {', '.join(told)}."
