@@ -16,7 +16,7 @@ from trunnion.builder.sample import shipped_sample
 from trunnion.builder.saved_file import file_text, page_text
 from trunnion.builder.session import BuilderSession, RequestError
 from trunnion.machines.loading import machine_library, shipped_machines
-from trunnion.schemas import first_line
+from trunnion.schemas import file_name, first_line, schema_text
 
 
 @pytest.fixture
@@ -454,3 +454,12 @@ def value_of(text: str, path: list[Any]) -> Any:
     for step in path:
         found = next(item for item in found if item["name"] == step[0]) if isinstance(step, list) else found[step]
     return found
+
+
+def test_what_is_saved_has_its_schema_beside_it(session: BuilderSession, tmp_path: Path) -> None:
+    text = begun(session)
+    assert ask(session, "save", text=text, name="ours.toml", seen="")["saved"]
+    assert (tmp_path / file_name("machine")).read_text(encoding="utf-8") == schema_text("machine")
+    (tmp_path / file_name("machine")).unlink()
+    assert ask(session, "save", text=text.removeprefix(first_line("machine")), name="other.toml", seen="")["saved"]
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["other.toml", "ours.toml"]

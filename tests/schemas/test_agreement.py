@@ -40,7 +40,8 @@ JUDGED = {
     "control": [
         r"there is no format", r"(word\[\d+\]\.format|by_method\[\d+\]\.setting|word\[\d+\]\.name|letter) is ",
         r"format\[\d+\].name is", r"word has no entry", r"calls$", r"templates\.\w+ (is missing|is not a key|prints)",
-        r"rule of no setting", r"extension is ", r"explains no setting", r"numbers start at", r"numbers without a letter",
+        r"rule of no setting", r"extension is ", r"explains no setting", r"numbers start at",
+        r"numbers without a letter",
         r"settings\.\w+ is ", r"units\.mm is missing",
         r"subprograms\.longest_name is (missing|not a)",
         r"codes\.\w+ is (missing|not a)",
