@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from trunnion.api.definition_checks import machine_problems
@@ -57,6 +57,7 @@ def zero_told(text: str) -> list[str]:
     return told(f'[[control.format]]\nname = "coordinate"\nzero = "{text}"\n')
 
 
+@settings(max_examples=25)
 @given(st.text("0123456789+-. eX", max_size=9))
 def test_zero_is_written_as_what_a_control_reads_as_0(text: str) -> None:
     try:

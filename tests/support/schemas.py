@@ -16,7 +16,7 @@ from typing import Any, Final
 
 from tests.support.locations import DOCS, ROOT, TESTS
 from trunnion.api.definition_checks import stand_in
-from trunnion.api.simulation_project import read_project_table
+from trunnion.api.project_file import read_project_table
 from trunnion.controls import load_control
 from trunnion.controls.loading import control_library, shipped_controls
 from trunnion.definitions import Table, load_table
@@ -92,7 +92,7 @@ KINDS: Final[Mapping[str, Kind]] = {
         extends=True, needs=("family",),
     ),
     "simulation": Kind(
-        "simulation project", lambda table, path: read_project_table(table, path),
+        "simulation project", lambda table, path: read_project_table(table, path, is_posted=False),
         [str(ROOT / "examples" / "simulation" / "plate.toml"), str(COMPLETE / "simulation.toml"),
          str(COMPLETE / "simulation_setups.toml")], COMPLETE,
         [("simulation.md", "A file is a project if", "simulation.")], needs=("simulation",),
