@@ -21,6 +21,7 @@ SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {}
 COMPENSATES_WITH_TCP = True
 SETTING_MEANINGS: Mapping[str, str] = {}
 LINE_COMMENTS: tuple[str, ...] = ("; ",)
+BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 
 
