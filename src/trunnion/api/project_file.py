@@ -131,7 +131,9 @@ def _read(path: Path, elsewhere: Collection[str], *, is_posted: bool) -> Project
         raise InputError(Problem(str(path), 0, "is a project by its content", "let its name end in .toml"))
     if unusable := unusable_file(path, "a project"):
         raise InputError(unusable)
-    return read_project_table(load_table(path, files(__package__), kind="project"), path, elsewhere, is_posted=is_posted)
+    return read_project_table(
+        load_table(path, files(__package__), kind="project"), path, elsewhere, is_posted=is_posted
+    )
 
 
 def read_project_table(root: Table, path: Path, elsewhere: Collection[str] = (), *, is_posted: bool = True) -> Project:
