@@ -14,6 +14,7 @@ Functions
     load_machine   definition -> Machine
     plan           CL files -> Plan: motions on the machine
     post           CL files -> NC program with its proof
+    post_project   project -> all NC programs of its set-ups with their proofs, together or not at all
     read_program   NC program -> Run: what the control does with it
     verify         NC program against its CL files, and against a recording of the machine -> Verification
     convert        NC program -> CL file, or program for another machine
@@ -63,6 +64,8 @@ if TYPE_CHECKING:
     from trunnion.api.post_result import PostResult as PostResult
     from trunnion.api.post_result import ProofFailedError as ProofFailedError
     from trunnion.api.posting import post as post
+    from trunnion.api.project_posting import ProjectResult as ProjectResult
+    from trunnion.api.project_posting import post_project as post_project
     from trunnion.api.reading import load_machine as load_machine
     from trunnion.api.reading import read_cl as read_cl
     from trunnion.api.reading import read_program as read_program
@@ -125,6 +128,7 @@ _MODULES: Final = {
     "PointTable": "geometry.point_tables",
     "PostResult": "api.post_result",
     "Problem": "errors",
+    "ProjectResult": "api.project_posting",
     "ProofFailedError": "api.post_result",
     "RefusedError": "errors",
     "Run": "model.run",
@@ -147,6 +151,7 @@ _MODULES: Final = {
     "model_impeller": "api.impellers",
     "plan": "api.planning",
     "post": "api.posting",
+    "post_project": "api.project_posting",
     "read_cl": "api.reading",
     "read_points": "api.curves",
     "read_program": "api.reading",
@@ -186,6 +191,7 @@ __all__ = [
     "PointTable",
     "PostResult",
     "Problem",
+    "ProjectResult",
     "ProofFailedError",
     "RefusedError",
     "Run",
@@ -209,6 +215,7 @@ __all__ = [
     "model_impeller",
     "plan",
     "post",
+    "post_project",
     "read_cl",
     "read_points",
     "read_program",

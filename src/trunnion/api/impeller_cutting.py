@@ -19,7 +19,6 @@ from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.paper_files import PaperFiles
 from trunnion.api.post_result import PostResult
-from trunnion.api.posted_simulation import named_run
 from trunnion.api.posting import post_toolpaths
 from trunnion.api.reading import FilePath, MachineLike, as_machine, read_cl
 from trunnion.api.settings import Settings, check_tolerance
@@ -27,6 +26,7 @@ from trunnion.api.simulating import simulate
 from trunnion.api.simulation_report import simulation_content
 from trunnion.api.simulation_result import SimulationResult
 from trunnion.api.targets import open_target
+from trunnion.api.writing import named_run
 from trunnion.arrays import Flags, Floats
 from trunnion.cl.writers import WRITERS
 from trunnion.controls import load_control

@@ -42,6 +42,9 @@ _MODES: Final = {
     "tcp": MachiningMode.TCP,
 }
 
+#: What a refusal says of ``force``.
+FORCING: Final = "force=True writes it"
+
 #: What gives subprograms other numbers.
 _OTHER_NUMBERS: Final = "begin with another number by setting first_number=2001"
 
@@ -76,7 +79,7 @@ class PostJob:
     beside: tuple[Path, ...] = ()
     simulation: "SimulationInput | None" = None
     simulation_files: tuple[str | os.PathLike[str], ...] = ()
-    forcing: str = "force=True writes it"
+    forcing: str = FORCING
 
     @property
     def printed(self) -> dict[str, str]:
@@ -218,6 +221,13 @@ def parse_plan_options(settings: Mapping[str, str], control: Control, explain: b
         raise InputError(argument_problem("settings", "tcp is on, and the machine's control has none", "write tcp=off"))
     mode, mode_by_operation = _mode_setting(settings.get("mode", "auto"), tcp)
     numbers = {key: number_setting(settings, key) for key in ("pole_angle", "tip_tolerance", "axis_tolerance")}
+    fastest, limit = settings.get("feed") == "fastest", number_setting(settings, "feed_limit")
+    lower_feed = settings.get("lower_feed", "no") == "yes"
+    if limit is not None and not fastest:
+        raise InputError(argument_problem("settings", "feed_limit is for feed=fastest only", "write feed=fastest too"))
+    if fastest and lower_feed:
+        what = "lower_feed is yes, and feed=fastest keeps all axes within their speeds"
+        raise InputError(argument_problem("settings", what, "leave lower_feed out"))
     known: dict[str, Any] = {key: value for key, value in numbers.items() if value is not None}
     if "clearance" in settings:
         known["clearance"] = _parse_clearance(settings["clearance"])
@@ -228,7 +238,9 @@ def parse_plan_options(settings: Mapping[str, str], control: Control, explain: b
         mode_by_operation=mode_by_operation,
         pole_strategy=PoleStrategy(settings.get("pole", "off")),
         absolute_frame=settings.get("frame", "first") == "absolute",
-        lower_feed=settings.get("lower_feed", "no") == "yes",
+        lower_feed=lower_feed,
+        fastest_feed=fastest,
+        feed_limit=limit,
         tcp=tcp,
         holes_as_motion=settings.get("cycles", "on") == "off",
         default_axis_tolerance=control.axis_tolerance,

@@ -3,6 +3,7 @@
 import os
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Final
 
 from trunnion.api.reading import FilePath
 from trunnion.api.reports import check_report_name
@@ -27,13 +28,19 @@ class PaperFiles:
 
     def by_name(self) -> dict[str, Path]:
         """The papers that there are."""
-        names = ("report", "sheet", "listing", "manifest")
-        return {name: getattr(self, name) for name in names if getattr(self, name) is not None}
+        return {name: getattr(self, name) for name in PAPERS if getattr(self, name) is not None}
 
     @property
     def need_columns(self) -> bool:
         """Whether one of them takes the columns of the verification."""
         return any(each is not None for each in (self.report, self.sheet, self.manifest))
+
+
+#: No papers at all.
+NO_PAPERS: Final = PaperFiles()
+
+#: The papers by their names, and what each is called in a sentence.
+PAPERS: Final = {"report": "report", "sheet": "setup sheet", "listing": "listing", "manifest": "manifest"}
 
 
 def paper_files(

@@ -13,11 +13,12 @@ from typing import Any, Final, TypeAlias
 
 from trunnion.api.arguments import check_path
 from trunnion.api.observer import Observer
+from trunnion.api.project_file import is_project, project_files, read_project
 from trunnion.api.reading import FilePath, as_machine
-from trunnion.api.simulation_project import is_project, project_files, read_project
 from trunnion.api.simulation_result import SimulationFinding, SimulationResult
 from trunnion.api.simulation_setups import SetupInput, SimulationInput
 from trunnion.api.simulation_steps import simulate_setups
+from trunnion.api.writing import named_run
 from trunnion.definitions.messages import did_you_mean
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.machines import Machine
@@ -146,13 +147,6 @@ def simulate_posted(
         raise InputError(argument_problem("simulation", what, "leave it out"))
     setup = replace(given.setups[0], programs=(named_run(run, name),), machine=run.machine, cl=toolpaths)
     return simulate_setups(replace(given, setups=[setup]), observer)
-
-
-def named_run(run: Run, name: str) -> Run:
-    """A run whose files are called as they will be: the program by its name, subprograms as they lie beside it."""
-    names = {file: Path(file).name for file in run.files[1:]} | {run.files[0]: name}
-    told = tuple(replace(each, file=names.get(each.file, each.file)) for each in run.diagnostics)
-    return replace(run, files=tuple(names[file] for file in run.files), diagnostics=told)
 
 
 def simulation_checks(found: SimulationResult) -> tuple[Check, ...]:

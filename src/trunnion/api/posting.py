@@ -7,6 +7,7 @@ Out:    the program: planned, written, read back, run and compared with its tool
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from trunnion.api import kernels
@@ -14,12 +15,12 @@ from trunnion.api.arguments import check_observer, check_paths
 from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.forcing import Proof, Untold, write_forced
 from trunnion.api.input_files import cl_files, definition_files
-from trunnion.api.job import PostJob, prepare
+from trunnion.api.job import FORCING, PostJob, prepare
 from trunnion.api.machining_times import operation_times, prints_times, write_times
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.paper_files import PaperFiles, paper_files
 from trunnion.api.papers import write_papers
-from trunnion.api.planning import load_toolpaths, plan_program
+from trunnion.api.planning import load_toolpaths, new_problems, plan_program
 from trunnion.api.post_result import PostResult, ProofFailedError
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.api.reports import write_refusal
@@ -27,7 +28,7 @@ from trunnion.api.settings import Settings
 from trunnion.api.targets import OutputLike, Target, open_target
 from trunnion.api.writing import read_back_while_writing, write
 from trunnion.errors import Problem, Severity, TrunnionError
-from trunnion.files import file_on_disk
+from trunnion.files import OutputGroup, file_on_disk
 from trunnion.jit import compile_ahead
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
@@ -150,13 +151,18 @@ def post_beside(
     subprograms: Sequence[FilePath],
     observer: Observer,
     simulation: "SimulationLike | None" = None,
+    group: OutputGroup | None = None,
+    forcing: str = FORCING,
 ) -> PostResult:
-    """Post CL files as ``post`` does, and write over none of the other files of the same work."""
+    """Post CL files as ``post`` does, and write over none of the other files of the same work.
+
+    The program appears with those of the ``group``, if there is one. What a refusal says of ``force`` is ``forcing``.
+    """
     check_observer(observer)
     loaded = as_machine(machine)
     job = prepare(loaded, settings, force=force, explain=explain, papers=papers, columns=columns)
     existing = check_paths("subprograms", subprograms)
-    job = replace(job, beside=tuple(existing))
+    job = replace(job, beside=tuple(existing), forcing=forcing)
     inputs = [*cl_files(cl), *definition_files(machine, loaded), *existing, *others]
     if simulation is not None:
         from trunnion.api.posted_simulation import simulation_files, simulation_input
@@ -164,7 +170,7 @@ def post_beside(
         read = tuple(simulation_files(simulation))
         job = replace(job, simulation=simulation_input(simulation, job.machine), simulation_files=read)
         inputs += read
-    with open_target(output, papers=papers.by_name(), inputs=inputs) as target:
+    with open_target(output, papers=papers.by_name(), inputs=inputs, group=group) as target:
         compile_ahead(kernels.POSTING)
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
         toolpaths = load_toolpaths(cl, job, strict, observer)
@@ -176,15 +182,29 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
     """Plan, write and prove a program; errors as ``post`` raises them."""
     subprograms = job.subprograms(target.files, target.path)
     divided = subprograms is not None
-    reading = read_back_while_writing(
-        target.files, job.machine, encoding=job.encoding, divided=divided, beside=job.beside
+    reading = partial(
+        read_back_while_writing, target.files, job.machine, encoding=job.encoding, divided=divided, beside=job.beside
     )
     try:
-        with reading as (progress, run):
+        with reading() as (progress, running):
             program, planned, problems = plan_program(toolpaths, job, observer)
             program = replace(program, has_time_tokens=prints_times(program))
             write(program, target.files.main, progress, subprograms, observer)
-            expected = expectation(program, job.options)
+        run = running.result()
+        if job.options.fastest_feed:
+            from trunnion.api.fastest_feeds import unlimited_axes, with_reached_feeds  # few posts ask for it
+
+            program = with_reached_feeds(program, run, toolpaths, job.options)
+            found = [*unlimited_axes(job.machine), *new_problems(program, problems)]
+            observer.problems(found)
+            problems += found
+            planned = replace(planned, motions=tuple(program.motions))
+            del run, running
+            target.files.restart()
+            with reading() as (progress, running):
+                write(program, target.files.main, progress, subprograms, observer)
+            run = running.result()
+        expected = expectation(program, job.options)
     except TrunnionError as error:
         if job.papers.report is not None:
             write_refusal(error.problems, job.machine, target.name, job.papers.report)
@@ -197,7 +217,7 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
         quiet = Untold(observer) if job.force else observer
         return _with_simulation(job, run, target.name, toolpaths, verification, quiet)
 
-    proof = prove(run.result())
+    proof = prove(run)
     if job.force and proof.failed:
         proof = write_forced(program, proof, prove, job, target, subprograms)
     verification, simulated = proof.verification, proof.simulation

@@ -10,7 +10,7 @@ from typing import BinaryIO, TypeAlias
 
 from trunnion.api.arguments import check_path
 from trunnion.errors import InputError, Problem
-from trunnion.files import OutputFiles, OutputPlace, atomic_output, check_stream, resolve_output
+from trunnion.files import OutputFiles, OutputGroup, OutputPlace, atomic_output, check_stream, resolve_output
 
 #: A file by its path, a stream that takes bytes, or None: the result keeps the text.
 OutputLike: TypeAlias = str | os.PathLike[str] | BinaryIO | None
@@ -59,6 +59,7 @@ def open_target(
     *,
     papers: Mapping[str, str | os.PathLike[str] | None] | None = None,
     inputs: Iterable[str | os.PathLike[str]] = (),
+    group: OutputGroup | None = None,
 ) -> Iterator[Target]:
     """Open the place of a result.
 
@@ -70,6 +71,8 @@ def open_target(
         Files about it by what they are (``report``), which appear with it; None: there is no such file.
     inputs
         Files that are read: none of them is written over.
+    group
+        Of jobs whose files appear together; None: the files of this one appear when the block ends.
 
     Raises
     ------
@@ -77,6 +80,12 @@ def open_target(
         When a file cannot be written; this is found out before anything is computed.
     """
     beside = {what: resolve_output(file) for what, file in (papers or {}).items() if file is not None}
+    if group is not None:
+        assert isinstance(place, str | os.PathLike), "streams take one result alone"
+        found = resolve_output(place)
+        with group.open(found, papers=beside.values(), inputs=inputs) as files:
+            yield Target(files, found.name, Path(place), papers=beside)
+        return
     if isinstance(place, str | os.PathLike):
         found = resolve_output(place)
         path = None if found.is_stream else Path(place)

@@ -13,9 +13,9 @@ from typing import Any, Final
 from trunnion.api.arguments import is_stream
 from trunnion.api.observer import Observer
 from trunnion.api.posting import post
+from trunnion.api.project_file import read_project
 from trunnion.api.reading import ToolpathLike, as_run, as_toolpaths
 from trunnion.api.settings import Settings
-from trunnion.api.simulation_project import read_project
 from trunnion.api.simulation_setups import SetupInput
 from trunnion.api.verifying import rapid_feed_of, verify
 from trunnion.cl import is_cl_file

@@ -7,6 +7,7 @@ Out:    its file, and the run of what is on the disk.
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import BinaryIO
 
@@ -115,3 +116,10 @@ def write(
 
         write_program(program, sink, written, subprograms)
     sink.flush()
+
+
+def named_run(run: Run, name: str) -> Run:
+    """A run whose files are called as they will be: the program by its name, subprograms as they lie beside it."""
+    names = {file: Path(file).name for file in run.files[1:]} | {run.files[0]: name}
+    told = tuple(replace(each, file=names.get(each.file, each.file)) for each in run.diagnostics)
+    return replace(run, files=tuple(names[file] for file in run.files), diagnostics=told)

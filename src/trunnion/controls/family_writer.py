@@ -70,6 +70,7 @@ class FamilyWriter(Protocol):
     LINE_COMMENTS     beginnings of lines that are comments to their end; the first one begins further lines
     COMMENTS          group 1 is a comment within a line, or a message to the operator; what else matches has none
     TEMPLATE_FIELDS   values that its templates may print besides the common ones: the keys of ``template_values``
+    BLOCK_NUMBER_LETTERS  what may stand before a block number; empty among them: numbers without a letter, or none
     """
 
     WORDS: tuple[str, ...]
@@ -82,6 +83,7 @@ class FamilyWriter(Protocol):
     TEMPLATE_FIELDS: frozenset[str]
     LINE_COMMENTS: tuple[str, ...]
     COMMENTS: re.Pattern[str]
+    BLOCK_NUMBER_LETTERS: tuple[str, ...]
 
     def comment(self, text: str) -> list[str]:
         """Return a text as comment lines, whatever characters are in it."""

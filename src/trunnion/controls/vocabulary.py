@@ -77,7 +77,7 @@ RUN_ONLY_SETTINGS: Final = frozenset(
     {
         "cl_units", "dialect", "spline_tolerance", "zero", "tcp", "tool_length", "tip_tolerance", "axis_tolerance",
         "numbers", "programs", "split", "rewind", "frame", "mode", "cycles", "tool_retract", "limit_margin",
-        "clearance", "pole", "pole_angle", "lower_feed", "first_number", "listing",
+        "clearance", "pole", "pole_angle", "lower_feed", "feed", "feed_limit", "first_number", "listing",
     }
 )  # fmt: skip
 

@@ -23,6 +23,7 @@ COMPENSATES_WITH_TCP = True
 SETTING_MEANINGS: Mapping[str, str] = {}
 LINE_COMMENTS: tuple[str, ...] = ("; ",)
 COMMENTS: re.Pattern[str] = re.compile(r"(;.*)")
+BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 
 

@@ -57,6 +57,7 @@ _PLANE_FIELDS: Final = ("plane_first", "plane_second", "plane_third")
 SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {"contour": ("contour_on", "contour_off"), "call": ("call_word",)}
 LINE_COMMENTS: tuple[str, ...] = ()
 COMMENTS: re.Pattern[str] = re.compile(r"(\([^)]*\))")
+BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 TEMPLATE_FIELDS: frozenset[str] = frozenset(
     {*_PLANE_FIELDS, "contour_on", "contour_off", "call_word", "call_arguments"}
 )

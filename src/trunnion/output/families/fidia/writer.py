@@ -42,6 +42,7 @@ _CANCELLING_FIELDS: Final = ("cancel_tcp", "cancel_plane")
 SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {SAFE_START_SETTING: _CANCELLING_FIELDS}
 LINE_COMMENTS: tuple[str, ...] = ()
 COMMENTS: re.Pattern[str] = re.compile(r"(\([^)]*\))")
+BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 TEMPLATE_FIELDS: frozenset[str] = frozenset(_CANCELLING_FIELDS)
 
 #: Words that switch TCP on and off: for a table with both rotary axes, and for a head.

@@ -36,6 +36,7 @@ SETTING_MEANINGS: Mapping[str, str] = {}
 SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {}
 LINE_COMMENTS: tuple[str, ...] = ("; ",)
 COMMENTS: re.Pattern[str] = re.compile(r"(;.*|\([^)]*\))")
+BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 
 #: Bytes of a text in one line: a line has room for 255, with the block number and what surrounds the text.
