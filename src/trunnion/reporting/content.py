@@ -17,6 +17,7 @@ import numpy as np
 
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
+from trunnion.model.arc_extremes import RunArcs
 from trunnion.model.motion import Decision
 from trunnion.model.toolpath import Kind
 from trunnion.reporting.extents import AxisExtent, TipExtent, axis_extent, tip_extent
@@ -70,6 +71,7 @@ def collect_content(
     """Collect the content of a report; the arguments are those of ``trunnion.reporting.write_report``."""
     run, machine = verification.run, verification.machine
     seconds, known = durations(verification)
+    arcs = RunArcs.of(run)
     cutting = run.kind != Kind.RAPID
     return ReportContent(
         program=clean(verification.program),
@@ -87,8 +89,8 @@ def collect_content(
         tools=tuple(tool_usages(run, seconds, cutting)),
         operations=tuple(operation_usage(run, each, seconds, cutting) for each in verification.operations),
         decisions=tuple(map(_clean_decision, decisions)),
-        tip=tuple(tip_extent(run, k, cutting) for k in range(3)),
-        axes=tuple(axis_extent(run, k, axis) for k, axis in enumerate(machine.axes)),
+        tip=tuple(tip_extent(run, k, cutting, arcs) for k in range(3)),
+        axes=tuple(axis_extent(run, k, axis, arcs) for k, axis in enumerate(machine.axes)),
         units=tuple(_UNITS[inches] for inches in dict.fromkeys(run.state.inches.values.tolist())),
         simulation=simulation,
         recorded=recorded_content(verification),

@@ -81,6 +81,7 @@ class Twin:
         self.outlets: list[Outlet] = []
         self._last_stamp = 0
         self._beyond = np.zeros(5, np.bool_)
+        self._watched = 0.0
         self._lost: dict[object, int] = {}
         self._told = -1.0
         self._turn = asyncio.Lock()  # what is told is told in the order of its time, whoever asks
@@ -217,7 +218,8 @@ class Twin:
     async def _watch_travel(self, snapshots: Snapshots, stamps: list[datetime]) -> None:
         """Tell when an axis leaves its travel."""
         machine = self.program.machine
-        for k, beyond in enumerate(self.program.beyond_travel(snapshots)):
+        since, self._watched = self._watched, float(snapshots.seconds[-1])
+        for k, beyond in enumerate(self.program.beyond_travel(snapshots, since)):
             for column in np.flatnonzero(beyond & ~self._beyond).tolist():
                 axis, block = machine.axes[column], snapshots.blocks[k]
                 place = block.number or f"line {block.line}"
@@ -234,7 +236,7 @@ class Twin:
                     await outlet.message(str(timed.event.value), _EPOCH + timedelta(seconds=wall))
 
     async def _show_start(self) -> None:
-        self._beyond[:] = False
+        self._beyond[:], self._watched = False, 0.0
         await self._show(np.zeros(1), np.full(1, -1), np.array([self.clock()]), standing=True)
 
     async def _show_standing(self) -> None:
