@@ -155,8 +155,9 @@ class ClDescription:
     """What one or more CL files hold, as one job.
 
     dialect, units  of all files; None if they differ
-    extents         lowest and highest coordinates of all points and arcs in the coordinate system of the first operation, mm;
-                    None without points, or if the files have coordinate systems that cannot be put together
+    extents         lowest and highest coordinates of all points and arcs in the coordinate system of the first
+                    operation, mm; None without points, or if the files have coordinate systems that cannot be put
+                    together
     systems         the coordinate systems of the operations: origin, X and Y in the CAM's absolute system
     unknown         statements that are not known
     remarks         warnings of the reader

@@ -19,7 +19,7 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import KinematicParameters, Machine, kinematic_parameters
 from trunnion.model.arcs import CLOSED_ARC
 from trunnion.model.axis_positions import joints_from_rows
-from trunnion.model.run import PositionChunk, Run
+from trunnion.model.run import CHUNK_ROWS, PositionChunk, Run
 from trunnion.model.subdivision import arc_frames, circle_points
 from trunnion.model.toolpath import Arcs, From, Operation
 
@@ -34,7 +34,8 @@ _PER_TURN: Final = 48
 _MOST_SAMPLES: Final = 100_000
 _AT_A_TIME: Final = 65_536
 
-#: Around the best sample it is searched again with eight times as narrow ones: four times make the angle exact to 2e-5.
+#: Around each sample above its neighbours it is searched again with eight times as narrow ones: four times make the
+#: angle exact to 2e-5.
 _FINER: Final = np.linspace(-1.0, 1.0, 17)
 _ROUNDS: Final = 4
 
@@ -57,7 +58,7 @@ class ArcPaths:
     def __len__(self) -> int:
         return len(self.start)
 
-    def select(self, which: Ints) -> "ArcPaths":
+    def select(self, which: slice | Ints) -> "ArcPaths":
         """Some of them."""
         return ArcPaths(
             self.start[which], self.end[which], self.centre[which], self.normal[which], self.full_turns[which]
@@ -94,6 +95,14 @@ def operation_arcs(operation: Operation) -> ArcPaths:
 
 def tip_reach(paths: ArcPaths) -> Reach:
     """Extremes of X, Y and Z of the tip, (m, 3), mm, in the coordinates of the arcs."""
+    reach = Reach.nothing(len(paths), 3)
+    for part in _parts(len(paths)):
+        found = _tip_reach(paths.select(part))
+        reach.low[part], reach.high[part] = found.low, found.high
+    return reach
+
+
+def _tip_reach(paths: ArcPaths) -> Reach:
     frame = arc_frames(paths.start, paths.end, paths.centre, paths.normal, paths.full_turns)
     middle = paths.centre + frame.height[:, None] * paths.normal
     return _extremes(
@@ -113,6 +122,19 @@ def axis_reach(machine: Machine, paths: ArcPaths, rotary_start: Floats, rotary_e
         Positions at the ends of each arc, degrees, between which they move linearly, in the order of
         ``machine.rotary``.
     """
+    reach = Reach.nothing(len(paths), 5)
+    for part in _parts(len(paths)):
+        found = _axis_reach(machine, paths.select(part), rotary_start[part], rotary_end[part])
+        reach.low[part], reach.high[part] = found.low, found.high
+    return reach
+
+
+def _parts(count: int) -> list[slice]:
+    """So many arcs at a time that what is computed of them takes little memory."""
+    return [slice(first, first + CHUNK_ROWS) for first in range(0, count, CHUNK_ROWS)]
+
+
+def _axis_reach(machine: Machine, paths: ArcPaths, rotary_start: Floats, rotary_end: Floats) -> Reach:
     reach = Reach.nothing(len(paths), 5)
     kinematics, columns = kinematic_parameters(machine), np.array(machine.linear)
     with np.errstate(invalid="ignore"):
@@ -241,20 +263,21 @@ class _Search:
     def greatest(self, column: int, sign: float) -> Floats:
         """(m,): the greatest value of an axis times ``sign``; -inf if it has none."""
         values = _numbers(sign * self._joints[:, column])
-        best = np.maximum.reduceat(values, self._firsts)
-        hits = np.flatnonzero(values == best[self._arc])
-        at = self._shares[hits[np.searchsorted(self._arc[hits], np.arange(len(best)))]]
-        width = self._step.copy()
-        every = np.repeat(np.arange(len(best)), len(_FINER))
+        # Two samples of a turn may be higher than those beside them, and the lower one belong to the higher peak.
+        before, after = np.append(-np.inf, values[:-1]), np.append(values[1:], -np.inf)
+        before[self._firsts], after[self._firsts[1:] - 1] = -np.inf, -np.inf
+        peaks = np.flatnonzero((values >= before) & (values >= after))
+        arc, at, best = self._arc[peaks], self._shares[peaks], values[peaks]
+        width, every = self._step[arc], np.repeat(arc, len(_FINER))
         for _ in range(_ROUNDS):
             shares = np.clip(at[:, None] + width[:, None] * _FINER, 0.0, 1.0)
-            joints = self._joints_at(every, shares.ravel())[:, column]
-            found = _numbers(sign * joints).reshape(shares.shape)
+            found = _numbers(sign * self._joints_at(every, shares.ravel())[:, column]).reshape(shares.shape)
             which = np.argmax(found, axis=1)[:, None]
-            at = np.take_along_axis(shares, which, axis=1)[:, 0]
-            best = np.maximum(best, np.take_along_axis(found, which, axis=1)[:, 0])
-            width /= 0.5 * (len(_FINER) - 1)
-        return best
+            at, best = (np.take_along_axis(each, which, axis=1)[:, 0] for each in (shares, found))
+            width = width / (0.5 * (len(_FINER) - 1))
+        greatest = np.full(len(self._firsts), -np.inf)
+        np.maximum.at(greatest, arc, best)
+        return greatest
 
 
 def _numbers(values: Floats) -> Floats:
