@@ -41,8 +41,10 @@ def any_path(draw: st.DrawFn) -> ArcPaths:
 def sampled(path: ArcPaths) -> tuple[Floats, Floats]:
     """Shares of the arc, and the points there."""
     share = np.linspace(0.0, 1.0, SAMPLES)
-    columns = (np.repeat(each, SAMPLES, axis=0) for each in (path.start, path.end, path.centre, path.normal))
-    return share, circle_points(*columns, np.repeat(path.full_turns, SAMPLES), share)
+    start, end, centre, normal = (
+        np.repeat(each, SAMPLES, axis=0) for each in (path.start, path.end, path.centre, path.normal)
+    )
+    return share, circle_points(start, end, centre, normal, np.repeat(path.full_turns, SAMPLES), share)
 
 
 def agrees(reach: Reach, values: Floats, columns: list[int]) -> None:
