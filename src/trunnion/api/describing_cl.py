@@ -108,7 +108,7 @@ class OperationDescription:
     rapid_length        from point to point
     moves_without_time  those at feed that have no feed, or a feed per revolution while the spindle stands
     feed, feed_per_rev, rpm  lowest and highest while cutting; None: there is none
-    extents             lowest and highest coordinates of its points and arcs, in its own coordinate system
+    extents             lowest and highest coordinates of its points, arcs and holes, in its own coordinate system
     joined              names of the operations of the file that it goes on with
     """
 
@@ -155,7 +155,7 @@ class ClDescription:
     """What one or more CL files hold, as one job.
 
     dialect, units  of all files; None if they differ
-    extents         lowest and highest coordinates of all points and arcs in the coordinate system of the first
+    extents         lowest and highest coordinates of all points, arcs and holes in the coordinate system of the first
                     operation, mm; None without points, or if the files have coordinate systems that cannot be put
                     together
     systems         the coordinate systems of the operations: origin, X and Y in the CAM's absolute system
@@ -345,7 +345,7 @@ class _Description:
         )  # fmt: skip
 
     def extents(self) -> tuple[Vector, Vector] | None:
-        """Lowest and highest coordinates of all points and arcs."""
+        """Lowest and highest coordinates of all points, arcs and holes."""
         if self._extents[0].pair() is None:
             return None
         x, y, z = self._extents

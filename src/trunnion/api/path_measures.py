@@ -14,7 +14,8 @@ from trunnion.cl.arcs import arc_lengths
 from trunnion.model.arc_extremes import operation_arcs, tip_reach
 from trunnion.model.toolpath import CycleOff, CycleOn, Dwell, Event, Kind, Operation, SpindleOff, SpindleOn
 from trunnion.planning.holes.cycles import HoleCycleError, HoleMethod, SpindleState, cycle_feed, cycle_from_event
-from trunnion.planning.holes.operations import axis_change_rows, hole_rows
+from trunnion.planning.holes.hole_ends import hole_ends
+from trunnion.planning.holes.operations import axis_change_rows, hole_rows, normalize_cycles
 
 #: Tool axes are the same if no component differs by more than this; CL files print seven decimals or more.
 _SAME_AXIS: Final = 1e-7
@@ -136,10 +137,14 @@ def measure(operation: Operation, before: Floats | None, spindle: SpindleState |
 
 
 def extents(operation: Operation) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
-    """The lowest and the highest coordinates of points and arcs, in those of the operation; None if it has none."""
-    tip = operation.moves.tip
-    if not len(tip):
+    """The lowest and the highest coordinates of points, arcs and holes, in those of the operation; None without any."""
+    if not len(operation.moves):
         return None
+    try:
+        _, ends = hole_ends(normalize_cycles(operation))
+    except HoleCycleError:
+        ends = np.zeros((2, 0, 3))
+    tip = np.concatenate((operation.moves.tip, *ends))
     reach = tip_reach(operation_arcs(operation))
     a, b, c = np.minimum(tip.min(axis=0), reach.low.min(axis=0, initial=np.inf)).tolist()
     d, e, f = np.maximum(tip.max(axis=0), reach.high.max(axis=0, initial=-np.inf)).tolist()

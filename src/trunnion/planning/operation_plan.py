@@ -9,9 +9,9 @@ from trunnion.model.toolpath import Operation
 from trunnion.planning.holes.operations import extract_rows
 from trunnion.planning.plan_problems import pose_problems, rewind_problems, winding_problems
 from trunnion.planning.pole.handling import handle_pole
-from trunnion.planning.poses.arc_limits import judge_arcs
 from trunnion.planning.poses.decision_log import ChosenPoses, pose_decisions
 from trunnion.planning.poses.placement import OUT_OF_REACH
+from trunnion.planning.poses.reach_limits import judge_reach
 from trunnion.planning.poses.selection import PlannedPoses, choose_poses
 from trunnion.planning.request import PreparedOperation
 from trunnion.planning.retracts.rewind import (
@@ -85,18 +85,18 @@ def plan_operation(prepared: PreparedOperation) -> PlannedOperation:
     machine, options, keep_slide_limits = request.machine, request.options, request.keeps_slide_limits
     poses = choose_poses(machine, moves, keep_slide_limits)
     if (poses.outcome == OUT_OF_REACH).any():
-        problems = tuple(pose_problems(file, moves, poses, request))
+        problems = tuple(pose_problems(file, prepared.operation, poses, request))
         return PlannedOperation(prepared, prepared.operation, poses, problems=problems, log=tuple(prepared.log))
     near_pole = handle_pole(prepared, poses)
     poses = near_pole.poses
-    judge_arcs(poses, machine, near_pole.operation, keep_slide_limits)
+    judge_reach(poses, machine, near_pole.operation, keep_slide_limits)
     chosen = ChosenPoses(machine, file, near_pole.operation, poses.rotary, poses.state, keep_slide_limits)
     # Rapids are straight under TCP; without it each slide may arrive in its own time.
     rewinds = find_rewinds(chosen, poses, options.clearance, at_rapid=prepared.mode is MachiningMode.TCP)
     feeds = limit_feeds(prepared.with_operation(near_pole.operation), poses, rewinds, near_pole.deviations)
     problems = (
         *near_pole.problems,
-        *pose_problems(file, moves, poses, request),
+        *pose_problems(file, prepared.operation, poses, request),
         *rewind_problems(chosen, rewinds, request),
         *winding_problems(chosen, request),
     )

@@ -11,6 +11,7 @@ from trunnion.machines import Machine, inverse, spindle_speed_fault
 from trunnion.model.motion import PoleStrategy
 from trunnion.model.toolpath import Kind, Moves, Operation, SpindleOn
 from trunnion.planning.axis_limits import exceeds_travel, limit_remedy, limit_violation_text, limits_of, outside_limits
+from trunnion.planning.holes.operations import cycle_row_ranges
 from trunnion.planning.poses.decision_log import ChosenPoses, describe_pose
 from trunnion.planning.poses.limit_lookahead import degrees_out_of_reach
 from trunnion.planning.poses.placement import BLOCKED, OUT_OF_REACH, REWIND
@@ -107,22 +108,22 @@ def _forbidden_rewind(chosen: ChosenPoses, rewind: Rewind) -> Problem:
     return Problem(chosen.file, int(chosen.operation.moves.line[row]), what, cure)
 
 
-def pose_problems(file: str, moves: Moves, poses: PlannedPoses, request: PlanRequest) -> Iterable[Problem]:
+def pose_problems(file: str, operation: Operation, poses: PlannedPoses, request: PlanRequest) -> Iterable[Problem]:
     """Errors of poses: each kind of trouble at its first few rows, then how many more there are."""
-    outcome = poses.outcome
+    outcome, moves = poses.outcome, operation.moves
     for code in np.unique(outcome[outcome > 0]).tolist() if outcome.any() else []:
         if code == REWIND:
             continue
         rows = np.flatnonzero(outcome == code)
         for row in rows[:_NAMED].tolist():
-            yield _pose_problem(file, moves, poses, request, row)
+            yield _pose_problem(file, operation, poses, request, row)
         if len(rows) > _NAMED:
             more = f"the same at {len(rows) - _NAMED} further points, the last in line {moves.line[rows[-1]]}"
             yield Problem(file, int(moves.line[rows[_NAMED]]), more)
 
 
-def _pose_problem(file: str, moves: Moves, poses: PlannedPoses, request: PlanRequest, row: int) -> Problem:
-    machine, remedy = request.machine, request.frame_remedy
+def _pose_problem(file: str, operation: Operation, poses: PlannedPoses, request: PlanRequest, row: int) -> Problem:
+    machine, remedy, moves = request.machine, request.frame_remedy, operation.moves
     line, code = int(moves.line[row]), int(poses.outcome[row])
     if code == OUT_OF_REACH:
         i, j, k = moves.axis[row]
@@ -136,7 +137,8 @@ def _pose_problem(file: str, moves: Moves, poses: PlannedPoses, request: PlanReq
         return Problem(file, line, what, "output the toolpath with points nearer to each other, or tilt the workpiece")
     column, value = code - 1, float(poses.beyond_value[row])
     cure = limit_remedy(machine, column, value, _other_pose_remark(machine, moves, poses, row))
-    where = "on this arc " if moves.kind[row] == Kind.ARC else ""
+    is_hole = any(event.row <= row < end for event, end in cycle_row_ranges(operation))
+    where = "in this hole " if is_hole else "on this arc " if moves.kind[row] == Kind.ARC else ""
     return Problem(file, line, where + limit_violation_text(machine, column, value), cure + remedy)
 
 
