@@ -57,14 +57,15 @@ def test_the_first_position_in_workpiece_coordinates(
 
 
 @given(rows=ROWS)
-def test_an_approach_goes_across_at_rapid_and_down_in_the_next_block(rows: list[tuple[int, bool, bool, bool]]) -> None:
+def test_an_approach_goes_across_at_rapid_and_down_next(rows: list[tuple[int, bool, bool, bool]]) -> None:
     after_frame = {row for row in range(1, len(rows)) if rows[row - 1][2] and not rows[row][2]}
     wanted, retracted = [], False
     for row, (words, rapid, in_frame, retract) in enumerate(rows):
         retracted = retracted or retract or row in after_frame
         if not words & (X | Z) or in_frame:
             continue
-        down = row + 1 < len(rows) and rows[row + 1][0] & (X | Z) == Z and rows[row + 1][1] and not rows[row + 1][2]
+        after, at_rapid, after_in_frame, _ = rows[row + 1] if row + 1 < len(rows) else (X, False, False, False)
+        down = (after & (X | Z) == Z or after & (X | Z | FIRST) == 0) and at_rapid and not after_in_frame
         if retracted and rapid and words & (X | Z) == X and down:
             wanted.append(row)
         retracted = False

@@ -98,7 +98,7 @@ def comes_from_home(run: Run, row: int) -> bool:
 
 
 def approach_rows(run: Run) -> Ints:
-    """Rows that are the first leg of an approach: X and Y at rapid, with Z alone in the next block.
+    """Rows that are the first leg of an approach: X and Y at rapid, with Z alone in the next block, or down in a cycle.
 
     The tool was retracted before, or comes from a machine position. How high it is then is not known where the
     machine's travel is not known.
@@ -112,7 +112,8 @@ def approach_rows(run: Run) -> Ints:
         if run.state.tcp[row] and int(run.programmed[row]) & int(ROTARY_WORDS):
             continue
         across, along = (int(bits) & int(POSITION_WORDS) for bits in run.programmed[row : row + 2])
-        if not across & ~int(ProgrammedWord.X | ProgrammedWord.Y) and along == int(ProgrammedWord.Z):
+        comes_down = along == int(ProgrammedWord.Z) or bool(names_no_axis(run.programmed[row + 1 : row + 2])[0])
+        if not across & ~int(ProgrammedWord.X | ProgrammedWord.Y) and comes_down:
             found.append(row)
     return np.array(found, np.int64)
 
