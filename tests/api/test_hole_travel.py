@@ -14,6 +14,7 @@ from trunnion.machines import Machine, kinematic_parameters, load_machine
 from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.toolpath import Kind
 from trunnion.reporting.content import collect_content
+from trunnion.reporting.listing import listing
 
 #: One hole from a point above it, its axis along ``axis``, drilled in line 9.
 CL = """TOOL PATH/DR,TOOL,DRILL_10
@@ -188,3 +189,26 @@ def test_cycles_need_what_they_move(name: str, tmp_path: Path) -> None:
         if extent.name in wanted:
             assert extent.extremes is not None
             assert extent.extremes.high - extent.extremes.low == pytest.approx(wanted[extent.name], abs=1e-9)
+
+
+@pytest.mark.parametrize(("zero", "length"), [(None, None), ((1.0, 2.0, -300.0), None)])
+def test_what_has_no_place_counts_from_the_workpiece_zero(
+    zero: tuple[float, float, float] | None, length: float | None, tmp_path: Path
+) -> None:
+    """The gauge point of this machine is not at the zero of its slides."""
+    file = tmp_path / "P.NC"
+    file.write_text(
+        "%\nO1\nG91 G28 Z0.\nG90 G54 G43 H1\nG0 X0. Y0.\nZ3.\nG1 Z-40. F100.\nG0 Z3.\nX10.\nM30\n%\n", encoding="utf-8"
+    )
+    found = trunnion.verify(file, machine="matsuura_mx330", zero=zero, tool_length=length)
+    extents = {each.name: each for each in collect_content(found).axes}
+    for name, low, high in (("X", 0.0, 10.0), ("Z", -40.0, 3.0)):
+        extremes, is_placed = extents[name].extremes, zero is not None and name == "X"
+        assert extremes is not None
+        assert extents[name].zero_known == is_placed
+        start = found.run.joints[-1, found.machine.column(name)] - (10.0 if name == "X" else 3.0) if is_placed else 0.0
+        assert (extremes.low, extremes.high) == pytest.approx((start + low, start + high), abs=1e-9)
+    lines = b"".join(listing(found.run, "P", [], slides=True)).decode().splitlines()
+    assert "; SX SY SZ: slides, mm, counted from the workpiece zero" in lines
+    bottom = next(words for words in map(str.split, lines) if words[-1] == "line")
+    assert bottom[-7:-4] == ["0.0000", "0.0000", "-40.0000"]

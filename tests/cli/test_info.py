@@ -89,7 +89,9 @@ def test_every_dialect_is_described(
     assert [number for number, *_ in tools] == [5, 6, 7]
     for (_, *sizes), expected in zip(tools, [(10.0, 1.0), (8.0, 0.0), (6.0, 3.0)], strict=True):
         assert sizes == pytest.approx([size * unit for size in expected])
-    assert found["extents"] == [pytest.approx([0.0, 0.0, 3.0 * unit]), pytest.approx([30 * unit, 10 * unit, 60 * unit])]
+    low, high = found["extents"]
+    assert low == pytest.approx([0.0, 0.0, -2.0 * unit])  # the bottom of a hole
+    assert high == pytest.approx([30 * unit, 10 * unit, 60 * unit])
 
 
 @pytest.fixture(scope="module")

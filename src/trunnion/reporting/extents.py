@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.machines import Axis
+from trunnion.machines import Axis, Machine, slide_positions
 from trunnion.model.arc_extremes import Reach, RunArcs
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.reporting.text import clean
@@ -50,7 +50,7 @@ class AxisExtent:
     """Extremes of an axis, and its limits.
 
     zero_known  whether values and limits count from the same zero: not for slides without a workpiece zero, nor for
-                those that depend on the tool length without that
+                those that depend on the tool length without that; their values count from the workpiece zero
     margin      distance to the nearer limit, or the part of the travel that is left where the zero is not known;
                 negative if exceeded
     """
@@ -85,9 +85,18 @@ def tip_extent(run: Run, k: int, cutting: Flags, arcs: RunArcs) -> TipExtent:
 
 def axis_extent(run: Run, k: int, axis: Axis, arcs: RunArcs) -> AxisExtent:
     """The extent of an axis, which is column ``k`` of ``run.joints``."""
-    rows = travel_rows(run, axis)
+    rows, zero_known = travel_rows(run, axis), is_zero_known(run, k)
     values, of_rows = _with_arcs(run.joints[rows, k], rows, arcs, arcs.axes, k)
-    return extent_of(run, axis, values, of_rows, zero_known=is_zero_known(run, k))
+    zero = 0.0 if zero_known else float(at_workpiece_zero(run.machine)[k])
+    return extent_of(run, axis, values - zero, of_rows, zero_known=zero_known)
+
+
+def at_workpiece_zero(machine: Machine) -> Floats:
+    """Axis values with the tip at the workpiece zero and the rotary axes at zero, (5,) mm and degrees.
+
+    From there positions count that nobody can place on the machine: a gauge point is not at the zero of its slides.
+    """
+    return np.asarray(slide_positions(machine, np.zeros((1, 3)), np.zeros((1, 2)))[0])
 
 
 def _with_arcs(values: Floats, rows: Ints, arcs: RunArcs, reach: Reach, k: int) -> tuple[Floats, Ints]:

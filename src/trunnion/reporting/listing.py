@@ -17,6 +17,7 @@ import numpy as np
 from trunnion.arrays import Bytes, Floats, Ints
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
+from trunnion.reporting.extents import at_workpiece_zero
 from trunnion.reporting.known_tips import KnownTips
 from trunnion.reporting.text import clean
 from trunnion.verification.results import OperationRows
@@ -81,6 +82,7 @@ def listing(
     lines, numbers = run.line, run.block_number
     marks = _marks(run, operations)
     placed = all(run.machine.is_placed(k) for k in run.machine.linear)
+    zero = np.zeros(5) if placed else at_workpiece_zero(run.machine)
     known = KnownTips(run)
     for first, end, poses in run.chunks():
         rows, state = slice(first, end), run.state
@@ -94,7 +96,7 @@ def listing(
         columns += [Column(np.where(is_known, poses.tip[1:, k], np.nan), _POSITION_DECIMALS) for k in range(3)]
         for k in joints:
             shown = is_known | placed | (k in run.machine.rotary)
-            columns.append(Column(np.where(shown, poses.joints[1:, k], np.nan), _POSITION_DECIMALS))
+            columns.append(Column(np.where(shown, poses.joints[1:, k] - zero[k], np.nan), _POSITION_DECIMALS))
         columns += [Column(speed, _SPEED_DECIMALS, _SPEED_WIDTH), Column(feed, _FEED_DECIMALS)]
         unit = np.where(np.isfinite(feed), state.feed_mode.part(first, end).astype(np.int64) - _LEAST_FEED_MODE, 0)
         in_machine = state.machine_frame.part(first, end).astype(np.int64)
