@@ -32,6 +32,7 @@ from trunnion.output.program_writer import write_program
 from trunnion.readers import run_program
 from trunnion.timing import fastest_run
 from trunnion.verification import Check, Verification, verify
+from trunnion.verification.deviations import reached_rows
 
 GOLDEN = Path("tests/golden")
 FASTEST: dict[str, str] = {"feed": "fastest"}
@@ -194,6 +195,60 @@ def test_feeds_are_those_that_the_axes_reach_by_closed_form(tmp_path: Path) -> N
     assert found.failed() == []
     exact = 60.0 * math.sqrt(300.0 * 1.0)
     assert found.deviations.reached_feed.tolist() == [math.floor(exact / 10.0) * 10.0]
+
+
+#: A cut at 3000 mm/min whose first move leans the tool by 3 degrees while the tip goes 0.11 mm, and on.
+LEANING = "".join(
+    f"GOTO/{-20.0 + 0.5 * k:.4f},{0.1 * math.sin(0.4 * k):.4f},5.0,{math.sin(a) * 0.9:.9f},{0.43589 * math.sin(a):.9f},"
+    f"{math.cos(a):.9f}\n"
+    for k, a in ((k, math.radians(-3.0 + 0.03 * k)) for k in range(9))
+)
+
+
+def leaning() -> str:
+    head = CL_HEAD.replace("500.0", "200.0").replace("GOTO/0.0,0.0,50.0", "GOTO/-20.0,-0.11,50.0")
+    return head + "GOTO/-20.0,-0.11,5.0\nFEDRAT/MMPM,3000.0\n" + LEANING + CL_FOOT
+
+
+@pytest.mark.parametrize("settings", [{}, {"feed_limit": "9000"}])
+def test_turns_with_the_tip_still_keep_the_feed_of_the_cl_file(settings: dict[str, str], tmp_path: Path) -> None:
+    """The table turns before the tool leans; a feed of the lean would let the tool stand in the cut for minutes."""
+    found = posted(tmp_path, able("dmu65"), settings, leaning())
+    assert found.failed() == []
+    run = run_program(tmp_path / f"again{found.program.control.extension}", found.machine)
+    positions = run.positions(np.arange(len(run)))
+    travel = np.linalg.norm(np.diff(positions.tip, axis=0), axis=1)
+    turned = np.abs(np.diff(positions.joints[:, list(found.machine.rotary)], axis=0)).max(axis=1)
+    still = np.flatnonzero((travel < 1e-3) & (turned > 5.0) & (run.kind[1:] != 0)) + 1
+    assert len(still) == 1
+    assert run.feed[still].tolist() == [3000.0]
+    assert run.feed[still[0] + 1] < 2000.0
+    line = int(run.line[still[0]])
+    slow = list(found.text)
+    slow[line - 1] = slow[line - 1].replace("F3000.0", "F36.0").replace("F3000", "F36")
+    assert slow != found.text
+    assert "feed" in found.failed(slow)
+
+
+def test_a_program_that_would_take_far_longer_keeps_feeds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    machine = load_machine("xyzac_trt")
+    source = tmp_path / "waves.cls"
+    source.write_text(waves(), encoding="utf-8")
+    lower = trunnion.post(source, machine=machine, settings=FASTEST)
+    monkeypatch.setattr(reached_rows, "_LONGER", 1e-6)
+    monkeypatch.setattr(reached_rows, "_LONGER_SECONDS", 0.0)
+    found = trunnion.post(source, machine=machine, settings=FASTEST)
+    assert "that of the CL file is kept at " in check_of(found, "reach").summary
+    assert found.run is not None
+    assert lower.run is not None
+    assert np.nansum(found.run.feed) > np.nansum(lower.run.feed)
+
+
+def test_the_proof_fails_a_program_that_takes_far_longer(lowered: Posted, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reached_rows, "_LONGER", 1e-6)
+    monkeypatch.setattr(reached_rows, "_LONGER_SECONDS", 0.0)
+    assert lowered.failed() == ["reach"]
+    assert check_of(lowered.verified(), "reach").summary.startswith("far longer than it may be: ")
 
 
 FAMILIES = ["yl569", "dmu65", "haas_umc750", "hs664rt", "matsuura_mx330", "mikron_600u", "linuxcnc_5axis", "xyzbc_trt"]

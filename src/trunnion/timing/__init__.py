@@ -6,7 +6,7 @@ from trunnion.timing.fastest import AxisMotion, FastestRun, SmoothPath, fastest_
 from trunnion.timing.path import Path
 from trunnion.timing.path_modes import CORNER_TOLERANCE
 from trunnion.timing.planner import piece_seconds, timed_pieces
-from trunnion.timing.reached_feeds import ReachedFeeds, reached_feeds
+from trunnion.timing.reached_feeds import HARDLY_MOVES, ReachedFeeds, reached_feeds
 from trunnion.timing.row_feeds import RowFeeds, fill_feeds
 from trunnion.timing.row_interpolation import SAG
 from trunnion.timing.run_timer import RunTimer
@@ -18,6 +18,7 @@ KERNELS = (fill_feeds, plan_speeds)
 
 __all__ = [
     "CORNER_TOLERANCE",
+    "HARDLY_MOVES",
     "KERNELS",
     "MOST_PIECES",
     "SAG",
