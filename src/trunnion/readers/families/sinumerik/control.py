@@ -48,10 +48,23 @@ class SinumerikControl(VirtualControl):
         self._machine_vectors = False
         self.tool_frame = False
         self._offset_is_lost = False
+        self._programmed_ends, self._smooths = "off", False
         # The word in force of each group that counts within radius compensation.
         self._compensation_modes: dict[str, str] = {}
         super().__init__(machine, note, shortest=shortest)
         self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), comment=";", assign="=")
+
+    def add_exact_stop(self, mode: str) -> None:
+        """Record a G code of exact stops, which counts until ``smooth`` switches, or another one."""
+        if mode != "block":
+            self._programmed_ends, self._smooths = mode, False
+        super().add_exact_stop(mode)
+
+    def smooth(self, on: bool) -> None:
+        """Switch continuous path on, as CYCLE832 does, or go back to the G code that the program had before it."""
+        if on != self._smooths and self._programmed_ends != "off":
+            super().add_exact_stop("off" if on else self._programmed_ends)
+        self._smooths = on
 
     def lose_offset(self) -> None:
         """Record that TRAORI clears the work offset that is selected; the coordinates stay those of the program."""

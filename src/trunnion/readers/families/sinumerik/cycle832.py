@@ -1,4 +1,9 @@
-"""CYCLE832: within what tolerance the control may smooth the path."""
+"""CYCLE832: within what tolerance the control may smooth the path.
+
+With a machining type the cycle, as the control has it, programs continuous path (G64, G642 or G645, with a compressor),
+whatever G60 stands before it; off, the control goes back to its settings. What a machine's builder puts into CUST_832
+is not known here.
+"""
 
 from typing import Final
 
@@ -31,6 +36,7 @@ def smooth(control: SinumerikControl, call: Call) -> None:
         text = f"CYCLE832 smooths within {given:g}: give its first value, such as 0.02, or _OFF"
         control.note(text, Severity.ERROR)
     control.add_tolerance(given * control.length_unit)
+    control.smooth(isinstance(mode, float) and _is_mode(mode) and int(mode) % 10 > 0)
 
 
 def _is_mode(mode: float) -> bool:
