@@ -16,7 +16,7 @@ from tests.support.published_path import LIMITS, PATH
 from tests.support.rewind_paths import round_part
 from tests.support.verifying import CL_FOOT, CL_HEAD
 from trunnion.api.expectation import Expectation, expectation
-from trunnion.api.fastest_feeds import rounded_down, with_reached_feeds
+from trunnion.api.fastest_feeds import raised_feeds, rounded_down, with_reached_feeds
 from trunnion.api.job import prepare
 from trunnion.api.planning import plan_program
 from trunnion.api.settings import Settings, SettingValue
@@ -251,6 +251,49 @@ def test_the_proof_fails_a_program_that_takes_far_longer(lowered: Posted, monkey
     assert check_of(lowered.verified(), "reach").summary.startswith("far longer than it may be: ")
 
 
+#: Blocks of a cut without phases, each with the feed of the CL file, and whether it plunges.
+SLOPES = {
+    "GOTO/0,0,-5": True,
+    "GOTO/10,0,-5": False,
+    "GOTO/20,0,-14.9": False,
+    "GOTO/30,0,-25": True,
+    "GOTO/30,0,5": False,
+    "GOTO/35.3,0,-0.3,0.707106781,0,0.707106781": False,
+    "GOTO/30.3,0,-5.3,0.707106781,0,0.707106781": True,
+}
+
+
+def slopes() -> str:
+    """At 400 mm/min and without phases."""
+    head = CL_HEAD.replace("500.0", "400.0").replace("GOTO/0.0,0.0,50.0,0.0,0.0,1.0", "GOTO/0,0,50\nRAPID\nGOTO/0,0,3")
+    return head + "\n".join(SLOPES) + "\n" + CL_FOOT
+
+
+def test_a_feed_limit_leaves_plunges_alone_and_tells_what_it_raises(tmp_path: Path) -> None:
+    found = posted(tmp_path, able("xyzac_trt"), {"feed_limit": "1000"}, slopes())
+    assert found.failed() == []
+    motion = found.program.motions[0]
+    assert motion.cl_rows is not None
+    ends = np.flatnonzero(np.diff(motion.cl_rows, append=-1))
+    feeds = motion.operation.moves.feed[ends[-len(SLOPES) :]]
+    assert [feed == 400.0 for feed in feeds.tolist()] == list(SLOPES.values())
+    raised = raised_feeds(found.program, [found.path])
+    assert [problem.what for problem in raised] == [
+        "3 blocks cut faster than the CL file says, up to 2.5 times as fast: feed_limit"
+    ]
+    assert raised_feeds(posted(tmp_path, able("xyzac_trt"), {}, slopes()).program, [found.path]) == []
+
+
+def test_the_proof_finds_a_plunge_that_is_raised(tmp_path: Path) -> None:
+    found = posted(tmp_path, able("xyzac_trt"), {"feed_limit": "1000"}, slopes())
+    plunge = 2
+    assert plunge not in found.deviations.reached_rows
+    rows = np.sort(np.append(found.deviations.reached_rows, plunge))
+    feed = np.full(len(rows), 1000.0)
+    raised = [line.replace("F400.0", "F1000.0").replace("F400", "F1000") for line in found.text]
+    assert "reach" in found.failed(raised, replace(found.deviations, reached_rows=rows, reached_feed=feed))
+
+
 FAMILIES = ["yl569", "dmu65", "haas_umc750", "hs664rt", "matsuura_mx330", "mikron_600u", "linuxcnc_5axis", "xyzbc_trt"]
 
 #: What these controls lack.
@@ -391,12 +434,16 @@ def test_feeds_per_revolution_stay(tmp_path: Path) -> None:
 
 def test_a_feed_limit_stands_for_feeds_that_the_cl_file_does_not_have(tmp_path: Path) -> None:
     source = tmp_path / "no_feed.cls"
-    source.write_text(waves().replace("FEDRAT/MMPM,6000.0\n", ""), encoding="utf-8")
+    feed = "FEDRAT/MMPM,6000.0\n"
+    source.write_text(waves().replace(feed, ""), encoding="utf-8")
     machine = load_machine("xyzac_trt")
     with pytest.raises(InputError, match="cutting motion without a feed"):
         trunnion.post(source, machine=machine, settings=FASTEST)
+    with pytest.raises(InputError, match="feed_limit is for cuts that do not plunge"):
+        trunnion.post(source, machine=machine, settings={**FASTEST, "feed_limit": 6000})
+    source.write_text(waves().replace(feed, "RAPID\n"), encoding="utf-8")
     found = trunnion.post(source, machine=machine, settings={**FASTEST, "feed_limit": 6000})
-    source.write_text(waves(), encoding="utf-8")
+    source.write_text(waves().replace(feed, feed + "RAPID\n"), encoding="utf-8")
     assert found.text == trunnion.post(source, machine=machine, settings=FASTEST).text
 
 

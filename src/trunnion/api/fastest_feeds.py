@@ -26,6 +26,7 @@ from trunnion.output.program import Program
 from trunnion.planning import PlanOptions
 from trunnion.timing import HARDLY_MOVES
 from trunnion.verification import reachable_feeds
+from trunnion.wording import counted
 
 #: A feed that is reached but for this share is reached.
 _REACHED: Final = 1e-6
@@ -150,6 +151,23 @@ def rounded_down(feed: Floats, number_format: NumberFormat) -> Floats:
     count -= count % 10**left_out
     least = max(int(np.ceil(number_format.least * scale * (1.0 - 1e-12))), 1)
     return number_format.values(np.maximum(count, least))
+
+
+def raised_feeds(program: Program, toolpaths: Sequence[Toolpath]) -> list[Problem]:
+    """A warning of blocks that are faster than the CL file says, as a feed limit may make them."""
+    own = [operation.moves.feed for path in toolpaths for operation in path.operations if len(operation.moves)]
+    number, count, greatest = -1, 0, 1.0
+    for motion in program.motions:
+        number += motion.starts_operation
+        rows, at = _rows_at_feed(motion)
+        share = motion.operation.moves.feed[at] / own[number][rows]
+        share = share[share > 1.0 + _REACHED]
+        count, greatest = count + len(share), max(greatest, float(share.max(initial=1.0)))
+    if not count:
+        return []
+    what = f"{counted(count, 'block')} cut faster than the CL file says, up to {greatest:.3g} times as fast: feed_limit"
+    cure = "make sure that tool and material bear it; plunges, and phases other than cuts, keep their feeds"
+    return [Problem(toolpaths[0].file, 0, what, cure, Severity.WARNING)]
 
 
 def unlimited_axes(machine: Machine) -> list[Problem]:

@@ -192,10 +192,14 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
             write(program, target.files.main, progress, subprograms, observer)
         run = running.result()
         if job.options.fastest_feed:
-            from trunnion.api.fastest_feeds import unlimited_axes, with_reached_feeds  # few posts ask for it
+            from trunnion.api.fastest_feeds import (
+                raised_feeds,
+                unlimited_axes,
+                with_reached_feeds,
+            )  # few posts ask for it
 
             program = with_reached_feeds(program, run, toolpaths, job.options)
-            found = [*unlimited_axes(job.machine), *new_problems(program, problems)]
+            found = [*unlimited_axes(job.machine), *raised_feeds(program, toolpaths), *new_problems(program, problems)]
             observer.problems(found)
             problems += found
             planned = replace(planned, motions=tuple(program.motions))

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from trunnion.arrays import Flags
 from trunnion.errors import Problem, RefusedError, Severity
 from trunnion.model.frames import into_frame, into_plane, relative_frame
 from trunnion.model.motion import Decision, DecisionTopic, MachiningMode
@@ -17,6 +18,7 @@ from trunnion.model.toolpath import CycleOn, Frame, Kind, Operation, Phase
 from trunnion.planning.holes.cycles import HoleCycleError, SpindleState, SpindleStates
 from trunnion.planning.holes.operations import axis_change_rows, normalize_cycles, row_ranges, split_by_axis
 from trunnion.planning.linearization.arc_chords import (
+    arc_sweeps,
     arcs_a_control_takes,
     arcs_about_tool,
     flat_arcs,
@@ -32,6 +34,9 @@ from trunnion.planning.machining_mode import (
     with_exact_upright_axis,
 )
 from trunnion.planning.request import OperationPart, PlanRequest, PreparedOperation
+
+#: A move at 45 degrees is no plunge, whatever the noise of its coordinates.
+_ACROSS = 1e-6
 
 #: Modes in which the tool axis may change.
 _SIMULTANEOUS = (MachiningMode.TCP, MachiningMode.WITHOUT_TCP)
@@ -75,12 +80,36 @@ def _in_frame(request: PlanRequest, file: str, original: Operation, frame: Frame
 
 
 def _with_feed_limit(operation: Operation, limit: float | None) -> Operation:
-    """The operation with the feed limit as the feed of its cuts; holes, which are rapids here, keep theirs."""
+    """The operation with the feed limit as the feed of its cuts; holes, which are rapids here, keep theirs.
+
+    So do plunges, unless theirs is higher.
+    """
     if limit is None:
         return operation
     moves = operation.moves
     cuts = (moves.kind != Kind.RAPID) & (moves.phase == Phase.CUT) & ~moves.per_rev
-    return replace(operation, moves=replace(moves, feed=np.where(cuts, limit, moves.feed)))
+    feed = np.where(_plunges(operation), np.minimum(moves.feed, limit), limit)
+    return replace(operation, moves=replace(moves, feed=np.where(cuts, feed, moves.feed)))
+
+
+def _plunges(operation: Operation) -> Flags:
+    """Moves that go down along the tool by more than they go across, (n,), a spline as a whole.
+
+    So does the first, of which nobody knows where it begins.
+    """
+    moves, splines = operation.moves, operation.splines
+    before = np.roll(moves.tip, 1, axis=0)
+    end = moves.tip.copy()
+    for k in range(len(splines)):
+        first, last, _ = splines[k]
+        before[first : last + 1], end[first : last + 1] = before[first].copy(), moves.tip[last]
+    steps = end - before
+    down = -np.einsum("ij,ij->i", steps, moves.axis)
+    across = np.linalg.norm(steps + down[:, None] * moves.axis, axis=1)
+    across[operation.arcs.row] = operation.arcs.radius * arc_sweeps(operation)
+    plunges = down > across * (1.0 + _ACROSS)
+    plunges[:1] = True
+    return np.asarray(plunges)
 
 
 def _in_mode(prepared: PreparedOperation) -> tuple[PreparedOperation, list[Problem]]:

@@ -25,14 +25,10 @@ def missing_feed_problems(program: Program, motion: Motion) -> list[Problem]:
     rows = np.flatnonzero((moves.kind != Kind.RAPID) & ~(moves.feed > 0))
     if not len(rows):
         return []
-    return [
-        Problem(
-            program.file_of(motion.operation),
-            int(moves.line[rows[0]]),
-            "cutting motion without a feed",
-            "put FEDRAT before it",
-        )
-    ]
+    what, cure = "cutting motion without a feed", "put FEDRAT before it"
+    if motion.cl_rows is not None:  # feed=fastest
+        cure += "; feed_limit is for cuts that do not plunge"
+    return [Problem(program.file_of(motion.operation), int(moves.line[rows[0]]), what, cure)]
 
 
 def rounded_feed_problems(program: Program, motion: Motion) -> list[Problem]:

@@ -15,7 +15,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
-from trunnion.model.toolpath import Kind, Phase
+from trunnion.model.toolpath import Kind, Operation, Phase
 from trunnion.timing import reached_feeds
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.matching.pairs import Matching
@@ -31,6 +31,12 @@ _LEFT: Final = 0.1
 #: A row that takes longer than at the feed of the CL file by this share, and these seconds, is one that does.
 _SLOWER: Final = 0.02
 _SLOWER_SECONDS: Final = 1e-3
+
+#: A way at 45 degrees does not go deeper than across, within this share; an arc that turns by less, radians, is a whole
+#: circle.
+_SLOPE: Final = 1e-6
+_CLOSED: Final = 1e-4
+_TURN: Final = 2.0 * np.pi
 
 #: After so many looks for rows that take longer, all keep their feeds.
 _MOST_LOOKS: Final = 3
@@ -151,13 +157,43 @@ def _three_digits(feed: Floats) -> Floats:
 
 
 def greatest_feeds(expected: ExpectedPath, limit: float | None) -> Floats:
-    """The greatest feed of each row, (m,) mm/min; NaN in rapids, per revolution, and where there is none."""
+    """The greatest feed of each row, (m,) mm/min; NaN in rapids, per revolution, and where there is none.
+
+    A cut that plunges has at most that of the CL file.
+    """
     every = [np.zeros(0)]
     for section in expected.sections:
         moves = section.operation.moves
-        feed = moves.feed if limit is None else np.where(moves.phase == Phase.CUT, limit, moves.feed)
+        feed = moves.feed
+        if limit is not None:
+            deeper = _goes_deeper(section.whole)[slice(None) if section.kept is None else section.kept]
+            feed = np.where(moves.phase == Phase.CUT, np.where(deeper & ~(feed > limit), feed, limit), feed)
         every.append(np.where((moves.kind == Kind.RAPID) | moves.per_rev, np.nan, feed))
     return np.concatenate(every)
+
+
+def _goes_deeper(operation: Operation) -> Flags:
+    """Moves that lead the tool farther down along its axis than across, (n,); the first always counts as one.
+
+    The slope of an arc is that of its helix, the slope of a spline that of the line between its ends.
+    """
+    tip, splines = operation.moves.tip, operation.splines
+    from_row, to_row = np.arange(-1, len(tip) - 1), np.arange(len(tip))
+    for first, last, _ in (splines[k] for k in range(len(splines))):
+        from_row[first : last + 1], to_row[first : last + 1] = first - 1, last
+    way = tip[to_row] - tip[from_row]
+    along = (way * operation.moves.axis).sum(axis=1)
+    length = np.linalg.norm(way, axis=1)
+    arcs = operation.arcs
+    chord = np.sqrt(np.maximum(length**2 - along**2, 0.0))
+    start, end = tip[arcs.row - 1] - arcs.centre, tip[arcs.row] - arcs.centre
+    beside = start - (start * arcs.normal).sum(axis=1, keepdims=True) * arcs.normal
+    angle = np.mod(np.arctan2((np.cross(arcs.normal, beside) * end).sum(axis=1), (beside * end).sum(axis=1)), _TURN)
+    angle = np.where(np.minimum(angle, _TURN - angle) < _CLOSED, _TURN, angle)
+    chord[arcs.row] = arcs.radius * (angle + _TURN * arcs.full_turns)
+    deeper = -along > chord * (1.0 + _SLOPE)
+    deeper[:1] = True
+    return np.asarray(deeper)
 
 
 def _rows_led_to(run: Run, expected: ExpectedPath, matching: Matching) -> Ints:

@@ -51,7 +51,8 @@ class OperationSettings:
 class Section:
     """One operation within the expected path: rows ``first`` to ``end`` (exclusive), in the program's frame.
 
-    ``kept`` has the row of the CL file's operation for each of its rows; None where all are here.
+    ``kept`` has the row of the CL file's operation for each of its rows; None where all are here. ``whole`` is that
+    operation with all of them.
     """
 
     file: str
@@ -59,6 +60,7 @@ class Section:
     first: int
     tolerances: Tolerances
     settings: OperationSettings
+    whole: Operation
     kept: Ints | None = None
 
     @property
@@ -143,7 +145,7 @@ class ExpectedPath:
                     limit = replace(limit, deviations=limit.deviations.without_rows(gone))
                 operation = without_rows(operation, gone)
                 kept = np.flatnonzero(~gone) if kept is None else kept[~gone]
-            sections.append(Section(path.file, operation, first, limit, settings, kept))
+            sections.append(Section(path.file, operation, first, limit, settings, placed, kept))
             hole_ends.append(len(found))
             first += len(operation.moves)
         self.sections: tuple[Section, ...] = tuple(sections)
