@@ -30,7 +30,7 @@ from trunnion.model.toolpath import Toolpath
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
 from trunnion.readers import run_program
-from trunnion.timing import fastest_run
+from trunnion.timing import fastest_run, steady
 from trunnion.verification import Check, Verification, verify
 from trunnion.verification.deviations import reached_rows
 
@@ -292,6 +292,30 @@ def test_the_proof_finds_a_plunge_that_is_raised(tmp_path: Path) -> None:
     feed = np.full(len(rows), 1000.0)
     raised = [line.replace("F400.0", "F1000.0").replace("F400", "F1000") for line in found.text]
     assert "reach" in found.failed(raised, replace(found.deviations, reached_rows=rows, reached_feed=feed))
+
+
+@pytest.mark.parametrize("name", ["haas_umc750", "linuxcnc_5axis", "dmu65", "yl569"])
+def test_an_arc_has_the_feed_that_the_slides_keep_up_all_the_way(name: str, tmp_path: Path) -> None:
+    """v² = a r where one slide bends the path alone; in between both could go faster."""
+    arc = (
+        "GOTO/0,0,5\nGOTO/40,0,5\nCIRCLE/40.0,10.0,5.0,0.0,0.0,1.0,10.0,0.06,0.5,10.0,0.0\nGOTO/40,20,5\nGOTO/0,20,5\n"
+    )
+    source = tmp_path / "arc.cls"
+    source.write_text(CL_HEAD.replace("500.0", "8000.0") + arc + CL_FOOT, encoding="utf-8")
+    run = trunnion.post(source, machine=able(name, 500.0), settings=FASTEST).run
+    assert run is not None
+    feeds = run.feed[run.arcs.row]
+    most = 60.0 * math.sqrt(500.0 * 10.0)
+    assert len(feeds) == 1
+    assert 0.97 * most < feeds[0] <= most
+
+
+@pytest.mark.parametrize(
+    ("speeds", "found"),
+    [([1, 2, 3, 2], 3), ([1, 3, 2, 3, 1], 2), ([1, 4, 2, 3, 1, 5, 1], 1), ([2], 2), ([3, 3, 3], 3), ([5, 1, 4], 1)],
+)
+def test_steady_speeds(speeds: list[float], found: float) -> None:
+    assert steady(np.array(speeds, np.float64)) == found
 
 
 FAMILIES = ["yl569", "dmu65", "haas_umc750", "hs664rt", "matsuura_mx330", "mikron_600u", "linuxcnc_5axis", "xyzbc_trt"]

@@ -3,7 +3,7 @@
 from trunnion.timing.axis_pieces import MOST_PIECES, AxisPieces, axis_pieces
 from trunnion.timing.dynamics import AxisDynamics
 from trunnion.timing.fastest import AxisMotion, FastestRun, SmoothPath, fastest_run
-from trunnion.timing.path import Path
+from trunnion.timing.path import Path, steady
 from trunnion.timing.path_modes import CORNER_TOLERANCE
 from trunnion.timing.planner import piece_seconds, timed_pieces
 from trunnion.timing.reached_feeds import HARDLY_MOVES, ReachedFeeds, reached_feeds
@@ -38,6 +38,7 @@ __all__ = [
     "fastest_run",
     "piece_seconds",
     "reached_feeds",
+    "steady",
     "time_run",
     "timed_pieces",
 ]

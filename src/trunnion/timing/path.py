@@ -43,6 +43,15 @@ class Path:
         return np.asarray(combine.reduceat(column, np.cumsum(self.counts) - self.counts))
 
 
+def steady(speeds: Floats) -> float:
+    """The highest of some speeds one after the other, (k,), at which nothing between the first and last is slower.
+
+    Ramps at both ends do not count, since they lead up to it.
+    """
+    before, after = np.maximum.accumulate(speeds), np.maximum.accumulate(speeds[::-1])[::-1]
+    return float(speeds.min(initial=before[-1], where=speeds < np.minimum(before, after)))
+
+
 class PathBuilder:
     """Makes the path of a run; ``more_stops`` are rows after which the axes stop besides."""
 

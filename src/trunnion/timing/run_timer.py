@@ -9,7 +9,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.model.run import PositionChunk, Run
 from trunnion.timing.dynamics import AxisDynamics
-from trunnion.timing.path import PathBuilder
+from trunnion.timing.path import PathBuilder, steady
 from trunnion.timing.pauses import pauses
 from trunnion.timing.planner import piece_seconds, timed_pieces
 from trunnion.timing.row_feeds import FeedRow
@@ -52,10 +52,18 @@ class RunTimer:
         self._path.add(first, feeds, steps, counts, done - begin)
 
     def reached(self) -> tuple[Floats, Floats]:
-        """Seconds of the axes' motion, and highest speed along what the feed counts, per minute, of all rows, (n,)."""
+        """Seconds of the axes' motion, and highest speed along what the feed counts, per minute, of all rows, (n,).
+
+        Of a circle it is the highest ``steady`` one.
+        """
         path = self._path.result()
         times = timed_pieces(path, self._dynamics)
-        return path.of_rows(times.seconds), 60.0 * path.of_rows(times.reached, np.maximum)
+        speed = path.of_rows(times.reached, np.maximum).copy()
+        if len(path.counts):
+            ends = np.cumsum(path.counts)
+            for row in self._run.arcs.row.tolist():
+                speed[row] = steady(times.reached[ends[row] - path.counts[row] : ends[row]])
+        return path.of_rows(times.seconds), 60.0 * speed
 
     def result(self) -> tuple[Floats, Floats]:
         """Seconds, and mean speed of the tip in mm/min, of all rows, (n,) each."""

@@ -3,8 +3,9 @@
 In:     a run, the path of the CL files with their own feeds, and their matching.
 Out:    for each CL row the highest feed that is reached, timed anew (``trunnion.timing``).
 
-Blocks that lead to one CL point together, such as the lines for an arc, share the highest feed of them; those that turn
-rotary axes while the tip rests keep that of the CL file. Rapids, holes and feeds per revolution have no feed to reach.
+Blocks that lead to one CL point together share the highest feed of them, the lines for an arc the highest that is
+steady; those that turn rotary axes while the tip rests keep that of the CL file. Rapids, holes and feeds per revolution
+have no feed to reach.
 """
 
 from dataclasses import dataclass
@@ -16,7 +17,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Operation, Phase
-from trunnion.timing import reached_feeds
+from trunnion.timing import reached_feeds, steady
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.matching.pairs import Matching
 
@@ -97,6 +98,7 @@ class _TimedRows:
         self._own = np.where(np.isnan(self._most), np.nan, np.fmin(own, self._most))
         self._leads_to = _rows_led_to(run, expected, matching)
         self._guided = self._leads_to >= 0
+        self._segments = matching.arc_segments
         self._extra = np.array(matching.extra, np.int64)
         # Without limit these are the greatest feeds; where the CL file has none, the program's stand.
         self._cl_feeds = self._most if limit is None else own
@@ -110,6 +112,14 @@ class _TimedRows:
         feed = np.full(len(most), -np.inf)
         np.maximum.at(feed, leads_to[known], found.feed[known])
         feed[np.isinf(feed)] = np.nan
+        for segments in self._segments:
+            rows = np.append(segments.nc, segments.nc[-1] + 1) if len(segments.nc) else segments.nc
+            along = found.feed[
+                rows[(rows < len(leads_to)) & (leads_to[rows.clip(max=len(leads_to) - 1)] == segments.cl)]
+            ]
+            along = along[np.isfinite(along)]
+            if len(along):
+                feed[segments.cl] = steady(along)
         seconds = found.seconds if self._limit is None else self._own_seconds
         return ReachedRows(most, feed, self._own, float(seconds.sum()))
 
