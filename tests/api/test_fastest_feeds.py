@@ -22,6 +22,7 @@ from trunnion.api.planning import plan_program
 from trunnion.api.settings import Settings, SettingValue
 from trunnion.cl import read_cl
 from trunnion.cli import main
+from trunnion.controls import load_control
 from trunnion.controls.words import NumberFormat
 from trunnion.errors import InputError
 from trunnion.machines import Machine, load_machine
@@ -125,6 +126,44 @@ def test_feeds_are_lowered_and_proven(lowered: Posted) -> None:
     assert " % at most; " in summary
     assert summary.endswith(" at the feeds of the CL file")
     assert len({feed_word(line) for line in lowered.text}) > 10
+
+
+@pytest.mark.parametrize(
+    ("name", "settings"),
+    [
+        ("haas_umc750", {}),
+        ("yl569", {"feed_limit": 9000}),
+        ("dmu65", {}),
+        ("xyzac_trt", {}),
+    ],
+)
+def test_a_program_can_be_proven_again_without_its_post(name: str, settings: Settings, tmp_path: Path) -> None:
+    source, target = tmp_path / "waves.cls", tmp_path / f"waves{load_control(able(name).control).extension}"
+    source.write_text(waves(), encoding="utf-8")
+    trunnion.post(source, machine=able(name), output=target, settings={**FASTEST, **settings})
+    limit = settings.get("feed_limit")
+
+    def failed(feed: str = "fastest") -> set[str]:
+        limited = {"feed_limit": limit} if feed == "fastest" else {}
+        found = trunnion.verify(target, machine=able(name), cl=source, feed=feed, **limited)  # type: ignore
+        return {check.key for check in found.checks if not check.passed}
+
+    assert not failed() & {"feed", "reach"}
+    assert "feed" in failed("programmed")
+    text = target.read_text(encoding="utf-8")
+    word = next(word for line in text.splitlines()[20:] if len(word := feed_word(line)) > 3)
+    target.write_text(text.replace(word, f"F{float(word[1:]) * 1.1:.0f}."[: None if name != "dmu65" else -1], 1))
+    assert "reach" in failed()
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"feed_limit": 3000}, {"feed": "fast"}, {"feed": "fastest", "feed_limit": [1]}, {"feed": "fastest", "cl": ()}],
+)
+def test_arguments_of_verify_that_make_no_sense_are_refused(wrong: dict[str, object]) -> None:
+    given = {"machine": "yl569", "cl": GOLDEN / "yl569/2_hub_rough.cls", **wrong}
+    with pytest.raises(InputError, match="feed"):
+        trunnion.verify(GOLDEN / "yl569/2_hub_rough.expected.mpf", **given)  # type: ignore[arg-type]
 
 
 def test_feeds_have_three_digits_and_stand_only_where_they_change(lowered: Posted) -> None:
@@ -476,6 +515,17 @@ def test_without_limits_in_reach_the_program_stays_as_it_is(tmp_path: Path) -> N
     source.write_text(waves(60.0), encoding="utf-8")
     texts = [trunnion.post(source, machine="xyzac_trt", settings=each).text for each in ({}, FASTEST)]
     assert texts[0] == texts[1]
+
+
+@pytest.mark.parametrize("settings", [{}, {"pole": "lean", "pole_angle": "0.001"}])
+def test_no_advice_names_a_setting_that_is_refused(settings: dict[str, str], tmp_path: Path) -> None:
+    source = tmp_path / "waves.cls"
+    source.write_text(waves(60000.0), encoding="utf-8")
+    job = prepare(load_machine("xyzac_trt"), {**FASTEST, **settings}, explain=True)
+    _, plan, _ = plan_program([read_cl(source)], job)
+    told = [str(each) for each in (*plan.decisions, *plan.problems)]
+    assert any("feed=fastest lowers the feed there" in text for text in told)
+    assert not any("lower_feed" in text for text in told)
 
 
 def test_accelerations_that_nobody_states_are_told() -> None:

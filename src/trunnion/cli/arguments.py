@@ -271,6 +271,12 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
     parser.add_argument(
+        "--feed", choices=FEEDS, default="programmed", help="fastest: it was posted so; feeds are what the axes reach"
+    )
+    parser.add_argument(
+        "--feed-limit", type=_tolerance, metavar="MM_MIN", help="the feed_limit of that post, in place of the CL file's"
+    )
+    parser.add_argument(
         "--recorded", metavar="FILE", help="compare with what the machine did: a recording (.csv or .parquet)"
     )
     parser.add_argument(

@@ -49,6 +49,8 @@ def run(arguments: argparse.Namespace) -> int:
         tool_length=arguments.tool_length or None,
         recorded=arguments.recorded,
         recorded_tolerance=arguments.recorded_tolerance,
+        feed=arguments.feed,
+        feed_limit=arguments.feed_limit,
         columns=arguments.report is not None,
         observer=Terminal(),
     )
@@ -63,7 +65,19 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run_manifest(arguments: argparse.Namespace) -> int:
     """Compare the files of a post with its manifest; 0 if all are the same and proven, else 1."""
-    others = ("subprograms", "recorded", "report", "zero", "tool_length", "span", "span_tip", "tool", "offset", "edge")
+    others = (
+        "subprograms",
+        "recorded",
+        "report",
+        "zero",
+        "tool_length",
+        "span",
+        "span_tip",
+        "tool",
+        "offset",
+        "edge",
+        "feed_limit",
+    )
     for name in (*others, "units", "dialect"):
         if getattr(arguments, name):
             what, cure = "says nothing about a manifest", "leave it out; --cl compares CL files, too"

@@ -34,7 +34,7 @@ from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, 
 from trunnion.verification.deviations.declared_deviations import AcceptedDeviations, accept_deviations
 from trunnion.verification.deviations.linearization import DefaultLimits, LinearizationErrors
 from trunnion.verification.deviations.point_deviations import PointDeviations
-from trunnion.verification.deviations.reached_rows import worthwhile_feeds
+from trunnion.verification.deviations.reached_rows import with_feeds_of_program, worthwhile_feeds
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.expected.tolerances import Tolerances
 from trunnion.verification.kinematics.axis_motion import AxisMotionAnalyzer
@@ -179,6 +179,9 @@ def _check_against(
     expected: ExpectedPath, run: Run, settings: ExpectedValues, analyzer: AxisMotionAnalyzer
 ) -> _Checked:
     """Checks of a program against its expected path, which has the feeds and tool axes of the CL files."""
+    if settings.fastest_feed and settings.feeds_as_programmed:
+        compared, _, _ = _compare(expected, run, settings)
+        expected = with_feeds_of_program(run, expected, compared.matching, settings.feed_limit)
     accepted = accept_deviations(expected, run.machine)
     context, errors, deviations = _compare(accepted.expected, run, settings, analyzer)
     order, others, general = _checks_without_positions(context, accepted, expected)

@@ -8,13 +8,14 @@ steady; those that turn rotary axes while the tip rests keep that of the CL file
 have no feed to reach.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
+from trunnion.model.deviations import Deviations
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Operation, Phase
 from trunnion.timing import reached_feeds, steady
@@ -38,6 +39,9 @@ _SLOWER_SECONDS: Final = 1e-3
 _SLOPE: Final = 1e-6
 _CLOSED: Final = 1e-4
 _TURN: Final = 2.0 * np.pi
+
+#: Feeds are the same within this share: without TCP they follow from lengths and times.
+_SAME: Final = 1e-3
 
 #: After so many looks for rows that take longer, all keep their feeds.
 _MOST_LOOKS: Final = 3
@@ -88,6 +92,25 @@ def worthwhile_feeds(
     return timed.reached, timed.kept()
 
 
+def with_feeds_of_program(run: Run, expected: ExpectedPath, matching: Matching, limit: float | None) -> ExpectedPath:
+    """The path with the program's own feeds as its declaration, where no post has left one.
+
+    Declared are feeds that are not those of the CL files, and those of rows that keep theirs.
+    """
+    timed = _TimedRows(run, expected, matching, limit)
+    feed, kept = timed.asked(), timed.kept()
+    sections = []
+    for section in expected.sections:
+        rows = slice(section.first, section.end)
+        asked, cl_feed, most = feed[rows], section.operation.moves.feed, timed.reached.most[rows]
+        same = np.abs(asked - cl_feed) <= np.maximum(2.0 * section.tolerances.feed, _SAME * cl_feed)
+        asked = np.where(same & kept[rows], timed.reached.own[rows], asked)
+        declared = np.flatnonzero(np.isfinite(most) & np.isfinite(asked) & (~same | kept[rows]))
+        deviations = replace(Deviations.none(), reached_rows=declared, reached_feed=asked[declared])
+        sections.append(replace(section, tolerances=replace(section.tolerances, deviations=deviations)))
+    return expected.with_sections(sections)
+
+
 class _TimedRows:
     """A run that is timed with the feeds of CL rows."""
 
@@ -122,6 +145,15 @@ class _TimedRows:
                 feed[segments.cl] = steady(along)
         seconds = found.seconds if self._limit is None else self._own_seconds
         return ReachedRows(most, feed, self._own, float(seconds.sum()))
+
+    def asked(self) -> Floats:
+        """The feeds that the program asks for on the way to CL rows, (m,) mm/min; NaN: it is not known."""
+        asked = reached_feeds(self._run, np.full(len(self._run), np.nan)).asked
+        known = np.flatnonzero(self._guided & np.isfinite(asked))
+        feed = np.full(len(self._most), -np.inf)
+        np.maximum.at(feed, self._leads_to[known], asked[known])
+        feed[np.isinf(feed)] = np.nan
+        return feed
 
     @cached_property
     def _own_seconds(self) -> Floats:
