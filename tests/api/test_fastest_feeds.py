@@ -629,3 +629,7 @@ def test_the_command_line_says_it_by_an_option_or_a_setting(tmp_path: Path, caps
         main([*post, str(tmp_path / "three.ngc"), "--feed", "fastest", "--set", "feed=programmed"])
     assert "--feed and --set feed=… are the same" in capsys.readouterr().err
     assert not (tmp_path / "three.ngc").exists()
+    verify_it = ["verify", str(tmp_path / "one.ngc"), "--machine", "xyzac_trt", "--cl", str(source)]
+    assert main([*verify_it, "--feed", "fastest"]) == 0
+    assert "reach         ok" in capsys.readouterr().out
+    assert main(verify_it) == 1

@@ -270,9 +270,7 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
         help="whose coordinate system the program's is: the first operation's, or the CAM's absolute one",
     )  # fmt: skip
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
-    parser.add_argument(
-        "--feed", choices=FEEDS, default="programmed", help="fastest: it was posted so; feeds are what the axes reach"
-    )
+    parser.add_argument("--feed", choices=FEEDS, help="fastest: it was posted so; feeds are what the axes reach")
     parser.add_argument(
         "--feed-limit", type=_tolerance, metavar="MM_MIN", help="the feed_limit of that post, in place of the CL file's"
     )

@@ -49,7 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
         tool_length=arguments.tool_length or None,
         recorded=arguments.recorded,
         recorded_tolerance=arguments.recorded_tolerance,
-        feed=arguments.feed,
+        feed=arguments.feed or "programmed",
         feed_limit=arguments.feed_limit,
         columns=arguments.report is not None,
         observer=Terminal(),
@@ -78,7 +78,7 @@ def _run_manifest(arguments: argparse.Namespace) -> int:
         "edge",
         "feed_limit",
     )
-    for name in (*others, "units", "dialect"):
+    for name in (*others, "feed_limit", "units", "dialect"):
         if getattr(arguments, name):
             what, cure = "says nothing about a manifest", "leave it out; --cl compares CL files, too"
             raise InputError(argument_problem(name, what, cure))
