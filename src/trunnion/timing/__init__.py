@@ -8,9 +8,10 @@ from trunnion.timing.path_modes import CORNER_TOLERANCE
 from trunnion.timing.planner import piece_seconds
 from trunnion.timing.row_feeds import RowFeeds, fill_feeds
 from trunnion.timing.row_interpolation import SAG
-from trunnion.timing.run_timer import RunTimer
+from trunnion.timing.run_timer import RowTimes, RunTimer
+from trunnion.timing.schedule import TimedEvent
 from trunnion.timing.speed_kernel import plan_speeds
-from trunnion.timing.timed_run import MachineState, TimedEvent, TimedRun, time_run
+from trunnion.timing.timed_run import MachineState, TimedRun, time_run
 
 #: Kernels that time most programs.
 KERNELS = (fill_feeds, plan_speeds)
@@ -26,6 +27,7 @@ __all__ = [
     "MachineState",
     "Path",
     "RowFeeds",
+    "RowTimes",
     "RunTimer",
     "SmoothPath",
     "TimedEvent",
