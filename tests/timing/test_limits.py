@@ -93,7 +93,10 @@ def test_corners_are_parabolas_within_the_tolerance_and_the_accelerations(path: 
     """The parabola, point for point: the direction changes evenly, and so does the square of the speed."""
     columns, seconds = np.zeros((len(path.length), 5)), np.zeros(len(path.length))
     limits = np.stack((EVEN.speed, EVEN.acceleration))
-    plan_speeds(path.steps, path.length, path.rate / 60.0, path.tolerance, path.stops_after, limits, columns, seconds)
+    no = path.bends_after
+    plan_speeds(
+        path.steps, path.length, path.rate / 60.0, path.tolerance, path.stops_after, no, limits, columns, seconds
+    )
     moves = np.flatnonzero((np.abs(path.steps).max(axis=1) > 0.0) & (path.length > 0.0))
     along = directions(path)
     for one, two in pairwise(moves.tolist()):

@@ -38,6 +38,9 @@ class Subscriber:
     async def alarm(self, identifier: str, text: str, stamp: datetime) -> None:
         raise AssertionError(text)
 
+    async def alarm_over(self, identifier: str, text: str, stamp: datetime) -> None:
+        raise AssertionError(text)
+
     def lagging(self) -> dict[object, int]:
         return {self: len(self.fetched)} if len(self.queue) > 4 else {}
 
