@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from asyncua import ua
 
 from trunnion import load_machine
 from trunnion.api.twin import twin_program
@@ -19,6 +20,14 @@ from trunnion.twin.opcua.states import _predicted
 from trunnion.twin.playback import Playback, PlayState
 from trunnion.twin.running import Twin
 from trunnion.twin.snapshots import Snapshots, TwinProgram, display_range, displayed
+
+
+
+@pytest.fixture(autouse=True)
+def position_type(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The structure that a server has once its NodeSets are loaded."""
+    monkeypatch.setattr(ua, "CncPositionDataType", dict, raising=False)
+
 
 HEAD = "N1 G40 G17 G710 G94 G90 G60\nN3 G54 D1\n"
 
