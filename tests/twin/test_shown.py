@@ -158,7 +158,7 @@ def test_blocks_without_motion_are_shown_while_they_take_their_time(tmp_path: Pa
     [
         ("G95 F0.5 G1 X50", 500.0),
         ("G93 F2 G1 X50", 100.0),
-        ("G70 G95 F0.01 G1 X2", 254.0),
+        ("G700 G95 F0.01 G1 X2", 254.0),
         ("F1200 G1 X50 C30", 1200.0),
     ],
 )

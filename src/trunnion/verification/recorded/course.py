@@ -25,7 +25,11 @@ SPINDLE_SLACK: Final = 5.0
 _LEAST_POSITIONS: Final = 3
 
 #: Nothing was recorded between two positions that are further apart in time: seconds, and times the usual distance.
-_UNSEEN: Final = (0.5, 5.0)
+_UNSEEN: Final = (0.1, 5.0)
+
+#: How much further than the machine goes in that time the path may lead it between two positions: a factor, and mm.
+_FURTHER: Final = 3.0
+_NEAR: Final = 2.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,9 +112,14 @@ def coverage(run: Run, compared: RecordedComparison) -> Coverage:
     usual = float(np.median(step[moved])) if moved.any() else 0.0
     most = max(_UNSEEN[0], _UNSEEN[1] * usual)
     together = (np.diff(at) == 1) & (step <= most)
+    # Blocks were left out where the machine cannot have gone so far in that time.
+    gone = np.linalg.norm(np.diff(compared.tips[at], axis=0), axis=1)
+    rate = float(np.quantile(gone[step > 0.0] / step[step > 0.0], 0.95)) if (step > 0.0).any() else 0.0
+    ways = np.concatenate(([0.0], np.cumsum(np.where(compared.moves, compared.lengths, 0.0))))
     for k in np.flatnonzero(np.diff(compared.row[at]) > 1).tolist():
         between = slice(int(compared.row[at[k]]) + 1, int(compared.row[at[k + 1]]))
-        if together[k]:
+        skipped = ways[between.stop] - ways[between.start]
+        if together[k] and skipped <= _FURTHER * max(rate * step[k], gone[k]) + _NEAR:
             covered[between] = True
         elif gaps[at[k + 1]] > gaps[at[k]]:
             broken[between] = True

@@ -22,7 +22,7 @@ BEFORE: Final = -2
 #: Lines after the last one with a block that are still of the program.
 _LAST_LINES: Final = 2
 
-#: A program that runs once more begins within so many motions, or goes from its last tenth to its first.
+#: A program that runs once more goes from its last tenth to its first one, or to one of so many motions.
 _BEGINNING: Final = 8
 _TENTH: Final = 10
 
@@ -47,11 +47,9 @@ class ToldRows:
         at = np.flatnonzero(self.row >= 0)
         rows = self.row[at]
         falls = np.flatnonzero(np.diff(rows) < 0)
-        again = (rows[falls + 1] <= _BEGINNING) | (
-            (rows[falls] >= n - n // _TENTH) & (rows[falls + 1] <= n // _TENTH)
-        )
         stopped = np.concatenate(([0], np.cumsum(self.row == BEFORE)))
-        again |= stopped[at[falls + 1]] > stopped[at[falls]]
+        ended = (rows[falls] >= n - 1 - n // _TENTH) | (stopped[at[falls + 1]] > stopped[at[falls]])
+        again = ended & (rows[falls + 1] <= max(_BEGINNING, n // _TENTH))
         return np.asarray(at[falls + 1][~again])
 
 
