@@ -128,17 +128,17 @@ class Schedule:
         if event.kind == "tool_change":
             return standing + self._dynamics.tool_change
         if event.kind == "dwell":
-            return self._dwell(event)
+            return self._dwell(event, abs(ramps.told))
         return standing if event.kind == "spindle" else 0.0
 
-    def _dwell(self, event: RunEvent) -> float:
-        """Seconds of a dwell; revolutions of a spindle of unknown speed take none."""
+    def _dwell(self, event: RunEvent, rpm: float) -> float:
+        """Seconds of a dwell; of revolutions at a speed, or that of the column where the spindle stands."""
         value, last = event.value, self._n - 1
         if not isinstance(value, float) or not math.isfinite(value):
             return 0.0
         if value >= 0.0:
             return value
-        rpm = float(self._run.state.rpm[min(event.before_row, last)]) if last >= 0 else 0.0
+        rpm = rpm or (float(self._run.state.rpm[min(event.before_row, last)]) if last >= 0 else 0.0)
         return -value * 60.0 / rpm if rpm > 0.0 else 0.0
 
     def _wait_for_spindle(self, row: int, moved: Floats, shift: float, ramps: SpindleRamps, waits: Floats) -> float:

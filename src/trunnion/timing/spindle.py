@@ -67,7 +67,7 @@ class SpindleRamps:
 
     def tell(self, seconds: float, target: float) -> None:
         """Have the spindle go to a speed from some time on; nothing changes if it is told what it was told before."""
-        if target == (self._target[-1] if self._target else 0.0):
+        if target == self.told:
             return
         before = 0.0
         if self._target:
@@ -77,6 +77,11 @@ class SpindleRamps:
         self._seconds.append(seconds)
         self._before.append(before)
         self._target.append(target)
+
+    @property
+    def told(self) -> float:
+        """What it was told last."""
+        return self._target[-1] if self._target else 0.0
 
     def ready(self) -> float:
         """When it has reached what it was told last."""

@@ -182,7 +182,8 @@ def test_a_recording_that_goes_back_fails(with_lines: bool) -> None:
 def test_lines_that_go_back_are_told_of_their_block() -> None:
     good = recorded(blade(), times())
     line = good.values["line"].copy()
-    line[450:460] = line[300]
+    row = blade().at(times()).row
+    line[row == 75] = blade().run.line[60]
     check = checked(with_values(good, line=line))
     assert not check.passed
     assert "the machine went back in the program" in check.summary
@@ -191,7 +192,7 @@ def test_lines_that_go_back_are_told_of_their_block() -> None:
 def test_a_block_search_leaves_a_hole() -> None:
     good = recorded(blade(), np.union1d(times(), blade().ends))
     rows = blade().at(np.union1d(times(), blade().ends)).row
-    skipped = rows_of(good, np.flatnonzero((rows < 70) | (rows > 100)))
+    skipped = rows_of(good, np.flatnonzero((rows < 70) | (rows > 120)))
     check = checked(with_times_of(skipped, rows_of(good, np.arange(len(skipped)))))
     assert not check.passed
     assert "were not recorded" in check.summary
@@ -249,17 +250,17 @@ def test_positions_off_the_path_fail_in_another_program_too() -> None:
     assert not checked(Recording("x.csv", good.source, good.received, {}, {**good.values, "Z": z}, program)).passed
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(
-    share=st.floats(0.1, 0.8), off=st.sampled_from([-200.0, -60.0, 10.0, 20.0, 50.0, 100.0, 200.0]),
+    share=st.floats(0.1, 0.6), off=st.sampled_from([-200.0, -60.0, 10.0, 20.0, 50.0, 100.0, 200.0]),
     axis=st.sampled_from("XYZ"),
 )  # fmt: skip
 def test_one_position_far_off_fails_without_lines(share: float, off: float, axis: str) -> None:
-    good = recorded(blade(), times(300), with_lines=False)
+    good = recorded(blade(), times(), with_lines=False)
     column = good.values[axis].copy()
-    column[int(share * 300)] += off
+    column[int(share * 900)] += off
     compared = compare_recording(blade().run, with_values(good, **{axis: column}), 0.05)
-    known = compare_recording(blade().run, good, 0.05).row[int(share * 300)] >= 0
+    known = compare_recording(blade().run, good, 0.05).row[int(share * 900)] >= 0
     assert not known or compared.tip_off[compared.compared].max() > 0.05
 
 

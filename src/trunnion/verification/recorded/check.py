@@ -37,11 +37,12 @@ def check_recorded(context: Context, compared: RecordedComparison) -> Check:
     run = context.run
     wrong = [_fault_place(context, compared, fault) for fault in faults(run, compared)]
     found = coverage(run, compared)
-    wrong += _hole_places(context, found)
+    holes = _hole_places(context, found)
     beyond = list(_beyond_travel(context, compared))
     bad = _bad_rows(compared)
     rows = bad or _worst_rows(compared)[:1]
-    places = [*wrong, *beyond, *(_place(context, compared, row) for row in rows[:MAX_PLACES])]
+    off = [_place(context, compared, row) for row in rows[:MAX_PLACES]]
+    places = [*wrong, *beyond, *off, *holes] if bad else [*wrong, *beyond, *holes, *off]
     worst = float(compared.tip_off[at].max())
     parts = [
         _named(compared),
@@ -53,11 +54,11 @@ def check_recorded(context: Context, compared: RecordedComparison) -> Check:
         _not_compared(compared),
         _travel(context, compared),
     ]
-    fails = bool(wrong or bad or beyond)
+    fails = bool(wrong or holes or bad or beyond)
     if fails:
         first = places[0]
-        more = len(wrong) + len(bad) + len(beyond) - 1
-        text = first.text if first in wrong else f"{first.block_name}: {first.text}"
+        more = len(wrong) + len(holes) + len(bad) + len(beyond) - 1
+        text = first.text if first in (*wrong, *holes) else f"{first.block_name}: {first.text}"
         parts.insert(0, text + (f", and {counted(more, 'more place')}" if more else ""))
     return Check(
         KEY, TITLE, not fails, "; ".join(filter(None, parts)), worst, compared.tolerance, "mm",

@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.recording import NO_TIME, SPINDLE, Mark
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
@@ -114,12 +114,14 @@ def coverage(run: Run, compared: RecordedComparison) -> Coverage:
     together = (np.diff(at) == 1) & (step <= most)
     # Blocks were left out where the machine cannot have gone so far in that time.
     gone = np.linalg.norm(np.diff(compared.tips[at], axis=0), axis=1)
-    rate = float(np.quantile(gone[step > 0.0] / step[step > 0.0], 0.95)) if (step > 0.0).any() else 0.0
+    feed = run.kind != Kind.RAPID
+    rates = [_usual_rate(gone, step, part) for part in (np.ones(len(step), np.bool_), feed[compared.row[at[1:]]])]
     ways = np.concatenate(([0.0], np.cumsum(np.where(compared.moves, compared.lengths, 0.0))))
     for k in np.flatnonzero(np.diff(compared.row[at]) > 1).tolist():
         between = slice(int(compared.row[at[k]]) + 1, int(compared.row[at[k + 1]]))
         skipped = ways[between.stop] - ways[between.start]
-        if together[k] and skipped <= _FURTHER * max(rate * step[k], gone[k]) + _NEAR:
+        rate = rates[bool(feed[between].all())]
+        if together[k] and skipped <= _FURTHER * rate * step[k] + _NEAR:
             covered[between] = True
         elif gaps[at[k + 1]] > gaps[at[k]]:
             broken[between] = True
@@ -132,6 +134,12 @@ def coverage(run: Run, compared: RecordedComparison) -> Coverage:
     missing = missing[(missing > first) & (missing < last)]
     share = float(lengths[covered].sum()) / whole if whole > 0.0 else 1.0
     return Coverage(share, first, last, missing[~broken[missing]], missing[broken[missing]])
+
+
+def _usual_rate(gone: Floats, step: Floats, part: Flags) -> float:
+    """How fast the machine goes in some steps, mm/s, but for the few fastest ones."""
+    of = part & (step > 0.0)
+    return float(np.quantile(gone[of] / step[of], 0.9)) if of.any() else 0.0
 
 
 def longest_stand(compared: RecordedComparison) -> tuple[float, int]:
