@@ -22,7 +22,6 @@ from trunnion.twin.running import Twin
 from trunnion.twin.snapshots import Snapshots, TwinProgram, display_range, displayed
 
 
-
 @pytest.fixture(autouse=True)
 def position_type(monkeypatch: pytest.MonkeyPatch) -> None:
     """The structure that a server has once its NodeSets are loaded."""

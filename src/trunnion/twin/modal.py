@@ -86,9 +86,13 @@ class Blocks:
         told_rpm  (k,)  speed that the spindle has been told
         """
         found = []
-        for now, here, ends, rpm in zip(seconds.tolist(), row.tolist(), is_end.tolist(), told_rpm.tolist(), strict=True):
+        for now, here, ends, rpm in zip(
+            seconds.tolist(), row.tolist(), is_end.tolist(), told_rpm.tolist(), strict=True
+        ):
             first = passed = int(np.searchsorted(self._gap, here, "right"))
-            while not ends and passed < len(self._gap) and self._gap[passed] == here + 1 and self._begins[passed] <= now:
+            while (
+                not ends and passed < len(self._gap) and self._gap[passed] == here + 1 and self._begins[passed] <= now
+            ):
                 passed += 1
             changed = -1  # the last tool change that is over
             for k in range(first, passed):
@@ -99,9 +103,9 @@ class Blocks:
 
     def before_start(self) -> BlockState:
         """What is in force before the program has been started."""
-        return self._at(-1, 0, False, -1, 0)  # noqa: FBT003 - a key of the cache
+        return self._at(-1, 0, False, -1, 0)
 
-    def _made(self, row: int, passed: int, is_event: bool, changed: int, sense: int) -> BlockState:  # noqa: FBT001
+    def _made(self, row: int, passed: int, is_event: bool, changed: int, sense: int) -> BlockState:
         """What is in force after ``passed`` events; the last of them is what happens if ``is_event``."""
         state = self._of_row(row)
         state = replace(state, m=self._m_functions(passed, sense))

@@ -126,7 +126,9 @@ def test_mistakes_in_a_list_of_nodes_are_told_at_once(tmp_path: Path) -> None:
 
 def parquet(file: Path, **columns: object) -> Path:
     arrow = pytest.importorskip("pyarrow")
-    stamps = arrow.array([1_780_000_000_123_456_000 + k * 50_000_000 for k in range(3)], arrow.timestamp("ns", tz="UTC"))
+    stamps = arrow.array(
+        [1_780_000_000_123_456_000 + k * 50_000_000 for k in range(3)], arrow.timestamp("ns", tz="UTC")
+    )
     given = {"source": stamps, "X": arrow.array([1.0, 2.0, 3.0]), **columns}
     pytest.importorskip("pyarrow.parquet").write_table(arrow.table(given), file)
     return file

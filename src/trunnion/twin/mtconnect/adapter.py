@@ -224,7 +224,9 @@ class MTConnectAdapter:
         if UNAVAILABLE in values["tip"]:
             values["tip"] = UNAVAILABLE
         for column, axis in enumerate(machine.axes):
-            values[f"{axis.name}_actual"] = _number(float(displayed(machine, column, snapshots.joints[k : k + 1, column])[0]))
+            values[f"{axis.name}_actual"] = _number(
+                float(displayed(machine, column, snapshots.joints[k : k + 1, column])[0])
+            )
             values[f"{axis.name}_state"] = "TRAVEL" if snapshots.moving[k, column] else "STOPPED"
         return values
 

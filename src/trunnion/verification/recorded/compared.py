@@ -145,7 +145,7 @@ def compare_recording(run: Run, recording: Recording, tolerance: float) -> Recor
         positions=positions,
         worst=worst,
         moves=_moves(len(run), path),
-        lengths=np.bincount(path.row, weights=path.lengths(), minlength=len(run))[: len(run)],
+        lengths=_row_lengths(len(run), path),
     )
 
 
@@ -276,7 +276,7 @@ class _Walk:
         return min(max(high, self._now + 2), self._now + _MOST_PIECES, len(self._path))
 
     def _nearest_around(self, tip: Floats, axis: Floats, piece: Ints) -> Nearest:
-        """The nearest place in these pieces and in those beside them; pieces are curved, and were taken for straight."""
+        """The nearest place in these pieces and in those beside them: they are curved, and were taken for straight."""
         best = None
         for beside in (0, -1, 1, -2, 2):
             low = np.clip(piece + beside, 0, max(len(self._path) - 1, 0))
@@ -317,6 +317,13 @@ def _by_row(n: int, row: Ints, off: Floats, axis_off: Floats) -> tuple[Ints, Flo
     np.maximum.at(worst[:, 1], row[compared], axis_off[compared])
     worst[worst < 0.0] = np.nan
     return np.bincount(row[compared], minlength=n).astype(np.int64), worst
+
+
+def _row_lengths(n: int, path: ProgramPath) -> Floats:
+    """The way of the tip in n rows, (n,)."""
+    lengths = np.zeros(n)
+    np.add.at(lengths, path.row, path.lengths())
+    return lengths
 
 
 def _moves(n: int, path: ProgramPath) -> Flags:

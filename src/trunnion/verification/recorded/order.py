@@ -98,8 +98,8 @@ class _Rows:
         order = np.argsort(key, kind="stable")
         self._rows, self._keys = order, key[order]
         self._last = {0: 0}
-        for each in (*run.events, *run.comments):
-            self._last[each.file] = max(self._last.get(each.file, 0), each.line)
+        for number, at in [(e.file, e.line) for e in run.events] + [(c.file, c.line) for c in run.comments]:
+            self._last[number] = max(self._last.get(number, 0), at)
         self._now = 0
         self._known: dict[tuple[int, int], Ints] = {}
 
