@@ -195,3 +195,9 @@ def test_texts_are_guarded_from_spreadsheets_and_numbers_that_are_none_are_empty
     assert [found.texts["block"][k] for k in range(6)] == texts[:6]
     assert len(found.texts["block"][6]) == 32_000
     assert np.isnan(found.values["X"]).all()
+
+
+def test_empty_lines_are_no_rows(tmp_path: Path) -> None:
+    file = tmp_path / "a.csv"
+    file.write_text("source,X\n2026-05-04T08:30:00Z,1\n\n2026-05-04T08:30:01Z,2\n\n", encoding="utf-8")
+    assert read_recording(file).values["X"].tolist() == [1.0, 2.0]

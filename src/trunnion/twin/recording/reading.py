@@ -165,6 +165,7 @@ def _csv_groups(path: Path) -> Iterator[dict[str, _Cells]]:
         while group := list(islice(lines, _GROUP)):
             if len(group) < _GROUP and not is_whole:
                 group.pop()  # a line that was not finished when its process was killed
+            group = [line for line in group if line]
             for k, line in enumerate(group):
                 if len(line) != len(names):
                     what, cure = f"has {len(line)} cells, not {len(names)}", "write one for each column"
