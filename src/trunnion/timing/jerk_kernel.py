@@ -21,8 +21,9 @@ each at most a third of the limit; acceleration is shared by halves.
 
 Points that lie so close that such triangles, as wide as the pieces, are within the tolerance are those of a smooth
 curve, and so are those within a row: it bends by k = 2 d / (l1 + l2), evenly from point to point, and needs the
-acceleration k v^2 and the jerk v^3 times the change of k over the way between two points. A step of k is spread over the way s over which the path departs
-by no more than the tolerance, k s^2 / 24, as at the begin of any transition curve.
+acceleration k v^2 and the jerk v^3 times the change of k over the way between two points. A step of k is spread over
+the way s over which the path departs by no more than the tolerance, k s^2 / 24, as at the begin of any transition
+curve.
 
 Units: mm and degrees, seconds.
 """
