@@ -118,14 +118,20 @@ def serve_twin(
 
 
 def write_device_xml(
-    nc: FilePath | Run, *, machine: MachineLike, output: FilePath, subprograms: Sequence[FilePath] = ()
+    nc: FilePath | Run,
+    *,
+    machine: MachineLike,
+    output: FilePath,
+    subprograms: Sequence[FilePath] = (),
+    zero: str | Sequence[float] | None = None,
+    tool_length: str | float | None = None,
 ) -> None:
     """Write the device model of a twin for an MTConnect agent.
 
     Parameters
     ----------
-    nc, machine, subprograms
-        As for ``serve_twin``.
+    nc, machine, subprograms, zero, tool_length
+        As for ``serve_twin``: they say in which coordinates slides are told.
     output
         The file, ``.xml``. An older one is replaced when the new one is complete.
 
@@ -137,7 +143,7 @@ def write_device_xml(
         When the program has errors.
     """
     place = check_output_name("output", output, (".xml",), "a device model is XML")
-    program = twin_program(nc, machine=machine, subprograms=subprograms)
+    program = twin_program(nc, machine=machine, subprograms=subprograms, zero=zero, tool_length=tool_length)
     with atomic_file(place, inputs=[Path(file) for file in program.run.files]) as sink:
         sink.write(device_xml(program).encode())
 

@@ -28,8 +28,9 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.device_xml is not None:
         check_outputs([arguments.device_xml], [arguments.file, *arguments.subprograms])
         write_device_xml(
-            arguments.file, machine=arguments.machine, output=arguments.device_xml, subprograms=arguments.subprograms
-        )
+            arguments.file, machine=arguments.machine, output=arguments.device_xml,
+            subprograms=arguments.subprograms, zero=arguments.zero or None, tool_length=arguments.tool_length or None,
+        )  # fmt: skip
         print_result(f"{arguments.device_xml}: written")
         return 0
     serve_twin(

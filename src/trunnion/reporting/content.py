@@ -24,7 +24,7 @@ from trunnion.reporting.recorded_content import RecordedContent, recorded_conten
 from trunnion.reporting.simulation_content import SimulationContent
 from trunnion.reporting.text import clean
 from trunnion.reporting.usage import OperationUsage, ToolUsage, operation_usage, tool_usages
-from trunnion.verification.results import Check, Place, Verification, durations
+from trunnion.verification.results import Check, Place, Verification, durations, moving_seconds
 
 #: Units of a program by whether they are inches.
 _UNITS: Final = {False: "mm", True: "inch"}
@@ -49,6 +49,7 @@ class ReportContent:
     seconds: float
     cutting_seconds: float
     rapid_seconds: float
+    waiting_seconds: float
     untimed: int
     tools: tuple[ToolUsage, ...]
     operations: tuple[OperationUsage, ...]
@@ -70,7 +71,7 @@ def collect_content(
     """Collect the content of a report; the arguments are those of ``trunnion.reporting.write_report``."""
     run, machine = verification.run, verification.machine
     seconds, known = durations(verification)
-    cutting = run.kind != Kind.RAPID
+    cutting, moving = run.kind != Kind.RAPID, moving_seconds(verification)
     return ReportContent(
         program=clean(verification.program),
         machine_key=clean(machine.key),
@@ -81,11 +82,12 @@ def collect_content(
         checks=tuple(map(_clean_check, verification.checks)),
         motions=len(run),
         seconds=math.fsum(seconds),
-        cutting_seconds=math.fsum(seconds[cutting]),
-        rapid_seconds=math.fsum(seconds[~cutting]),
+        cutting_seconds=math.fsum(moving[cutting]),
+        rapid_seconds=math.fsum(moving[~cutting]),
+        waiting_seconds=math.fsum(seconds - moving),
         untimed=int(np.count_nonzero(~known)),
-        tools=tuple(tool_usages(run, seconds, cutting)),
-        operations=tuple(operation_usage(run, each, seconds, cutting) for each in verification.operations),
+        tools=tuple(tool_usages(run, seconds, moving, cutting)),
+        operations=tuple(operation_usage(run, each, seconds, moving, cutting) for each in verification.operations),
         decisions=tuple(map(_clean_decision, decisions)),
         tip=tuple(tip_extent(run, k, cutting) for k in range(3)),
         axes=tuple(axis_extent(run, k, axis) for k, axis in enumerate(machine.axes)),
@@ -116,6 +118,7 @@ def refused_content(machine: Machine, program: str, problems: Sequence[Problem])
         seconds=0.0,
         cutting_seconds=0.0,
         rapid_seconds=0.0,
+        waiting_seconds=0.0,
         untimed=0,
         tools=(),
         operations=(),

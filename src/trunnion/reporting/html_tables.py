@@ -53,6 +53,7 @@ def _title(content: ReportContent) -> str:
         ("Time", format_duration(content.seconds)),
         ("in cuts", format_duration(content.cutting_seconds)),
         ("in rapids", format_duration(content.rapid_seconds)),
+        ("waiting", format_duration(content.waiting_seconds) if content.waiting_seconds > 0.0 else ""),
         ("Made", content.made),
         ("Lengths", _units_text(content.units)),
     ]

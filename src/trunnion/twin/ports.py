@@ -22,6 +22,8 @@ def listen(what: str, host: str, port: int, argument: str) -> socket.socket:
     InputError
         If it is taken, or the address is none of this computer's.
     """
+    if not 0 <= port <= 65535:
+        raise InputError(Problem(what, 0, f"there is no port {port}", f"give {argument} a number up to 65535"))
     try:
         return socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET)
     except (OSError, OverflowError) as error:

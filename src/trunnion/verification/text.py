@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from trunnion.model.toolpath import Kind
-from trunnion.verification.results import Check, Place, Verification
+from trunnion.verification.results import Check, Place, Verification, moving_seconds
 from trunnion.wording import format_duration
 
 
@@ -41,8 +41,8 @@ def time_lines(verification: Verification) -> Iterator[str]:
     """The time of the program and of each operation, if times were asked for."""
     seconds = np.where(np.isfinite(verification.seconds), verification.seconds, 0.0)
     if len(seconds):
-        at_feed = verification.run.kind != Kind.RAPID
-        whole, cutting = (format_duration(float(rows.sum())) for rows in (seconds, seconds[at_feed]))
+        cuts = moving_seconds(verification)[verification.run.kind != Kind.RAPID]
+        whole, cutting = (format_duration(float(rows.sum())) for rows in (seconds, cuts))
         yield f"time: {whole}, {cutting} of it in cuts"
         for operation in verification.operations:
             own = seconds[operation.first : operation.end]

@@ -30,6 +30,9 @@ _WRONG_SECONDS: Final = 30.0
 
 _NAME: Final = re.compile(r"[A-Za-z0-9_.@-]{1,64}")
 
+#: The right of all others to write a POSIX file.
+_WRITE_OF_OTHERS: Final = 0o002
+
 
 class Role(StrEnum):
     """What a user may do: read, or operate the twin as well."""
@@ -97,7 +100,11 @@ def write_user(path: Path, name: str, role: Role, password: str) -> None:
     if not _NAME.fullmatch(name):
         cure = "take 1 to 64 letters, digits or _ . @ -"
         raise InputError(Problem(str(path), 0, f"{name!r} is no name of a user", cure))
-    if len(password) < 8:
+    try:
+        password.encode()
+    except UnicodeEncodeError:
+        raise InputError(Problem(str(path), 0, "the password is no text in UTF-8", "write it in UTF-8")) from None
+    if len(password.strip()) < 8:
         raise InputError(Problem(str(path), 0, "the password is too short", "take 8 characters or more"))
     others = [user for user in _read(path) if user.name != name] if path.exists() else []
     lines = [_line(user) for user in (*others, _hashed(name, role, password))]
@@ -114,6 +121,11 @@ def write_user(path: Path, name: str, role: Role, password: str) -> None:
 
 
 def _read(path: Path) -> list[StoredUser]:
+    if path.exists() and not path.is_file():
+        raise InputError(Problem(str(path), 0, "is no file of users", "name a file"))
+    if os.name == "posix" and path.exists() and path.stat().st_mode & _WRITE_OF_OTHERS:
+        what, cure = "everybody can write it, and so make himself a user", "take that right away: chmod 600"
+        raise InputError(Problem(str(path), 0, what, cure))
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:

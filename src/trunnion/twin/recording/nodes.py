@@ -19,6 +19,7 @@ _NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}", re.ASCII)
 
 #: Columns that every recording has.
 TIMES: Final = ("source", "server", "received", "mark")
+STAMPS: Final = TIMES[:3]
 
 #: Columns of texts, whatever a list says.
 TEXTS: Final = (PROGRAM, "block")
@@ -113,7 +114,7 @@ def _column(name: str, table: Table, namespace: str) -> Column:
         place=place or Place(),
         is_text=table.flag("text", name in TEXTS),
         is_optional=table.flag("optional", False),
-        element=table.integer("element", 0, at_least=0, at_most=10_000),
+        element=table.integer("element", 0, at_least=1, at_most=10_000),
         named_by=named,
     )
     table.report_unread_keys()
