@@ -1,5 +1,7 @@
 """Recordings against the program: what is on the path is found there, what is off it is named by its block."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,7 +11,7 @@ from tests.support.recordings import blade, recorded, with_values
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError
 from trunnion.machines import forward
-from trunnion.model.recording import Mark, Recording, TextColumn
+from trunnion.model.recording import NO_TIME, Mark, Recording, TextColumn
 from trunnion.verification.context import Context, ExpectedValues
 from trunnion.verification.recorded import check_recorded, compare_recording
 from trunnion.verification.recorded.nearest import LEVER, nearest_places
@@ -177,6 +179,40 @@ def test_a_recording_that_goes_back_fails(with_lines: bool) -> None:
     parts = np.array_split(np.arange(len(good)), 12)
     again = np.concatenate([*parts[:7], *parts[4:]])  # through a part of the program once more
     assert not checked(rows_of(good, again)).passed
+
+
+@pytest.mark.parametrize("with_lines", [True, False])
+def test_a_machine_may_run_the_program_once_more_while_nobody_sees_it(with_lines: bool) -> None:
+    good = recorded(blade(), np.union1d(times(), blade().ends), with_lines=with_lines)
+    first, rest = np.arange(2 * len(good) // 3), np.arange(len(good) // 3, len(good))
+    gap = len(first)
+    cut = rows_of(good, np.concatenate([first, [0, 0], rest]))
+    cut.source[gap] = NO_TIME
+    cut.source[gap + 2 :] += good.source[-1] - good.source[0]
+    cut.received[gap:] = cut.source[gap + 2]  # a value that had not changed since the start was read there as well
+    cut.received[gap + 2 :] = cut.source[gap + 2 :]
+    for column in cut.values.values():
+        column[gap : gap + 2] = np.nan
+    marked = replace(cut, marks={gap: (Mark.GAP,)})
+    assert checked(marked).passed, checked(marked).summary
+    check = checked(cut)
+    assert not check.passed
+    assert "its time falls" in check.summary
+    assert not with_lines or "1 more place" in check.summary
+
+
+def test_motions_of_a_run_that_nobody_saw_begin_are_in_the_gap() -> None:
+    moments = np.union1d(times(), blade().ends)
+    good, rows = recorded(blade(), moments), blade().at(moments).row
+    before, after = np.flatnonzero((rows >= 70) & (rows < 110)), np.flatnonzero((rows >= 100) | (rows < 40))
+    after = np.concatenate([after[rows[after] >= 100], after[rows[after] < 40]])
+    cut = rows_of(good, np.concatenate([before, after]))
+    rising = good.source[0] + 20_000 * np.arange(len(cut))
+    cut = replace(cut, source=rising, received=rising)
+    assert any("were not recorded" in place.text for place in checked(cut).places)
+    check = checked(replace(cut, marks={len(before): (Mark.GAP,)}))
+    assert check.passed, check.summary
+    assert "while the connection was broken" in check.summary
 
 
 def test_lines_that_go_back_are_told_of_their_block() -> None:

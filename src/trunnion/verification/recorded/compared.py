@@ -137,7 +137,7 @@ def compare_recording(run: Run, recording: Recording, tolerance: float) -> Recor
         tolerance=tolerance,
         foreign=int((whole & apart).sum()),
         strange=np.flatnonzero(told.strange),
-        back=told.goes_back(len(run)),
+        back=told.goes_back(len(run), recording.marked(Mark.GAP)),
         outside=int((usable & gone).sum()),
         incomplete=int((~whole & (recording.source >= 0)).sum()),
         name=told.name,
@@ -246,6 +246,8 @@ class _Walk:
         """The piece of the next position; -1: it is none of the path."""
         if self._now < 0 or anew:
             begun = self._near(tip, axis, max(self._now, 0), len(self._path))
+            if begun < 0 <= self._now:  # it may run once more
+                begun = self._near(tip, axis, 0, self._now)
             if begun >= 0 or self._now < 0:
                 self._now = begun
                 return begun

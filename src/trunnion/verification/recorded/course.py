@@ -47,8 +47,9 @@ def faults(run: Run, compared: RecordedComparison) -> Iterator[Fault]:
     stated = np.flatnonzero(recording.source != NO_TIME)
     if len(recording) and not len(stated):
         yield Fault(0, -1, "no row of the recording says when it was")
-    falls = stated[1:][np.diff(recording.source[stated]) < 0]
-    falls = falls[~recording.marked(Mark.BACK, Mark.GAP)[falls]]
+    # What is read first after a gap may be older than the gap: values that have not changed since.
+    marks = np.cumsum(recording.marked(Mark.BACK, Mark.GAP))[stated]
+    falls = stated[1:][(np.diff(recording.source[stated]) < 0) & (np.diff(marks) == 0)]
     if len(falls):
         text = f"its time falls {len(falls)} times" if len(falls) > 1 else "its time falls"
         yield Fault(int(falls[0]), int(compared.row[falls[0]]), f"{text}, and no row is marked back")
@@ -125,6 +126,9 @@ def coverage(run: Run, compared: RecordedComparison) -> Coverage:
             covered[between] = True
         elif gaps[at[k + 1]] > gaps[at[k]]:
             broken[between] = True
+    for k in np.flatnonzero((np.diff(compared.row[at]) < 0) & (np.diff(gaps[at]) > 0)).tolist():
+        broken[int(compared.row[at[k]]) + 1 :] = True  # the program went to its end unseen, and ran once more
+        broken[: int(compared.row[at[k + 1]])] = True
     moves = compared.moves
     rows = np.flatnonzero(covered & moves)
     first, last = (int(rows[0]), int(rows[-1])) if len(rows) else (0, -1)

@@ -42,15 +42,19 @@ class ToldRows:
     strange: Flags
     name: str = ""
 
-    def goes_back(self, n: int) -> Ints:
-        """Positions at which the machine is in an earlier row of n than before, and does not run it once more."""
+    def goes_back(self, n: int, gaps: Flags) -> Ints:
+        """Positions at which the machine is in an earlier row of n than before, and does not run it once more.
+
+        Nobody knows whether it did in ``gaps`` (k,), the positions before which the connection was broken.
+        """
         at = np.flatnonzero(self.row >= 0)
         rows = self.row[at]
         falls = np.flatnonzero(np.diff(rows) < 0)
         stopped = np.concatenate(([0], np.cumsum(self.row == BEFORE)))
         ended = (rows[falls] >= n - 1 - n // _TENTH) | (stopped[at[falls + 1]] > stopped[at[falls]])
         again = ended & (rows[falls + 1] <= max(_BEGINNING, n // _TENTH))
-        return np.asarray(at[falls + 1][~again])
+        broken = np.cumsum(gaps)[at]
+        return np.asarray(at[falls + 1][~again & (broken[falls + 1] == broken[falls])])
 
 
 def told_rows(run: Run, recording: Recording) -> ToldRows:
