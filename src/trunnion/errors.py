@@ -4,8 +4,8 @@
     ├── InputError           a file, a definition or a command cannot be used           (exit 2)
     └── RefusedError         the input is understood, but its program must not run      (exit 1)
 
-A Problem prints as ``file:line: error: what is wrong; how to correct it``, from which editors and
-CI systems jump to the line.
+A Problem prints as ``file:line: error: what is wrong; how to correct it [CODE]``, from which editors and
+CI systems jump to the line. ``trunnion.explanations`` knows what each code means.
 """
 
 import stat
@@ -38,6 +38,7 @@ class Problem:
     what  the fault
     cure  how to correct it; may be empty
     key   of a definition, from its root, such as ``axis[1].limits_deg``; empty elsewhere
+    code  of what kind it is, such as ``CL110``: stays the same while messages change
     """
 
     file: str
@@ -46,12 +47,14 @@ class Problem:
     cure: str = ""
     severity: Severity = Severity.ERROR
     key: str = ""
+    code: str = ""
 
     def __str__(self) -> str:
-        """Return ``file:line: severity: what; cure``."""
+        """Return ``file:line: severity: what; cure [code]``."""
         place = f"{self.file}:{self.line}" if self.line else self.file
         cure = f"; {self.cure}" if self.cure else ""
-        return one_line(f"{place}: {self.severity}: {self.what}{cure}")
+        code = f" [{self.code}]" if self.code else ""
+        return one_line(f"{place}: {self.severity}: {self.what}{cure}{code}")
 
 
 def merge_repeated(problems: Iterable[Problem]) -> tuple[Problem, ...]:
@@ -65,9 +68,11 @@ def merge_repeated(problems: Iterable[Problem]) -> tuple[Problem, ...]:
     )
 
 
-def argument_problem(name: str, what: str, cure: str = "", severity: Severity = Severity.ERROR) -> Problem:
+def argument_problem(
+    name: str, what: str, cure: str = "", severity: Severity = Severity.ERROR, *, code: str = ""
+) -> Problem:
     """Return a problem with an argument of a function of the library."""
-    return Problem(ArgumentName(name), 0, what, cure, severity)
+    return Problem(ArgumentName(name), 0, what, cure, severity, code=code)
 
 
 def unusable_file(path: Path, what: str) -> Problem | None:

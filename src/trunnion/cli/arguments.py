@@ -169,6 +169,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     _add_machines(commands.add_parser("machines", help="list the machines, or print one definition"))
     _add_controls(commands.add_parser("controls", help="list the controls, or explain one with all its settings"))
     _add_check(commands.add_parser("check", help="validate the definition of a machine or a control"))
+    _add_explain(commands.add_parser("explain", help="say what a code of a message, or a check, means"))
     return parser, commands.choices
 
 
@@ -465,3 +466,9 @@ def _add_check(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="NAME_OR_FILE", help="definition to validate: a TOML file, or a shipped one")
     parser.add_argument("--json", action="store_true", help="what it means as data in place of text")
     parser.set_defaults(run=_lazy_command("definitions", "check"))
+
+
+def _add_explain(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("codes", nargs="*", metavar="CODE", help="as messages end with it, such as CL110, or a check")
+    parser.add_argument("--json", action="store_true", help="print it as data")
+    parser.set_defaults(run=_lazy_command("explain", "explain"))
