@@ -83,10 +83,16 @@ def unusable_file(path: Path, what: str) -> Problem | None:
     except (OSError, ValueError) as error:  # also names that no system allows
         is_missing = isinstance(error, FileNotFoundError | NotADirectoryError)
         reason = getattr(error, "strerror", None) or error
-        return Problem(str(path), 0, "file not found" if is_missing else f"cannot be read: {reason}", cure)
+        if is_missing:
+            return Problem(str(path), 0, "file not found", cure, code="FIL110")
+        return Problem(str(path), 0, f"cannot be read: {reason}", cure, code="FIL120")
     if stat.S_ISDIR(mode):
-        return Problem(str(path), 0, f"is a folder, not {what}", cure)
-    return None if stat.S_ISREG(mode) else Problem(str(path), 0, f"is not a regular file, but {what} is one", cure)
+        return Problem(str(path), 0, f"is a folder, not {what}", cure, code="FIL130")
+    return (
+        None
+        if stat.S_ISREG(mode)
+        else Problem(str(path), 0, f"is not a regular file, but {what} is one", cure, code="FIL130")
+    )
 
 
 class TrunnionError(Exception):

@@ -48,10 +48,10 @@ def check_statements(machine: Machine) -> None:
     what, cure = "is a statement that is read: the entry would never count", "leave it out"
     table = resolve_extends(machine.control.unread_copy(), control_library()).table("statements")
     for name in [name for name in list(table.keys()) if not can_be_unknown(name)]:
-        table.add_problem(name, what, cure)
+        table.add_problem(name, what, cure, code="DEF550")
     file = machine.files[-1] if machine.files else machine.key
     words = [word for word in machine.cl_words if not can_be_unknown(word)]
-    problems = [*table.problems, *(Problem(file, 0, f"cl.words.{word} {what}", cure) for word in words)]
+    problems = [*table.problems, *(Problem(file, 0, f"cl.words.{word} {what}", cure, code="DEF550") for word in words)]
     if problems:
         raise InputError(problems)
 
@@ -74,7 +74,7 @@ def replace_unknown_statements(
     found = [(toolpath, _replaced(toolpath, entries)) for toolpath in toolpaths]
     problems = [problem for _, new in found for problem in unknown_statement_errors(new, _CURE)]
     if len(problems) > _MOST_LISTED:
-        more = Problem(problems[0].file, 0, f"and {len(problems) - _MOST_LISTED} more")
+        more = Problem(problems[0].file, 0, f"and {len(problems) - _MOST_LISTED} more", code="CL180")
         problems = [*problems[:_MOST_LISTED], more]
     if problems:
         raise InputError(problems)
@@ -124,4 +124,4 @@ def _events(machine: Machine, word: str, text: str) -> tuple[Event, ...]:
         return events_of(text)
     except StatementError as error:
         file = machine.files[-1] if machine.files else machine.key
-        raise InputError(Problem(file, 0, f"[cl.words] {word}: {error.what}", error.cure)) from None
+        raise InputError(Problem(file, 0, f"[cl.words] {word}: {error.what}", error.cure, code=error.code)) from None

@@ -73,7 +73,13 @@ def insert_problems(program: Program) -> list[Problem]:
                 if not effect:
                     continue
                 problems.append(
-                    Problem(program.file_of(motion.operation), lines[text], f"INSERT/{text.strip()}: {effect}", _CURE)
+                    Problem(
+                        program.file_of(motion.operation),
+                        lines[text],
+                        f"INSERT/{text.strip()}: {effect}",
+                        _CURE,
+                        code="CTL455",
+                    )
                 )
                 if len(problems) >= _MOST_LISTED:
                     return problems

@@ -101,7 +101,7 @@ def load_toolpaths(
         _check_units_of(toolpaths)
     toolpaths = replace_unknown_statements(toolpaths, job.control.statements, job.machine)
     if not toolpaths:
-        raise InputError(argument_problem("cl", "there is no CL file", "give at least one"))
+        raise InputError(argument_problem("cl", "there is no CL file", "give at least one", code="ARG130"))
     if job.has_normals:
         from trunnion.cl.surface_normals import with_normals
 
@@ -114,7 +114,9 @@ def load_toolpaths(
 def _check_units_of(toolpaths: Iterable[Toolpath]) -> None:
     """Raise ``InputError`` for a CL file that would be taken for one in mm while the program counts in inches."""
     what, cure = "nothing says whether it is in mm or inches", "write setting cl_units=mm or setting cl_units=inch"
-    unknown = [Problem(toolpath.file, 0, what, cure) for toolpath in toolpaths if not toolpath.states_unit]
+    unknown = [
+        Problem(toolpath.file, 0, what, cure, code="CL410") for toolpath in toolpaths if not toolpath.states_unit
+    ]
     if unknown:
         raise InputError(unknown)
 
@@ -135,7 +137,12 @@ def _settings_of_twins(own: Mapping[str, object], cut: Sequence[tuple[str, str]]
     cure = "rename one of them in the CL file if it must not have it"
     return [
         Problem(
-            file, 0, f"{names.count(name)} operations are called {name}: all have its settings", cure, Severity.WARNING
+            file,
+            0,
+            f"{names.count(name)} operations are called {name}: all have its settings",
+            cure,
+            Severity.WARNING,
+            code="ARG270",
         )
         for name, file in {name: file for file, name in reversed(cut) if name in own}.items()
         if names.count(name) > 1
@@ -186,7 +193,7 @@ def plan_program(
     found = [*merge_repeated(planned.problems), *conflicts, *insert_problems(program)]
     blocking = [problem for problem in found if problem.severity is Severity.ERROR] + unproven
     if blocking and not job.force:
-        refused = Problem(file, 0, "no program is written", job.forcing)
+        refused = Problem(file, 0, "no program is written", job.forcing, code="CTL940")
         raise RefusedError((*found, *unproven, refused))
     observer.problems(found)
     notices = [f"{FORCED_NOTICE}, written by --force: {problem.what}" for problem in blocking]
@@ -198,4 +205,4 @@ def _missing_reader(job: PostJob) -> list[Problem]:
     if readers.can_read(job.machine):
         return []
     what = f"programs for {job.control.name} cannot be read back yet: nothing proves this one"
-    return [Problem(job.machine.key, 0, what)]
+    return [Problem(job.machine.key, 0, what, code="CTL920")]

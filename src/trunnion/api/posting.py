@@ -249,7 +249,7 @@ def _nothing_checked(job: PostJob, target: Target) -> Problem:
     """The warning of a forced program that no reader can read."""
     what = "it is written by force, and nothing has been checked"
     lost = "" if job.report is None else ": there is no report"
-    return Problem(target.name, 0, f"{what}{lost}", severity=Severity.WARNING)
+    return Problem(target.name, 0, f"{what}{lost}", severity=Severity.WARNING, code="CTL930")
 
 
 def _proof_failed(result: PostResult, forcing: str) -> ProofFailedError:
@@ -257,5 +257,5 @@ def _proof_failed(result: PostResult, forcing: str) -> ProofFailedError:
     failed = "; ".join(f"{check.summary} ({check.key})" for check in result.checks if not check.passed)
     what = f"the program fails its proof: {failed}"
     cure = "; ".join(filter(None, ("no program is written", forcing)))
-    problem = Problem(result.toolpaths[0].file, 0, what, cure)
+    problem = Problem(result.toolpaths[0].file, 0, what, cure, code="CTL910")
     return ProofFailedError(problem, result)

@@ -31,7 +31,9 @@ def unknown_statements(toolpath: Toolpath) -> list[list[UnknownStatement]]:
 def unknown_statement_remarks(toolpath: Toolpath) -> tuple[Problem, ...]:
     """What is not known in a toolpath, as warnings: one for all statements alike."""
     return merge_repeated(
-        Problem(toolpath.file, event.line, event.what, _CURE if event.acts else _NO_EFFECT, Severity.WARNING)
+        Problem(toolpath.file, event.line, event.what, _CURE, Severity.WARNING, code="CL210")
+        if event.acts
+        else Problem(toolpath.file, event.line, event.what, _NO_EFFECT, Severity.WARNING, code="CL220")
         for event in _unknown_events(toolpath)
     )
 
@@ -39,7 +41,9 @@ def unknown_statement_remarks(toolpath: Toolpath) -> tuple[Problem, ...]:
 def unknown_statement_errors(toolpath: Toolpath, cure: str) -> tuple[Problem, ...]:
     """Why no program is made of a toolpath: statements that are not known and may change the machine."""
     return merge_repeated(
-        Problem(toolpath.file, event.line, event.what, cure) for event in _unknown_events(toolpath) if event.acts
+        Problem(toolpath.file, event.line, event.what, cure, code="CL210")
+        for event in _unknown_events(toolpath)
+        if event.acts
     )
 
 

@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from importlib import import_module
-from typing import Any, Final, cast
+from typing import Any, Final, NoReturn, cast
 
 from trunnion import __version__
 from trunnion.cli.twin_arguments import add_machine_access, add_record, add_twin
@@ -16,6 +16,13 @@ def _key_value(text: str) -> tuple[str, str]:
     if not equals or not key:
         raise argparse.ArgumentTypeError(f"{text!r} is not a setting; write KEY=VALUE")
     return key, value
+
+
+class _Parser(argparse.ArgumentParser):
+    """Ends with the code of its message; its subparsers are of its class."""
+
+    def error(self, message: str) -> NoReturn:
+        super().error(f"{message} [{_USAGE}]")
 
 
 class _Setting(argparse.Action):
@@ -37,6 +44,9 @@ class _Setting(argparse.Action):
             )
         setattr(namespace, self.dest, [*settings, (key, value)])
 
+
+#: The code of a command line that cannot be understood.
+_USAGE: Final = "ARG120"
 
 #: An option in a line of usage.
 _OPTION: Final = re.compile(r"--[a-z][a-z-]*")
@@ -145,9 +155,7 @@ def _unknown_option(words: Sequence[str], command: argparse.ArgumentParser) -> s
 @cache
 def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentParser]]:
     """The parser of the command line, and those of the commands."""
-    parser = argparse.ArgumentParser(
-        prog="trunnion", description="CL files to proven NC programs for five-axis machine tools."
-    )
+    parser = _Parser(prog="trunnion", description="CL files to proven NC programs for five-axis machine tools.")
     parser.add_argument("--version", action="version", version=f"trunnion {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True, dest="command")
     _add_post(commands.add_parser("post", help="write the NC program of one or more CL files"))

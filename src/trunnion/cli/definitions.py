@@ -79,4 +79,4 @@ def _check_is_known(name: str) -> None:
     near = did_you_mean(name, known)
     cure = f"{near} " if near else ""
     cure += f"write the path of a .toml file, or one of {', '.join(known)}"
-    raise InputError(Problem(name, 0, "there is no shipped machine or control of this name", cure))
+    raise InputError(Problem(name, 0, "there is no shipped machine or control of this name", cure, code="DEF110"))

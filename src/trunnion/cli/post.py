@@ -26,7 +26,9 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[list[Toolpath]]) -> 
     targets = _files_by_target(arguments, machine)
     if arguments.report is not None and len(targets) > 1:
         what = f"one report for {len(targets)} programs"
-        raise InputError(Problem(arguments.report, 0, what, "post them one at a time, or leave --report out"))
+        raise InputError(
+            Problem(arguments.report, 0, what, "post them one at a time, or leave --report out", code="ARG130")
+        )
     read = [*named_files(arguments.files), *definition_files(arguments.machine, machine)]
     report = [] if arguments.report is None else [arguments.report]
     check_outputs([*(target for target in targets if target != "-"), *report], read)
@@ -72,7 +74,7 @@ def _simulation(arguments: argparse.Namespace) -> dict[str, object] | None:
         return stated
     if stated:
         what = "is only for a simulation, and none is asked for"
-        raise InputError(argument_problem(next(iter(stated)), what, "add --simulate, or leave it out"))
+        raise InputError(argument_problem(next(iter(stated)), what, "add --simulate, or leave it out", code="ARG130"))
     return None
 
 
@@ -102,7 +104,9 @@ def _files_by_target(arguments: argparse.Namespace, machine: Machine) -> dict[st
     if place == "-":
         return {"-": files}
     if place is None and len(files) > 1:
-        raise InputError(Problem("post", 0, "several CL files, and no output named", "write --output FILE or FOLDER"))
+        raise InputError(
+            Problem("post", 0, "several CL files, and no output named", "write --output FILE or FOLDER", code="FIL270")
+        )
     into = output_folder(place)
     if into is None:
         _check_joined(place, files, machine)
@@ -113,7 +117,9 @@ def _files_by_target(arguments: argparse.Namespace, machine: Machine) -> dict[st
         targets.setdefault(str(into / (result_stem(file) + extension)), []).append(file)
     twice = next((files for files in targets.values() if len(files) > 1), None)
     if twice:
-        raise InputError(Problem(twice[1], 0, f"would write over the program of {twice[0]}", "rename one of them"))
+        raise InputError(
+            Problem(twice[1], 0, f"would write over the program of {twice[0]}", "rename one of them", code="FIL240")
+        )
     return targets
 
 
@@ -124,4 +130,4 @@ def _check_joined(place: str, files: Sequence[str], machine: Machine) -> None:
     extension = load_control(machine.control).extension
     if extension:
         cure = f"make it first for one program a CL file, or name one program of all, such as {place}{extension}"
-        raise InputError(Problem(place, 0, "there is no such folder", cure))
+        raise InputError(Problem(place, 0, "there is no such folder", cure, code="FIL220"))

@@ -23,17 +23,22 @@ def check_templates(table: Table, control: Control) -> None:
     known = COMMON_TEMPLATE_FIELDS | control.family.TEMPLATE_FIELDS | control.settings.keys()
     call = control.templates.get(SUBPROGRAM_TEMPLATES[0])
     if call is not None and "subprogram" not in {name for name, _ in call.fields()}:
-        table.add_problem(call.name, "does not say which subprogram it calls", "write {subprogram} in it")
+        table.add_problem(
+            call.name, "does not say which subprogram it calls", "write {subprogram} in it", code="DEF510"
+        )
     for template in control.templates.values():
         for text in template.unread_fields():
             cure = "write {name} or {name:format}, and a part that may be left out in [[ ]]"
-            table.add_problem(template.name, f"has a brace that belongs to no field: {text.strip()!r}", cure)
+            table.add_problem(
+                template.name, f"has a brace that belongs to no field: {text.strip()!r}", cure, code="DEF510"
+            )
         for name, _ in sorted(template.fields()):
             if name not in known:
                 table.add_problem(
                     template.name,
                     f"prints {{{name}}}, which is neither a template field nor a setting",
                     f"write one of {', '.join(sorted(known))}, or add it to [control.settings]",
+                    code="DEF510",
                 )
         for name, number_format in sorted(template.fields() | template.numbers()):
             if number_format and number_format not in control.formats:
@@ -41,6 +46,7 @@ def check_templates(table: Table, control: Control) -> None:
                     template.name,
                     f"prints {{{name}:{number_format}}}, but there is no format {number_format!r}",
                     f"write one of {', '.join(sorted(control.formats))}",
+                    code="DEF510",
                 )
 
 
@@ -55,7 +61,7 @@ def check_formats(entries: Sequence[Table], control: Control) -> None:
             near = did_you_mean(name, control.formats.keys() - {name})
             cure = f"{near} " if near else ""
             cure += "write the name of the format to change, or print it in a word or a template"
-            entry.add_problem("name", f"is {name!r}, a format that nothing prints", cure)
+            entry.add_problem("name", f"is {name!r}, a format that nothing prints", cure, code="DEF515")
 
 
 def check_setting_names(table: Table, control: Control) -> None:
@@ -64,7 +70,7 @@ def check_setting_names(table: Table, control: Control) -> None:
     for name in list(table.keys()):
         if name in RUN_ONLY_SETTINGS:
             cure = f"leave it out, and give it to each run: setting {name}={table.to_dict()[name]}"
-            table.add_problem(name, "is a setting of a run, which a definition cannot set", cure)
+            table.add_problem(name, "is a setting of a run, which a definition cannot set", cure, code="DEF520")
         elif name in fields:
             what = "is a template field, whose value comes from the job, and no setting"
-            table.add_problem(name, what, "give the setting another name")
+            table.add_problem(name, what, "give the setting another name", code="DEF520")

@@ -59,7 +59,7 @@ def in_units(control: Control, units: str) -> Control:
     if INCH not in control.unit_words:
         what = f"units is inch, and {control.name} has no words for programs in inches here"
         cure = "leave it out, or write the words under [control.units] and the formats for inches (inch = {…})"
-        raise InputError(argument_problem("settings", what, cure))
+        raise InputError(argument_problem("settings", what, cure, code="ARG250"))
     problems = [*_format_problems(control), *_template_problems(control)]
     if problems:
         raise InputError(problems)
@@ -113,7 +113,7 @@ def _format_problems(control: Control) -> Iterator[Problem]:
         else:
             what = f"word {word.name} is no length, and its format {word.format!r} would print it in inches"
             cure = "give it a format of its own"
-        yield Problem(control.name, 0, what, cure)
+        yield Problem(control.name, 0, what, cure, code="DEF540")
 
 
 def _template_problems(control: Control) -> Iterator[Problem]:
@@ -149,4 +149,4 @@ def _field_problems(
 
 
 def _problem(template: Template, line: int, what: str, cure: str) -> Problem:
-    return Problem(template.file, template.line + line + 1 if template.line else 0, what, cure)
+    return Problem(template.file, template.line + line + 1 if template.line else 0, what, cure, code="DEF540")

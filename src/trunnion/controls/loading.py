@@ -111,7 +111,9 @@ def load_control(own: Table) -> Control:
     )
     defined = {word.name for word in control.words}
     for missing in dict.fromkeys(name for name in words if name not in defined):
-        table.add_problem("word", f"has no entry {missing!r}, which programs of this family need", "write it")
+        table.add_problem(
+            "word", f"has no entry {missing!r}, which programs of this family need", "write it", code="DEF530"
+        )
     check_templates(templates, control)
     check_formats(table.tables("format"), control)
     check_setting_names(settings, control)
@@ -126,7 +128,9 @@ def _load_family(table: Table) -> FamilyWriter:
     key = table.text("family")
     if key not in FAMILIES:
         known = ", ".join(FAMILIES)
-        table.add_problem("family", f"is {key!r}, for which no programs can be written yet", f"write one of {known}")
+        table.add_problem(
+            "family", f"is {key!r}, for which no programs can be written yet", f"write one of {known}", code="DEF530"
+        )
         table.raise_problems()
     table.mark_read("reading", "known")  # only for the readers of programs
     family: FamilyWriter = load_writer(key)
@@ -145,7 +149,7 @@ def _read_format(entry: Table) -> FormatPair:
     zero = entry.text("zero", "")
     least, greatest = entry.number("least", -99999999.0), entry.number("greatest", 99999999.0)
     if len(zero) > 8:
-        entry.add_problem("zero", f"is {zero!r}", "write at most 8 characters")
+        entry.add_problem("zero", f"is {zero!r}", "write at most 8 characters", code="DEF515")
         zero = ""
     pair = [
         NumberFormat(n, zero=zero, least=least, greatest=greatest, **common) for n in (decimals, decimals_three_axis)
@@ -181,10 +185,10 @@ def _read_word(entry: Table, formats: Mapping[str, FormatPair], words: Sequence[
     closing = entry.text("closing", "")
     most = 4 if rotary else 8
     if len(letter.encode()) > most:
-        entry.add_problem("letter", f"is {letter!r}", f"write at most {most} characters")
+        entry.add_problem("letter", f"is {letter!r}", f"write at most {most} characters", code="DEF530")
         letter = letter[:1]
     if len(closing.encode()) > 1:
-        entry.add_problem("closing", f"is {closing!r}", "write one character")
+        entry.add_problem("closing", f"is {closing!r}", "write one character", code="DEF530")
         closing = ""
     bare = entry.flag("bare", False)
     number_format = "" if bare else entry.text("format", one_of=tuple(formats))
@@ -196,7 +200,9 @@ def _read_word(entry: Table, formats: Mapping[str, FormatPair], words: Sequence[
 def _read_extension(table: Table) -> str:
     extension = table.text("extension")
     if not re.fullmatch(r"\.[\w.+-]*\w", extension):
-        table.add_problem("extension", f"is {extension!r}", 'write a point and what follows it, such as ".mpf"')
+        table.add_problem(
+            "extension", f"is {extension!r}", 'write a point and what follows it, such as ".mpf"', code="DEF330"
+        )
     return extension
 
 
@@ -212,7 +218,7 @@ def _read_block_numbers(table: Table) -> BlockNumbers:
     )
     if numbers.highest < numbers.start:
         what = f"is {numbers.highest}, but the numbers start at {numbers.start}"
-        table.add_problem("highest", what, "write a greater one")
+        table.add_problem("highest", what, "write a greater one", code="DEF330")
     table.report_unread_keys()
     return numbers
 
@@ -249,7 +255,9 @@ def _read_statements(table: Table) -> dict[str, str]:
     found = {statement: table.text(statement) for statement in list(table.keys())}
     for statement, line in found.items():
         if any(ord(character) < 32 for character in line):
-            table.add_problem(statement, "has a line break or a control character in it", "write one line of a program")
+            table.add_problem(
+                statement, "has a line break or a control character in it", "write one line of a program", code="DEF550"
+            )
     report_twins(table, statement_form)
     table.report_unread_keys()
     return found
@@ -268,7 +276,7 @@ def _read_setting_meanings(table: Table, settings: Table, family: FamilyWriter) 
     own = {name: table.text(name) for name in list(table.keys())}
     for name in own:
         if name not in settings and name not in family.SETTING_CHOICES:
-            table.add_problem(name, "explains no setting", "add the setting to [control.settings]")
+            table.add_problem(name, "explains no setting", "add the setting to [control.settings]", code="DEF520")
     table.report_unread_keys()
     return {**family.SETTING_MEANINGS, **own}
 
@@ -277,17 +285,19 @@ def _check_settings(table: Table, by_method: Sequence[Table], control: Control) 
     """Report defaults that their own rules do not allow."""
     for name, value in control.settings.items():
         if name == "preselect" and value == "on" and not control.family.tool_preselection("1"):
-            table.add_problem(name, "is 'on', and it is not known how this control selects tools", "leave it out")
+            table.add_problem(
+                name, "is 'on', and it is not known how this control selects tools", "leave it out", code="DEF520"
+            )
         cure = control.setting_cure(name, value)
         if cure and name in table:
-            table.add_problem(name, f"is {value!r}", cure)
+            table.add_problem(name, f"is {value!r}", cure, code="DEF520")
     for name, cure in control.family.validate_settings(control.settings):
-        table.add_problem(name, f"is {control.settings[name]!r}", cure)
+        table.add_problem(name, f"is {control.settings[name]!r}", cure, code="DEF520")
     for entry in by_method:
         value = entry.text("value")
         cure = control.setting_cure(entry.text("setting"), value)
         if cure:
-            entry.add_problem("value", f"is {value!r}", cure)
+            entry.add_problem("value", f"is {value!r}", cure, code="DEF520")
 
 
 def _read_method_defaults(entries: Sequence[Table], settings: Table) -> dict[str, tuple[tuple[str, str], ...]]:
@@ -308,7 +318,9 @@ def _read_arc_rules(table: Table, words: Sequence[str]) -> ArcRules:
         multi_turn=table.flag("turns", True),
     )
     if rules.by_radius and not set(RADIUS_ARC_WORDS) <= set(words):
-        table.add_problem("by", "is 'radius', and the control's family has no words for that", "leave it out")
+        table.add_problem(
+            "by", "is 'radius', and the control's family has no words for that", "leave it out", code="DEF530"
+        )
     table.report_unread_keys()
     return rules
 

@@ -100,7 +100,13 @@ class Template:
             return float(value)
         except ValueError:
             raise InputError(
-                Problem(self.file, self.line, f"setting {name} is {value!r}", f"write a number: setting {name}=0.5")
+                Problem(
+                    self.file,
+                    self.line,
+                    f"setting {name} is {value!r}",
+                    f"write a number: setting {name}=0.5",
+                    code="ARG220",
+                )
             ) from None
 
 

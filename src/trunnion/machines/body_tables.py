@@ -32,7 +32,7 @@ def read_bodies(table: Table, axis_names: Sequence[str]) -> tuple[MachineBody, .
     """Return the bodies of a definition; mistakes become problems of the table."""
     entries = table.tables("body")
     if len(entries) > MAX_BODIES:
-        table.add_problem("body", f"has {len(entries)} tables", f"write at most {MAX_BODIES}")
+        table.add_problem("body", f"has {len(entries)} tables", f"write at most {MAX_BODIES}", code="DEF450")
         return ()
     bodies = [_body(entry, axis_names) for entry in entries]
     seen: dict[str, int] = {}
@@ -40,7 +40,7 @@ def read_bodies(table: Table, axis_names: Sequence[str]) -> tuple[MachineBody, .
         if body.name and body.name.casefold() in seen:
             file, line = entries[seen[body.name.casefold()]].location("name")
             what = f'is "{body.name}", the name of another body too ({file}:{line})'
-            entries[k].add_problem("name", what, "give every body its own name")
+            entries[k].add_problem("name", what, "give every body its own name", code="DEF430")
         seen.setdefault(body.name.casefold(), k)
     return tuple(bodies)
 
@@ -49,12 +49,15 @@ def _body(entry: Table, axis_names: Sequence[str]) -> MachineBody:
     name = entry.text("name")
     if name != name.strip() or any(not letter.isprintable() for letter in name):
         entry.add_problem(
-            "name", "begins or ends with blanks, or has letters that cannot be printed", "write it plainly"
+            "name",
+            "begins or ends with blanks, or has letters that cannot be printed",
+            "write it plainly",
+            code="DEF430",
         )
     link = entry.text("link", one_of=(*axis_names, *FIXED_LINKS))
     colour = entry.text("colour", PLAIN_COLOUR)
     if not _COLOUR.fullmatch(colour):
-        entry.add_problem("colour", f'is "{colour}"', 'write "#rrggbb", such as "#9aa0a6"')
+        entry.add_problem("colour", f'is "{colour}"', 'write "#rrggbb", such as "#9aa0a6"', code="DEF450")
     shape = entry.text("shape", one_of=SHAPES)
     file, unit = entry.text("file", None), entry.text("unit", None, one_of=("mm", "inch", "m"))
     size, centre = entry.vector("size_mm", 3, None), entry.vector("centre_mm", 3, None)
@@ -64,7 +67,10 @@ def _body(entry: Table, axis_names: Sequence[str]) -> MachineBody:
     entry.report_unread_keys()
     for key in _foreign_keys(entry, shape):
         entry.add_problem(
-            key, f'is given for shape = "{shape}"', "remove it; a body of another shape needs a name of its own"
+            key,
+            f'is given for shape = "{shape}"',
+            "remove it; a body of another shape needs a name of its own",
+            code="DEF450",
         )
     made: BodyBox | BodyCylinder | BodyFile
     if shape == "cylinder":
@@ -79,7 +85,10 @@ def _body(entry: Table, axis_names: Sequence[str]) -> MachineBody:
             _need(entry, "size_mm", "centre_mm")
         if size is not None and min(size) <= 0.0:
             entry.add_problem(
-                "size_mm", "has a side that is not above 0", "write [x, y, z], all above 0, in millimetres"
+                "size_mm",
+                "has a side that is not above 0",
+                "write [x, y, z], all above 0, in millimetres",
+                code="DEF450",
             )
         made = BodyBox(_vector(size), _vector(centre), turn)
     return MachineBody(name, link, made, colour, entry.location("name"))
@@ -101,7 +110,7 @@ def _need(entry: Table, *keys: str) -> None:
                 "length_mm": "a number above 0",
                 "file": "the name of a mesh file",
             }
-            entry.add_problem(key, "is missing", f"write {cures.get(key, '[x, y, z]')}")
+            entry.add_problem(key, "is missing", f"write {cures.get(key, '[x, y, z]')}", code="DEF310")
 
 
 def _check_file(entry: Table, file: str | None) -> None:
@@ -110,9 +119,9 @@ def _check_file(entry: Table, file: str | None) -> None:
     pure = PurePosixPath(file)
     cure = f"write the path of a mesh ({', '.join(MESH_ENDINGS)}) in the folder of the definition or below it"
     if pure.is_absolute() or ".." in pure.parts or re.search(r"[\\:\x00-\x1f]", file) or len(file) > 1000:
-        entry.add_problem("file", "leads out of the folder of the definition", cure)
+        entry.add_problem("file", "leads out of the folder of the definition", cure, code="DEF455")
     elif pure.suffix.lower() not in MESH_ENDINGS:
-        entry.add_problem("file", f'is "{file}"', cure)
+        entry.add_problem("file", f'is "{file}"', cure, code="DEF455")
 
 
 def _unit_vector(entry: Table, numbers: Sequence[float] | None) -> Vector:
@@ -121,7 +130,7 @@ def _unit_vector(entry: Table, numbers: Sequence[float] | None) -> Vector:
         return 0.0, 0.0, 1.0
     largest = max(map(abs, numbers))
     if largest == 0.0:
-        entry.add_problem("direction", "is [0, 0, 0]", "write a vector that has a direction")
+        entry.add_problem("direction", "is [0, 0, 0]", "write a vector that has a direction", code="DEF420")
         return 0.0, 0.0, 1.0
     x, y, z = (number / largest for number in numbers)
     length = math.sqrt(x * x + y * y + z * z)

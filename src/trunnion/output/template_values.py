@@ -248,7 +248,9 @@ class TemplateValues:
         if loads:
             return self._family.tool_call(loads[-1].number, "", by_name=False)
         what = f"operation {operation.name} has no LOAD/TOOL, and its tool has no name"
-        raise InputError(Problem(self._program.file_of(operation), operation.line, what, "write setting tool=NUMBER"))
+        raise InputError(
+            Problem(self._program.file_of(operation), operation.line, what, "write setting tool=NUMBER", code="CTL140")
+        )
 
     def tool_calls(self) -> list[tuple[str, int, Operation]]:
         """The tool of each operation as the program calls it, and the register of its length, 0 for that of the tool.

@@ -175,7 +175,7 @@ class MotionBlockWriter:
         for line in lines:
             if len(line.encode()) > room:
                 what = f"a line has more than the {self.control.longest_line} bytes that {self.control.name} reads"
-                raise InputError(Problem(self._file, 0, f"{what}: {line[:60]}…", _SHORTEN))
+                raise InputError(Problem(self._file, 0, f"{what}: {line[:60]}…", _SHORTEN, code="CTL120"))
         sign, blocks, continues = self.control.continued, list[str](), False
         for line in lines:
             blocks[len(blocks) - continues :] = [f"{blocks[-1]}\n{line}" if continues else line]

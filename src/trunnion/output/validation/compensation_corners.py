@@ -78,7 +78,7 @@ def corner_problems(program: Program, motion: Motion) -> list[Problem]:
 
 def _problem(program: Program, motion: Motion, line: int, what: str) -> Problem:
     why = f"{program.control.name} would not see the next corner, and cut into an inside one"
-    return Problem(program.file_of(motion.operation), line, f"{what}: {why}", _CURE)
+    return Problem(program.file_of(motion.operation), line, f"{what}: {why}", _CURE, code="CTL240")
 
 
 def _moves_across(operation: Operation) -> Ints:
