@@ -79,6 +79,12 @@ def test_a_code_is_explained_as_messages_write_it(capsys: pytest.CaptureFixture[
     assert "What to do: " in out
 
 
+def test_settings_are_options_on_the_command_line(capsys: pytest.CaptureFixture[str]) -> None:
+    assert "setting rewind=none" in trunnion.explain("PLN220").cure
+    assert main(["explain", "PLN220"]) == 0
+    assert "--set rewind=none" in " ".join(capsys.readouterr().out.split())
+
+
 def test_a_code_that_is_none_has_a_cure(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["explain", "ARG11O"]) == 2
     assert 'did you mean "ARG110"?' in capsys.readouterr().err

@@ -10,8 +10,9 @@ PAGE: Final = DOCS / "codes.md"
 _HEAD: Final = """# Codes of messages
 
 Every error and warning ends with a code, such as `[CL110]`. It stays the same when the words of the message change, and
-`trunnion explain CL110` says what this page says: what it means, why it matters at the machine, and what to do. Checks are
-explained by their names: `trunnion explain tip`. `trunnion explain` alone lists everything; `--json` prints it as data.
+`trunnion explain CL110` says what this page says: what it means, why it matters at the machine, and what to do. Checks
+are explained by their names: `trunnion explain tip`. `trunnion explain` alone lists everything; `--json` prints it as
+data.
 """
 
 

@@ -7,6 +7,7 @@ from dataclasses import asdict
 from trunnion.api.explaining import all_explanations
 from trunnion.api.explaining import explain as explain_code
 from trunnion.cli.results import as_json, print_result
+from trunnion.cli.wording import in_command_words
 from trunnion.explanations import SUBJECTS, Explanation
 
 _WIDTH = 100
@@ -26,7 +27,8 @@ def explain(arguments: argparse.Namespace) -> int:
 
 def _text(found: Explanation) -> str:
     parts = (found.means, f"At the machine: {found.matters}", f"What to do: {found.cure}")
-    return "\n\n".join((f"{found.code}: {found.title}", *(textwrap.fill(part, _WIDTH) for part in parts)))
+    paragraphs = (textwrap.fill(in_command_words(part), _WIDTH) for part in parts)
+    return "\n\n".join((f"{found.code}: {found.title}", *paragraphs))
 
 
 def _list(found: list[Explanation]) -> list[str]:
