@@ -36,7 +36,8 @@ def test_a_model_is_written_and_described(tmp_path: Path, capfd: Capture) -> Non
         ),
         (
             [__file__],
-            "is not an impeller definition, whose name ends in .toml; give the path of an impeller definition [DEF140]\n",
+            "is not an impeller definition, whose name ends in .toml; "
+            "give the path of an impeller definition [DEF140]\n",
         ),
     ],
 )
