@@ -52,6 +52,9 @@ _HARMLESS_EVENTS: Final = frozenset({"m", "h", "dwell", "stop", "optional_stop",
 _STEP_LIMIT: Final = 20_000
 
 _MOST_LISTED: Final = 20
+_TEMPLATE_CURE: Final = (
+    "write what moves nothing and changes no mode, and declare words of the machine's builder under [control.known]"
+)
 _CURE: Final = "write it as a CL statement, or leave it out: INSERT takes what moves nothing and changes no mode"
 
 
@@ -62,27 +65,36 @@ def insert_problems(program: Program) -> list[Problem]:
     problems: list[Problem] = []
     with tempfile.TemporaryDirectory() as folder:
         for motion in program.motions:
-            lines: dict[str, int] = {}
+            texts: dict[str, Insert] = {}
             for event in motion.operation.events:
                 if isinstance(event, Insert):
-                    lines.setdefault(event.text, event.line)
+                    texts.setdefault(event.text, event)
             trial = _Trial(program, motion, Path(folder))
-            effects = dict(trial.effects(list(lines)))
-            for text in lines:
+            effects = dict(trial.effects(list(texts)))
+            for text, event in texts.items():
                 effect = effects.get(text) or _not_known(text, program)
                 if not effect:
                     continue
-                problems.append(
-                    Problem(program.file_of(motion.operation), lines[text], f"INSERT/{text.strip()}: {effect}", _CURE)
-                )
+                problems.append(_problem(program, motion, event, effect))
                 if len(problems) >= _MOST_LISTED:
                     return problems
     return problems
 
 
+def _problem(program: Program, motion: Motion, event: Insert, effect: str) -> Problem:
+    """What is wrong with a text, at its line of the CL file or at its template."""
+    file, text = program.file_of(motion.operation), event.text.strip().replace("\n", " | ")
+    if not event.template:
+        return Problem(file, event.line, f"INSERT/{text}: {effect}", _CURE)
+    place = program.control.templates[event.template].place_of(0)
+    what = f"template {event.template} writes {text} at {file}:{event.line}: {effect}"
+    return Problem(*place, what, _TEMPLATE_CURE)
+
+
 def _not_known(text: str, program: Program) -> str:
     """Which word of a text nobody knows to change nothing: a run shows only what its reader follows."""
-    word = readers.reader_of(program.machine).raw_words.not_known(text, program.machine)
+    known = readers.reader_of(program.machine).raw_words.not_known
+    word = next((word for line in text.split("\n") if (word := known(line, program.machine))), "")
     return f"nobody knows that {word} changes nothing" if word else ""
 
 

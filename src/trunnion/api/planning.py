@@ -15,6 +15,7 @@ from trunnion.controls.vocabulary import FORCED_NOTICE, INCH
 from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem, merge_repeated
 from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Toolpath
+from trunnion.output.place_texts import with_place_texts
 from trunnion.output.program import Program
 from trunnion.output.validation import check_program
 from trunnion.output.validation.tools import tool_conflicts
@@ -99,7 +100,7 @@ def load_toolpaths(
     )
     if job.control.units == INCH:
         _check_units_of(toolpaths)
-    toolpaths = replace_unknown_statements(toolpaths, job.control.statements, job.machine)
+    toolpaths = replace_unknown_statements(toolpaths, job.control, job.machine)
     if not toolpaths:
         raise InputError(argument_problem("cl", "there is no CL file", "give at least one"))
     if job.has_normals:
@@ -175,6 +176,7 @@ def plan_program(
     observer.planned(planned)
     file = toolpaths[0].file
     program = Program(job.machine, job.control, planned.motions, job.printed, file, own_settings=job.own_settings)
+    program = with_place_texts(program)
     problems = [*merge_repeated(check_program(program))]
     errors = [problem for problem in problems if problem.severity is Severity.ERROR]
     observer.problems([problem for problem in problems if problem not in errors])

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from importlib.resources import files
 from importlib.resources.abc import Traversable
+from typing import Final
 
 from trunnion.controls.consistency import check_formats, check_setting_names, check_templates
 from trunnion.controls.definition import MM_PER_INCH, ArcRules, Control, FormatPair, SubprogramNaming, WordDefinition
@@ -15,6 +16,7 @@ from trunnion.controls.vocabulary import (
     AXIS_WORDS,
     COOLANTS,
     DRAW_BACK,
+    EVENT_PLACE,
     FEEDS_WITHOUT_TCP,
     FIVE_AXIS,
     HOLE_APPROACH_HEIGHTS,
@@ -23,6 +25,7 @@ from trunnion.controls.vocabulary import (
     NEW_SPEED_WITH_TCP,
     NO_LIMIT,
     PHASES,
+    PLACES,
     RADIUS_ARC_WORDS,
     REQUIRED_TEMPLATES,
     SPINDLE_ON,
@@ -33,8 +36,12 @@ from trunnion.controls.vocabulary import (
 from trunnion.controls.words import BlockNumbers, NumberFormat
 from trunnion.definitions import Table, definition_names, resolve_extends
 from trunnion.definitions.twin_keys import report_twins, statement_form
+from trunnion.errors import Problem
 from trunnion.families import FAMILIES, load_writer
 from trunnion.model.axis_tolerance import AxisTolerance
+
+#: What only a template with statements or expressions has in it.
+_TEXT_SIGNS: Final = ("{%", "{{", "{#")
 
 
 def control_library() -> Traversable:
@@ -354,7 +361,8 @@ def _template_names(table: Table, family: FamilyWriter, plane_from_pose: bool, s
     groups += [tuple(f"{part}_{plane}" for part in plane_parts) for plane in family.PLANE_COMMANDS]
     groups += [(f"{DRAW_BACK}_{plane}",) for plane in family.PLANE_COMMANDS if plane_from_pose]
     used = [name for group in groups if any(name in table for name in group) for name in group]
-    return [*REQUIRED_TEMPLATES, *(SUBPROGRAM_TEMPLATES if subprograms else ()), *used]
+    places = [name for name in list(table.keys()) if name in PLACES or name.startswith(EVENT_PLACE)]
+    return [*REQUIRED_TEMPLATES, *(SUBPROGRAM_TEMPLATES if subprograms else ()), *used, *places]
 
 
 def _read_templates(table: Table, names: Sequence[str]) -> dict[str, Template]:
@@ -362,6 +370,22 @@ def _read_templates(table: Table, names: Sequence[str]) -> dict[str, Template]:
     for name in names:
         text = table.text(name)
         file, line = table.location(name)
-        found[name] = Template(name, tuple(text.strip("\n").split("\n")) if text.strip() else (), file, line)
+        if any(sign in text for sign in _TEXT_SIGNS):
+            found[name] = _read_text_template(table, name, text)
+        else:
+            found[name] = Template(name, tuple(text.strip("\n").split("\n")) if text.strip() else (), file, line)
+    table.mark_read(*PLACES)
     table.report_unread_keys()
     return found
+
+
+def _read_text_template(table: Table, name: str, text: str) -> Template:
+    """A template with statements or expressions; Jinja is imported for the first one."""
+    from trunnion.controls.texts.template import text_template
+
+    template, fault = text_template(name, text, *table.location(name))
+    if fault is not None:
+        file, line = template.place_of(max(fault.line, 1) - 1)
+        key = table.key_path(name)
+        table.problems.append(Problem(file, line, f"{key} {fault.what}", fault.cure, key=key))
+    return template

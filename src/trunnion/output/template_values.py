@@ -5,6 +5,8 @@ A value is None where there is none: a template leaves out the line that names i
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import accumulate
 from typing import Final
 
 import numpy as np
@@ -58,6 +60,8 @@ class TemplateValues:
         self._seconds: list[float] = []
         modes = {motion.mode for motion in program.motions}
         offsets = {program.effective_setting("work_offset", motion.operation) for motion in program.motions}
+        self._prints_times = prints_times(program)
+        self._operation_numbers = list(accumulate(int(motion.starts_operation) for motion in program.motions))
         self._used = {
             PLANES_USED: "on" if MachiningMode.TILTED in modes else None,
             TCP_USED: "on" if MachiningMode.TCP in modes else None,
@@ -84,10 +88,12 @@ class TemplateValues:
             If there is nothing to call the tool by.
         """
         operation, machine = motion.operation, self._program.machine
+        position = self._operation_numbers[number]
+        following = self.next_call(position)
         found: dict[str, Value] = {
             **self._setting_values(motion),
             **self._rotary_values(motion),
-            **self._time_values(number),
+            **self._time_values(position),
             **self._plane_values(motion),
             **spindle_values(self._program, spindle),
             **self._home_values(),
@@ -99,6 +105,8 @@ class TemplateValues:
             "entry_unit": unit_word if self._program.effective_setting("restart") == "on" else None,
             "gauge_length": machine.tool_length,
             "operation": operation.name,
+            "operation_number": position,
+            "next_tool": following,
             "intol": operation.intol,
             "outtol": operation.outtol,
             "tool": (tool := self.tool_call(operation, loaded)),
@@ -152,12 +160,29 @@ class TemplateValues:
             values[f"{key}_word"] = word.letter + word.format.text_of_count(count)
         return values
 
-    def _time_values(self, number: int) -> dict[str, Value]:
+    @cached_property
+    def _next_calls(self) -> list[str | None]:
+        """For each operation the next other tool after it, as the program calls it; None if there is none."""
+        found: list[str | None] = []
+        following: tuple[str, str | None] | None = None
+        for call, *_ in reversed(self.tool_calls):
+            found.append(None if following is None else following[1] if following[0] == call else following[0])
+            following = call, found[-1]
+        return found[::-1]
+
+    def next_call(self, operation: int) -> str | None:
+        """The next other tool after an operation, by its number, as the program calls it; None if there is none."""
+        return self._next_calls[operation - 1]
+
+    def time_of(self, operation: int) -> Value:
+        """The machining time of an operation, by its number; None where no template prints any."""
+        return self._time_values(operation)["time"]
+
+    def _time_values(self, operation: int) -> dict[str, Value]:
         """Machining times of the operation and of the program; computed only if a template prints them."""
         names = "time", "total_time", "time_shown", "total_time_shown"
-        if not prints_times(self._program):
+        if not self._prints_times:
             return dict.fromkeys(names)
-        operation = sum(motion.starts_operation for motion in self._program.motions[: number + 1 or None])
         if self._program.has_time_tokens:
             own, total = _time_token(operation), _time_token(0)
         else:
@@ -250,6 +275,7 @@ class TemplateValues:
         what = f"operation {operation.name} has no LOAD/TOOL, and its tool has no name"
         raise InputError(Problem(self._program.file_of(operation), operation.line, what, "write setting tool=NUMBER"))
 
+    @cached_property
     def tool_calls(self) -> list[tuple[str, int, Operation]]:
         """The tool of each operation as the program calls it, and the register of its length, 0 for that of the tool.
 
@@ -280,7 +306,9 @@ class TemplateValues:
 def prints_times(program: Program) -> bool:
     """Return whether a template of the control prints machining times."""
     setting = program.effective_setting("times")
-    fields = {name for template in program.control.templates.values() for name, _ in template.fields()}
+    templates = program.control.templates.values()
+    fields = {name for template in templates for name, _ in template.fields()}
+    fields |= {name for template in templates for name in template.record_values}
     wanted = {"time", "total_time"} | ({"time_shown", "total_time_shown"} if setting == "on" else set())
     return setting != "off" and bool(fields & wanted)
 
