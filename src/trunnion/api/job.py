@@ -23,7 +23,7 @@ from trunnion.controls.vocabulary import MM, PROGRAM_CHOICES
 from trunnion.errors import InputError, argument_problem
 from trunnion.files import OutputFiles
 from trunnion.machines import Machine
-from trunnion.model.motion import MachiningMode, PoleStrategy
+from trunnion.model.motion import Decision, MachiningMode, PoleStrategy
 from trunnion.output.capabilities import control_capabilities
 from trunnion.output.subprograms import SubprogramOutput
 from trunnion.planning import Clearance, ClearanceSurface, ControlCapabilities, PlanOptions
@@ -59,6 +59,8 @@ class PostJob:
     columns       work out the columns of the verification
     beside        files of subprograms that exist already and that templates call
     simulation    stock and all else that the program is simulated with; None: it is not
+    notices       comments for the head of the program
+    decisions     what was decided before planning, for reports
     forcing       what a refusal says of ``force``; empty where it cannot be asked for
     """
 
@@ -73,6 +75,8 @@ class PostJob:
     own_settings: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     beside: tuple[Path, ...] = ()
     simulation: "SimulationInput | None" = None
+    notices: tuple[str, ...] = ()
+    decisions: tuple[Decision, ...] = ()
     forcing: str = "force=True writes it"
 
     @property

@@ -1,6 +1,6 @@
 """Planning: toolpaths to motions on a machine, before any text is written."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from trunnion import planning, readers
@@ -81,9 +81,15 @@ def plan(
 
 
 def load_toolpaths(
-    cl: ToolpathLike | Iterable[ToolpathLike], job: PostJob, strict: bool, observer: Observer
+    cl: ToolpathLike | Iterable[ToolpathLike],
+    job: PostJob,
+    strict: bool,
+    observer: Observer,
+    changed: Callable[[list[Toolpath]], list[Toolpath]] = list,
 ) -> list[Toolpath]:
     """The toolpaths of a post, with surface normals if the program has them; their remarks are reported.
+
+    ``changed`` returns what becomes of them once they are read.
 
     Raises
     ------
@@ -100,13 +106,13 @@ def load_toolpaths(
     )
     if job.control.units == INCH:
         _check_units_of(toolpaths)
-    toolpaths = replace_unknown_statements(toolpaths, job.control, job.machine)
     if not toolpaths:
         raise InputError(argument_problem("cl", "there is no CL file", "give at least one"))
     if job.has_normals:
         from trunnion.cl.surface_normals import with_normals
 
         toolpaths = [with_normals(toolpath) for toolpath in toolpaths]
+    toolpaths = replace_unknown_statements(changed(toolpaths), job.control, job.machine)
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     return toolpaths
@@ -173,6 +179,7 @@ def plan_program(
     check_operation_names(job.own_settings, job.settings, [name for _, name in cut])
     observer.problems(_settings_of_twins(job.own_settings, cut))
     planned = _planned(toolpaths, job)
+    planned = replace(planned, decisions=(*job.decisions, *planned.decisions))
     observer.planned(planned)
     file = toolpaths[0].file
     program = Program(job.machine, job.control, planned.motions, job.printed, file, own_settings=job.own_settings)
@@ -192,7 +199,7 @@ def plan_program(
         raise RefusedError((*found, *unproven, refused))
     observer.problems(found)
     notices = [f"{FORCED_NOTICE}, written by --force: {problem.what}" for problem in blocking]
-    return replace(program, notices=notices), planned, [*problems, *found]
+    return replace(program, notices=[*job.notices, *notices]), planned, [*problems, *found]
 
 
 def _missing_reader(job: PostJob) -> list[Problem]:

@@ -14,6 +14,7 @@ from trunnion.api import kernels
 from trunnion.api.arguments import check_observer, check_paths
 from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.forcing import Proof, Untold, write_forced
+from trunnion.api.hooks import Hooks, load_hooks
 from trunnion.api.input_files import cl_files, definition_files
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.machining_times import operation_times, prints_times, write_times
@@ -49,6 +50,7 @@ def post(
     columns: bool = True,
     subprograms: Sequence[FilePath] = (),
     simulation: "SimulationLike | None" = None,
+    hooks: Sequence[FilePath] = (),
     observer: Observer = SILENT,
 ) -> PostResult:
     """Post CL files as one NC program, and prove it.
@@ -89,6 +91,10 @@ def post(
         path of a project file of one set-up, also as ``{"project": path}`` with others in its place. Tools come from
         the CL files where nothing else has them. What is found fails the checks ``removal``, ``collision`` and
         ``gouge``; the result has it as ``simulation``.
+    hooks
+        Python files whose functions change what the CL files ask for (``trunnion.hooks``). They are run: name none that
+        you have not read. The program is proven against what they make of the CL files, and ``problems`` says which
+        operations they changed.
     observer
         Receives the progress, warnings, the plan and the proof.
 
@@ -120,7 +126,7 @@ def post(
     return post_beside(
         cl, (), machine=machine, output=output, settings=settings, strict=strict, force=force, explain=explain,
         report=report, columns=columns, subprograms=subprograms, simulation=simulation,
-        observer=observer,
+        hooks=hooks, observer=observer,
     )  # fmt: skip
 
 
@@ -139,6 +145,7 @@ def post_beside(
     subprograms: Sequence[FilePath],
     observer: Observer,
     simulation: "SimulationLike | None" = None,
+    hooks: Sequence[FilePath] = (),
 ) -> PostResult:
     """Post CL files as ``post`` does, and write over none of the other files of the same work."""
     check_observer(observer)
@@ -149,7 +156,8 @@ def post_beside(
     job = prepare(loaded, settings, force=force, explain=explain, report=place, columns=columns)
     existing = check_paths("subprograms", subprograms)
     job = replace(job, beside=tuple(existing))
-    inputs = [*cl_files(cl), *definition_files(machine, loaded), *existing, *others]
+    hook_files = check_paths("hooks", hooks)
+    inputs = [*cl_files(cl), *definition_files(machine, loaded), *existing, *hook_files, *others]
     if simulation is not None:
         from trunnion.api.posted_simulation import simulation_files, simulation_input
 
@@ -158,7 +166,9 @@ def post_beside(
     with open_target(output, report=report, inputs=inputs) as target:
         compile_ahead(kernels.POSTING)
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
-        toolpaths = load_toolpaths(cl, job, strict, observer)
+        changes = Hooks(load_hooks(hook_files), job)
+        toolpaths = load_toolpaths(cl, job, strict, observer, changes.change)
+        job = replace(job, notices=changes.notices, decisions=tuple(changes.decisions) if job.options.explain else ())
         target.files.protect(file_on_disk(toolpath.file) for toolpath in toolpaths)
         return post_toolpaths(toolpaths, job, target, observer)
 

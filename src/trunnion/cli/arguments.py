@@ -184,6 +184,10 @@ def _add_post(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     _add_subprograms(parser, "a template")
     parser.add_argument(
+        "--hooks", action="append", default=[], metavar="FILE.py",
+        help="Python file whose functions change what the CL files ask for; it is run; may be repeated",
+    )  # fmt: skip
+    parser.add_argument(
         "--dialect", choices=DIALECTS, help="what the CL files are written in; by default their content decides"
     )
     parser.add_argument("--strict", action="store_true", help="unknown CL statements are errors at once")

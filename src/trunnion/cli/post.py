@@ -27,7 +27,7 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[list[Toolpath]]) -> 
     if arguments.report is not None and len(targets) > 1:
         what = f"one report for {len(targets)} programs"
         raise InputError(Problem(arguments.report, 0, what, "post them one at a time, or leave --report out"))
-    read = [*named_files(arguments.files), *definition_files(arguments.machine, machine)]
+    read = [*named_files(arguments.files), *definition_files(arguments.machine, machine), *arguments.hooks]
     report = [] if arguments.report is None else [arguments.report]
     check_outputs([*(target for target in targets if target != "-"), *report], read)
     if output_folder(arguments.output) is not None:
@@ -50,6 +50,7 @@ def post(arguments: argparse.Namespace, toolpaths: Iterator[list[Toolpath]]) -> 
             columns=False,
             subprograms=arguments.subprograms,
             simulation=_simulation(arguments),
+            hooks=arguments.hooks,
             observer=Terminal(explain=arguments.explain, recorded=arguments.explain or bool(arguments.report)),
         )
         written += [*result.subprograms, *([] if result.output is None else [result.output])]

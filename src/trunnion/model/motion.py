@@ -81,6 +81,7 @@ class DecisionTopic(StrEnum):
     POINTS = "points"
     HOLES = "holes"
     NEAREST = "nearest"
+    HOOKS = "hooks"
 
 
 @dataclass(frozen=True, slots=True)
