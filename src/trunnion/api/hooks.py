@@ -81,7 +81,10 @@ class Hooks:
     @property
     def notices(self) -> tuple[str, ...]:
         """Comments for the head of the program."""
-        return (f"{NOTICE}: {', '.join(dict.fromkeys(self.changed_motion))}",) if self.changed_motion else ()
+        if not self.changed_motion:
+            return ()
+        files = ", ".join(file.path.name for file in self._files)
+        return (f"{NOTICE} {files}: {', '.join(dict.fromkeys(self.changed_motion))}",)
 
     def change(self, toolpaths: Iterable[Toolpath]) -> list[Toolpath]:
         """Return what hooks make of toolpaths, with remarks on what they changed.
@@ -126,16 +129,9 @@ class Hooks:
         """What a file of hooks has changed in an operation, as warnings."""
         if len(after) == 1 and after[0] is before:
             return []
-        what: list[str] = []
-        if len(after) != 1 or not same_motion(before, after[0]):
+        what = _motion_change(before, after)
+        if what:
             self.changed_motion += [each.name for each in after] or [before.name]
-            points = sum(len(each.moves) for each in after)
-            became = (
-                "left it out"
-                if not after
-                else f"changed its motion ({len(before.moves)} to {counted(points, 'point')})"
-            )
-            what.append(became)
         old, new = list(before.events), [event for each in after for event in each.events]
         if after and old != new:
             what.append(f"changed its events ({len(old)} to {len(new)})")
@@ -151,15 +147,23 @@ class Hooks:
         return [Problem(str(file.path), file.line_of(name), text, severity=Severity.WARNING)]
 
 
-def same_motion(one: Operation, other: Operation) -> bool:
-    """Whether two operations move the tool alike."""
-    if one.moves is other.moves and one.arcs is other.arcs and one.frame == other.frame:
-        return True
-    columns = ("tip", "axis", "kind", "feed", "per_rev")
-    arcs = ("row", "centre", "normal", "radius", "full_turns")
-    pairs = [(getattr(one.moves, name), getattr(other.moves, name)) for name in columns]
-    pairs += [(getattr(one.arcs, name), getattr(other.arcs, name)) for name in arcs]
-    return one.frame == other.frame and all(np.array_equal(a, b, equal_nan=a.dtype.kind == "f") for a, b in pairs)
+def _motion_change(before: Operation, after: Sequence[Operation]) -> list[str]:
+    """How operations move the tool otherwise than the one in whose place they stand, in words; none if they do not."""
+    if len(after) != 1:
+        return [f"made {counted(len(after), 'operation')} of it" if after else "left it out"]
+    old, new = before.moves, after[0].moves
+    if len(old) != len(new):
+        return [f"changed its motion from {counted(len(old), 'point')} to {len(new)}"]
+    differs = np.zeros(len(old), np.bool_)
+    for one, other in ((old.tip, new.tip), (old.axis, new.axis), (old.kind, new.kind), (old.per_rev, new.per_rev)):
+        differs |= (one != other).reshape(len(old), -1).any(axis=1)
+    differs |= ~((old.feed == new.feed) | (np.isnan(old.feed) & np.isnan(new.feed)))
+    if differs.any():
+        return [f"changed its motion at {int(differs.sum())} of {counted(len(old), 'point')}"]
+    arcs, frame = (before.arcs, after[0].arcs), before.frame == after[0].frame
+    names = ("row", "centre", "normal", "radius", "full_turns")
+    same = frame and all(np.array_equal(*(getattr(each, name) for each in arcs)) for name in names)
+    return [] if same else ["changed its circles or its coordinate system"]
 
 
 class _Caller:

@@ -69,7 +69,7 @@ def _each(context: Context, items: object, steps: int) -> tuple[object, ...]:
     """What a loop goes through, once its passes are paid for."""
     if items is None:
         return ()
-    if not isinstance(items, tuple | range):
+    if not isinstance(items, tuple | list | range):
         raise Fault(f"goes through {shown(items)}, which is no list")
     rendering_of(context).charge(steps * len(items))
     return tuple(items)
@@ -161,7 +161,7 @@ def _absolute(value: object) -> float | None:
 
 
 def _list(value: object, what: str) -> tuple[object, ...]:
-    if isinstance(value, tuple | range):
+    if isinstance(value, tuple | list | range):
         return tuple(value)
     raise Fault(f"has {shown(value)} where | {what} wants a list")
 
@@ -178,6 +178,19 @@ def _join(context: Context, value: object, between: object = "") -> str:
 def _default(value: object, other: object = None) -> object:
     return other if value is None or value == "" else value
 
+
+def _is_odd(value: object) -> bool:
+    return number_of(value, "odd") % 2 == 1
+
+
+def _is_even(value: object) -> bool:
+    return number_of(value, "even") % 2 == 0
+
+
+#: The tests of templates, behind ``is``.
+TESTS: Final[Mapping[str, Callable[..., bool]]] = {
+    "none": lambda value: value is None, "odd": _is_odd, "even": _is_even,
+}  # fmt: skip
 
 _OWN: Final[Mapping[str, Callable[..., Any]]] = {
     "upper": _of_text("upper", str.upper),

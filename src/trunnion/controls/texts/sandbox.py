@@ -13,8 +13,6 @@ from trunnion.definitions.messages import did_you_mean
 #: What a loop tells of itself.
 LOOP_VALUES: Final = frozenset({"index", "index0", "first", "last", "length"})
 
-TESTS: Final = frozenset({"none", "odd", "even"})
-
 
 class Sandbox(ImmutableSandboxedEnvironment):
     """What compiled templates ask for everything that is not plain comparison."""
@@ -28,7 +26,7 @@ class Sandbox(ImmutableSandboxedEnvironment):
         )
         self.globals.clear()
         self.filters = dict(filters.ALL)
-        self.tests = {name: test for name, test in self.tests.items() if name in TESTS}
+        self.tests = dict(filters.TESTS)
 
     def call_binop(self, context: Context, operator: str, left: Any, right: Any) -> Any:
         """Calculate with two numbers."""

@@ -12,7 +12,7 @@ from typing import Final
 from jinja2 import nodes
 
 from trunnion.controls.texts import filters
-from trunnion.controls.texts.sandbox import LOOP_VALUES, SANDBOX, TESTS
+from trunnion.controls.texts.sandbox import LOOP_VALUES, SANDBOX
 from trunnion.controls.texts.values import Fault
 from trunnion.controls.vocabulary import RECORD_VALUES
 from trunnion.definitions.messages import did_you_mean
@@ -21,6 +21,9 @@ from trunnion.definitions.messages import did_you_mean
 LONGEST_SOURCE: Final = 65_536
 _DEEPEST: Final = 40
 _DEEPEST_STATEMENTS: Final = 8
+
+#: Parts of one template: names, numbers, operators, statements. A text of a hundred lines has some 500.
+_MOST_NODES: Final = 5000
 
 #: Marks in a printed line around what may be left out of it.
 OPENING: Final = "\1"
@@ -125,9 +128,13 @@ def _parts(node: nodes.Expr) -> Iterator[nodes.Expr]:
 def _check_depth(tree: nodes.Template) -> None:
     """Refuse what would be too deep for a compiler that calls itself."""
     waiting: list[tuple[nodes.Node, int, int]] = [(tree, 0, 0)]
+    count = 0
     while waiting:
         node, depth, statements = waiting.pop()
         statements += isinstance(node, nodes.For | nodes.If)
+        count += 1
+        if count > _MOST_NODES:
+            raise Fault(f"has more than {_MOST_NODES} parts", "write it shorter, with loops", node.lineno or 0)
         if depth > _DEEPEST or statements > _DEEPEST_STATEMENTS:
             raise Fault("has too much within each other", "write it in smaller parts, with {% set … %}", node.lineno)
         # An elif is a statement behind the others, not within them.
@@ -137,7 +144,7 @@ def _check_depth(tree: nodes.Template) -> None:
 
 
 def _check(node: nodes.Node) -> None:
-    line = node.lineno
+    line = node.lineno or 0
     if isinstance(node, nodes.Call) and _is_range(node):
         return
     if not isinstance(node, _ALLOWED):
@@ -172,8 +179,8 @@ def _check_constant(node: nodes.Const) -> None:
 def _check_arguments(node: nodes.Filter | nodes.Test) -> None:
     if node.kwargs or node.dyn_args or node.dyn_kwargs or len(node.args) > 2:
         raise Fault(f"gives {node.name} what it does not take", _LANGUAGE, node.lineno)
-    if isinstance(node, nodes.Test) and (node.name not in TESTS or node.args):
-        cure = f"write one of {', '.join(sorted(TESTS))}, or compare by =="
+    if isinstance(node, nodes.Test) and (node.name not in filters.TESTS or node.args):
+        cure = f"write one of {', '.join(sorted(filters.TESTS))}, or compare by =="
         raise Fault(f"asks whether something is {node.name}, which is not known", cure, node.lineno)
     if isinstance(node, nodes.Filter) and node.node is None:
         raise Fault("has filter, which templates do not have", _LANGUAGE, node.lineno)

@@ -70,7 +70,7 @@ def shown(value: object) -> str:
     """A value in a message, cut short."""
     if isinstance(value, str):
         return repr(value[:40])
-    if isinstance(value, tuple | range):
+    if isinstance(value, tuple | list | range):
         return "a list"
     return str(value) if isinstance(value, bool | int | float) else "a name that has no value here"
 
