@@ -34,6 +34,9 @@ _FUNCTIONS: Final = {
 
 _Kind = TypeVar("_Kind", Operation, Event)
 
+#: What values of events may be, by how their records declare them.
+_TYPES: Final[dict[str, type | tuple[type, ...]]] = {"str": str, "int": int, "float": (int, float), "bool": bool}
+
 _FARTHEST: Final = 1e6  # mm
 _LONGEST_TEXT: Final = 1000
 _MODULE: Final = "trunnion_hooks"
@@ -240,9 +243,10 @@ class _Caller:
             raise self.refuse(name, "what is no event", "make events of the classes in trunnion.hooks")
         if not 0 <= event.row <= rows:
             raise self.refuse(name, f"an event at row {event.row}", f"its operation has the rows 0 to {rows}")
+        hints = {field.name: getattr(field.type, "__name__", field.type) for field in fields(event)}
         for field in fields(event):
             value = getattr(event, field.name)
-            if not _is_plain(value):
+            if not _is_plain(value) or not isinstance(value, _TYPES.get(str(hints[field.name]), object)):
                 cure = "texts are of one line, and numbers are finite"
                 raise self.refuse(name, f"{type(event).__name__} with {field.name} = {value!r:.60}", cure)
         return replace(event, template="") if isinstance(event, Insert) and event.template else event

@@ -10,6 +10,7 @@ from itertools import takewhile
 from typing import Final
 
 from trunnion.controls.family_writer import FamilyWriter, WordEvent
+from trunnion.controls.inches import without_comments
 from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import NEW_SPEED_WITH_TCP, SPINDLE_ON, STOP_PLACE
 from trunnion.errors import InputError, Problem
@@ -239,7 +240,8 @@ class EventWriter:
         code = self._control.codes["optional_stop" if event.optional else "stop"]
         values = {**self._values, "text": self._family.escape_comment(event.text), "number": code}
         lines = self._templates.lines(STOP_PLACE, values, self._motion)
-        if not any(re.search(rf"(?<![A-Za-z0-9.])M0*{code}(?![0-9.])", line) for line in lines):
+        word = re.compile(rf"(?<![A-Za-z0-9.])M0*{code}(?![0-9.])")
+        if not any(word.search(without_comments(self._control, line)) for line in lines):
             file, at = self._control.templates[STOP_PLACE].place_of(0)
             what = f"template {STOP_PLACE} does not stop the program: it has no M{code} at line {event.line}"
             raise InputError(Problem(file, at, what, "write M{number} on a line of it, without a condition"))

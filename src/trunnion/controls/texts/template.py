@@ -195,6 +195,7 @@ def _complete_lines(text: str) -> list[str]:
     lines = []
     for line in text.split("\n"):
         line = _OPTIONAL.sub(lambda part: "" if ABSENT in part[1] else part[1], line)
-        if ABSENT not in line and line.strip():
-            lines.append(line.replace(tree.OPENING, "").replace(tree.CLOSING, "").rstrip())
+        line = line.replace(tree.OPENING, "").replace(tree.CLOSING, "").rstrip()
+        if line and ABSENT not in line:
+            lines.append(line)
     return lines
