@@ -4,13 +4,14 @@ In:     a program.
 Out:    what `controls.vocabulary` lists of each tool and operation; lengths and feeds in mm.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache, partial
 from typing import Final
 
 import numpy as np
 
 from trunnion.controls.setting_rules import tool_number
-from trunnion.controls.texts.values import Length, Record
+from trunnion.controls.texts.values import Later, Length, Record
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Coolant, Kind, SpindleOn, Tool
 from trunnion.output.coordinates.extents import cut_extents
@@ -25,6 +26,7 @@ _MODES: Final = {
     MachiningMode.WITHOUT_TCP: "without_tcp",
 }
 
+_FEEDS: Final = ("least_feed", "greatest_feed")
 _EXTENTS: Final = ("x_min", "y_min", "z_min", "x_max", "y_max", "z_max")
 
 
@@ -37,7 +39,6 @@ class TemplateRecords:
 
     def __init__(self, program: Program, values: TemplateValues) -> None:
         self._program, self._values = program, values
-        self._asked = {name for template in program.control.templates.values() for name in template.record_values}
         calls = values.tool_calls
         count = {call: sum(other == call for other, *_ in calls) for call, *_ in calls}
         tools = {call: operation.tool for call, _, operation in reversed(calls)}
@@ -93,32 +94,33 @@ class TemplateRecords:
             "tool": tool,
             "mode": _MODES[motions[0].mode],
             "method": self._text(self._program.method_of(operation)),
-            "time": self._values.time_of(number),
+            "time": Later(partial(self._values.time_of, number)),
             "points": sum(len(motion.operation.moves) for motion in motions),
             "spindle_speed": spindle and spindle.rpm,
             "spindle_sense": spindle and spindle.sense.value,
             "coolant": coolant,
             "work_offset": self._text(self._program.effective_setting("work_offset", operation)),
             "planes": sum(motion.plane is not None for motion in motions),
-            **self._feeds(motions),
-            **self._extents(motions),
         }
-        return Record(values["name"] or "", values) if isinstance(values["name"], str) else Record("", values)
+        for names, found in ((_FEEDS, cache(lambda: _feeds(motions))), (_EXTENTS, cache(lambda: _extents(motions)))):
+            values |= {name: Later(partial(_of, found, name)) for name in names}
+        return Record(self._text(operation.name) or "", values)
 
-    def _feeds(self, motions: Sequence[Motion]) -> dict[str, object]:
-        """The least and the greatest feed of the cuts, those per revolution apart."""
-        names = ("least_feed", "greatest_feed")
-        if self._asked.isdisjoint(names):
-            return dict.fromkeys(names)
-        moves = [motion.operation.moves for motion in motions]
-        feeds = np.concatenate([each.feed[(each.kind != Kind.RAPID) & ~each.per_rev] for each in moves])
-        if not len(feeds) or np.isnan(feeds).any():
-            return dict.fromkeys(names)
-        return {"least_feed": Length(feeds.min()), "greatest_feed": Length(feeds.max())}
 
-    def _extents(self, motions: Sequence[Motion]) -> dict[str, object]:
-        """The box around all cuts of the tip, in whole millimetres outwards."""
-        box = None if self._asked.isdisjoint(_EXTENTS) else cut_extents(motions)
-        if box is None:
-            return dict.fromkeys(_EXTENTS)
-        return dict(zip(_EXTENTS, map(Length, np.concatenate(box).tolist()), strict=True))
+def _of(found: Callable[[], Mapping[str, object]], name: str) -> object:
+    return found().get(name)
+
+
+def _feeds(motions: Sequence[Motion]) -> dict[str, object]:
+    """The least and the greatest feed of the cuts, those per revolution apart."""
+    moves = [motion.operation.moves for motion in motions]
+    feeds = np.concatenate([each.feed[(each.kind != Kind.RAPID) & ~each.per_rev] for each in moves])
+    if not len(feeds) or np.isnan(feeds).any():
+        return {}
+    return {"least_feed": Length(feeds.min()), "greatest_feed": Length(feeds.max())}
+
+
+def _extents(motions: Sequence[Motion]) -> dict[str, object]:
+    """The box around all cuts of the tip, in whole millimetres outwards."""
+    box = cut_extents(motions)
+    return {} if box is None else dict(zip(_EXTENTS, map(Length, np.concatenate(box).tolist()), strict=True))

@@ -7,7 +7,7 @@ from jinja2.runtime import Context, LoopContext
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from trunnion.controls.texts import filters
-from trunnion.controls.texts.values import Fault, Length, Record, calculated, number_of, shown
+from trunnion.controls.texts.values import Fault, Later, Length, Record, calculated, number_of, shown
 from trunnion.definitions.messages import did_you_mean
 
 #: What a loop tells of itself.
@@ -50,7 +50,8 @@ class Sandbox(ImmutableSandboxedEnvironment):
             raise Fault(f"asks for .{attribute} of {shown(obj)}, which is no tool and no operation")
         if attribute not in obj.values:
             raise Fault(f"asks for .{attribute}, which {obj} does not have", did_you_mean(attribute, obj.values))
-        return obj.values[attribute]
+        value = obj.values[attribute]
+        return value.value() if isinstance(value, Later) else value
 
     def getitem(self, obj: Any, argument: Any) -> Any:
         """Return one of a list, counted from 0; None beyond its ends."""

@@ -5,8 +5,9 @@ An absent value is None: what is made of it is absent too, and a line that print
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Final
 
 from trunnion.controls.template import Printing
@@ -36,6 +37,19 @@ class Fault(Exception):  # noqa: N818 - it is the template's
 
 class Length(float):
     """A length or feed in mm, which a program prints in its unit."""
+
+
+class Later:
+    """A value that is worked out when a template asks for it."""
+
+    __slots__ = ("_make",)
+
+    def __init__(self, make: Callable[[], object]) -> None:
+        self._make = cache(make)
+
+    def value(self) -> object:
+        """Return it, worked out once."""
+        return self._make()
 
 
 class Record(str):

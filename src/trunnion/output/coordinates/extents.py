@@ -27,15 +27,19 @@ def cut_extents(motions: Sequence[Motion]) -> tuple[Floats, Floats] | None:
     cut = np.concatenate(points) if points else np.zeros((0, 3))
     if not len(cut):
         return None
-    low, high = np.floor(cut.min(axis=0)), np.ceil(cut.max(axis=0))
+    # Column by column: NumPy takes ten times as long along the rows.
+    low = np.floor([column.min() for column in cut.T])
+    high = np.ceil([column.max() for column in cut.T])
     return low, np.maximum(high, low + 1.0)
 
 
 def _cut_points(motion: Motion) -> list[Floats]:
     """Corners of the tip's cuts: ends of lines with the points before, boxes of whole circles, holes top and bottom."""
     moves, arcs = motion.operation.moves, motion.operation.arcs
-    cuts = np.flatnonzero(moves.kind != Kind.RAPID)
-    points = [moves.tip[cuts], moves.tip[np.maximum(cuts - 1, 0)]]
+    ends = moves.kind != Kind.RAPID
+    touched = ends.copy()
+    touched[:-1] |= ends[1:]
+    points = [np.compress(touched, moves.tip, axis=0)]
     half_sides = arcs.radius[:, None] * np.sqrt(np.maximum(1.0 - arcs.normal**2, 0.0))
     points += [arcs.centre - half_sides, arcs.centre + half_sides]
     cycles = [event for event in motion.operation.events if isinstance(event, CycleOn | CycleOff)]
