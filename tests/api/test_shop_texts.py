@@ -1,5 +1,6 @@
 """Texts of a shop in programs: at which places they stand, what is refused, and what is said again behind them."""
 
+import math
 import re
 import subprocess
 import sys
@@ -75,6 +76,21 @@ def test_between_two_planes_of_an_operation_stands_a_text(tmp_path: Path) -> Non
     found = [line for line in lines if line in (";TURNS", ";THERE", ";FIRST")]
     assert found.count(";TURNS") == found.count(";THERE") - 1 >= 1
     assert found.count(";FIRST") == 1
+
+
+def test_a_text_stands_before_the_tool_draws_back_to_rewind(tmp_path: Path) -> None:
+    lean, points = math.radians(40.0), []
+    for k in range(160):
+        turn = math.radians(7.0 * k)
+        axis = (math.sin(lean) * math.cos(turn), math.sin(lean) * math.sin(turn), math.cos(lean))
+        tip = (40.0 * axis[0], 40.0 * axis[1], 40.0 * axis[2] + 0.02 * k)
+        points.append("GOTO/" + ",".join(f"{value:.9f}" for value in (*tip, *axis)))
+    start = HEAD.partition("GOTO")[0]
+    cl = "\n".join([start.rstrip(), points[0], "FEDRAT/MMPM,500.0", *points[1:], FOOT])
+    lines = program(tmp_path, "rewind = ';UNWINDS'\nevent_PPRINT = ';NOT THIS'", cl, extends="generic_head_head_ca")
+    assert lines.count(";UNWINDS") == 1
+    assert lines[lines.index(";UNWINDS") + 1].startswith(";Rewind: ")
+    assert ";NOT THIS" not in lines
 
 
 @pytest.mark.parametrize(
