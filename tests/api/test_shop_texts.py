@@ -40,6 +40,11 @@ def refusal(folder: Path, templates: str, cl: str = SHOP, more: str = "", extend
     return caught.value.problems[0]
 
 
+STOP = """'''
+MSG("{text}")
+M{number}
+'''"""
+
 EVERYWHERE = """
 tool_list = ";LIST{% for each in tools %} T{{ each }}{% endfor %}"
 before_operation = ";BEFORE {operation_number}"
@@ -192,6 +197,24 @@ before_operation = "({% for each in operations %}{{ each.name }}, {% endfor %}{{
     lines = program(tmp_path, templates, cl, extends="matsuura_mx330")
     assert "(A] M30 [B)" in lines
     assert not [line for line in lines[:-3] if "M30" in re.sub(r"\([^()]*\)", "", line)]
+
+
+def test_no_text_of_a_cl_file_ends_a_message(tmp_path: Path) -> None:
+    cl = SHOP.replace("turn the part", 'a") M30 MSG("b').replace("check the clamps (3x)", 'c") M30 MSG("d')
+    templates = f"""
+stop = {STOP}
+event_PPRINT = 'MSG("{{{{ text }}}}")'
+before_operation = 'MSG("{{{{ operation }}}}")'
+"""
+    lines = program(tmp_path, templates, cl)
+    assert "MSG(\"a') M30 MSG('b\")" in lines
+    assert "MSG(\"c') M30 MSG('d\")" in lines
+
+
+def test_a_number_beyond_its_format_is_told_at_the_template(tmp_path: Path) -> None:
+    for place in ("first_cut", "before_operation"):
+        problem = refusal(tmp_path, f'{place} = ";{{{{ tool.diameter * 99999999 | coordinate }}}}"')
+        assert (problem.file, problem.line) == (str(tmp_path / "ours.toml"), 6)
 
 
 def test_a_program_in_inches_prints_lengths_in_inches(tmp_path: Path) -> None:

@@ -48,6 +48,9 @@ _COLUMNS: Final = {
 #: Events that a text may make: functions of the machine's builder, dwells, stops, messages.
 _HARMLESS_EVENTS: Final = frozenset({"m", "h", "dwell", "stop", "optional_stop", "message"})
 
+#: Events of a motion's first row that a trial has too.
+_SWITCHES: Final = (LoadTool, SpindleOn, SpindleOff)
+
 #: Blocks that jumps and loops of a text may execute.
 _STEP_LIMIT: Final = 20_000
 
@@ -63,13 +66,19 @@ def insert_problems(program: Program) -> list[Problem]:
     if not readers.can_read(program.machine):
         return []
     problems: list[Problem] = []
+    harmless: set[object] = set()
     with tempfile.TemporaryDirectory() as folder:
         for motion in program.motions:
             texts: dict[str, Insert] = {}
             for event in motion.operation.events:
                 if isinstance(event, Insert):
                     texts.setdefault(event.text, event)
-            trial = _Trial(program, motion, Path(folder))
+            if not texts:
+                continue
+            trial, before = _Trial(program, motion, Path(folder)), len(problems)
+            alike = trial.conditions(tuple(texts))
+            if alike in harmless:
+                continue
             effects = dict(trial.effects(list(texts)))
             for text, event in texts.items():
                 effect = effects.get(text) or _not_known(text, program)
@@ -78,6 +87,8 @@ def insert_problems(program: Program) -> list[Problem]:
                 problems.append(_problem(program, motion, event, effect))
                 if len(problems) >= _MOST_LISTED:
                     return problems
+            if len(problems) == before:
+                harmless.add(alike)
     return problems
 
 
@@ -105,6 +116,16 @@ class _Trial:
         self._program, self._motion = program, motion
         self._file = folder / "trial"
         self._quiet = program.control.family.comment("text")[0]
+
+    def conditions(self, texts: tuple[str, ...]) -> object:
+        """What the effect of texts depends on: in another motion with the same they have the same."""
+        motion, operation = self._motion, self._motion.operation
+        switched = [event for event in operation.events if event.row == 0 and isinstance(event, _SWITCHES)]
+        settings = self._program.effective_settings(operation)
+        return (
+            texts, motion.mode, motion.plane, operation.tool, _first_feed(operation.moves.feed),
+            tuple(replace(event, line=0) for event in switched), tuple(sorted(settings.items())),
+        )  # fmt: skip
 
     def effects(self, texts: Sequence[str]) -> list[tuple[str, str]]:
         """The texts that change something, each with what it does: alone, or with those around it."""
@@ -144,9 +165,7 @@ def _with_texts(motion: Motion, texts: Sequence[str]) -> Motion:
     feed = np.where(moves.feed > 0.0, moves.feed, _first_feed(operation.moves.feed))
     kind = np.full(len(rows), Kind.LINEAR, np.uint8)
     kind[0] = Kind.RAPID
-    events: list[Event] = [
-        event for event in operation.events if event.row == 0 and isinstance(event, LoadTool | SpindleOn | SpindleOff)
-    ]
+    events: list[Event] = [event for event in operation.events if event.row == 0 and isinstance(event, _SWITCHES)]
     events += [Insert(2 * k + at + 1, 0, text) for k, text in enumerate(texts) for at in (0, 1)]
     return replace(
         motion,

@@ -35,7 +35,7 @@ from trunnion.output.blocks.motion_blocks import MotionBlockWriter
 from trunnion.output.blocks.spline_blocks import write_rows_and_splines
 from trunnion.output.holes.hole_blocks import write_holes
 from trunnion.output.program import Program
-from trunnion.output.template_values import spindle_values
+from trunnion.output.template_values import plain_text, spindle_values
 from trunnion.output.template_writer import TemplateWriter
 
 #: A line of a template that switches something and moves nothing.
@@ -238,7 +238,7 @@ class EventWriter:
         if STOP_PLACE not in self._control.templates:
             return self._family.stop(event, self._control.codes)
         code = self._control.codes["optional_stop" if event.optional else "stop"]
-        values = {**self._values, "text": self._family.escape_comment(event.text), "number": code}
+        values = {**self._values, "text": plain_text(self._control, event.text), "number": code}
         lines = self._templates.lines(STOP_PLACE, values, self._motion)
         word = re.compile(rf"(?<![A-Za-z0-9.])M0*{code}(?![0-9.])")
         if not any(word.search(without_comments(self._control, line)) for line in lines):

@@ -6,17 +6,19 @@ Out:    the program with raw text in these places, which is tried as that of INS
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Final
 
 import numpy as np
 
 from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import EVENT_PLACE
+from trunnion.controls.words import WordRangeError
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import CycleOn, Event, Insert, Kind, Message, RewindMessage, ShopStatement, SpindleOn
 from trunnion.output.program import Program
 from trunnion.output.template_printing import TemplatePrinting
-from trunnion.output.template_values import LoadedTool, TemplateValues
+from trunnion.output.template_values import LoadedTool, TemplateValues, plain_text
 
 _MOTION_PLACES: Final = ("first_cut", "rewind", "retract")
 
@@ -27,9 +29,8 @@ def with_place_texts(program: Program) -> Program:
     Raises
     ------
     InputError
-        If a template does what it cannot, or there is nothing to call a tool by.
-    WordRangeError
-        If a template prints a number beyond the limits of its format.
+        If a template does what it cannot, or prints a number beyond the limits of its format, or there is nothing to
+        call a tool by.
     """
     names = program.control.templates.keys()
     if not any(name in _MOTION_PLACES or name.startswith(EVENT_PLACE) for name in names):
@@ -43,7 +44,7 @@ class _Places:
 
     def __init__(self, program: Program) -> None:
         self._program, self._templates = program, program.control.templates
-        self._escape = program.control.family.escape_comment
+        self._escape = partial(plain_text, program.control)
         self._values = TemplateValues(program)
         self._printing = TemplatePrinting(program, self._values)
         self._loaded, self._spindle = LoadedTool(), list[SpindleOn]()
@@ -110,7 +111,10 @@ class _Places:
     ) -> list[Event]:
         if name not in self._templates:
             return []
-        lines = self._templates[name].expand(values, self._printing.of(motion, values, lists))
+        try:
+            lines = self._templates[name].expand(values, self._printing.of(motion, values, lists))
+        except WordRangeError as error:
+            raise error.at(self._program.file_of(motion.operation), line) from None
         return [Insert(row, line, "\n".join(lines), name)] if lines else []
 
 

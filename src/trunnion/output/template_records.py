@@ -16,7 +16,7 @@ from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Coolant, Kind, SpindleOn, Tool
 from trunnion.output.coordinates.extents import cut_extents
 from trunnion.output.program import Program
-from trunnion.output.template_values import TemplateValues
+from trunnion.output.template_values import TemplateValues, plain_text
 
 #: How templates call machining modes.
 _MODES: Final = {
@@ -59,8 +59,8 @@ class TemplateRecords:
         return None if call is None else self._tools[call]
 
     def _text(self, text: str) -> str | None:
-        """A text of the CL file that ends no comment; None for an empty one."""
-        return self._program.control.family.escape_comment(text) or None
+        """A text of the CL file that ends no comment and no other text; None for an empty one."""
+        return plain_text(self._program.control, text) or None
 
     def _tool(self, call: str, tool: Tool, operations: int) -> Record:
         known = tool.kind != "UNKNOWN"

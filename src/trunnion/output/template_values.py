@@ -11,6 +11,7 @@ from typing import Final
 
 import numpy as np
 
+from trunnion.controls.definition import Control
 from trunnion.controls.family_writer import FamilyWriter
 from trunnion.controls.setting_rules import tool_number
 from trunnion.controls.template import Value
@@ -301,6 +302,11 @@ class TemplateValues:
     def _tool_setting(self, text: str) -> str:
         """The tool of the run's setting: a number as it is written, a name as the control takes names."""
         return text if tool_number(text) is not None else self._family.tool_call(0, text.strip('"'), by_name=True)
+
+
+def plain_text(control: Control, text: str) -> str:
+    """Return a text of a CL file that ends neither a comment of a template nor a text in quotation marks."""
+    return control.family.escape_comment(text).replace('"', "'")
 
 
 def prints_times(program: Program) -> bool:

@@ -103,9 +103,7 @@ class TextTemplate(Template):
         Raises
         ------
         InputError
-            If it does what it cannot do, at its line.
-        WordRangeError
-            If a number is beyond the limits of its format.
+            If it does what it cannot do, or a number is beyond the limits of its format; at its line.
         """
         assert self.code is not None
         rendering = Rendering(printing)
@@ -120,9 +118,7 @@ class TextTemplate(Template):
                 left -= len(piece)
                 if left < 0:
                     raise Fault("writes too much", f"write at most {MOST_CHARACTERS} letters")
-        except WordRangeError:
-            raise
-        except (Fault, *_FAULTS) as error:
+        except (Fault, WordRangeError, *_FAULTS) as error:
             self._refuse(error)
         text = "".join(pieces)
         printing.budget.characters -= len(text)
@@ -136,6 +132,10 @@ class TextTemplate(Template):
             trace = trace.tb_next
         file, at = self.place_of(max(line, 1) - 1)
         fault = error if isinstance(error, Fault) else Fault(f"does not work: {error}", _NOT_UNDERSTOOD)
+        if isinstance(error, WordRangeError):
+            fault = Fault(
+                f"prints a {error.what}", "correct the value; the control's definition has the limits of formats"
+            )
         raise InputError(Problem(file, at, f"template {self.name} {fault.what}", fault.cure)) from None
 
 
