@@ -24,6 +24,7 @@ from trunnion.model.splines import Splines
 from trunnion.model.toolpath import Arcs, Event, Insert, Kind, LoadTool, SpindleOff, SpindleOn
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
+from trunnion.output.said_words import said_words
 from trunnion.readers.program.known_words import HOME, begins_with
 
 #: Columns of a run that a text must leave as they are, and what each of them is.
@@ -71,7 +72,7 @@ def insert_problems(program: Program) -> list[Problem]:
         for motion in program.motions:
             texts: dict[str, Insert] = {}
             for event in motion.operation.events:
-                if isinstance(event, Insert):
+                if isinstance(event, Insert) and not _is_remark(event, program):
                     texts.setdefault(event.text, event)
             if not texts:
                 continue
@@ -90,6 +91,14 @@ def insert_problems(program: Program) -> list[Problem]:
             if len(problems) == before:
                 harmless.add(alike)
     return problems
+
+
+def _is_remark(event: Insert, program: Program) -> bool:
+    """Whether the text of a template is nothing but remarks, of which a program may have one a block."""
+    lines = event.text.split("\n")
+    return (
+        bool(event.template) and said_words(lines, program.control, ()) == set() and not _not_known(event.text, program)
+    )
 
 
 def _problem(program: Program, motion: Motion, event: Insert, effect: str) -> Problem:
