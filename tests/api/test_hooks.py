@@ -93,6 +93,10 @@ def test_changed_motion_is_what_the_program_is_proven_against_and_its_head_says_
     assert "hooks changed its motion" in (tmp_path / "report.json").read_text(encoding="utf-8")
     (tmp_path / "part.mpf").write_text(result.text or "", encoding="utf-8")
     assert not trunnion.verify(tmp_path / "part.mpf", cl=part, machine="yl569").passed
+    trunnion.convert(tmp_path / "part.mpf", machine="yl569", to_cl=True, output=tmp_path / "back.cls")
+    back = (tmp_path / "back.cls").read_text(encoding="utf-8")
+    assert "MOTION CHANGED BY HOOKS shop.py: DRILL SIDE" in back
+    assert "title=" not in back
 
 
 def test_operations_can_be_left_out_and_multiplied(part: Path) -> None:

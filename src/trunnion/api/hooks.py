@@ -17,6 +17,7 @@ import numpy as np
 
 from trunnion.api.job import PostJob
 from trunnion.cl import unknown_statement_remarks
+from trunnion.controls.vocabulary import HOOKS_NOTICE
 from trunnion.definitions.messages import did_you_mean
 from trunnion.errors import InputError, Problem, Severity, unusable_file
 from trunnion.hooks import Block, Context
@@ -40,9 +41,6 @@ _TYPES: Final[dict[str, type | tuple[type, ...]]] = {"str": str, "int": int, "fl
 _FARTHEST: Final = 1e6  # mm
 _LONGEST_TEXT: Final = 1000
 _MODULE: Final = "trunnion_hooks"
-
-#: Comments of programs whose motion a hook has changed begin so.
-NOTICE: Final = "MOTION CHANGED BY HOOKS"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,7 +85,7 @@ class Hooks:
         if not self.changed_motion:
             return ()
         files = ", ".join(file.path.name for file in self._files)
-        return (f"{NOTICE} {files}: {', '.join(dict.fromkeys(self.changed_motion))}",)
+        return (f"{HOOKS_NOTICE} {files}: {', '.join(dict.fromkeys(self.changed_motion))}",)
 
     def change(self, toolpaths: Iterable[Toolpath]) -> list[Toolpath]:
         """Return what hooks make of toolpaths, with remarks on what they changed.

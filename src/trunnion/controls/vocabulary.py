@@ -83,6 +83,9 @@ WRITER_FORMATS: Final = frozenset(
 #: How comments begin in the head of a program that was written although it was refused.
 FORCED_NOTICE: Final = "MUST NOT RUN AS IT IS"
 
+#: The same in a program whose motion a user's hooks have changed.
+HOOKS_NOTICE: Final = "MOTION CHANGED BY HOOKS"
+
 #: Values of the records of tools and of operations, for templates with expressions.
 TOOL_VALUES: Final = (
     "call", "number", "name", "kind", "diameter", "corner_radius", "length", "flute_length", "taper_angle", "tip_angle",
