@@ -184,11 +184,8 @@ def plan_program(
     file = toolpaths[0].file
     program = Program(job.machine, job.control, planned.motions, job.printed, file, own_settings=job.own_settings)
     program = with_place_texts(program)
-    problems = [*merge_repeated(check_program(program))]
-    errors = [problem for problem in problems if problem.severity is Severity.ERROR]
-    observer.problems([problem for problem in problems if problem not in errors])
-    if errors:
-        raise InputError(sorted(errors, key=lambda problem: (problem.file, problem.line)))
+    problems = new_problems(program)
+    observer.problems(problems)
     unproven = _missing_reader(job)
     by_register = readers.can_read(job.machine) and readers.reader_of(job.machine).uses_length_numbers
     conflicts = tool_conflicts(program, uses_length_numbers=by_register)
@@ -200,6 +197,21 @@ def plan_program(
     observer.problems(found)
     notices = [f"{FORCED_NOTICE}, written by --force: {problem.what}" for problem in blocking]
     return replace(program, notices=[*job.notices, *notices]), planned, [*problems, *found]
+
+
+def new_problems(program: Program, known: Sequence[Problem] = ()) -> list[Problem]:
+    """Warnings about a program that are not known yet.
+
+    Raises
+    ------
+    InputError
+        When the control cannot be told what the program says.
+    """
+    problems = merge_repeated(check_program(program))
+    errors = [problem for problem in problems if problem.severity is Severity.ERROR]
+    if errors:
+        raise InputError(sorted(errors, key=lambda problem: (problem.file, problem.line)))
+    return [problem for problem in problems if problem not in known]
 
 
 def _missing_reader(job: PostJob) -> list[Problem]:

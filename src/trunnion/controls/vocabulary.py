@@ -5,6 +5,8 @@
 
 from typing import Final
 
+from trunnion.encoding import ENCODINGS
+
 #: Values that the templates of every family may print, besides the settings.
 COMMON_TEMPLATE_FIELDS: Final = frozenset(
     {
@@ -44,6 +46,10 @@ PROGRAM_CHOICES: Final = {
     "units": (MM, INCH),
     "times": ("default", "on", "off"),
     "tool_list": ("off", "on"),
+    "operation_list": ("off", "on"),
+    "encoding": ENCODINGS,
+    "line_ends": ("lf", "crlf"),
+    "comments": ("as_written", "capitals"),
     "preselect": ("off", "on"),
     "restart": ("off", "on"),
     "standing_spindle": ("refused", "allowed"),
@@ -55,6 +61,11 @@ PROGRAM_MEANINGS: Final = {
     "times": "Machining times of each operation and of the program as comments. By default Klartext has them, and the "
     "other controls do not.",
     "tool_list": "With on, all tools with their data are comments at the head.",
+    "operation_list": "With on, all operations are comments at the head: tool, time, spindle, least and greatest feed, "
+    "and what they cut in X, Y and Z.",
+    "encoding": "What names and texts are written in. A character that it lacks is transliterated, with a warning.",
+    "line_ends": "What ends a line: LF, or CR and LF.",
+    "comments": "With capitals, comments and messages to the operator have no small letters.",
     "preselect": "With on, the program selects the next other tool after each tool change; without it SELECT/TOOL of "
     "the CL file does.",
     "restart": "With on, every operation calls its tool and its speed, so that the program can be entered there.",
@@ -67,7 +78,7 @@ RUN_ONLY_SETTINGS: Final = frozenset(
     {
         "cl_units", "dialect", "spline_tolerance", "zero", "tcp", "tool_length", "tip_tolerance", "axis_tolerance",
         "numbers", "programs", "split", "rewind", "frame", "mode", "cycles", "tool_retract", "limit_margin",
-        "clearance", "pole", "pole_angle", "lower_feed", "first_number",
+        "clearance", "pole", "pole_angle", "lower_feed", "feed", "feed_limit", "first_number", "listing",
     }
 )  # fmt: skip
 

@@ -37,6 +37,7 @@ from trunnion.output.holes.hole_blocks import write_holes
 from trunnion.output.program import Program
 from trunnion.output.template_values import plain_text, spindle_values
 from trunnion.output.template_writer import TemplateWriter
+from trunnion.transliteration import spelled
 
 #: A line of a template that switches something and moves nothing.
 _SWITCHING_LINE: Final = re.compile(r"M\d+|\{\w+\}")
@@ -48,6 +49,7 @@ class EventWriter:
     def __init__(self, program: Program, blocks: MotionBlockWriter, templates: TemplateWriter) -> None:
         self._program, self._control = program, program.control
         self._family: FamilyWriter = program.control.family
+        self._encoding = program.text_form.encoding
         self._blocks, self._templates = blocks, templates
         self._starts_spindle_by_template = SPINDLE_ON in program.control.templates
         # Before the blocks that may be skipped: the tool height, None for home; the file's size, and the modal state.
@@ -195,10 +197,10 @@ class EventWriter:
             formats = self._control.number_formats(self._motion.three_axis)
             blocks.write_lines(self._family.dwell(event, rpm, formats))
         elif isinstance(event, Message):
-            blocks.write_lines(self._family.message(event))
+            blocks.write_lines(self._family.message(replace(event, text=spelled(event.text, self._encoding))))
         elif isinstance(event, Insert):
             lines = event.text.split("\n")
-            blocks.write_lines(lines)
+            blocks.write_lines(lines, as_they_are=True)
             if event.template:
                 self._templates.forget_words(lines)
             else:

@@ -4,7 +4,7 @@ Every operation has the same sequence: operation start, tool change, approach wi
 with its events, operation end. An operation with several tool axes is several motions, each in a plane of its own.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import BinaryIO, Final
 
@@ -21,6 +21,7 @@ from trunnion.output.blocks.motion_blocks import MotionBlockWriter
 from trunnion.output.coordinates.plane_from_pose import tip_after_turn, with_plane_inside_limits, with_plane_of_pose
 from trunnion.output.coordinates.turn_distance import is_clear_of_turn, part_of
 from trunnion.output.event_writer import EventWriter
+from trunnion.output.operation_list import operation_texts
 from trunnion.output.program import Program
 from trunnion.output.subprograms import SubprogramFiles, SubprogramOutput
 from trunnion.output.template_printing import TemplatePrinting
@@ -44,7 +45,7 @@ def write_program(
     program
         Checked by ``check_program``.
     sink
-        Takes UTF-8 bytes in order.
+        Takes bytes in order.
     progress
         Called with the number of rows written since the last call.
     subprograms
@@ -85,7 +86,7 @@ class _ProgramWriter:
         self._template_values = TemplateValues(program)
         self._templates = TemplateWriter(self._blocks, TemplatePrinting(program, self._template_values))
         self._events = EventWriter(program, self._blocks, self._templates)
-        self._notices = [line for text in program.notices for line in program.control.family.comment(text)]
+        self._notices = self._comments(program.notices)
         self._loaded_tool = LoadedTool()
         self._called_tool = ""  # in the present file
         self._tool_calls = self._template_values.tool_calls
@@ -105,7 +106,7 @@ class _ProgramWriter:
         """Write the program."""
         motions = self._program.motions
         values = self._values(motions[0], 0)
-        head = [*self._notices, *self._tool_list(values)]
+        head = [*self._notices, *self._tool_list(values), *self._operation_list()]
         self._templates.write("program_start", values, motions[0], head)
         for k, motion in enumerate(motions):
             ends_program = k + 1 == len(motions)
@@ -181,7 +182,18 @@ class _ProgramWriter:
         texts = dict.fromkeys(
             tool_text(call, operation.tool, self._control.unit) for call, _, operation in self._tool_calls
         )
-        return [line for text in ("TOOL LIST", *texts) for line in self._control.family.comment(text)]
+        return self._comments(["TOOL LIST", *texts])
+
+    def _operation_list(self) -> list[str]:
+        """Comment lines with the operations in their order, if they are asked for."""
+        if self._program.effective_setting("operation_list") != "on":
+            return []
+        times = self._template_values.operation_times()
+        texts = operation_texts(self._program, [call for call, *_ in self._tool_calls], times)
+        return self._comments(["OPERATION LIST", *texts])
+
+    def _comments(self, texts: Sequence[str]) -> list[str]:
+        return [line for text in texts for line in self._control.family.comment(self._program.spelled(text))]
 
     def _preselect_next(self, motion: Motion, values: Mapping[str, Value]) -> None:
         """Select the next other tool, if that is asked for, as soon as that of an operation is in the spindle."""
@@ -198,6 +210,7 @@ class _ProgramWriter:
         motion = self._blocks.use_axis_coordinates(motion)
         suffix, values = self._program.template_suffix(motion), self._values(motion, number)
         if motion.starts_operation:
+            self._blocks.writer.begin_operation()
             self._templates.write_place("before_operation", values, motion)
             self._templates.write("operation_start", values, motion)
             self._change_tool(motion, values)

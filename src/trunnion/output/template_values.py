@@ -114,7 +114,7 @@ class TemplateValues:
             "length_number": str(self.length_register(operation, loaded) or tool),
         }
         return {
-            name: self._family.escape_comment(value) if isinstance(value, str) else value
+            name: self._family.escape_comment(self._program.spelled(value)) if isinstance(value, str) else value
             for name, value in found.items()
         }
 
@@ -184,13 +184,22 @@ class TemplateValues:
         names = "time", "total_time", "time_shown", "total_time_shown"
         if not self._prints_times:
             return dict.fromkeys(names)
-        if self._program.has_time_tokens:
-            own, total = _time_token(operation), _time_token(0)
-        else:
-            self._seconds = self._seconds or estimated_seconds(self._program)
-            own, total = format_duration(self._seconds[operation - 1]), format_duration(sum(self._seconds))
+        own, total = self._time_text(operation), self._time_text(0)
         shown = (own, total) if self._program.effective_setting("times") == "on" else (None, None)
         return dict(zip(names, (own, total, *shown), strict=True))
+
+    def operation_times(self) -> list[str | None]:
+        """The machining time of each operation, or what stands for it; None where the program has no times."""
+        count = sum(motion.starts_operation for motion in self._program.motions)
+        shown = prints_times(self._program)
+        return [self._time_text(number) if shown else None for number in range(1, count + 1)]
+
+    def _time_text(self, number: int) -> str:
+        """The machining time of an operation, counted from 1, or of the program (0); or what stands for it."""
+        if self._program.has_time_tokens:
+            return _time_token(number)
+        self._seconds = self._seconds or estimated_seconds(self._program)
+        return format_duration(self._seconds[number - 1] if number else sum(self._seconds))
 
     def _plane_values(self, motion: Motion) -> dict[str, Value]:
         """The origin of a tilted plane, and which of the two rotary positions the machine takes there.
@@ -310,13 +319,14 @@ def plain_text(control: Control, text: str) -> str:
 
 
 def prints_times(program: Program) -> bool:
-    """Return whether a template of the control prints machining times."""
+    """Return whether a template of the control, or the list of operations, has machining times."""
     setting = program.effective_setting("times")
     templates = program.control.templates.values()
     fields = {name for template in templates for name, _ in template.fields()}
     fields |= {name for template in templates for name in template.record_values}
     wanted = {"time", "total_time"} | ({"time_shown", "total_time_shown"} if setting == "on" else set())
-    return setting != "off" and bool(fields & wanted)
+    listed = program.effective_setting("operation_list") == "on"
+    return setting != "off" and (listed or bool(fields & wanted))
 
 
 def estimated_seconds(program: Program) -> list[float]:

@@ -201,6 +201,11 @@ def row_after_rewinds(row: int, rewinds: Sequence[Rewind]) -> int:
     return int(_new_row(rewinds, row))
 
 
+def rows_with_rewinds(rows: Ints, rewinds: Sequence[Rewind]) -> Ints:
+    """A column of row numbers, (n,), with -1 at the rows of all rewinds."""
+    return np.asarray(np.insert(rows, np.repeat(_rows(rewinds), [len(one.rows(1.0)) for one in rewinds]), -1))
+
+
 def _rows(rewinds: Sequence[Rewind]) -> Ints:
     return np.array([rewind.row for rewind in rewinds], np.int64)
 
