@@ -50,6 +50,20 @@ async function follow(space) {
   return { client, session, subscription, wanted, told, begun: Date.now(), lost: () => lost };
 }
 
+/** Times and values in turn that the server has kept of a node, all of them: an answer has 10,000 at most. */
+async function history(session, nodeId, first, last) {
+  const found = [];
+  for (let from = first; ; ) {
+    const read = await session.readHistoryValue({ nodeId }, new Date(from / 1000), new Date(last / 1000));
+    const values = read.historyData.dataValues.map((value) => [
+      value.sourceTimestamp.getTime() * 1000 + (value.sourcePicoseconds || 0) / 1e6, value.value.value,
+    ]).filter(([time]) => !found.length || time > found[found.length - 2]);
+    if (!values.length) return found;
+    found.push(...values.flat());
+    from = found[found.length - 2];
+  }
+}
+
 async function main() {
   const probe = OPCUAClient.create({ endpointMustExist: false, keepSessionAlive: true });
   await probe.connect(address);
@@ -67,11 +81,7 @@ async function main() {
   const kept = {};
   for (const axis of ["X", "Y", "Z", "B", "C"]) {
     const name = `CncInterface.CncAxisList.${axis}.PosDirect.ActPos`;
-    const nodeId = `ns=${space};s=${name}`;
-    const read = await session.readHistoryValue({ nodeId }, new Date(first / 1000), new Date(last / 1000));
-    kept[name] = read.historyData.dataValues.flatMap((value) => [
-      value.sourceTimestamp.getTime() * 1000 + (value.sourcePicoseconds || 0) / 1e6, value.value.value,
-    ]);
+    kept[name] = await history(session, `ns=${space};s=${name}`, first, last);
   }
   // Times and values in turn, of the window alone.
   const inWindow = (list) => list.filter((_, k) => first <= list[k - (k % 2)] && list[k - (k % 2)] <= last);
@@ -93,12 +103,18 @@ async function main() {
       if (each.told[index].length > (reference.get(name) || []).length) reference.set(name, each.told[index]);
     });
   for (const each of all)
-    each.wanted.forEach((name, index) => { missed += absent(reference.get(name) || [], each.told[index]); });
-  let behind = 0;
-  for (const [name, list] of Object.entries(kept)) behind += absent(inWindow(list), reference.get(name) || []);
+    each.wanted.forEach((name, index) => {
+      missed += absent(reference.get(name) || [], each.told[index]) + absent(each.told[index], reference.get(name) || []);
+    });
+  let behind = 0, compared = 0;
+  for (const [name, list] of Object.entries(kept)) {
+    const told = reference.get(name) || [], own = inWindow(list);
+    behind += absent(own, told) + absent(told, own);
+    compared += own.length / 2;
+  }
   const lost = all.reduce((sum, each) => sum + each.lost(), 0);
   fs.writeFileSync(file, JSON.stringify({
-    values, missed, behind, lost, seconds: (last - first) / 1e6, nodes: reference.size,
+    values, missed, behind, compared, lost, seconds: (last - first) / 1e6, nodes: reference.size,
     stamps: (reference.get("Twin.ProgramTime") || []).length / 2,
   }));
   process.exit(0);

@@ -14,6 +14,7 @@ Functions
     load_machine   definition -> Machine
     plan           CL files -> Plan: motions on the machine
     post           CL files -> NC program with its proof
+    post_project   project -> all NC programs of its set-ups with their proofs, together or not at all
     read_program   NC program -> Run: what the control does with it
     verify         NC program against its CL files, and against a recording of the machine -> Verification
     convert        NC program -> CL file, or program for another machine
@@ -28,6 +29,7 @@ Functions
     write_impeller_step  Impeller -> STEP file of a solid, and ImpellerSolid: how good it is
     write_report   Verification -> page or data
     write_plot     ClDescription -> page with the path in space
+    verify_manifest  manifest of a post -> ManifestCheck: are its files still the same
     write_view     NC program -> page that shows it on its machine, block by block
 
 They print nothing and raise ``TrunnionError``. Names are imported when they are first used.
@@ -56,12 +58,16 @@ if TYPE_CHECKING:
     from trunnion.api.impellers import load_impeller as load_impeller
     from trunnion.api.impellers import model_impeller as model_impeller
     from trunnion.api.impellers import write_impeller_step as write_impeller_step
+    from trunnion.api.manifests import ManifestCheck as ManifestCheck
+    from trunnion.api.manifests import verify_manifest as verify_manifest
     from trunnion.api.observer import Observer as Observer
     from trunnion.api.planning import plan as plan
     from trunnion.api.plotting import write_plot as write_plot
     from trunnion.api.post_result import PostResult as PostResult
     from trunnion.api.post_result import ProofFailedError as ProofFailedError
     from trunnion.api.posting import post as post
+    from trunnion.api.project_posting import ProjectResult as ProjectResult
+    from trunnion.api.project_posting import post_project as post_project
     from trunnion.api.reading import load_machine as load_machine
     from trunnion.api.reading import read_cl as read_cl
     from trunnion.api.reading import read_program as read_program
@@ -117,6 +123,7 @@ _MODULES: Final = {
     "InputError": "errors",
     "Machine": "machines.machine",
     "MachineDescription": "api.describing_machine",
+    "ManifestCheck": "api.manifests",
     "Motion": "model.motion",
     "Observer": "api.observer",
     "Operation": "model.toolpath",
@@ -125,6 +132,7 @@ _MODULES: Final = {
     "PointTable": "geometry.point_tables",
     "PostResult": "api.post_result",
     "Problem": "errors",
+    "ProjectResult": "api.project_posting",
     "ProofFailedError": "api.post_result",
     "RefusedError": "errors",
     "Run": "model.run",
@@ -148,11 +156,13 @@ _MODULES: Final = {
     "model_impeller": "api.impellers",
     "plan": "api.planning",
     "post": "api.posting",
+    "post_project": "api.project_posting",
     "read_cl": "api.reading",
     "read_points": "api.curves",
     "read_program": "api.reading",
     "simulate": "api.simulating",
     "verify": "api.verifying",
+    "verify_manifest": "api.manifests",
     "write_curve_picture": "api.curves",
     "write_impeller_step": "api.impellers",
     "write_plot": "api.plotting",
@@ -178,6 +188,7 @@ __all__ = [
     "InputError",
     "Machine",
     "MachineDescription",
+    "ManifestCheck",
     "Motion",
     "Observer",
     "Operation",
@@ -186,6 +197,7 @@ __all__ = [
     "PointTable",
     "PostResult",
     "Problem",
+    "ProjectResult",
     "ProofFailedError",
     "RefusedError",
     "Run",
@@ -210,11 +222,13 @@ __all__ = [
     "model_impeller",
     "plan",
     "post",
+    "post_project",
     "read_cl",
     "read_points",
     "read_program",
     "simulate",
     "verify",
+    "verify_manifest",
     "write_curve_picture",
     "write_impeller_step",
     "write_plot",

@@ -1,14 +1,19 @@
 """The encoding of the names in a CL file or NC program: UTF-8, the Chinese GB18030 (which contains GBK), or Latin-1.
 
-Neither declares it. Numbers and words are ASCII in all three encodings; only names and texts are not.
+Neither declares it; a control's definition may. Numbers and words are ASCII in all of them; only names and texts are
+not.
 """
 
 import codecs
 import re
+from typing import Final, NamedTuple
 from unicodedata import category
 
 _NON_ASCII = re.compile(rb"([A-Za-z]?)([\x80-\xff]+)([\x40-\x7e]?)")
 _LETTER = re.compile(rb"[A-Za-z]")
+
+#: What programs may be written in, by Python's names.
+ENCODINGS: Final = ("utf-8", "ascii", "latin-1", "gbk")
 
 #: So many stretches of non-ASCII bytes are evidence enough.
 _MAX_STRETCHES = 4096
@@ -21,6 +26,28 @@ _CAPITALS = {ord(letter): letter.upper() for letter in "abcdefghijklmnopqrstuvwx
 def capitals(text: str) -> str:
     """Return a text with its ASCII letters in capitals; other characters are no words, and stay as they are."""
     return text.translate(_CAPITALS)
+
+
+class TextForm(NamedTuple):
+    """How the characters of a program become bytes: Python's name of the encoding, and what ends a line."""
+
+    encoding: str = "utf-8"
+    line_end: bytes = b"\n"
+
+
+def decode(data: bytes, stated: str = "") -> str:
+    """Return bytes as text: in the stated encoding, or where there is none or they are not, in the likeliest one."""
+    for encoding in filter(None, (stated, "utf-8")):
+        try:
+            return data.decode(encoding)
+        except UnicodeDecodeError:
+            pass
+    detector = EncodingDetector()
+    detector.add(data)
+    try:
+        return data.decode(detector.encoding())
+    except UnicodeDecodeError:
+        return data.decode("latin-1")
 
 
 class EncodingDetector:

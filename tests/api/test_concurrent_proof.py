@@ -62,7 +62,7 @@ def case(name: str) -> tuple[PostJob, Toolpath]:
 
 def write_and_run(program: Program, files: OutputFiles) -> Run | None:
     """Write a program and run it meanwhile."""
-    with read_back_while_writing(files, program.machine, divided=False) as (progress, run):
+    with read_back_while_writing(files, program.machine, encoding="utf-8", divided=False) as (progress, run):
         write(program, files.main, progress)
     return run.result()
 
@@ -79,7 +79,7 @@ def test_a_program_that_is_read_while_it_is_written_runs_as_one_that_is_complete
         write(program, sink)
     assert meanwhile == files.path.read_bytes()
     assert run is not None
-    assert list(facts(run)) == list(facts(run_program(files.path, program.machine)))
+    assert list(facts(run)) == list(facts(run_program(files.path, program.machine, encoding="utf-8")))
 
 
 def test_what_is_proven_is_what_is_on_disk(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ import pytest
 import trunnion
 from tests.support.locations import ROOT
 from tests.support.sweeps import CUBE, CUBE_FACES
-from trunnion.api.simulation_project import read_project
+from trunnion.api.project_file import read_project
 from trunnion.cli import main
 from trunnion.simulation.meshes import TriangleMesh, save_mesh
 
@@ -151,7 +151,7 @@ def test_every_mistake_is_told_at_once_with_its_line(folder: Path) -> None:
         (PROJECT.replace("cell_mm = 1.0", "cell_mm = 0.0001"), 4, "cells of 0.0001 mm take"),
         (PROJECT.replace('machine = "xyzac_trt"', 'machine = "xyzac"'), 2, "did you mean"),
         (PROJECT.replace('machine = "xyzac_trt"\n', ""), 1, "simulation.machine is missing"),
-        ("[simulations]\n", 0, "has no table [simulation]"),
+        ("[simulations]\n", 0, "is no project"),
         ("[simulation]\nstock = [\n", 3, "is not TOML"),
         (SETUPS.replace("[simulation]", '[simulation]\nprograms = ["nc/slot.ngc"]', 1), 2, "beside set-ups"),
         (PROJECT + 'extends = "/etc/passwd"\n', 7, "not a key"),
@@ -185,7 +185,7 @@ def test_texts_are_judged_with_everything_else(folder: Path) -> None:
 
 def test_the_example_comes_out_and_is_what_the_page_shows() -> None:
     plate = ROOT / "examples" / "simulation" / "plate.toml"
-    shown = plate.read_text(encoding="utf-8").partition("\n")[2]
+    shown = plate.read_text(encoding="utf-8").split("\n", 2)[2]  # without its schema and the remark
     assert f"```toml\n{shown}```" in (ROOT / "docs" / "simulation.md").read_text(encoding="utf-8")
     found = trunnion.simulate(plate)
     assert found.passed

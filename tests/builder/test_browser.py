@@ -20,6 +20,7 @@ from trunnion.builder.sample import shipped_sample
 from trunnion.builder.server import builder_application
 from trunnion.builder.session import BuilderSession
 from trunnion.machines import forward
+from trunnion.schemas import first_line
 from trunnion.viewer.serving import Access, listen
 
 pytestmark = needs_browser
@@ -129,7 +130,7 @@ def test_a_bad_value_is_told_at_its_field_and_its_line(page: Page) -> None:
     row = page.locator('.field[data-path=\'["axis",["B"],"limits_deg"]\']')
     assert "low < high" in row.locator(".error").inner_text()
     assert row.locator("input").first.get_attribute("aria-invalid") == "true"
-    assert page.locator("#gutter .wrong").inner_text() == "6"
+    assert page.locator("#gutter .wrong").inner_text() == "7"
     assert "bad" in (page.locator("[data-page=rotary]").get_attribute("class") or "")
     assert "waits" in page.locator("#verdict").inner_text()
     enter(page, '["axis",["C"],"point_mm"]', "1,5")
@@ -255,7 +256,7 @@ def test_typing_in_the_text_loses_no_letter(page: Page) -> None:
     text = area.input_value()
     assert "min_rpm = 200" in text
     assert sorted(text.replace("\n[spindle]\nmin_rpm = 200\n", "").replace("\n", "")) == sorted(
-        'extends = "yl569"name = "Hall 2"# one! two! three!?'
+        first_line("machine").strip() + 'extends = "yl569"name = "Hall 2"# one! two! three!?'
     )
 
 

@@ -16,6 +16,7 @@ from trunnion.builder.sample import shipped_sample
 from trunnion.builder.saved_file import file_text, page_text
 from trunnion.builder.session import BuilderSession, RequestError
 from trunnion.machines.loading import machine_library, shipped_machines
+from trunnion.schemas import file_name, first_line, schema_text
 
 
 @pytest.fixture
@@ -40,7 +41,7 @@ def field(data: dict[str, Any], *path: Any) -> dict[str, Any]:
 
 def test_a_definition_that_extends_says_only_what_differs(session: BuilderSession) -> None:
     text = begun(session)
-    assert text == 'extends = "yl569"\nname = "Ours"\n'
+    assert text == first_line("machine") + 'extends = "yl569"\nname = "Ours"\n'
     limits = ["axis", ["B"], "limits_deg"]
     changed = ask(session, "change", text=text, path=limits, value=[-5, 95])
     assert changed["text"] == text + '\n[[axis]]\nname = "B"\nlimits_deg = [-5, 95]\n'
@@ -109,7 +110,7 @@ def test_what_is_not_known_of_a_new_machine_is_left_out_or_marked(session: Build
     for path, value in zip(marked, ([0, 0, 1], [0, 0, 212.5], [-30, 110]), strict=True):
         found = ask(session, "change", text=found["text"], path=path, value=value)
     assert found["marks"] == []
-    assert "#" not in found["text"]
+    assert "#" not in found["text"].removeprefix(first_line("machine"))
     warned = ask(session, "sample", text=found["text"])
     assert any("travel" in each["what"] and not each["error"] for each in warned["problems"])
 
@@ -128,7 +129,7 @@ def test_a_comment_of_the_users_own_is_no_mark(session: BuilderSession) -> None:
         (["spindle", "max_rpm"], 5999, "6000"),
         (["control", "settings", "work_offset"], "2", "work_offset"),
         (["control", "coolant", "ON"], 26, ""),
-        (["control", "block_numbers", "letter"], "L", ""),
+        (["control", "codes", "plane_xy"], 18, ""),
     ],
 )
 def test_a_sample_that_is_refused_has_a_reason(session: BuilderSession, path: list[Any], value: Any, told: str) -> None:
@@ -453,3 +454,12 @@ def value_of(text: str, path: list[Any]) -> Any:
     for step in path:
         found = next(item for item in found if item["name"] == step[0]) if isinstance(step, list) else found[step]
     return found
+
+
+def test_what_is_saved_has_its_schema_beside_it(session: BuilderSession, tmp_path: Path) -> None:
+    text = begun(session)
+    assert ask(session, "save", text=text, name="ours.toml", seen="")["saved"]
+    assert (tmp_path / file_name("machine")).read_text(encoding="utf-8") == schema_text("machine")
+    (tmp_path / file_name("machine")).unlink()
+    assert ask(session, "save", text=text.removeprefix(first_line("machine")), name="other.toml", seen="")["saved"]
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["other.toml", "ours.toml"]

@@ -16,7 +16,7 @@ import pytest
 
 import trunnion.files.output
 from trunnion.errors import InputError
-from trunnion.files import OutputFiles, atomic_file, atomic_output, check_stream, resolve_output
+from trunnion.files import OutputFiles, atomic_file, atomic_output, check_stream, output_group, resolve_output
 from trunnion.files.interrupts import held_interrupts
 from trunnion.files.streams import send
 
@@ -33,8 +33,8 @@ def write(target: Any, text: bytes, *subprograms: str, fail: BaseException | Non
     """Write a program, its subprograms and its report, or fail before the end."""
     with atomic_output(target, **given) as files:
         fill(files, text, *subprograms)
-        if "report" in given:
-            files.add_report(given["report"]).write(text)
+        for paper in given.get("papers", ()):
+            files.add_paper(paper).write(text)
         if fail is not None:
             raise fail
 
@@ -82,17 +82,17 @@ def test_a_report_appears_with_its_program(tmp_path: Path) -> None:
     (tmp_path / "reports").mkdir()
     program, report = tmp_path / "p.mpf", resolve_output(tmp_path / "reports" / "r.html")
     for text in (b"one", b"two"):
-        with atomic_output(str(program), report=report) as files:
+        with atomic_output(str(program), papers=[report]) as files:
             fill(files, text)
-            files.add_report(report).write(text)
+            files.add_paper(report).write(text)
             assert not report.path.exists() or report.path.read_bytes() != text
         assert (program.read_bytes(), contents(tmp_path / "reports")) == (text, {"r.html": text})
-    with pytest.raises(InputError, match="would be written twice"), atomic_output(str(report.path), report=report):
+    with pytest.raises(InputError, match="would be written twice"), atomic_output(str(report.path), papers=[report]):
         pass
     stream = io.BytesIO()
-    with atomic_output(stream, report=report) as files:
+    with atomic_output(stream, papers=[report]) as files:
         fill(files, b"three")
-        files.add_report(report).write(b"three")
+        files.add_paper(report).write(b"three")
     assert (stream.getvalue(), contents(tmp_path / "reports")) == (b"three", {"r.html": b"three"})
 
 
@@ -269,9 +269,9 @@ def test_where_folders_are_on_other_disks_files_are_copied_beside_their_places(
     (tmp_path / "other").mkdir()
     report = resolve_output(tmp_path / "other" / "r.json")
     for _ in range(2):
-        with atomic_output(str(tmp_path / "p.mpf"), report=report) as files:
+        with atomic_output(str(tmp_path / "p.mpf"), papers=[report]) as files:
             fill(files, b"new", "A.SPF")
-            files.add_report(report).write(b"new")
+            files.add_paper(report).write(b"new")
     assert len(moved) == 7
     for source, target in moved:
         assert source.parent in target.parents or target.parent in source.parents
@@ -315,10 +315,10 @@ def write_interrupted(line: int, folder: Path) -> bool:
     tracer = sys.gettrace()
     sys.settrace(interrupting)
     try:
-        with atomic_output(str(folder / "p.mpf"), report=report) as files:
+        with atomic_output(str(folder / "p.mpf"), papers=[report]) as files:
             fill(files, b"new", "A.SPF", "B.SPF")
             files.start_sync()
-            files.add_report(report).write(b"new")
+            files.add_paper(report).write(b"new")
     except KeyboardInterrupt:
         assert interrupting.came
     finally:
@@ -379,7 +379,7 @@ def test_a_failing_move_is_undone_whatever_it_fails_of(tmp_path: Path, monkeypat
                 patch.setattr(Path, "replace", fail)
                 expected = InputError if isinstance(error, OSError) else type(error)
                 with pytest.raises(expected):
-                    write(str(tmp_path / "p.mpf"), b"new", "A.SPF", "B.SPF", report=report)
+                    write(str(tmp_path / "p.mpf"), b"new", "A.SPF", "B.SPF", papers=[report])
             assert contents(tmp_path) == dict.fromkeys(("A.SPF", "p.mpf", "r.html"), b"old")
 
 
@@ -389,3 +389,79 @@ def test_a_single_file_is_whole_or_not_there(tmp_path: Path) -> None:
         sink.flush()
         assert Path(sink.name).read_bytes() == b"whole"
     assert contents(tmp_path) == {"r.json": b"whole"}
+
+
+# Several jobs together
+
+
+def group_of_two(folder: Path, *, second: str = "b/two.mpf", fail: BaseException | None = None) -> None:
+    """Write two jobs, the first with a subprogram and a report, or fail after the second."""
+    with output_group(remembers=False) as group:
+        report = resolve_output(folder / "one.html")
+        with group.open(resolve_output(folder / "a" / "one.mpf"), papers=[report]) as files:
+            fill(files, b"one", "SUB.SPF")
+            files.add_paper(report).write(b"report")
+        assert contents(folder / "a").get("one.mpf") in (None, b"old"), "nothing appears before all of it does"
+        with group.open(resolve_output(folder / second)) as files:
+            fill(files, b"two")
+            if fail is not None:
+                raise fail
+
+
+@pytest.fixture
+def two_folders(tmp_path: Path) -> Path:
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / ("one.mpf" if name == "a" else "two.mpf")).write_bytes(b"old")
+    return tmp_path
+
+
+def test_jobs_of_a_group_appear_together(two_folders: Path) -> None:
+    group_of_two(two_folders)
+    assert contents(two_folders / "a") == {"one.mpf": b"one", "SUB.SPF": b"one"}
+    assert contents(two_folders / "b") == {"two.mpf": b"two"}
+    assert contents(two_folders) == {"a": b"", "b": b"", "one.html": b"report"}
+
+
+@pytest.mark.parametrize("fail", [InputError(()), KeyboardInterrupt(), OSError(5, "disk")])
+def test_of_a_group_that_fails_nothing_appears(two_folders: Path, fail: BaseException) -> None:
+    with pytest.raises(type(fail)):
+        group_of_two(two_folders, fail=fail)
+    assert contents(two_folders / "a") == {"one.mpf": b"old"}
+    assert contents(two_folders / "b") == {"two.mpf": b"old"}
+    assert not (two_folders / "one.html").exists()
+
+
+def test_a_group_that_cannot_take_one_of_its_places_takes_none(
+    two_folders: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    replace = Path.replace
+
+    def failing(self: Path, target: str | os.PathLike[str]) -> Path:
+        if Path(target).name == "two.mpf" and self.name == "two.mpf":
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return replace(self, target)
+
+    monkeypatch.setattr(Path, "replace", failing)
+    with pytest.raises(InputError, match=r"two\.mpf: error: cannot be written: No space left"):
+        group_of_two(two_folders)
+    assert contents(two_folders / "a") == {"one.mpf": b"old"}
+    assert contents(two_folders / "b") == {"two.mpf": b"old"}
+    assert not (two_folders / "one.html").exists()
+
+
+@pytest.mark.parametrize("second", ["a/one.mpf", "a/SUB.SPF", "one.html"])
+def test_jobs_of_a_group_do_not_write_the_same_file(two_folders: Path, second: str) -> None:
+    with pytest.raises(InputError, match="would be written twice"):
+        group_of_two(two_folders, second=second)
+
+
+@needs_pipes
+def test_a_device_takes_no_part_in_a_group(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    with (
+        output_group() as group,
+        pytest.raises(InputError, match="is a device"),
+        group.open(resolve_output(tmp_path / "pipe")),
+    ):
+        raise AssertionError

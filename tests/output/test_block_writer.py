@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from trunnion.controls.words import ABSENT, BlockNumbers, NumberFormat, Word, WordRangeError, round_to_counts
+from trunnion.encoding import TextForm
 from trunnion.output.blocks.block_writer import BlockWriter
 
 COORDINATE = NumberFormat(5, zero="0.0", least=-1e11, greatest=1e11)
@@ -29,14 +30,19 @@ TEXTS = ["; a line", ";叶片"]
 Row = tuple[int, int, int, int, int, int, int, str]
 
 
-def slow_blocks(rows: list[Row], numbers: BlockNumbers) -> str:
+def slow_blocks(rows: list[Row], numbers: BlockNumbers, form: TextForm) -> bytes:
     """What the writer must write, in the most obvious way."""
     last: dict[str, int] = {}
-    number, lines = numbers.start, []
+    number, blocks, lines = numbers.start, 0, []
 
     def block(text: str) -> None:
-        nonlocal number
-        lines.append((f"{numbers.letter}{number} " if numbers.numbered else "") + text)
+        nonlocal number, blocks
+        is_due = blocks == 0 if numbers.at_operations else blocks % numbers.every == 0
+        blocks += 1
+        if not (numbers.numbered and is_due):
+            lines.append(text)
+            return
+        lines.append(f"{numbers.letter}{number} " + text)
         number = numbers.start if number + numbers.step > numbers.highest else number + numbers.step
 
     for *values, forced, text, single in rows:
@@ -53,17 +59,28 @@ def slow_blocks(rows: list[Row], numbers: BlockNumbers) -> str:
             words.append(word.letter if word.bare else word.letter + word.format.text_of_count(count))
         if set(words) - {"FMAX"}:
             block(" ".join(words))
-    return "".join(line + "\n" for line in lines)
+    return "".join(line + form.line_end.decode() for line in lines).encode(form.encoding)
 
 
 @settings(deadline=None)
 @given(
     tables,
-    st.sampled_from([BlockNumbers(), BlockNumbers(numbered=False), BlockNumbers("N", 1, 1, 7), BlockNumbers("", 0, 1)]),
+    st.sampled_from(
+        [
+            BlockNumbers(),
+            BlockNumbers(numbered=False),
+            BlockNumbers("N", 1, 1, 7),
+            BlockNumbers("", 0, 1),
+            BlockNumbers("N", 5, 5, 15, every=4),
+            BlockNumbers("N", 1, 1, at_operations=True),
+        ]
+    ),
+    st.sampled_from([TextForm(), TextForm("gbk", b"\r\n")]),
 )
-def test_the_kernel_writes_what_its_slow_twin_writes(rows: list[Row], numbers: BlockNumbers) -> None:
+def test_the_kernel_writes_what_its_slow_twin_writes(rows: list[Row], numbers: BlockNumbers, form: TextForm) -> None:
     sink = io.BytesIO()
-    writer = BlockWriter(sink, WORDS, numbers)
+    writer = BlockWriter(sink, WORDS, numbers, form)
+    writer.begin_operation()
     for part in (rows[:7], rows[7:]):  # memory goes on from table to table
         if part:
             table = np.array([row[:-1] for row in part], np.int64)
@@ -74,7 +91,7 @@ def test_the_kernel_writes_what_its_slow_twin_writes(rows: list[Row], numbers: B
                 TEXTS,
                 {k: row[-1] for k, row in enumerate(part) if row[-1]},
             )
-    assert sink.getvalue().decode() == slow_blocks(rows, numbers)
+    assert sink.getvalue() == slow_blocks(rows, numbers, form)
 
 
 def written(writer: BlockWriter, sink: io.BytesIO, x: float) -> str:

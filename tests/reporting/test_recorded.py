@@ -10,11 +10,14 @@ from playwright.sync_api import Browser
 
 from tests.support.browser import browser as browser
 from tests.support.browser import needs_browser, open_file
-from tests.support.recordings import BLADE_FINISH, blade, recorded, with_gap
-from trunnion import verify, write_report
+from tests.support.recordings import BLADE_FINISH, IMPELLER, blade, impeller, recorded, with_gap
+from trunnion import read_program, verify, write_report
+from trunnion.api.settings import set_up_machine
 from trunnion.arrays import Floats
+from trunnion.machines import load_machine
 from trunnion.model.recording import Recording
 from trunnion.reporting.column_encoding import decode_column
+from trunnion.timing import time_run
 
 GAP = (300, 360)
 
@@ -73,6 +76,75 @@ def test_the_data_have_how_far_off_each_motion_was(folder: Path) -> None:
         assert (tip is None) is (axis is None) is (count == 0)
         assert count == 0 or max(tip, axis) < 1e-9
     assert data["checks"][-1]["key"] == "recorded"
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Recording]:
+    """Reports of the programs of the impeller, one after the other, with and without their CL files."""
+    folder = tmp_path_factory.mktemp("whole")
+    programs, cl = zip(*IMPELLER.values(), strict=True)
+    zero, length = "0,0,-200", 150.0
+    machine = set_up_machine(load_machine("yl569"), zero, length)
+    timed = time_run(read_program(main := impeller(folder), machine=machine, subprograms=programs))
+    recording = recorded(timed, np.linspace(0.0, timed.duration, 4000))
+    for name, files in (("with.html", cl), ("with.json", cl), ("without.html", [])):
+        found = verify(
+            main, machine="yl569", subprograms=programs, cl=files, zero=zero, tool_length=length,
+            recorded=recording,
+        )  # fmt: skip
+        assert found.passed
+        write_report(found, folder / name)
+    return folder, recording
+
+
+def test_the_programs_of_an_impeller_are_drawn_with_their_names_and_the_travel(whole: tuple[Path, Recording]) -> None:
+    folder, recording = whole
+    page = (folder / "with.html").read_text(encoding="utf-8")
+    told = json.loads(script(page, "recorded-report"))
+    limits = {plot["title"]: plot["lines"][0]["limits"] for plot in told["plots"]}
+    assert limits == {
+        "X": [-250.0, 250.0], "Y": [-150.0, 150.0], "Z": [-250.0, 250.0], "C": [], "B": [-11.0, 100.0],
+        "Spindle": [9000.0],
+    }  # fmt: skip
+    for plot in told["plots"]:
+        assert not plot["lines"][0].get("loose")
+        name = "spindle" if plot["title"] == "Spindle" else plot["title"]
+        shown = column(page, plot["lines"][0]["column"])
+        np.testing.assert_array_equal(shown, recording.values[name].astype(np.float32))
+    assert [name for _, name in told["marks"]] == ["CAVITY_MILL", "MULTI_BLADE_ROUGH", "BLADE_FINISH"]
+    # An operation begins with the way home that leads to it, at the end of the program before it.
+    program = recording.texts["program"]
+    begin = np.searchsorted(recording.elapsed(), [time - 1e-3 for time, _ in told["marks"]]).tolist()
+    assert begin[0] == 0
+    for at, before, part in zip(begin[1:], list(IMPELLER)[:-1], list(IMPELLER)[1:], strict=True):
+        assert program[at].startswith(before)
+        assert program[at + 60].startswith(part)
+    # Who points at the curves is told the file.
+    files = decode_column(script(page, "recorded-full-file").encode()).view(np.int32)
+    assert [told["files"][k] for k in np.unique(files[files > 0])] == [path.name for path, _ in IMPELLER.values()]
+    without = json.loads(script((folder / "without.html").read_text(encoding="utf-8"), "recorded-report"))
+    assert [name for _, name in without["marks"]] == [path.name for path, _ in IMPELLER.values()]
+
+
+def test_what_was_used_of_the_travel_is_told_in_numbers(whole: tuple[Path, Recording]) -> None:
+    folder, recording = whole
+    told = json.loads((folder / "with.json").read_text(encoding="utf-8"))["recorded"]["extents"]
+    assert [each["name"] for each in told] == ["X", "Y", "Z", "C", "B", "Spindle"]
+    page = (folder / "with.html").read_text(encoding="utf-8")
+    table = page[page.index("<h2>Extents in made.csv</h2>") : page.index('<section id="recorded-plots"')]
+    table = re.sub(r"<[^>]+>", " ", table).replace("\u2212", "-")
+    for each in told:
+        values = recording.values["spindle" if each["name"] == "Spindle" else each["name"]]
+        low, high = float(values.min()), float(values.max())
+        assert (each["whole"]["low"], each["whole"]["high"]) == (low, high)
+        least, most = each["limits"]
+        rooms = [
+            high_room for high_room in (most - high if most else None, low - least if least else None) if high_room
+        ]
+        margin = "" if each["endless"] else f"{min(rooms):.3f}"
+        assert each["margin"] == (pytest.approx(min(rooms)) if margin else None)
+        shown = r"\s+".join([re.escape(each["name"]), r"\S+", f"{low:.3f}", r"N\d+", f"{high:.3f}", r"N\d+"])
+        assert re.search(rf"{shown}\s.*?{re.escape(margin)}", table), (each, table)
 
 
 @needs_browser

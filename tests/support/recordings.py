@@ -21,6 +21,21 @@ BLADE_FINISH = YL569 / "3_blade_finish.expected.mpf"
 BEGIN = 1_780_000_000_000_000
 
 
+#: The three operations of the impeller, each a program and the CL file that it was made from.
+IMPELLER = {
+    part: (YL569 / f"{part}.expected.mpf", YL569 / f"{part}.cls")
+    for part in ("1_contour_rough", "2_hub_rough", "3_blade_finish")
+}
+
+
+def impeller(folder: Path) -> Path:
+    """A main program that calls the programs of the impeller in turn; coolant goes on until somebody turns it off."""
+    main = folder / "impeller.mpf"
+    calls = [f'EXTCALL("{program.name}")\nM9\n' for program, _ in IMPELLER.values()]
+    main.write_text("".join(calls) + "M30\n", encoding="utf-8")
+    return main
+
+
 @cache
 def blade() -> TimedRun:
     """The program of the blade in time."""
@@ -35,8 +50,8 @@ def recorded(timed: TimedRun, seconds: Floats, *, with_lines: bool = True) -> Re
     if with_lines:
         values["line"] = np.where(state.row < 0, 0, run.line[np.maximum(state.row, 0)]).astype(np.float64)
     stamps = (BEGIN + np.rint(seconds * 1e6)).astype(np.int64)
-    name = Path(run.files[0]).name
-    program = {"program": TextColumn(np.ones(len(seconds), np.int64), ("", name))}
+    names = ("", *(Path(file).name for file in run.files))
+    program = {"program": TextColumn(run.file[np.maximum(state.row, 0)].astype(np.int64) + 1, names)}
     return Recording("made.csv", stamps, stamps + 1000, {}, values, program)
 
 

@@ -38,7 +38,9 @@ def _section(title: str, settings: Sequence[SettingDescription]) -> str:
 def page() -> str:
     """The page of the docs; controls that differ from one before them in a few settings show these only."""
     controls = trunnion.describe_controls()
-    text = _HEAD + _section("Every control", controls[0].run_settings)
+    # Some controls have one of these as their own, with other values.
+    every = max((control.run_settings for control in controls), key=len)
+    text = _HEAD + _section("Every control", every)
     shown: list[trunnion.ControlDescription] = []
     for control in controls:
         like = next((other for other in shown if _names(other) == _names(control)), None)

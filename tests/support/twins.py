@@ -4,7 +4,7 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,17 +17,18 @@ BLADE_FINISH = YL569 / "3_blade_finish.expected.mpf"
 
 @dataclass(frozen=True)
 class ServedTwin:
-    """A command ``trunnion twin`` that serves; its addresses, and its process."""
+    """A command ``trunnion twin`` that serves; its addresses, its process, and the fingerprint if it is secured."""
 
     opcua: str
     mtconnect: tuple[str, int]
+    fingerprint: str
     process: subprocess.Popen[str]
 
 
 @contextmanager
-def served(program: Path, *options: str, home: Path | None = None) -> Iterator[ServedTwin]:
-    """Serve a program on free ports until the end of the block."""
-    command = [sys.executable, "-m", "trunnion", "twin", str(program), "--machine", "yl569", "--port", "0"]
+def served(program: Path, *options: str, home: Path | None = None, within: Sequence[str] = ()) -> Iterator[ServedTwin]:
+    """Serve a program on free ports until the end of the block; ``within``: by the command that runs it elsewhere."""
+    command = [*within, sys.executable, "-m", "trunnion", "twin", str(program), "--machine", "yl569", "--port", "0"]
     command += ["--adapter-port", "0", *options]
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "src")}
     if home is not None:
@@ -45,7 +46,8 @@ def served(program: Path, *options: str, home: Path | None = None) -> Iterator[S
         agents = re.search(r"connects to ([\d.]+):(\d+)", text)
         assert opcua is not None, text
         place = (agents[1], int(agents[2])) if agents else ("", 0)
-        yield ServedTwin(opcua[0], place, process)
+        certificate = re.search(r"certificate ([0-9A-F]{40})", text)
+        yield ServedTwin(opcua[0], place, certificate[1] if certificate else "", process)
     finally:
         process.terminate()
         process.communicate()

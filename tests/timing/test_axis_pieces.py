@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 
 from tests.support.locations import TESTS
+from trunnion.api.twin import twin_program
+from trunnion.errors import InputError
 from trunnion.machines import forward, load_machine
 from trunnion.model.run import Run
 from trunnion.model.subdivision import subdivide
 from trunnion.readers import run_program
-from trunnion.timing import SAG, AxisPieces, axis_pieces
+from trunnion.timing import MOST_PIECES, SAG, AxisPieces, axis_pieces
 
 ARCS = "G710 G90 G54\nG0 X30 Y0 Z10\nG2 X30 Y0 I-30 J0 F500\nTRAORI\nG3 X-30 Y0 CR=30 B40 C90\nG1 X0 B-10 C300\nM30\n"
 
@@ -66,3 +68,21 @@ def test_without_a_zero_machine_positions_are_not_known_at_the_workpiece(run: Ru
     into_work = np.flatnonzero(pieces.known)
     assert not pieces.known[0]
     assert len(into_work) > len(pieces.row) // 2
+
+
+def test_a_program_of_more_pieces_than_are_kept_is_refused_before_they_are_made(run: Run) -> None:
+    made = len(whole(run, {}).row)
+    assert len(next(axis_pieces(run, {}, most=made)).row) == made
+    last = int(whole(run, {}).row[-1])
+    with pytest.raises(InputError) as caught:
+        list(axis_pieces(run, {}, most=made - 1))
+    (problem,) = caught.value.problems
+    assert problem.line == run.lines[last]
+
+
+def test_a_few_lines_that_make_a_flood_of_motion_are_refused_with_the_line(tmp_path: Path) -> None:
+    program = tmp_path / "flood.mpf"
+    loop = f"FOR R1=1 TO {MOST_PIECES // 4096 + 1}\nG2 X0 Y=R1*0.00001 I=9000 J=0 TURN=100\nENDFOR\nM30\n"
+    program.write_text(f"G17 G54 G90 G94\nG1 X0 Y0 Z10 F1000\n{loop}", encoding="utf-8")
+    with pytest.raises(InputError, match=r"flood\.mpf:4: error: is where the program makes more than 3000000 pieces"):
+        twin_program(program, machine="yl569")

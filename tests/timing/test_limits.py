@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from tests.support.naive.speeds import naive_seconds
 from trunnion.arrays import Floats
 from trunnion.machines import load_machine
-from trunnion.timing import AxisDynamics, Path, piece_seconds
+from trunnion.timing import AxisDynamics, Path, piece_seconds, timed_pieces
 from trunnion.timing.planner import Phases, plan
 from trunnion.timing.speed_kernel import BEGIN, CORNER, END, plan_speeds
 
@@ -86,6 +86,16 @@ def test_phases_follow_each_other_without_a_jump_and_cover_the_path(path: Path, 
     np.testing.assert_allclose(covered[moves], path.length[moves], rtol=1e-6, atol=1e-9)
     np.testing.assert_allclose(np.bincount(phases.piece, t, len(seconds)), seconds, rtol=1e-9, atol=1e-12)
     np.testing.assert_allclose(piece_seconds(path, dynamics), seconds, rtol=1e-12)
+
+
+@pytest.mark.parametrize("dynamics", [EVEN, SMOOTH], ids=["even", "smooth"])
+@given(path=paths())
+def test_the_speed_that_a_piece_reaches_is_the_highest_of_its_phases(path: Path, dynamics: AxisDynamics) -> None:
+    times, (_, phases) = timed_pieces(path, dynamics), plan(path, dynamics)
+    highest = np.zeros(len(path.length))
+    np.maximum.at(highest, phases.piece, closely(phases)[0].max(axis=1))
+    np.testing.assert_allclose(times.reached, highest, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(times.seconds, piece_seconds(path, dynamics), rtol=1e-12)
 
 
 @given(paths())

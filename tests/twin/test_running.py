@@ -4,6 +4,7 @@ import asyncio
 from collections import deque
 from datetime import datetime
 
+import numpy as np
 import pytest
 
 from tests.support.twins import BLADE_FINISH
@@ -22,10 +23,14 @@ class Subscriber:
         self.fetched: list[tuple[int, float]] = []
         self.fullest = 0
         self.states: list[PlayState] = []
+        self.moving: list[bool] = []
+        self.feeds: list[float] = []
         self.messages: list[str] = []
         self._fetches = fetches
 
     async def show(self, snapshots: Snapshots, stamps: list[datetime], microseconds: list[int]) -> None:
+        self.moving += [bool(each.any()) for each in snapshots.moving]
+        self.feeds += snapshots.tip_feed.tolist()
         self.queue += zip(microseconds, snapshots.joints[:, 0].tolist(), strict=True)
         self.fullest = max(self.fullest, len(self.queue))
 
@@ -88,3 +93,42 @@ def test_a_client_who_is_gone_stops_nobody(monkeypatch: pytest.MonkeyPatch) -> N
     run([there, gone], None)
     assert there.fullest <= 8
     assert len(gone.queue) > 8
+
+
+def test_axes_of_a_program_that_does_not_go_on_stand() -> None:
+    """At its end, when it is held, and at an override of 0; a machine without accelerations stops at once."""
+
+    async def whole() -> None:
+        program = twin_program(BLADE_FINISH, machine="yl569")
+        subscriber, now = Subscriber(fetches=False), 1000.0
+        twin = Twin(program, Playback(program.timed, speed=1.0), 0.05, clock=lambda: now)
+        subscriber.lagging = dict  # type: ignore[method-assign]
+        twin.outlets.append(subscriber)
+
+        def last() -> tuple[bool, float]:
+            return subscriber.moving[-1], subscriber.feeds[-1]
+
+        await twin.start()
+        longest = int(np.argmax(program.timed.ends - program.timed.begins))
+        now += float(program.timed.begins[longest] + program.timed.ends[longest]) / 2.0
+        await twin.set_override(100.0)
+        assert last()[0]
+        assert last()[1] > 0.0
+        now += 0.001
+        await twin.hold()
+        assert last() == (False, 0.0)
+        await twin.start()
+        now += 0.001
+        await twin.set_override(0.0)
+        assert last() == (False, 0.0)
+        now += 1.0
+        await twin.set_override(100.0)
+        assert last() == (False, 0.0)
+        assert subscriber.moving.count(True) > 10
+        while twin.playback.state is PlayState.RUNNING:
+            now += 1.0
+            await twin.set_override(100.0)
+        assert last() == (False, 0.0)
+        assert subscriber.queue[-1][1] == program.run.joints[-1, 0]
+
+    asyncio.run(whole())

@@ -100,7 +100,7 @@ def page_address(twin: str, request: pytest.FixtureRequest) -> Iterator[str]:
 def test_the_pose_that_is_shown_is_that_of_the_machine(page_address: str, browser: Browser) -> None:
     machine = load_machine("yl569")
     with open_page(browser, page_address) as (page, errors):
-        page.wait_for_function("page.space.values.some(value => value !== 0)")
+        page.wait_for_function("() => page.space.values.some(value => value !== 0)")
         shown = page.evaluate(
             """async () => { const found = [];
             for (let k = 0; k < 12; k++) {

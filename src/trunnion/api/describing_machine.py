@@ -1,12 +1,16 @@
 """What the definition of a machine means, for a person beside the machine."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
+from trunnion.api.assumptions import assumptions
 from trunnion.api.describing import TemplateDescription, main_texts
 from trunnion.api.reading import MachineLike, as_machine
 from trunnion.controls import load_control
+from trunnion.definitions import load_table
 from trunnion.machines import Machine
 from trunnion.machines.jog_table import JogTable, jog_table
+from trunnion.machines.loading import machine_library
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,12 +21,14 @@ class MachineDescription:
     jogs     where tool and table go when its axes are jogged, and where the tool points
     control  name of its control
     texts    those of its control that a program with one tool has, in their order
+    assumed  what its definition leaves open, marks as not measured, or has from another machine, in sentences
     """
 
     machine: Machine
     jogs: JogTable
     control: str
     texts: tuple[TemplateDescription, ...]
+    assumed: tuple[str, ...] = ()
 
 
 def describe_machine(machine: MachineLike) -> MachineDescription:
@@ -37,7 +43,7 @@ def describe_machine(machine: MachineLike) -> MachineDescription:
     -------
     MachineDescription
         For each axis where tool and table go as it is jogged; the tool axis at rotary positions that can be checked by
-        hand; rotation centres, limits and home; and the texts of its control.
+        hand; rotation centres, limits and home; the texts of its control; and what is assumed.
 
     Raises
     ------
@@ -57,4 +63,6 @@ def describe_machine(machine: MachineLike) -> MachineDescription:
     """
     found = as_machine(machine)
     control = load_control(found.control)
-    return MachineDescription(found, jog_table(found), control.name, main_texts(control))
+    table = load_table(machine, machine_library(), kind="machine") if isinstance(machine, str | Path) else None
+    assumed = assumptions(found, table)
+    return MachineDescription(found, jog_table(found), control.name, main_texts(control), assumed)

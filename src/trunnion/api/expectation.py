@@ -67,6 +67,8 @@ def _expected_settings(program: Program, options: PlanOptions) -> ExpectedValues
         absolute=options.absolute_frame,
         max_inverse_time_feed=inverse_time.five_axis.greatest if inverse_time else None,
         max_feed=program.control.formats["feed"].five_axis.greatest,
+        fastest_feed=options.fastest_feed,
+        feed_limit=options.feed_limit,
         rapid_feed=float(values["rapid_feed"]) if values.get("rapid_feed") else None,
         smoothing=max(float(each.get(key) or 0.0) for each in every for key in _SMOOTHING),
         rigid_tap=m_code(values.get("rigid_tap", "")),

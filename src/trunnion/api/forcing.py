@@ -69,7 +69,8 @@ def write_forced(
         _write(program, notices, target, subprograms)
         files = target.files
         others = [*files.other_paths, *job.beside]
-        proof = prove(readers.run_program(files.path, job.machine, subprograms=others))
+        run = readers.run_program(files.path, job.machine, subprograms=others, encoding=job.encoding)
+        proof = prove(run)
         before, notices = notices, _notices(proof)
         if _line_count(program, notices) == _line_count(program, before):
             if notices != before:
@@ -88,4 +89,4 @@ def _write(program: Program, notices: Sequence[str], target: Target, subprograms
 
 
 def _line_count(program: Program, notices: Sequence[str]) -> int:
-    return sum(len(program.control.family.comment(text)) for text in notices)
+    return sum(len(program.control.family.comment(program.spelled(text))) for text in notices)

@@ -17,8 +17,8 @@ from trunnion.api.impellers import load_impeller, model_impeller
 from trunnion.api.input_files import definition_files
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
+from trunnion.api.paper_files import PaperFiles
 from trunnion.api.post_result import PostResult
-from trunnion.api.posted_simulation import named_run
 from trunnion.api.posting import post_toolpaths
 from trunnion.api.reading import FilePath, MachineLike, as_machine, read_cl
 from trunnion.api.settings import Settings, check_tolerance
@@ -26,6 +26,7 @@ from trunnion.api.simulating import simulate
 from trunnion.api.simulation_report import simulation_content
 from trunnion.api.simulation_result import SimulationResult
 from trunnion.api.targets import open_target
+from trunnion.api.writing import named_run
 from trunnion.arrays import Flags, Floats
 from trunnion.cl.writers import WRITERS
 from trunnion.controls import load_control
@@ -197,8 +198,8 @@ def _cut(
 ) -> ImpellerCut:  # fmt: skip
     """As ``cut_impeller``: all files appear when it ends."""
     definition = found.definition
-    job = replace(job, report=files.report, forcing="")
-    with open_target(files.program, report=files.report, inputs=inputs) as target:
+    job = replace(job, papers=PaperFiles(report=files.report), forcing="")
+    with open_target(files.program, papers={"report": files.report}, inputs=inputs) as target:
         naming = job.control.subprograms if job.subprograms(target.files, target.path) is not None else None
         steps = [step for step in definition.steps if step.name in chosen]
         files.check_others(target.files, steps, found, naming, simulated=cell is not None)

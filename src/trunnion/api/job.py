@@ -1,12 +1,14 @@
 """A post before its first CL file is read: machine, control and options, made of its settings."""
 
 import math
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
+from trunnion.api.paper_files import PaperFiles
 from trunnion.api.run_settings import RUN_SETTINGS
 from trunnion.api.settings import (
     Settings,
@@ -23,7 +25,7 @@ from trunnion.controls.vocabulary import MM, PROGRAM_CHOICES
 from trunnion.errors import InputError, argument_problem
 from trunnion.files import OutputFiles
 from trunnion.machines import Machine
-from trunnion.model.motion import MachiningMode, PoleStrategy
+from trunnion.model.motion import Decision, MachiningMode, PoleStrategy
 from trunnion.output.capabilities import control_capabilities
 from trunnion.output.subprograms import SubprogramOutput
 from trunnion.planning import Clearance, ClearanceSurface, ControlCapabilities, PlanOptions
@@ -40,6 +42,9 @@ _MODES: Final = {
     "tcp": MachiningMode.TCP,
 }
 
+#: What a refusal says of ``force``.
+FORCING: Final = "force=True writes it"
+
 #: What gives subprograms other numbers.
 _OTHER_NUMBERS: Final = "begin with another number by setting first_number=2001"
 
@@ -55,10 +60,12 @@ class PostJob:
     settings      all of them, as text
     own_settings  those of single operations, by their names
     force         write a program that must not run, with notices in its head
-    report        file of the report; None: there is none
+    papers        where its papers go
     columns       work out the columns of the verification
     beside        files of subprograms that exist already and that templates call
-    simulation    stock and all else that the program is simulated with; None: it is not
+    simulation    stock and all else that the program is simulated with; None: it is not; and the files of that
+    notices       comments for the head of the program
+    decisions     what was decided before planning, for reports
     forcing       what a refusal says of ``force``; empty where it cannot be asked for
     """
 
@@ -68,17 +75,25 @@ class PostJob:
     options: PlanOptions
     settings: Mapping[str, str]
     force: bool = False
-    report: Path | None = None
+    papers: PaperFiles = field(default_factory=PaperFiles)
     columns: bool = False
     own_settings: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     beside: tuple[Path, ...] = ()
     simulation: "SimulationInput | None" = None
-    forcing: str = "force=True writes it"
+    simulation_files: tuple[str | os.PathLike[str], ...] = ()
+    notices: tuple[str, ...] = ()
+    decisions: tuple[Decision, ...] = ()
+    forcing: str = FORCING
 
     @property
     def printed(self) -> dict[str, str]:
         """The settings that templates print."""
         return {key: value for key, value in self.settings.items() if key not in RUN_SETTINGS or key in PROGRAM_CHOICES}
+
+    @property
+    def encoding(self) -> str:
+        """What names and texts of the program are written in."""
+        return self.settings.get("encoding") or self.control.settings.get("encoding") or "utf-8"
 
     @property
     def planned_machine(self) -> Machine:
@@ -132,7 +147,7 @@ def prepare(
     *,
     force: bool = False,
     explain: bool = False,
-    report: Path | None = None,
+    papers: PaperFiles | None = None,
     columns: bool = False,
 ) -> PostJob:
     """Check the settings of a post, and make the job of it.
@@ -148,13 +163,32 @@ def prepare(
     control = in_units(control, texts.get("units") or control.settings.get("units", MM))
     texts, own = split_by_operation(texts, control, machine)
     check_settings(texts, control, machine)
-    if texts.get("numbers") == "off":
-        control = replace(control, block_numbers=replace(control.block_numbers, numbered=False))
+    control = _with_numbers(control, texts.get("numbers"))
     control = _with_first_number(control, texts)
     machine = apply_setup(machine, texts)
-    options = parse_plan_options(texts, control, explain or report is not None)
+    papers = papers or PaperFiles()
+    options = parse_plan_options(texts, control, explain or papers.report is not None)
     capabilities = control_capabilities(control, texts)
-    return PostJob(machine, control, capabilities, options, texts, force, report, columns or report is not None, own)
+    return PostJob(machine, control, capabilities, options, texts, force, papers, columns or papers.need_columns, own)
+
+
+def _with_numbers(control: Control, asked: str | None) -> Control:
+    """The control with the setting ``numbers``; None: as its definition says.
+
+    Raises
+    ------
+    InputError
+        If operations alone are to have numbers, and the control needs one before each block.
+    """
+    numbers = control.block_numbers
+    if asked == "operations" and not numbers.letter:
+        cure = "leave it out: its numbers have no letter, and stand before every block"
+        raise InputError(argument_problem("settings", f"numbers is operations, and {control.name} has no such", cure))
+    if asked is None or (asked == "on" and not numbers.letter):
+        return control
+    every = numbers.every if asked == "off" else 1
+    changed = replace(numbers, numbered=asked != "off", every=every, at_operations=asked == "operations")
+    return replace(control, block_numbers=changed)
 
 
 def _with_first_number(control: Control, settings: Mapping[str, str]) -> Control:
@@ -203,6 +237,13 @@ def parse_plan_options(settings: Mapping[str, str], control: Control, explain: b
         )
     mode, mode_by_operation = _mode_setting(settings.get("mode", "auto"), tcp)
     numbers = {key: number_setting(settings, key) for key in ("pole_angle", "tip_tolerance", "axis_tolerance")}
+    fastest, limit = settings.get("feed") == "fastest", number_setting(settings, "feed_limit")
+    lower_feed = settings.get("lower_feed", "no") == "yes"
+    if limit is not None and not fastest:
+        raise InputError(argument_problem("settings", "feed_limit is for feed=fastest only", "write feed=fastest too"))
+    if fastest and lower_feed:
+        what = "lower_feed is yes, and feed=fastest keeps all axes within their speeds"
+        raise InputError(argument_problem("settings", what, "leave lower_feed out"))
     known: dict[str, Any] = {key: value for key, value in numbers.items() if value is not None}
     if "clearance" in settings:
         known["clearance"] = _parse_clearance(settings["clearance"])
@@ -213,7 +254,9 @@ def parse_plan_options(settings: Mapping[str, str], control: Control, explain: b
         mode_by_operation=mode_by_operation,
         pole_strategy=PoleStrategy(settings.get("pole", "off")),
         absolute_frame=settings.get("frame", "first") == "absolute",
-        lower_feed=settings.get("lower_feed", "no") == "yes",
+        lower_feed=lower_feed,
+        fastest_feed=fastest,
+        feed_limit=limit,
         tcp=tcp,
         holes_as_motion=settings.get("cycles", "on") == "off",
         default_axis_tolerance=control.axis_tolerance,

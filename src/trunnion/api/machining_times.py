@@ -39,7 +39,9 @@ def write_times(files: OutputFiles, program: Program, seconds: Sequence[float]) 
         Of each operation, in their order; token 0 is the sum of all, token k the k-th.
     """
     times = [sum(seconds), *seconds]
-    texts = [program.control.family.escape_comment(format_duration(time)).encode() for time in times]
+    capitals = program.effective_setting("comments") == "capitals"
+    shown = [program.control.family.escape_comment(format_duration(time)) for time in times]
+    texts = [(text.upper() if capitals else text).encode() for text in shown]
     for sink in files.sinks():
         _replace_tokens(sink, texts)
 

@@ -15,6 +15,9 @@ class Observer:
     another one.
     """
 
+    def setup(self, name: str) -> None:
+        """A set-up of a project is posted next; its name is empty if there are no others."""
+
     def problems(self, problems: Sequence[Problem]) -> None:
         """Warnings about an input file, the plan or the program, as they are found."""
 

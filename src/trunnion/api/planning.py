@@ -1,6 +1,6 @@
 """Planning: toolpaths to motions on a machine, before any text is written."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from trunnion import planning, readers
@@ -15,6 +15,7 @@ from trunnion.controls.vocabulary import FORCED_NOTICE, INCH
 from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem, merge_repeated
 from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Toolpath
+from trunnion.output.place_texts import with_place_texts
 from trunnion.output.program import Program
 from trunnion.output.validation import check_program
 from trunnion.output.validation.tools import tool_conflicts
@@ -80,9 +81,15 @@ def plan(
 
 
 def load_toolpaths(
-    cl: ToolpathLike | Iterable[ToolpathLike], job: PostJob, strict: bool, observer: Observer
+    cl: ToolpathLike | Iterable[ToolpathLike],
+    job: PostJob,
+    strict: bool,
+    observer: Observer,
+    changed: Callable[[list[Toolpath]], list[Toolpath]] = list,
 ) -> list[Toolpath]:
     """The toolpaths of a post, with surface normals if the program has them; their remarks are reported.
+
+    ``changed`` returns what becomes of them once they are read.
 
     Raises
     ------
@@ -99,13 +106,13 @@ def load_toolpaths(
     )
     if job.control.units == INCH:
         _check_units_of(toolpaths)
-    toolpaths = replace_unknown_statements(toolpaths, job.control.statements, job.machine)
     if not toolpaths:
         raise InputError(argument_problem("cl", "there is no CL file", "give at least one", code="ARG130"))
     if job.has_normals:
         from trunnion.cl.surface_normals import with_normals
 
         toolpaths = [with_normals(toolpath) for toolpath in toolpaths]
+    toolpaths = replace_unknown_statements(changed(toolpaths), job.control, job.machine)
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     return toolpaths
@@ -179,14 +186,13 @@ def plan_program(
     check_operation_names(job.own_settings, job.settings, [name for _, name in cut])
     observer.problems(_settings_of_twins(job.own_settings, cut))
     planned = _planned(toolpaths, job)
+    planned = replace(planned, decisions=(*job.decisions, *planned.decisions))
     observer.planned(planned)
     file = toolpaths[0].file
     program = Program(job.machine, job.control, planned.motions, job.printed, file, own_settings=job.own_settings)
-    problems = [*merge_repeated(check_program(program))]
-    errors = [problem for problem in problems if problem.severity is Severity.ERROR]
-    observer.problems([problem for problem in problems if problem not in errors])
-    if errors:
-        raise InputError(sorted(errors, key=lambda problem: (problem.file, problem.line)))
+    program = with_place_texts(program)
+    problems = new_problems(program)
+    observer.problems(problems)
     unproven = _missing_reader(job)
     by_register = readers.can_read(job.machine) and readers.reader_of(job.machine).uses_length_numbers
     conflicts = tool_conflicts(program, uses_length_numbers=by_register)
@@ -197,7 +203,22 @@ def plan_program(
         raise RefusedError((*found, *unproven, refused))
     observer.problems(found)
     notices = [f"{FORCED_NOTICE}, written by --force: {problem.what}" for problem in blocking]
-    return replace(program, notices=notices), planned, [*problems, *found]
+    return replace(program, notices=[*job.notices, *notices]), planned, [*problems, *found]
+
+
+def new_problems(program: Program, known: Sequence[Problem] = ()) -> list[Problem]:
+    """Warnings about a program that are not known yet.
+
+    Raises
+    ------
+    InputError
+        When the control cannot be told what the program says.
+    """
+    problems = merge_repeated(check_program(program))
+    errors = [problem for problem in problems if problem.severity is Severity.ERROR]
+    if errors:
+        raise InputError(sorted(errors, key=lambda problem: (problem.file, problem.line)))
+    return [problem for problem in problems if problem not in known]
 
 
 def _missing_reader(job: PostJob) -> list[Problem]:

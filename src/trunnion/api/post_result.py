@@ -30,6 +30,7 @@ class PostResult:
     output        file of the program; None: it was not written to a file
     subprograms   files of its subprograms
     simulation    what it cuts and hits; None: it was not simulated
+    encoding      of its files
     """
 
     toolpaths: tuple[Toolpath, ...]
@@ -39,6 +40,7 @@ class PostResult:
     output: Path | None = None
     subprograms: tuple[Path, ...] = ()
     simulation: "SimulationResult | None" = None
+    encoding: str = "utf-8"
     _memory: io.BytesIO | None = None
 
     def __repr__(self) -> str:
@@ -76,7 +78,7 @@ class PostResult:
     @property
     def text(self) -> str | None:
         """The program, from its file where it has one; None where it went to a stream."""
-        return written_text(self.output, self._memory)
+        return written_text(self.output, self._memory, self.encoding)
 
     def write_report(self, file: FilePath) -> None:
         """Write a report of the proof: a page that works offline (``.html``), or data (``.json``).

@@ -13,17 +13,20 @@ from typing import Any, Final, TypeAlias
 
 from trunnion.api.arguments import check_path
 from trunnion.api.observer import Observer
+from trunnion.api.project_file import is_project, project_files, read_project
 from trunnion.api.reading import FilePath, as_machine
-from trunnion.api.simulation_project import is_project, project_files, read_project
 from trunnion.api.simulation_result import SimulationFinding, SimulationResult
 from trunnion.api.simulation_setups import SetupInput, SimulationInput
 from trunnion.api.simulation_steps import simulate_setups
+from trunnion.api.writing import named_run
 from trunnion.definitions.messages import did_you_mean
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.simulation.findings import What
+from trunnion.simulation.meshes import TriangleMesh, load_mesh
+from trunnion.simulation.meshes.primitives import box_mesh, cylinder_mesh
 from trunnion.simulation.stock.solids import stock_shape
 from trunnion.verification import Check, Place
 from trunnion.wording import counted
@@ -66,6 +69,23 @@ def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput
     if not _is_mesh(found.stock):
         stock_shape(found.stock)  # what cannot be is told before any work
     return found
+
+
+def simulated_bodies(given: SimulationInput) -> Iterator[tuple[str, TriangleMesh]]:
+    """Yield what the program is simulated with: ``stock``, ``part`` and ``fixture``, each with its mesh.
+
+    Meshes are read again, and nothing is told of them: the simulation has done it.
+    """
+    shape, setup = stock_shape(given.stock), given.setups[0]
+    if shape.mesh is not None:
+        yield "stock", shape.mesh
+    elif shape.is_cylinder:
+        yield "stock", cylinder_mesh(float(shape.high[0] - shape.low[0]), float(shape.low[2]), float(shape.high[2]))
+    else:
+        yield "stock", box_mesh(shape.low, shape.high)
+    for kind, meshes in (("part", [] if setup.part is None else [setup.part]), ("fixture", setup.fixtures)):
+        for mesh in meshes:
+            yield kind, mesh if isinstance(mesh, TriangleMesh) else load_mesh(mesh)
 
 
 def _is_mesh(stock: object) -> bool:
@@ -127,13 +147,6 @@ def simulate_posted(
         raise InputError(argument_problem("simulation", what, "leave it out"))
     setup = replace(given.setups[0], programs=(named_run(run, name),), machine=run.machine, cl=toolpaths)
     return simulate_setups(replace(given, setups=[setup]), observer)
-
-
-def named_run(run: Run, name: str) -> Run:
-    """A run whose files are called as they will be: the program by its name, subprograms as they lie beside it."""
-    names = {file: Path(file).name for file in run.files[1:]} | {run.files[0]: name}
-    told = tuple(replace(each, file=names.get(each.file, each.file)) for each in run.diagnostics)
-    return replace(run, files=tuple(names[file] for file in run.files), diagnostics=told)
 
 
 def simulation_checks(found: SimulationResult) -> tuple[Check, ...]:

@@ -7,26 +7,29 @@ Out:    the program: planned, written, read back, run and compared with its tool
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from pathlib import Path
+from functools import partial
 from typing import TYPE_CHECKING
 
 from trunnion.api import kernels
 from trunnion.api.arguments import check_observer, check_paths
 from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.forcing import Proof, Untold, write_forced
+from trunnion.api.hooks import Hooks, load_hooks
 from trunnion.api.input_files import cl_files, definition_files
-from trunnion.api.job import PostJob, prepare
+from trunnion.api.job import FORCING, PostJob, prepare
 from trunnion.api.machining_times import operation_times, prints_times, write_times
 from trunnion.api.observer import SILENT, Observer
-from trunnion.api.planning import load_toolpaths, plan_program
+from trunnion.api.paper_files import PaperFiles, paper_files
+from trunnion.api.papers import write_papers
+from trunnion.api.planning import load_toolpaths, new_problems, plan_program
 from trunnion.api.post_result import PostResult, ProofFailedError
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
-from trunnion.api.reports import add_report, check_report_name, write_refusal
+from trunnion.api.reports import write_refusal
 from trunnion.api.settings import Settings
 from trunnion.api.targets import OutputLike, Target, open_target
 from trunnion.api.writing import read_back_while_writing, write
 from trunnion.errors import Problem, Severity, TrunnionError
-from trunnion.files import file_on_disk
+from trunnion.files import OutputGroup, file_on_disk
 from trunnion.jit import compile_ahead
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
@@ -46,9 +49,13 @@ def post(
     force: bool = False,
     explain: bool = False,
     report: FilePath | None = None,
+    sheet: FilePath | None = None,
+    listing: FilePath | None = None,
+    manifest: FilePath | None = None,
     columns: bool = True,
     subprograms: Sequence[FilePath] = (),
     simulation: "SimulationLike | None" = None,
+    hooks: Sequence[FilePath] = (),
     observer: Observer = SILENT,
 ) -> PostResult:
     """Post CL files as one NC program, and prove it.
@@ -78,6 +85,13 @@ def post(
         Record why the axes were planned as they are (``decisions``).
     report
         File of a report, ``.html`` or ``.json``. It appears together with the program, and alone where that is refused.
+    sheet
+        File of the setup sheet, ``.html`` or ``.json``, which appears together with the program; docs/paper.md.
+    listing
+        File of a listing of all motions, as text.
+    manifest
+        File of the manifest, ``.json``, in the folder of the program: checksums of all files, and what they were made
+        from. ``trunnion.verify_manifest`` checks it.
     columns
         Work out the columns of the verification: ``seconds`` (n,), ``tip_feed`` (n,) in mm/min and ``cl_line`` (n,). A
         report needs them; without them a program of any length takes little memory.
@@ -89,6 +103,10 @@ def post(
         path of a project file of one set-up, also as ``{"project": path}`` with others in its place. Tools come from
         the CL files where nothing else has them. What is found fails the checks ``removal``, ``collision`` and
         ``gouge``; the result has it as ``simulation``.
+    hooks
+        Python files whose functions change what the CL files ask for (``trunnion.hooks``). They are run: name none that
+        you have not read. The program is proven against what they make of the CL files, and ``problems`` says which
+        operations they changed.
     observer
         Receives the progress, warnings, the plan and the proof.
 
@@ -119,8 +137,8 @@ def post(
     """
     return post_beside(
         cl, (), machine=machine, output=output, settings=settings, strict=strict, force=force, explain=explain,
-        report=report, columns=columns, subprograms=subprograms, simulation=simulation,
-        observer=observer,
+        papers=paper_files(report, sheet, listing, manifest, output), columns=columns, subprograms=subprograms,
+        simulation=simulation, hooks=hooks, observer=observer,
     )  # fmt: skip
 
 
@@ -134,31 +152,38 @@ def post_beside(
     strict: bool,
     force: bool,
     explain: bool,
-    report: FilePath | None,
+    papers: PaperFiles,
     columns: bool,
     subprograms: Sequence[FilePath],
     observer: Observer,
     simulation: "SimulationLike | None" = None,
+    hooks: Sequence[FilePath] = (),
+    group: OutputGroup | None = None,
+    forcing: str = FORCING,
 ) -> PostResult:
-    """Post CL files as ``post`` does, and write over none of the other files of the same work."""
+    """Post CL files as ``post`` does, and write over none of the other files of the same work.
+
+    The program appears with those of the ``group``, if there is one. What a refusal says of ``force`` is ``forcing``.
+    """
     check_observer(observer)
-    if report is not None:
-        check_report_name(report)
     loaded = as_machine(machine)
-    place = None if report is None else Path(report)
-    job = prepare(loaded, settings, force=force, explain=explain, report=place, columns=columns)
+    job = prepare(loaded, settings, force=force, explain=explain, papers=papers, columns=columns)
     existing = check_paths("subprograms", subprograms)
-    job = replace(job, beside=tuple(existing))
-    inputs = [*cl_files(cl), *definition_files(machine, loaded), *existing, *others]
+    job = replace(job, beside=tuple(existing), forcing=forcing)
+    hook_files = check_paths("hooks", hooks)
+    inputs = [*cl_files(cl), *definition_files(machine, loaded), *existing, *hook_files, *others]
     if simulation is not None:
         from trunnion.api.posted_simulation import simulation_files, simulation_input
 
-        job = replace(job, simulation=simulation_input(simulation, job.machine))
-        inputs += simulation_files(simulation)
-    with open_target(output, report=report, inputs=inputs) as target:
+        read = tuple(simulation_files(simulation))
+        job = replace(job, simulation=simulation_input(simulation, job.machine), simulation_files=read)
+        inputs += read
+    with open_target(output, papers=papers.by_name(), inputs=inputs, group=group) as target:
         compile_ahead(kernels.POSTING)
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
-        toolpaths = load_toolpaths(cl, job, strict, observer)
+        changes = Hooks(load_hooks(hook_files), job)
+        toolpaths = load_toolpaths(cl, job, strict, observer, changes.change)
+        job = replace(job, notices=changes.notices, decisions=tuple(changes.decisions) if job.options.explain else ())
         target.files.protect(file_on_disk(toolpath.file) for toolpath in toolpaths)
         return post_toolpaths(toolpaths, job, target, observer)
 
@@ -167,16 +192,32 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
     """Plan, write and prove a program; errors as ``post`` raises them."""
     subprograms = job.subprograms(target.files, target.path)
     divided = subprograms is not None
-    reading = read_back_while_writing(target.files, job.machine, divided=divided, beside=job.beside)
+    reading = partial(
+        read_back_while_writing, target.files, job.machine, encoding=job.encoding, divided=divided, beside=job.beside
+    )
     try:
-        with reading as (progress, run):
+        with reading() as (progress, running):
             program, planned, problems = plan_program(toolpaths, job, observer)
             program = replace(program, has_time_tokens=prints_times(program))
             write(program, target.files.main, progress, subprograms, observer)
-            expected = expectation(program, job.options)
+        run = running.result()
+        if job.options.fastest_feed:
+            from trunnion.api.fastest_feeds import unlimited_axes, with_reached_feeds  # few posts ask for it
+
+            program = with_reached_feeds(program, run, toolpaths, job.options)
+            found = [*unlimited_axes(job.machine), *new_problems(program, problems)]
+            observer.problems(found)
+            problems += found
+            planned = replace(planned, motions=tuple(program.motions))
+            del run, running
+            target.files.restart()
+            with reading() as (progress, running):
+                write(program, target.files.main, progress, subprograms, observer)
+            run = running.result()
+        expected = expectation(program, job.options)
     except TrunnionError as error:
-        if job.report is not None:
-            write_refusal(error.problems, job.machine, target.name, job.report)
+        if job.papers.report is not None:
+            write_refusal(error.problems, job.machine, target.name, job.papers.report)
         raise
     columns = job.columns or program.has_time_tokens
 
@@ -186,7 +227,7 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
         quiet = Untold(observer) if job.force else observer
         return _with_simulation(job, run, target.name, toolpaths, verification, quiet)
 
-    proof = prove(run.result())
+    proof = prove(run)
     if job.force and proof.failed:
         proof = write_forced(program, proof, prove, job, target, subprograms)
     verification, simulated = proof.verification, proof.simulation
@@ -205,15 +246,16 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
     remarks = [remark for toolpath in toolpaths for remark in toolpath.remarks]
     result = PostResult(tuple(toolpaths), planned, verification, (*remarks, *problems), simulation=simulated)
     if proof.failed and not job.force:
-        if job.report is not None:
-            result.write_report(job.report)
+        if job.papers.report is not None:
+            result.write_report(job.papers.report)
         raise _proof_failed(result, job.forcing)
     if program.has_time_tokens:
         write_times(target.files, program, times)
-    if target.report is not None and verification is not None:
-        sink = target.files.add_report(target.report)
-        add_report(verification, sink, target.report.name, result.decisions, simulated)
-    return replace(result, output=target.path, subprograms=target.subprograms, _memory=target.memory)
+    if target.papers:
+        write_papers(target, program, job, result, verification)
+    return replace(
+        result, encoding=job.encoding, output=target.path, subprograms=target.subprograms, _memory=target.memory
+    )
 
 
 def _with_simulation(
@@ -248,7 +290,8 @@ def _prove(
 def _nothing_checked(job: PostJob, target: Target) -> Problem:
     """The warning of a forced program that no reader can read."""
     what = "it is written by force, and nothing has been checked"
-    lost = "" if job.report is None else ": there is no report"
+    without = ["setup sheet" if name == "sheet" else name for name in job.papers.by_name() if name != "manifest"]
+    lost = f": there is no {' and no '.join(without)}" if without else ""
     return Problem(target.name, 0, f"{what}{lost}", severity=Severity.WARNING, code="CTL930")
 
 

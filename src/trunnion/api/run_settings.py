@@ -106,7 +106,18 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         form="DEGREES",
         example="0.05",
     ),
-    "numbers": _choice("With off blocks have no numbers.", "on", "off"),
+    "numbers": _choice(
+        "Which blocks have numbers: all, none, or only the first of each operation.",
+        "on",
+        "off",
+        "operations",
+        default="as the control's definition says",
+    ),
+    "listing": _choice(
+        "What the listing has besides the tip and both rotary axes: nothing, or the positions of the slides.",
+        "tip",
+        "slides",
+    ),
     "programs": _choice(
         "One file with all operations, or a main program that calls a subprogram for each operation.",
         "one",
@@ -172,5 +183,19 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         example="0.1",
     ),
     "lower_feed": _choice("With yes the feed is lowered where a rotary axis would be too fast.", "no", "yes"),
+    "feed": _choice(
+        "With fastest each block at feed has the feed that the axes reach in it, within their speeds, accelerations "
+        "and jerks, and at most that of the CL file. Feeds per revolution and of holes stay.",
+        "programmed",
+        "fastest",
+    ),
+    "feed_limit": RunSetting(
+        "With feed=fastest: the greatest feed of cuts, in place of those of the CL file. Tool and material must bear "
+        "it.",
+        "the feeds of the CL file",
+        bounds=(0.1, 99999.0),
+        form="MM_MIN",
+        example="8000",
+    ),
     **{key: RunSetting(PROGRAM_MEANINGS[key], words[0], words) for key, words in PROGRAM_CHOICES.items()},
 }

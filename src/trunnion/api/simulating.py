@@ -7,8 +7,8 @@ from typing import Any, Final, Literal
 
 from trunnion.api.arguments import check_observer
 from trunnion.api.observer import SILENT, Observer
+from trunnion.api.project_file import is_project, read_project
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike
-from trunnion.api.simulation_project import is_project, read_project
 from trunnion.api.simulation_result import SimulationResult
 from trunnion.api.simulation_setups import Places, SetupInput, SimulationInput, listed
 from trunnion.api.simulation_steps import simulate_setups
@@ -49,8 +49,8 @@ def simulate(
     ----------
     nc
         A program or several, in the order in which they cut the same stock: paths, or their runs. Or one project file
-        (``.toml`` with a table ``[simulation]``), which has programs, stock and all others; what is given here stands
-        in place of it.
+        (``.toml``; docs/projects.md), which has programs, stock and all others; what is given here stands in place of
+        it.
     machine
         The machine that runs them: a name, a path or a ``Machine``. Only a project may leave it out, and ``stock``.
     stock

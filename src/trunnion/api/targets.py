@@ -2,15 +2,15 @@
 
 import io
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import BinaryIO, TypeAlias
 
 from trunnion.api.arguments import check_path
 from trunnion.errors import InputError, Problem
-from trunnion.files import OutputFiles, OutputPlace, atomic_output, check_stream, resolve_output
+from trunnion.files import OutputFiles, OutputGroup, OutputPlace, atomic_output, check_stream, resolve_output
 
 #: A file by its path, a stream that takes bytes, or None: the result keeps the text.
 OutputLike: TypeAlias = str | os.PathLike[str] | BinaryIO | None
@@ -24,14 +24,14 @@ class Target:
     name    what messages call it
     path    of the file; None: it is no file, or a device
     memory  takes the text where there is no other place; None: there is
-    report  place of its report; None: there is none
+    papers  places of its report and of other files about it, by what they are
     """
 
     files: OutputFiles
     name: str = "the program"
     path: Path | None = None
     memory: io.BytesIO | None = None
-    report: OutputPlace | None = None
+    papers: Mapping[str, OutputPlace] = field(default_factory=dict)
 
     @property
     def subprograms(self) -> tuple[Path, ...]:
@@ -55,7 +55,11 @@ def check_output_name(argument: str, file: object, endings: Sequence[str], what:
 
 @contextmanager
 def open_target(
-    place: OutputLike, *, report: str | os.PathLike[str] | None = None, inputs: Iterable[str | os.PathLike[str]] = ()
+    place: OutputLike,
+    *,
+    papers: Mapping[str, str | os.PathLike[str] | None] | None = None,
+    inputs: Iterable[str | os.PathLike[str]] = (),
+    group: OutputGroup | None = None,
 ) -> Iterator[Target]:
     """Open the place of a result.
 
@@ -63,33 +67,41 @@ def open_target(
     ----------
     place
         Of the result.
-    report
-        File of its report, which appears with it.
+    papers
+        Files about it by what they are (``report``), which appear with it; None: there is no such file.
     inputs
         Files that are read: none of them is written over.
+    group
+        Of jobs whose files appear together; None: the files of this one appear when the block ends.
 
     Raises
     ------
     InputError
         When a file cannot be written; this is found out before anything is computed.
     """
-    beside = None if report is None else resolve_output(report)
+    beside = {what: resolve_output(file) for what, file in (papers or {}).items() if file is not None}
+    if group is not None:
+        assert isinstance(place, str | os.PathLike), "streams take one result alone"
+        found = resolve_output(place)
+        with group.open(found, papers=beside.values(), inputs=inputs) as files:
+            yield Target(files, found.name, Path(place), papers=beside)
+        return
     if isinstance(place, str | os.PathLike):
         found = resolve_output(place)
         path = None if found.is_stream else Path(place)
-        with atomic_output(found, report=beside, inputs=inputs, is_job=True) as files:
-            yield Target(files, found.name, path, report=beside)
+        with atomic_output(found, papers=beside.values(), inputs=inputs, is_job=True) as files:
+            yield Target(files, found.name, path, papers=beside)
         return
     memory = io.BytesIO() if place is None else None
     stream: BinaryIO | None = memory if place is None else place
     assert stream is not None
     check_stream(stream, "output")
-    with atomic_output(stream, report=beside, inputs=inputs) as files:
-        yield Target(files, memory=memory, report=beside)
+    with atomic_output(stream, papers=beside.values(), inputs=inputs) as files:
+        yield Target(files, memory=memory, papers=beside)
 
 
-def written_text(path: Path | None, memory: io.BytesIO | None) -> str | None:
+def written_text(path: Path | None, memory: io.BytesIO | None, encoding: str = "utf-8") -> str | None:
     """What was written to a file or into memory; None where it went to a stream."""
     if memory is not None:
-        return memory.getvalue().decode("utf-8")
-    return None if path is None else path.read_bytes().decode("utf-8")
+        return memory.getvalue().decode(encoding)
+    return None if path is None else path.read_bytes().decode(encoding)

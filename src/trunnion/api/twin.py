@@ -13,11 +13,11 @@ from trunnion.api.settings import set_up_machine
 from trunnion.api.targets import check_output_name
 from trunnion.api.verifying import rapid_feed_of
 from trunnion.cl import is_cl_file
+from trunnion.encoding import decode
 from trunnion.errors import InputError, Problem, RefusedError
 from trunnion.extras import import_extra
 from trunnion.files import atomic_file
 from trunnion.model.run import Run
-from trunnion.readers.program.source_text import decode
 from trunnion.timing import time_run
 from trunnion.twin.limits import FASTEST, LONGEST_RATE, SHORTEST_RATE, SLOWEST
 from trunnion.twin.mtconnect.device import device_xml
@@ -170,7 +170,7 @@ def twin_program(
         )
     if not len(run):
         raise InputError(Problem(run.files[0], 0, "moves nothing", "give a program with motions"))
-    return TwinProgram(time_run(run), [decode(Path(file).read_bytes()) for file in run.files])
+    return TwinProgram(time_run(run), [decode(Path(file).read_bytes(), run.encoding) for file in run.files])
 
 
 def is_loopback(host: str) -> bool:

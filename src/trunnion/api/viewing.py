@@ -7,9 +7,9 @@ from typing import Any, Literal
 
 from trunnion.api.arguments import check_path, check_paths
 from trunnion.api.observer import SILENT, Observer
+from trunnion.api.project_file import is_project
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.api.settings import Settings, set_up_machine
-from trunnion.api.simulation_project import is_project
 from trunnion.api.simulation_result import NO_CALL
 from trunnion.api.targets import check_output_name
 from trunnion.api.viewing_inputs import of_project, view_program

@@ -13,18 +13,18 @@ from typing import Any, Final
 from trunnion.api.arguments import is_stream
 from trunnion.api.observer import Observer
 from trunnion.api.posting import post
+from trunnion.api.project_file import read_project
 from trunnion.api.reading import ToolpathLike, as_run, as_toolpaths
 from trunnion.api.settings import Settings
-from trunnion.api.simulation_project import read_project
 from trunnion.api.simulation_setups import SetupInput
 from trunnion.api.verifying import rapid_feed_of, verify
 from trunnion.cl import is_cl_file
 from trunnion.cl.sources import cl_sources
 from trunnion.controls import load_control
+from trunnion.encoding import decode
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Toolpath
-from trunnion.readers.program.source_text import decode
 from trunnion.verification import Verification, restore_rapids
 
 #: Arguments of a view that a set-up of a project states; and those of the project as a whole.
@@ -95,7 +95,7 @@ def view_program(
         raise InputError(Problem(str(unused[0]), 0, what, "view it alone"))
     toolpaths = as_toolpaths(cl, None, False, observer)
     verification = verify(run, machine=machine, cl=toolpaths, observer=observer)
-    texts = tuple(decode(Path(file).read_bytes()) for file in run.files)
+    texts = tuple(decode(Path(file).read_bytes(), run.encoding) for file in run.files)
     return ViewedProgram(verification, texts, toolpaths, _cl_texts(cl))
 
 
@@ -110,7 +110,7 @@ def _posted(
     name = f"{files[0].stem}{load_control(machine.control).extension}"
     run = result.verification.run
     verification = replace(result.verification, program=name, run=replace(run, files=(name, *run.files[1:])))
-    more = tuple(decode(Path(file).read_bytes()) for file in run.files[1:])
+    more = tuple(decode(Path(file).read_bytes(), run.encoding) for file in run.files[1:])
     return ViewedProgram(verification, (text, *more), result.toolpaths, _cl_texts(files))
 
 

@@ -7,6 +7,7 @@ Out:    its file, and the run of what is on the disk.
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import BinaryIO
 
@@ -22,7 +23,7 @@ from trunnion.output.subprograms import SubprogramOutput
 
 @contextmanager
 def read_back_while_writing(
-    files: OutputFiles, machine: Machine, *, divided: bool, beside: Sequence[Path] = ()
+    files: OutputFiles, machine: Machine, *, encoding: str, divided: bool, beside: Sequence[Path] = ()
 ) -> Iterator[tuple[WriteProgress, Future[Run | None]]]:
     """Run a program while its file is being written; the reader is set up while the program is planned.
 
@@ -35,6 +36,8 @@ def read_back_while_writing(
         Where the program is written.
     machine
         Runs it.
+    encoding
+        Of its texts.
     divided
         The program calls subprograms: the run waits for all files, as calls stand before what they call.
     beside
@@ -51,7 +54,7 @@ def read_back_while_writing(
     with ThreadPoolExecutor(1) as executor:
         # Without a word the reader would wait forever: an interruption of the first one leaves the second.
         try:
-            run = executor.submit(_run, files, machine, progress, divided or bool(beside), beside)
+            run = executor.submit(_run, files, machine, encoding, progress, divided or bool(beside), beside)
             yield progress, run
             files.start_sync()
             progress.finish()
@@ -63,13 +66,19 @@ def read_back_while_writing(
 
 
 def _run(
-    files: OutputFiles, machine: Machine, progress: WriteProgress, waits: bool, beside: Sequence[Path]
+    files: OutputFiles,
+    machine: Machine,
+    encoding: str,
+    progress: WriteProgress,
+    waits: bool,
+    beside: Sequence[Path],
 ) -> Run | None:
     if not readers.can_read(machine):
         return None
     if waits:
         progress.wait_until_finished()
-    return readers.run_program(files.path, machine, subprograms=[*files.other_paths, *beside], write_progress=progress)
+    others = [*files.other_paths, *beside]
+    return readers.run_program(files.path, machine, subprograms=others, encoding=encoding, write_progress=progress)
 
 
 def write(
@@ -107,3 +116,10 @@ def write(
 
         write_program(program, sink, written, subprograms)
     sink.flush()
+
+
+def named_run(run: Run, name: str) -> Run:
+    """A run whose files are called as they will be: the program by its name, subprograms as they lie beside it."""
+    names = {file: Path(file).name for file in run.files[1:]} | {run.files[0]: name}
+    told = tuple(replace(each, file=names.get(each.file, each.file)) for each in run.diagnostics)
+    return replace(run, files=tuple(names[file] for file in run.files), diagnostics=told)

@@ -6,6 +6,7 @@ from typing import Final
 from trunnion.builder.document import with_value
 from trunnion.definitions.messages import did_you_mean
 from trunnion.errors import InputError, Problem
+from trunnion.schemas import first_line
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +60,7 @@ def chain_text(chain: str, name: str, control: str) -> str:
     carried = [(axis, "part") for axis in part.split()] + [(axis, "tool") for axis in tool.split()]
     tables = [_axis_table(axis, side, dict(CHAINS[chain].lines)) for axis, side in carried]
     head = f'schema = 1\n\n[control]\nextends = "{control}"\n\n[spindle]\ndirection = [0, 0, 1]\n'
-    return with_value(head + "\n" + "\n".join(tables), ("name",), name)
+    return with_value(first_line("machine") + head + "\n" + "\n".join(tables), ("name",), name)
 
 
 def _axis_table(axis: str, side: str, lines: dict[str, tuple[float, float, float]]) -> str:

@@ -9,13 +9,12 @@ compared with what was meant.
 """
 
 import copy
-import json
-import re
 import tomllib
 from itertools import pairwise
-from typing import Any, Final, TypeAlias
+from typing import Any, TypeAlias
 
 from trunnion.definitions import KeyPath, Layout, layout
+from trunnion.definitions.toml_text import written, written_key
 
 #: Keys from the root of a definition; a tuple of one text is the name of a table in an array:
 #: ``("axis", ("B",), "home_deg")``.
@@ -23,11 +22,6 @@ FieldPath: TypeAlias = tuple[str | tuple[str], ...]
 
 #: What a field can hold.
 Value: TypeAlias = str | bool | int | float | list[float]
-
-_BARE_KEY: Final = re.compile(r"[A-Za-z0-9_-]+")
-
-#: Of a text of several lines: what cannot stand in it as it is.
-_ESCAPES: Final = re.compile(r'[\\\x00-\x08\x0b-\x1f\x7f]|"""')
 
 
 class UnclearPlaceError(ValueError):
@@ -103,21 +97,6 @@ def with_table_moved(text: str, array: str, name: str, by: int) -> str:
     return _checked(made[: len(text)], text, content)
 
 
-def written(value: object) -> str:
-    """Return a value as TOML; a number without a point where it is whole."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, list):
-        return f"[{', '.join(map(written, value))}]"
-    if isinstance(value, dict):
-        return f"{{ {', '.join(f'{_key(key)} = {written(item)}' for key, item in value.items())} }}"
-    if isinstance(value, float):
-        return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
-    if isinstance(value, str):
-        return _lines(value) if "\n" in value else _quoted(value)
-    return str(value)
-
-
 def same(one: Any, other: Any) -> bool:
     """Return whether two TOML values say the same: 1 and 1.0 do, 1 and true do not, nan is nan."""
     if isinstance(one, dict) and isinstance(other, dict):
@@ -141,7 +120,7 @@ def _with_replaced(text: str, found: Layout, where: KeyPath, value: Value, old: 
 
 def _with_new_value(text: str, found: Layout, path: FieldPath, value: Value) -> str:
     """The text with a line for a value that it does not have."""
-    key, line = path[-1], f"{_key(path[-1])} = {written(value)}\n"
+    key, line = path[-1], f"{written_key(path[-1])} = {written(value)}\n"
     assert isinstance(key, str)
     if len(path) == 1:
         at = _end_of_lines(text, 0, _begin(text, found, 0) if found.headers else len(text))
@@ -167,7 +146,7 @@ def _with_new_table(text: str, found: Layout, path: FieldPath, line: str) -> str
         head, name = head[:-1], head[-1][0]
     if any(isinstance(step, tuple) for step in head):
         raise UnclearPlaceError
-    dotted = ".".join(_key(step) for step in head)
+    dotted = ".".join(written_key(step) for step in head)
     lines = f"[[{dotted}]]\nname = {written(name)}\n{line}" if name else f"[{dotted}]\n{line}"
     alike = [header for _, header in found.headers if _plain(header)[: len(head)] == head] or [
         header for _, header in found.headers if header[0] == head[0]
@@ -272,24 +251,6 @@ def _joined(before: str, line: str, after: str) -> str:
     before += "\n" if before and not before.endswith("\n") else ""
     blank = "\n" if not before and after.lstrip().startswith("[") else ""
     return before + line + blank + after
-
-
-def _key(step: object) -> str:
-    text = str(step)
-    return text if _BARE_KEY.fullmatch(text) else _quoted(text)
-
-
-def _quoted(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
-
-
-def _lines(text: str) -> str:
-    def escape(match: re.Match[str]) -> str:
-        found = match.group()
-        return '""\\"' if found == '"""' else "\\\\" if found == "\\" else f"\\u{ord(found):04x}"
-
-    escaped = _ESCAPES.sub(escape, text)
-    return f'"""\n{escaped}"""' if not escaped.endswith('"') else f'"""\n{escaped[:-1]}\\""""'
 
 
 def _checked(made: str, text: str, meant: dict[str, Any]) -> str:

@@ -12,12 +12,13 @@ from typing import Any, Final
 
 from trunnion.api.definition_checks import machine_problems
 from trunnion.api.describing import describe_settings
-from trunnion.builder.document import FieldPath, written
+from trunnion.builder.document import FieldPath
 from trunnion.builder.fields import PAGES, Field, SettingNotes, fields_of, named_path, tables_of, value_at
-from trunnion.builder.marks import marked_values
 from trunnion.controls import load_control
-from trunnion.controls.loading import control_library
-from trunnion.definitions import LocatedValue, Table, load_draft, resolve_extends
+from trunnion.controls.loading import with_control
+from trunnion.definitions import LocatedValue, Table, load_draft
+from trunnion.definitions.marks import marked_values
+from trunnion.definitions.toml_text import written
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine
 from trunnion.machines.jog_table import jog_table
@@ -74,20 +75,7 @@ def judge(text: str, path: Path) -> Draft:
     machine = None
     with suppress(InputError):
         machine = read_machine(table.unread_copy(), path.stem)
-    return Draft(text, path, _with_control(table), machine, tuple(problems))
-
-
-def _with_control(table: Table) -> LocatedValue:
-    """A definition with its control merged onto what that extends; as it is while that cannot be read."""
-    root = table.content
-    with suppress(InputError):
-        control = resolve_extends(table.unread_copy().table("control"), control_library())
-        assert isinstance(root.value, dict)
-        root = LocatedValue({**root.value, "control": control.content}, root.file, root.line)
-        own = table.unread_copy().table("control").content.value
-        if isinstance(own, dict) and "extends" in own and isinstance(control.content.value, dict):
-            control.content.value["extends"] = own["extends"]
-    return root
+    return Draft(text, path, with_control(table), machine, tuple(problems))
 
 
 def draft_data(draft: Draft) -> dict[str, Any]:
@@ -172,7 +160,7 @@ def _extending(text: str, name: object, path: Path) -> LocatedValue | None:
     """A merged definition with a text of its own that extends another; None: nothing, or it cannot be read."""
     text = (f"extends = {written(name)}\n" if isinstance(name, str) else "") + text
     with suppress(InputError):
-        return _with_control(load_draft(text, path, machine_library())) if text else None
+        return with_control(load_draft(text, path, machine_library())) if text else None
     return None
 
 

@@ -18,19 +18,21 @@ from trunnion.builder.document import (
     FieldPath,
     UnclearPlaceError,
     Value,
+    located,
     same,
     with_table_moved,
     with_value,
     without_value,
 )
 from trunnion.builder.draft import Draft, draft_data, inherited_value, judge
-from trunnion.builder.marks import without_mark
 from trunnion.builder.sample import sample_data
 from trunnion.builder.saved_file import check_place, file_text, is_file_name, page_text, read_raw
 from trunnion.controls.loading import shipped_controls
+from trunnion.definitions.marks import without_mark
 from trunnion.errors import InputError
 from trunnion.files import atomic_file
 from trunnion.machines import load_machine, shipped_machines
+from trunnion.schemas import first_line, put_beside
 
 #: A CL file for the sample program has so many bytes at most.
 MOST_CL_BYTES: Final = 4_000_000
@@ -122,7 +124,7 @@ class BuilderSession:
         if base:
             if base not in shipped_machines():
                 raise RequestError
-            text = with_value(f'extends = "{base}"\n', ("name",), name)
+            text = with_value(f'{first_line("machine")}extends = "{base}"\n', ("name",), name)
         else:
             if control not in shipped_controls() or chain not in CHAINS:
                 raise RequestError
@@ -146,7 +148,7 @@ class BuilderSession:
                     text = without_value(text, path)
                 else:
                     changed = with_value(text, path, _value(value))
-                    text = without_mark(changed, tomllib.loads(changed), path)
+                    text = without_mark(changed, located(tomllib.loads(changed), path))
         except RequestError:
             raise
         except (UnclearPlaceError, KeyError, TypeError, ValueError, RecursionError):
@@ -178,6 +180,8 @@ class BuilderSession:
             written = file_text(text, old)
             with atomic_file(file) as sink:
                 sink.write(written.encode())
+            if text.startswith(first_line("machine")):
+                put_beside(file, "machine")
         except InputError as error:
             return {"saved": "", "why": "cannot", "problems": [str(problem) for problem in error.problems]}
         return {"saved": str(file), "seen": _digest(written), "mistakes": len(judge(text, file).problems)}

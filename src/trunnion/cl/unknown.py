@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.statement import parse
 from trunnion.errors import Problem, Severity, merge_repeated
-from trunnion.model.toolpath import Toolpath, UnknownStatement
+from trunnion.model.toolpath import ShopStatement, Toolpath, UnknownStatement
 
 _CURE = "a program is refused unless the control's definition says what becomes of it ([control.statements])"
 _NO_EFFECT = "nothing becomes of it: check that nothing should, or say under [control.statements] or [cl.words] what"
@@ -18,6 +18,18 @@ def statement_words(text: str) -> tuple[str, frozenset[str]]:
     except StatementError:
         return text, frozenset()
     return statement.major, frozenset(statement.listed().split(",")) - {""}
+
+
+def shop_statement(event: UnknownStatement) -> ShopStatement:
+    """A statement that is not known, with its values in order, for the template of a shop."""
+    try:
+        statement = parse(event.text.encode(), "utf-8")
+    except StatementError:
+        word, _, text = event.text.partition("/")
+        return ShopStatement(event.row, event.line, text.strip(), word.strip().upper())
+    text = event.text.partition("/")[2].strip()
+    numbers = statement.plain_numbers()
+    return ShopStatement(event.row, event.line, text, statement.major, tuple(statement.words()), numbers)
 
 
 def unknown_statements(toolpath: Toolpath) -> list[list[UnknownStatement]]:

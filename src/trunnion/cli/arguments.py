@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import Any, Final, NoReturn, cast
 
 from trunnion import __version__
+from trunnion.cli.post_arguments import post_mistake
 from trunnion.cli.twin_arguments import add_machine_access, add_record, add_twin
 
 
@@ -54,8 +55,14 @@ _OPTION: Final = re.compile(r"--[a-z][a-z-]*")
 #: Dialects of CL files; listed here, so that a command line is taken apart before any reader is imported.
 DIALECTS = ("clsf", "ncl", "solidworks", "clt", "catia", "fusion", "apt")
 
-#: Those that are written.
+#: Kinds of files that there are schemas of; listed here for the same reason.
+SCHEMAS = ("machine", "control", "simulation", "tools", "impeller", "nodes")
+
+#: Dialects that are written.
 WRITTEN_DIALECTS = ("clsf", "catia", "ncl")
+
+#: Values of the setting ``feed``.
+FEEDS = ("programmed", "fastest")
 
 
 #: Tolerances, cells and scales are less.
@@ -133,10 +140,13 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
     arguments, unknown = parser.parse_known_args(list(argv))
     if unknown:
         commands[arguments.command].error(_not_expected(unknown, arguments.command))
-    if getattr(arguments, "dialect", None) and "settings" in arguments:
-        if "dialect" in dict(arguments.settings):
-            parser.error("--dialect and --set dialect=… are the same: give one of them")
-        arguments.settings = [*arguments.settings, ("dialect", arguments.dialect)]
+    if arguments.command == "post" and (wrong := post_mistake(arguments)):
+        commands["post"].error(wrong)
+    for key in ("dialect", "feed"):
+        if getattr(arguments, key, None) and "settings" in arguments:
+            if key in dict(arguments.settings):
+                parser.error(f"--{key} and --set {key}=… are the same: give one of them")
+            arguments.settings = [*arguments.settings, (key, getattr(arguments, key))]
     return arguments
 
 
@@ -159,6 +169,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     parser.add_argument("--version", action="version", version=f"trunnion {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True, dest="command")
     _add_post(commands.add_parser("post", help="write the NC program of one or more CL files"))
+    _add_test(commands.add_parser("test", help="post the projects of a folder again, and compare with what is there"))
     _add_verify(
         commands.add_parser("verify", help="prove an NC program: read it, run it, compare it with its CL files")
     )
@@ -174,16 +185,20 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     _add_info(commands.add_parser("info", help="show what CL files hold; no machine is needed"))
     _add_curve(commands.add_parser("curve", help="fit curves to measured points; no machine is needed"))
     _add_impeller(commands.add_parser("impeller", help="make an impeller from measured points"))
+    _add_new(commands.add_parser("new", help="write the definition of a machine that is like a shipped one"))
     _add_machines(commands.add_parser("machines", help="list the machines, or print one definition"))
     _add_controls(commands.add_parser("controls", help="list the controls, or explain one with all its settings"))
     _add_check(commands.add_parser("check", help="validate the definition of a machine or a control"))
     _add_explain(commands.add_parser("explain", help="say what a code of a message, or a check, means"))
+    _add_schema(commands.add_parser("schema", help="print the JSON Schema of definitions or projects, for editors"))
     return parser, commands.choices
 
 
 def _add_post(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("files", nargs="+", metavar="CL", help="CL file")
-    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="shipped machine, or a TOML file")
+    parser.add_argument(
+        "files", nargs="+", metavar="CL|PROJECT", help="CL file; or one project (.toml), which states all but --set"
+    )
+    parser.add_argument("--machine", metavar="NAME_OR_FILE", help="shipped machine, or a TOML file")
     parser.add_argument(
         "--output", metavar="FILE|-|FOLDER", help="program, stdout, or a folder: one program per CL file"
     )
@@ -193,12 +208,23 @@ def _add_post(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     _add_subprograms(parser, "a template")
     parser.add_argument(
+        "--hooks", action="append", default=[], metavar="FILE.py",
+        help="Python file whose functions change what the CL files ask for; it is run; may be repeated",
+    )  # fmt: skip
+    parser.add_argument(
         "--dialect", choices=DIALECTS, help="what the CL files are written in; by default their content decides"
+    )
+    parser.add_argument(
+        "--feed", choices=FEEDS, help="fastest: of each block what the axes reach, within the feed of the CL file"
     )
     parser.add_argument("--strict", action="store_true", help="unknown CL statements are errors at once")
     parser.add_argument("--force", action="store_true", help="write a program that must not run; its head says so")
     parser.add_argument("--explain", action="store_true", help="say why the axes were planned as they are")
     parser.add_argument("--report", metavar="FILE", help="what was checked, as a page (.html) or data (.json)")
+    parser.add_argument("--sheet", metavar="FILE", help="setup sheet to print (.html), or its data (.json)")
+    parser.add_argument("--listing", metavar="FILE", help="every motion as text: X Y Z, rotary axes, S, F")
+    parser.add_argument("--manifest", metavar="FILE", help="checksums of all files (.json), beside the program")
+    parser.add_argument("--watch", action="store_true", help="post again whenever a file that is read changes")
     parser.add_argument(
         "--simulate", action="store_true", help="cut stock with the program too, and refuse what it must not do"
     )
@@ -207,9 +233,19 @@ def _add_post(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(run=_lazy_command("startup", "run"))
 
 
+def _add_test(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "folder",
+        metavar="FOLDER|PROJECT",
+        help="every part.toml, case.toml and NAME.case.toml in it and below; or one project",
+    )
+    parser.add_argument("--accept", action="store_true", help="show what differs, and take the new programs over")
+    parser.set_defaults(run=_lazy_command("cases", "run"))
+
+
 def _add_verify(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="NC", help="NC program")
-    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs it")
+    parser.add_argument("file", metavar="NC", help="NC program; or the manifest of a post (.json)")
+    parser.add_argument("--machine", metavar="NAME_OR_FILE", help="machine that runs it; not for a manifest")
     _add_subprograms(parser, "it")
     parser.add_argument(
         "--cl", action="append", default=[], metavar="CL",
@@ -461,6 +497,9 @@ def _add_impeller(parser: argparse.ArgumentParser) -> None:
 
 def _add_machines(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", nargs="?", metavar="NAME", help="machine whose definition is printed")
+    parser.add_argument(
+        "--resolved", action="store_true", help="with all that it extends, and the file and line of each value"
+    )
     parser.set_defaults(run=_lazy_command("definitions", "machines"))
 
 
@@ -468,6 +507,17 @@ def _add_controls(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", nargs="?", metavar="NAME_OR_FILE", help="control to explain, or a machine's")
     parser.add_argument("--json", action="store_true", help="data in place of text")
     parser.set_defaults(run=_lazy_command("controls", "controls"))
+
+
+def _add_new(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("name", metavar="NAME", help="name of the machine: NAME.toml is written")
+    parser.add_argument("--like", required=True, metavar="MACHINE", help="shipped machine that it extends")
+    parser.set_defaults(run=_lazy_command("new", "new"))
+
+
+def _add_schema(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("kind", choices=SCHEMAS, help="what the files are")
+    parser.set_defaults(run=_lazy_command("new", "schema"))
 
 
 def _add_check(parser: argparse.ArgumentParser) -> None:

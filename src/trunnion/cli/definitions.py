@@ -14,23 +14,35 @@ from trunnion.cli.machine_text import machine_data, machine_lines
 from trunnion.cli.results import as_json, print_result
 from trunnion.controls import load_control
 from trunnion.controls.definition_files import is_control_file, load_control_table
-from trunnion.controls.loading import shipped_controls
+from trunnion.controls.loading import shipped_controls, with_control
 from trunnion.definitions import load_table
 from trunnion.definitions.messages import did_you_mean
-from trunnion.errors import InputError, Problem
+from trunnion.definitions.resolved import resolved_text
+from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.machines import load_machine, shipped_machines
 from trunnion.machines.loading import machine_library
 from trunnion.readers import check_reading
+from trunnion.schemas import first_line
 
 
 def machines(arguments: argparse.Namespace) -> int:
-    """List the shipped machines, or print one definition as its file has it."""
+    """List the shipped machines, or print one definition as its file has it, or with all that it extends."""
+    if arguments.resolved and not arguments.name:
+        raise InputError(argument_problem("resolved", "wants a machine", "name one, or the file of one"))
+    if arguments.resolved:
+        load_machine(arguments.name)
+        table = load_table(arguments.name, machine_library(), kind="machine")
+        print_result(resolved_text(with_control(table)), end="")
+        return 0
     if arguments.name:
         load_machine(arguments.name)
         folder = machine_library()
         shipped_file = folder.joinpath(f"{arguments.name}.toml")
         source = shipped_file if shipped_file.is_file() else Path(arguments.name)
-        print_result(source.read_text(encoding="utf-8"), end="")
+        text = source.read_text(encoding="utf-8")
+        if source is shipped_file:  # the schema of what is saved of it lies beside that
+            text = first_line("machine") + text.partition("\n")[2]
+        print_result(text, end="")
         return 0
     found = [load_machine(key) for key in shipped_machines()]
     width = max(len(machine.key) for machine in found)

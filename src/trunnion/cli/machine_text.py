@@ -13,6 +13,7 @@ from trunnion.machines.machine import Vector
 _LEGEND: Final = (
     "Jog the machine and compare. X Y Z are the directions of the definition; the table is what carries the part,",
     "the head what carries the tool. With Z up and -Y towards the operator what goes to +Z rises, and -Y is the front.",
+    'An axis that goes the other way at the machine wants positive = "reversed" (a rotary one), or another direction.',
 )
 
 
@@ -35,6 +36,7 @@ def machine_lines(found: MachineDescription) -> Iterator[str]:
     yield from _pose_lines(jogs)
     yield ""
     yield from _solution_lines(jogs)
+    yield from ("", "What is assumed", *(f"  {each}" for each in found.assumed))
     yield from ("", f"Texts of {found.control}; {{field}} stands for a value")
     for text in found.texts:
         yield f"  {text.name}"
@@ -52,6 +54,7 @@ def machine_data(found: MachineDescription) -> dict[str, object]:
         "spindle_point_mm": list(machine.spindle_point),
         "workpiece_zero_mm": _plain(machine.workpiece_zero),
         "jogs": _plain(found.jogs),
+        "assumed": list(found.assumed),
         "control": found.control,
         "texts": _plain(found.texts),
     }

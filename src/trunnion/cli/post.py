@@ -6,6 +6,8 @@ from itertools import chain, islice
 from pathlib import Path
 
 from trunnion.api.input_files import definition_files
+from trunnion.api.observer import Observer
+from trunnion.api.paper_files import PAPERS, paper_files
 from trunnion.api.post_result import PostResult
 from trunnion.api.posting import post_beside
 from trunnion.api.reading import load_machine
@@ -14,53 +16,64 @@ from trunnion.cli.results import tell
 from trunnion.cli.terminal import Terminal, check_unnamed, output_folder, output_place
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem, argument_problem
-from trunnion.files import check_outputs
+from trunnion.files import OutputGroup, check_outputs
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Toolpath
 from trunnion.wording import counted
 
 
-def post(arguments: argparse.Namespace, toolpaths: Iterator[list[Toolpath]]) -> int:
-    """Post every CL file, whose toolpaths come file after file; 1 if one of the programs is forced."""
+def post(
+    arguments: argparse.Namespace,
+    toolpaths: Iterator[list[Toolpath]],
+    group: OutputGroup | None = None,
+    observer: Observer | None = None,
+) -> int:
+    """Post every CL file, whose toolpaths come file after file; 1 if one of the programs is forced.
+
+    Programs appear one by one, or with those of the ``group``; an ``observer`` is told in place of the terminal.
+    """
     machine = load_machine(arguments.machine)
-    targets = _files_by_target(arguments, machine)
-    if arguments.report is not None and len(targets) > 1:
-        what = f"one report for {len(targets)} programs"
-        raise InputError(
-            Problem(arguments.report, 0, what, "post them one at a time, or leave --report out", code="ARG130")
-        )
-    read = [*named_files(arguments.files), *definition_files(arguments.machine, machine)]
-    report = [] if arguments.report is None else [arguments.report]
-    check_outputs([*(target for target in targets if target != "-"), *report], read)
+    targets = files_by_target(arguments, machine)
+    papers = {name: getattr(arguments, name) for name in PAPERS if getattr(arguments, name) is not None}
+    for name, file in papers.items():
+        if len(targets) > 1:
+            what = f"one {PAPERS[name]} for {len(targets)} programs"
+            raise InputError(Problem(file, 0, what, f"post them one at a time, or leave --{name} out", code="ARG130"))
+    read = [*named_files(arguments.files), *definition_files(arguments.machine, machine), *arguments.hooks]
+    check_outputs([*(target for target in targets if target != "-"), *papers.values()], read)
     if output_folder(arguments.output) is not None:
         for target in targets:
             check_unnamed(target, alone=len(targets) == 1)
-    toolpaths = _with_dialects(toolpaths)
+    toolpaths = toolpaths if observer is not None else _with_dialects(toolpaths)
     written: list[Path] = []
     passed = True
     for target, files in targets.items():
         result = post_beside(
             chain.from_iterable(islice(toolpaths, len(files))),
-            [*read, *written],
+            read if group is not None else [*read, *written],  # a group knows what its jobs write
             machine=machine,
             output=output_place(target),
             settings=dict(arguments.settings),
             strict=arguments.strict,
             force=arguments.force,
             explain=arguments.explain,
-            report=arguments.report,
+            papers=paper_files(**{name: papers.get(name) for name in PAPERS}, output=output_place(target)),
             columns=False,
             subprograms=arguments.subprograms,
-            simulation=_simulation(arguments),
-            observer=Terminal(explain=arguments.explain, recorded=arguments.explain or bool(arguments.report)),
+            simulation=simulation_of(arguments),
+            hooks=arguments.hooks,
+            observer=observer
+            or Terminal(explain=arguments.explain, recorded=arguments.explain or bool(arguments.report)),
+            group=group,
         )
         written += [*result.subprograms, *([] if result.output is None else [result.output])]
         passed = passed and result.passed
-        _print_summary(target, result)
+        if observer is None:
+            print_summary(target, result)
     return 0 if passed else 1
 
 
-def _simulation(arguments: argparse.Namespace) -> dict[str, object] | None:
+def simulation_of(arguments: argparse.Namespace) -> dict[str, object] | None:
     """What the program is simulated with; None: it is not.
 
     Raises
@@ -81,13 +94,18 @@ def _simulation(arguments: argparse.Namespace) -> dict[str, object] | None:
 def _with_dialects(files: Iterator[list[Toolpath]]) -> Iterator[list[Toolpath]]:
     """The toolpaths; says what each is written in as it comes, where that is not NX's CLSF, and those of an archive."""
     for toolpaths in files:
-        for toolpath in toolpaths:
-            if toolpath.dialect != "clsf" or len(toolpaths) > 1:
-                tell(f"{toolpath.file}: read as {toolpath.recognized}")
+        print_dialects(toolpaths)
         yield toolpaths
 
 
-def _print_summary(target: str, result: PostResult) -> None:
+def print_dialects(toolpaths: Sequence[Toolpath]) -> None:
+    """Say what the toolpaths of a file or an archive are written in, where that is not NX's CLSF."""
+    for toolpath in toolpaths:
+        if toolpath.dialect != "clsf" or len(toolpaths) > 1:
+            tell(f"{toolpath.file}: read as {toolpath.recognized}")
+
+
+def print_summary(target: str, result: PostResult) -> None:
     """Name the files of a program."""
     if result.output is None:
         return
@@ -98,7 +116,7 @@ def _print_summary(target: str, result: PostResult) -> None:
         tell(f"{subprogram}: a subprogram of {result.output.name}")
 
 
-def _files_by_target(arguments: argparse.Namespace, machine: Machine) -> dict[str, list[str]]:
+def files_by_target(arguments: argparse.Namespace, machine: Machine) -> dict[str, list[str]]:
     """Which program is made from which CL files."""
     place, files = arguments.output, arguments.files
     if place == "-":

@@ -4,10 +4,10 @@ import argparse
 from collections.abc import Iterator
 from typing import Final
 
+from trunnion.api.project_file import project_files
 from trunnion.api.reports import check_report_name
 from trunnion.api.simulating import simulate
 from trunnion.api.simulation_data import simulation_data
-from trunnion.api.simulation_project import project_files
 from trunnion.api.simulation_report import write_simulation_report
 from trunnion.api.simulation_result import NearMiss, SimulationFinding, SimulationResult
 from trunnion.cli.cl_files import cl_inputs, named_files

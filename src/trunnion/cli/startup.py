@@ -11,13 +11,34 @@ dozens of calls deeper, Numba has such a loop: 16,000 times, which lengthens the
 
 import argparse
 from concurrent.futures import ThreadPoolExecutor
+from typing import TYPE_CHECKING
 
 import trunnion.jit
 from trunnion.cli.cl_files import read_toolpaths
+from trunnion.cli.post_arguments import names_project
+
+if TYPE_CHECKING:  # imported while the first CL file is read
+    from trunnion.api.observer import Observer
+    from trunnion.files import OutputGroup
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Post every CL file."""
+    """Post every CL file, or a project; or watch them."""
+    if arguments.watch:
+        from trunnion.cli.watch import run as watch
+
+        return watch(arguments)
+    if names_project(arguments.files):
+        from trunnion.cli.project import run as post_project
+
+        return post_project(arguments)
+    return post_files(arguments)
+
+
+def post_files(
+    arguments: argparse.Namespace, group: "OutputGroup | None" = None, observer: "Observer | None" = None
+) -> int:
+    """Post every CL file; programs appear with those of the group, if there is one."""
     if trunnion.jit.is_first_run():  # compiling takes longer than all else: the second process should begin at once
         from trunnion.api import kernels
 
@@ -31,6 +52,6 @@ def run(arguments: argparse.Namespace) -> int:
         )  # fmt: skip
         from trunnion.cli.post import post
 
-        return post(arguments, coming)
+        return post(arguments, coming, group, observer)
     finally:
         executor.shutdown(wait=False, cancel_futures=True)  # it may wait for stdin, which nobody needs any more

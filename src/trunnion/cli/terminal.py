@@ -31,6 +31,11 @@ class Terminal(Observer):
         self._explain, self._recorded = explain, recorded
         self._explained = False
 
+    def setup(self, name: str) -> None:
+        """Print whose set-up the next lines are about, where there are several."""
+        if name:
+            tell(f"set-up {name}")
+
     def problems(self, problems: Sequence[Problem]) -> None:
         """Print problems, one a line."""
         for problem in problems:

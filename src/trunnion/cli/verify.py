@@ -4,6 +4,7 @@ import argparse
 from typing import Final
 
 from trunnion.api.input_files import definition_files
+from trunnion.api.manifests import verify_manifest
 from trunnion.api.reading import load_machine
 from trunnion.api.reports import check_report, write_report
 from trunnion.api.verifying import verify
@@ -11,7 +12,7 @@ from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import print_result, tell
 from trunnion.cli.terminal import Terminal
 from trunnion.controls import load_control
-from trunnion.errors import InputError, Severity
+from trunnion.errors import InputError, Severity, argument_problem
 from trunnion.verification import Verification, check_lines, place_lines, time_lines
 from trunnion.wording import counted, one_line
 
@@ -21,6 +22,10 @@ _MANY_ERRORS: Final = 5
 
 def run(arguments: argparse.Namespace) -> int:
     """Verify one program; 0 if every check has passed, else 1."""
+    if arguments.machine is None:
+        if arguments.file.lower().endswith(".json"):
+            return _run_manifest(arguments)
+        raise InputError(argument_problem("machine", "is missing", "name the machine that runs the program"))
     machine = load_machine(arguments.machine)
     if arguments.report is not None:
         read = [arguments.file, *named_files(arguments.cl), *arguments.subprograms]
@@ -54,6 +59,20 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.report is not None:
         write_report(verification, arguments.report)
     return 0 if verification.passed else 1
+
+
+def _run_manifest(arguments: argparse.Namespace) -> int:
+    """Compare the files of a post with its manifest; 0 if all are the same and proven, else 1."""
+    others = ("subprograms", "recorded", "report", "zero", "tool_length", "span", "span_tip", "tool", "offset", "edge")
+    for name in (*others, "units", "dialect"):
+        if getattr(arguments, name):
+            what, cure = "says nothing about a manifest", "leave it out; --cl compares CL files, too"
+            raise InputError(argument_problem(name, what, cure))
+    found = verify_manifest(arguments.file, cl=arguments.cl)
+    print_result(*(one_line(str(file)) for file in found.files))
+    if not found.proven:
+        tell(f"{arguments.file}: the program was written by force, and must not run as it is")
+    return 0 if found.passed else 1
 
 
 def _control_hint(verification: Verification) -> str:

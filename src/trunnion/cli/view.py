@@ -5,8 +5,8 @@ import sys
 from functools import partial
 from typing import Any
 
+from trunnion.api.project_file import project_files
 from trunnion.api.recording import machine_feed
-from trunnion.api.simulation_project import project_files
 from trunnion.api.viewing import check_view_name, prepare_view, write_view
 from trunnion.api.viewing_live import LiveMachine, machine_content
 from trunnion.cli.cl_files import cl_inputs, named_files

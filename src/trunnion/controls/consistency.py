@@ -4,18 +4,25 @@ In:     tables of a definition, and the control that was read from them.
 Out:    problems, added to the tables.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from trunnion.controls.definition import Control
+from trunnion.controls.template import Template
 from trunnion.controls.vocabulary import (
     COMMON_TEMPLATE_FIELDS,
+    EVENT_PLACE,
+    EVENT_VALUES,
     FIELD_SETTINGS,
+    FILTERS,
+    LISTS,
     RUN_ONLY_SETTINGS,
+    STOP_PLACE,
     SUBPROGRAM_TEMPLATES,
     WRITER_FORMATS,
 )
 from trunnion.definitions import Table
 from trunnion.definitions.messages import did_you_mean
+from trunnion.errors import Problem
 
 
 def check_templates(table: Table, control: Control) -> None:
@@ -32,22 +39,41 @@ def check_templates(table: Table, control: Control) -> None:
             table.add_problem(
                 template.name, f"has a brace that belongs to no field: {text.strip()!r}", cure, code="DEF510"
             )
-        for name, _ in sorted(template.fields()):
-            if name not in known:
-                table.add_problem(
-                    template.name,
-                    f"prints {{{name}}}, which is neither a template field nor a setting",
-                    f"write one of {', '.join(sorted(known))}, or add it to [control.settings]",
-                    code="DEF510",
-                )
+        here = known | (EVENT_VALUES if _is_about_event(template.name) else frozenset())
+        for line, fields in enumerate(template.fields_by_line()):
+            _check_names(table, template, line, fields, here)
         for name, number_format in sorted(template.fields() | template.numbers()):
             if number_format and number_format not in control.formats:
+                near = did_you_mean(number_format, {*control.formats, *(FILTERS if template.is_text else ())})
                 table.add_problem(
                     template.name,
                     f"prints {{{name}:{number_format}}}, but there is no format {number_format!r}",
-                    f"write one of {', '.join(sorted(control.formats))}",
+                    f"{near} write one of {', '.join(sorted(control.formats))}".strip(),
                     code="DEF510",
                 )
+
+
+def _check_names(
+    table: Table, template: Template, line: int, fields: Iterable[tuple[str, str]], known: frozenset[str]
+) -> None:
+    """Report values that there are not, at the line where a template asks for them."""
+    known |= LISTS if template.is_text else frozenset()
+    for name in sorted({name for name, _ in fields} - known):
+        near = did_you_mean(name, known)
+        every = "" if near and template.is_text else f"write one of {', '.join(sorted(known))}, or "
+        what = f"prints {{{name}}}, which is neither a template field nor a setting"
+        cure = f"{near} {every}add it to [control.settings]".strip()
+        if template.is_text:
+            file, at = template.place_of(line)
+            key = table.key_path(template.name)
+            table.problems.append(Problem(file, at, f"{key} {what}", cure, key=key))
+        else:
+            table.add_problem(template.name, what, cure)
+
+
+def _is_about_event(name: str) -> bool:
+    """Whether a template is written for an event of the CL file."""
+    return name.startswith(EVENT_PLACE) or name == STOP_PLACE
 
 
 def check_formats(entries: Sequence[Table], control: Control) -> None:

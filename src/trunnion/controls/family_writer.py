@@ -5,6 +5,7 @@ are. It turns events, arcs, cycles and planes into words and lines, with the cod
 definition. The sequence of a program and its modal state are common to all families (``trunnion.output``).
 """
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final, Protocol
@@ -66,7 +67,10 @@ class FamilyWriter(Protocol):
     SETTING_MEANINGS  what each of these settings changes, in sentences
     SETTING_FIELDS    settings that act through values of its templates alone -> those values; where no template of a
                       definition prints one of them, the setting has no effect
+    LINE_COMMENTS     beginnings of lines that are comments to their end; the first one begins further lines
+    COMMENTS          group 1 is a comment within a line, or a message to the operator; what else matches has none
     TEMPLATE_FIELDS   values that its templates may print besides the common ones: the keys of ``template_values``
+    BLOCK_NUMBER_LETTERS  what may stand before a block number; empty among them: numbers without a letter, or none
     """
 
     WORDS: tuple[str, ...]
@@ -78,6 +82,8 @@ class FamilyWriter(Protocol):
     SETTING_FIELDS: Mapping[str, tuple[str, ...]]
     TEMPLATE_FIELDS: frozenset[str]
     LINE_COMMENTS: tuple[str, ...]
+    COMMENTS: re.Pattern[str]
+    BLOCK_NUMBER_LETTERS: tuple[str, ...]
 
     def comment(self, text: str) -> list[str]:
         """Return a text as comment lines, whatever characters are in it."""

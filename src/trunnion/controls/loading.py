@@ -2,9 +2,11 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from importlib.resources import files
 from importlib.resources.abc import Traversable
+from typing import Final
 
 from trunnion.controls.consistency import check_formats, check_setting_names, check_templates
 from trunnion.controls.definition import MM_PER_INCH, ArcRules, Control, FormatPair, SubprogramNaming, WordDefinition
@@ -15,6 +17,7 @@ from trunnion.controls.vocabulary import (
     AXIS_WORDS,
     COOLANTS,
     DRAW_BACK,
+    EVENT_PLACE,
     FEEDS_WITHOUT_TCP,
     FIVE_AXIS,
     HOLE_APPROACH_HEIGHTS,
@@ -23,6 +26,7 @@ from trunnion.controls.vocabulary import (
     NEW_SPEED_WITH_TCP,
     NO_LIMIT,
     PHASES,
+    PLACES,
     RADIUS_ARC_WORDS,
     REQUIRED_TEMPLATES,
     SPINDLE_ON,
@@ -31,10 +35,17 @@ from trunnion.controls.vocabulary import (
     WITHOUT_TCP,
 )
 from trunnion.controls.words import BlockNumbers, NumberFormat
-from trunnion.definitions import Table, definition_names, resolve_extends
+from trunnion.definitions import LocatedValue, Table, definition_names, resolve_extends
 from trunnion.definitions.twin_keys import report_twins, statement_form
+from trunnion.errors import InputError, Problem
 from trunnion.families import FAMILIES, load_writer
 from trunnion.model.axis_tolerance import AxisTolerance
+
+#: What only a template with statements or expressions has in it.
+_TEXT_SIGNS: Final = ("{%", "{{", "{#")
+
+#: What may stand for 0: nothing, which is as other numbers, or a text that a control reads as 0.
+_ZERO: Final = r"([+-]?(0{1,2}(\.0{0,4})?|\.0{1,4}))?"
 
 
 def control_library() -> Traversable:
@@ -74,7 +85,7 @@ def load_control(own: Table) -> Control:
         extension=_read_extension(table),
         longest_line=table.integer("longest_line", 1 << 20, at_least=40, at_most=1 << 20),
         continued=table.text("continued", ""),
-        block_numbers=_read_block_numbers(table.table("block_numbers")),
+        block_numbers=_read_block_numbers(table.table("block_numbers"), family),
         formats=formats,
         words=tuple(_read_word(entry, formats, words) for entry in table.tables("word")),
         codes=_read_integers(table.table("codes"), family.CODES),
@@ -125,12 +136,8 @@ def load_control(own: Table) -> Control:
 
 
 def _load_family(table: Table) -> FamilyWriter:
-    key = table.text("family")
-    if key not in FAMILIES:
-        known = ", ".join(FAMILIES)
-        table.add_problem(
-            "family", f"is {key!r}, for which no programs can be written yet", f"write one of {known}", code="DEF530"
-        )
+    key = table.text("family", one_of=tuple(FAMILIES))
+    if not key:
         table.raise_problems()
     table.mark_read("reading", "known")  # only for the readers of programs
     family: FamilyWriter = load_writer(key)
@@ -146,11 +153,8 @@ def _read_format(entry: Table) -> FormatPair:
         "trailing_zeros": entry.flag("trailing_zeros", False),
         "plus": entry.flag("plus", False),
     }
-    zero = entry.text("zero", "")
+    zero = entry.text("zero", "", pattern=_ZERO, form='0 as the control has it, such as "0.0", in at most 8 characters')
     least, greatest = entry.number("least", -99999999.0), entry.number("greatest", 99999999.0)
-    if len(zero) > 8:
-        entry.add_problem("zero", f"is {zero!r}", "write at most 8 characters", code="DEF515")
-        zero = ""
     pair = [
         NumberFormat(n, zero=zero, least=least, greatest=greatest, **common) for n in (decimals, decimals_three_axis)
     ]
@@ -182,14 +186,11 @@ def _read_word(entry: Table, formats: Mapping[str, FormatPair], words: Sequence[
     name = entry.text("name", one_of=words)
     rotary = name.startswith(("primary", "secondary"))
     letter = entry.text("letter", "") if rotary else entry.text("letter")
-    closing = entry.text("closing", "")
+    closing = entry.text("closing", "", pattern="[ -~]?", form="one character")
     most = 4 if rotary else 8
     if len(letter.encode()) > most:
         entry.add_problem("letter", f"is {letter!r}", f"write at most {most} characters", code="DEF530")
         letter = letter[:1]
-    if len(closing.encode()) > 1:
-        entry.add_problem("closing", f"is {closing!r}", "write one character", code="DEF530")
-        closing = ""
     bare = entry.flag("bare", False)
     number_format = "" if bare else entry.text("format", one_of=tuple(formats))
     word = WordDefinition(name, letter, number_format, not bare and entry.flag("modal", True), closing, bare)
@@ -206,8 +207,8 @@ def _read_extension(table: Table) -> str:
     return extension
 
 
-def _read_block_numbers(table: Table) -> BlockNumbers:
-    letter = table.text("letter", "N")
+def _read_block_numbers(table: Table, family: FamilyWriter) -> BlockNumbers:
+    letter = table.text("letter", "N", one_of=family.BLOCK_NUMBER_LETTERS)
     numbers = BlockNumbers(
         letter,
         table.integer("start", 10, at_least=0),
@@ -215,7 +216,14 @@ def _read_block_numbers(table: Table) -> BlockNumbers:
         table.integer("highest", 99999999, at_least=1, at_most=99999999),
         table.flag("numbered", bool(letter)),
         table.text("unnumbered", ""),
+        table.integer("every", 1, at_least=1),
+        table.text("at", "blocks", one_of=("blocks", "operations")) == "operations",
     )
+    for key in ("every", "at"):
+        if not letter and key in table:
+            table.add_problem(key, "is given, and numbers without a letter stand before every block", "leave it out")
+    if numbers.numbered and not letter and len(family.BLOCK_NUMBER_LETTERS) > 1:
+        table.add_problem("numbered", "is true, and numbers without a letter are no block numbers here", "write letter")
     if numbers.highest < numbers.start:
         what = f"is {numbers.highest}, but the numbers start at {numbers.start}"
         table.add_problem("highest", what, "write a greater one", code="DEF330")
@@ -224,16 +232,18 @@ def _read_block_numbers(table: Table) -> BlockNumbers:
 
 
 def _read_integers(table: Table, names: tuple[str, ...], complete: bool = True) -> dict[str, int]:
-    found = {name: table.integer(name, at_least=0) for name in names if complete or name in table}
+    found = {
+        name: table.integer(name, at_least=0) if complete else table.integer(name, None, at_least=0) for name in names
+    }
     table.report_unread_keys()
-    return found
+    return {name: number for name, number in found.items() if number is not None}
 
 
 def _read_coolant(table: Table) -> dict[str, int]:
     """The M codes of coolants; ``"none"`` takes away what the definition extends."""
-    taken = [name for name, value in table.to_dict().items() if value == "none"]
-    table.mark_read(*taken, *COOLANTS)
-    return _read_integers(table, tuple(name for name in COOLANTS if name not in taken), complete=False)
+    codes = {name: table.integer(name, None, at_least=0, nothing="none") for name in COOLANTS}
+    table.report_unread_keys()
+    return {name: code for name, code in codes.items() if code is not None}
 
 
 def _read_texts(table: Table, names: tuple[str, ...]) -> dict[str, str]:
@@ -243,7 +253,7 @@ def _read_texts(table: Table, names: tuple[str, ...]) -> dict[str, str]:
 
 
 def _read_settings(table: Table, family: FamilyWriter) -> dict[str, str]:
-    found = {name: table.text(name) for name in list(table.keys())}
+    found = {name: table.text(name) for name in table.names()}
     for name, choices in family.SETTING_CHOICES.items():
         found.setdefault(name, choices[0])
     table.report_unread_keys()
@@ -252,7 +262,7 @@ def _read_settings(table: Table, family: FamilyWriter) -> dict[str, str]:
 
 def _read_statements(table: Table) -> dict[str, str]:
     """What becomes of CL statements; each is a line of the program, or nothing."""
-    found = {statement: table.text(statement) for statement in list(table.keys())}
+    found = {statement: table.text(statement) for statement in table.names()}
     for statement, line in found.items():
         if any(ord(character) < 32 for character in line):
             table.add_problem(
@@ -273,7 +283,7 @@ def _read_setting_rules(table: Table, settings: Table, family: FamilyWriter) -> 
 
 def _read_setting_meanings(table: Table, settings: Table, family: FamilyWriter) -> dict[str, str]:
     """What each setting changes; the family explains its own."""
-    own = {name: table.text(name) for name in list(table.keys())}
+    own = {name: table.text(name) for name in table.names()}
     for name in own:
         if name not in settings and name not in family.SETTING_CHOICES:
             table.add_problem(name, "explains no setting", "add the setting to [control.settings]", code="DEF520")
@@ -365,8 +375,11 @@ def _template_names(table: Table, family: FamilyWriter, plane_from_pose: bool, s
     groups += [(f"next_axis_{suffix}",) for suffix in (FIVE_AXIS, WITHOUT_TCP)]
     groups += [tuple(f"{part}_{plane}" for part in plane_parts) for plane in family.PLANE_COMMANDS]
     groups += [(f"{DRAW_BACK}_{plane}",) for plane in family.PLANE_COMMANDS if plane_from_pose]
+    for name in (name for group in groups for name in group):
+        table.text(name, None)  # known, though no definition needs it
     used = [name for group in groups if any(name in table for name in group) for name in group]
-    return [*REQUIRED_TEMPLATES, *(SUBPROGRAM_TEMPLATES if subprograms else ()), *used]
+    places = [name for name in list(table.keys()) if name in PLACES or name.startswith(EVENT_PLACE)]
+    return [*REQUIRED_TEMPLATES, *(SUBPROGRAM_TEMPLATES if subprograms else ()), *used, *places]
 
 
 def _read_templates(table: Table, names: Sequence[str]) -> dict[str, Template]:
@@ -374,6 +387,35 @@ def _read_templates(table: Table, names: Sequence[str]) -> dict[str, Template]:
     for name in names:
         text = table.text(name)
         file, line = table.location(name)
-        found[name] = Template(name, tuple(text.strip("\n").split("\n")) if text.strip() else (), file, line)
+        if any(sign in text for sign in _TEXT_SIGNS):
+            found[name] = _read_text_template(table, name, text)
+        else:
+            found[name] = Template(name, tuple(text.strip("\n").split("\n")) if text.strip() else (), file, line)
+    table.mark_read(*PLACES)
     table.report_unread_keys()
     return found
+
+
+def _read_text_template(table: Table, name: str, text: str) -> Template:
+    """A template with statements or expressions; Jinja is imported for the first one."""
+    from trunnion.controls.texts.template import text_template
+
+    template, fault = text_template(name, text, *table.location(name))
+    if fault is not None:
+        file, line = template.place_of(max(fault.line, 1) - 1)
+        key = table.key_path(name)
+        table.problems.append(Problem(file, line, f"{key} {fault.what}", fault.cure, key=key))
+    return template
+
+
+def with_control(table: Table) -> LocatedValue:
+    """Return the definition of a machine with its control merged onto what that extends, or as it is if that fails."""
+    root = table.content
+    with suppress(InputError):
+        control = resolve_extends(table.unread_copy().table("control"), control_library())
+        assert isinstance(root.value, dict)
+        root = LocatedValue({**root.value, "control": control.content}, root.file, root.line)
+        own = table.unread_copy().table("control").content.value
+        if isinstance(own, dict) and "extends" in own and isinstance(control.content.value, dict):
+            control.content.value["extends"] = own["extends"]
+    return root

@@ -173,7 +173,7 @@ def read_setting_rules(table: Table, settings: Table) -> dict[str, SettingRule]:
     A rule with ``one_of`` is a choice. A setting whose default is empty may be empty, and others if their rule says so.
     """
     rules = {}
-    for name in list(table.keys()):
+    for name in table.names():
         entry = table.table(name)
         if name not in settings:
             entry.add_problem("", "is the rule of no setting", "add the setting to [control.settings]", code="DEF520")

@@ -193,6 +193,8 @@ class BlockNumbers:
     start, step  of the numbers
     highest      after it the numbers start again
     numbered     False: blocks have no numbers
+    every        only every so-manieth block has a number
+    at_operations  only the first block of each operation has one
     unnumbered   lines of text that begin with one of these characters have neither a number nor a skip sign
     """
 
@@ -202,3 +204,5 @@ class BlockNumbers:
     highest: int = 99999999
     numbered: bool = True
     unnumbered: str = ""
+    every: int = 1
+    at_operations: bool = False

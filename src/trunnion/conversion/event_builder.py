@@ -32,7 +32,7 @@ _COOLANT_CODE = {"mist": 7, "flood": 8, "off": 9}
 class EventBuilder:
     """Builds the events of one operation after another; spindle and tool carry over from one to the next.
 
-    phase_comments   comments that name phases, and are no messages
+    phase_comments   comments that name phases, in capitals, and are no messages
     coolants         M number -> CL word
     template_lines   lines written from templates: every program of the control has their comments and messages
     """
@@ -131,7 +131,7 @@ class EventBuilder:
         line, value = event.line, event.value
         match event.kind:
             case "comment":
-                if event.text and event.text not in self._phase_comments:
+                if event.text and event.text.upper() not in self._phase_comments:
                     yield Message(row, line, _one_line(event.text))
             case "tool":
                 if str(value).isdigit() and int(str(value)):

@@ -26,7 +26,7 @@ _PHASE_BY_NAME = {
 class PhaseComments:
     """The comments that name phases on a control.
 
-    phase_of   comment -> phase; if several phases share a comment, the first of them
+    phase_of   comment in capitals -> phase; if several phases share a comment, the first of them
     """
 
     def __init__(self, control: Control, has_headers: bool) -> None:
@@ -34,7 +34,7 @@ class PhaseComments:
         self.phase_of: dict[str, Phase] = {}
         for name, phase in _PHASE_BY_NAME.items():
             if comment := control.phases.get(name, "").strip("; *()"):
-                self.phase_of.setdefault(comment, phase)
+                self.phase_of.setdefault(comment.upper(), phase)
         self._trusted = has_headers and bool(self.phase_of)
         self._rapids_unnamed = self._trusted and not control.phases.get("rapid")
 
@@ -51,11 +51,11 @@ class PhaseComments:
         comment_at: dict[int, ProgramEvent] = {}
         without_motion: list[ProgramEvent] = []
         for event in events:
-            if event.text in self.phase_of and event.line not in template_lines:
+            if event.text.upper() in self.phase_of and event.line not in template_lines:
                 begin = int(np.searchsorted(rows, event.row))
                 without_motion += [comment_at[begin]] if begin in comment_at else []
                 comment_at[begin] = event
-                phase[begin:] = self.phase_of[event.text]
+                phase[begin:] = self.phase_of[event.text.upper()]
         if self._rapids_unnamed:
             phase[(phase == Phase.CUT) & (run.kind[rows] == Kind.RAPID)] = Phase.RAPID
         without_motion += [comment_at[len(rows)]] if len(rows) in comment_at else []

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from trunnion.encoding import decode
+
 #: What precedes the words of a block: the block skip sign, and a number after its letter or without one.
 _BLOCK_PREFIX = r"\s*/?\d?\s*(?:{letter}\d+)?\s*"
 _NUMBER_PREFIX = r"\s*\d+\s+/?"
@@ -20,18 +22,15 @@ class ProgramText:
 
     letter    letter of block numbers, empty for numbers without one
     comments  regular expression of comments and texts, as in ``FamilyReader``
+    encoding  of names and texts; empty: what is likeliest for each line
     """
 
-    def __init__(self, file: str, letter: str, comments: bytes) -> None:
+    def __init__(self, file: str, letter: str, comments: bytes, encoding: str = "") -> None:
         self._prefix = re.compile(_BLOCK_PREFIX.format(letter=letter) if letter else _NUMBER_PREFIX)
         self._prefix_starts = (letter, "/") if letter else tuple("0123456789")
         self._word_pattern = re.compile(comments + b"|(" + _SPARSE_WORDS + b")", re.IGNORECASE | re.MULTILINE)
         self._data = Path(file).read_bytes()
-        try:
-            self._data.decode("utf-8")
-            self._encoding = "utf-8"
-        except UnicodeDecodeError:
-            self._encoding = "latin-1"
+        self._encoding = encoding
         ends = np.flatnonzero(np.frombuffer(self._data, np.uint8) == _NEWLINE)
         self._line_starts = np.concatenate(([0], ends + 1, [len(self._data) + 1]))
         self.line_count = len(self._line_starts) - 1
@@ -39,7 +38,7 @@ class ProgramText:
     def line_text(self, number: int) -> str:
         """A line without its block skip sign and block number."""
         begin, end = self._line_starts[number - 1], self._line_starts[number] - 1
-        line = self._data[begin:end].decode(self._encoding).rstrip("\r")
+        line = decode(self._data[begin:end], self._encoding).rstrip("\r")
         prefix = self._prefix.match(line) if line.startswith(self._prefix_starts) else None
         return line[prefix.end() :] if prefix else line
 

@@ -103,7 +103,9 @@ def line_patterns(
     """
     shapes = choices or {}
     return [
-        _line_pattern(line, known, settings, family_values, shapes) for template in templates for line in template.lines
+        _line_pattern(line, known, settings, family_values, shapes)
+        for template in templates
+        for line in template.pattern_lines()
     ]
 
 
@@ -132,7 +134,7 @@ def _line_pattern(
         at = match.end()
     parts.append(_literal(line[at:]))
     value_only = bool(seen - family_values.keys()) and not re.sub(r"[\s;()]", "", _FIELD.sub("", line))
-    return LinePattern(re.compile("".join(parts)), value_only)
+    return LinePattern(re.compile("".join(parts), re.IGNORECASE), value_only)
 
 
 def _literal(text: str) -> str:

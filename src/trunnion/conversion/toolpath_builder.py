@@ -85,7 +85,7 @@ class _ToolpathBuilder:
         self._control = control
         self._reader = reader_of(run.machine)
         letter, comments = control.block_numbers.letter, self._reader.comments
-        self._texts = [ProgramText(file, letter, comments) for file in run.files]
+        self._texts = [ProgramText(file, letter, comments, run.encoding) for file in run.files]
         self._headers = HeaderReader(run, control, self._texts[0])
         self._coolants = _coolant_words(control)
         self._warn = Warnings(run.files)

@@ -360,4 +360,4 @@ def resolve_extends(table: Table, library: Library) -> Table:
     own = LocatedValue(dict(table.content.value), table.content.file, table.content.line)
     source = _DefinitionFile(folder / f"{Path(file).name}", f"{file} [{table.path}]", folder)
     merged = _merge_ancestors(own, source, library, problems)
-    return Table(merged, table.path, problems)
+    return table.other(merged, problems)

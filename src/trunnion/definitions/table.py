@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Final, TypedDict, Unpack, overload
 
+from trunnion.definitions.expected import GREATEST, Expected, Form, Question
 from trunnion.definitions.messages import a_number, as_written, bounds, did_you_mean, in_quotes, in_unit, unquoted
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.definitions.units import unit_of, without_unit
@@ -19,10 +20,10 @@ class Required:
 
 REQUIRED: Final = Required()
 
-_NO_NAMES: Final[Mapping[str, str]] = MappingProxyType({})
+#: Keys that are not known and are told one by one: for each a similar one is looked for.
+_MOST_UNREAD: Final = 100
 
-#: No length, angle, speed or count of a definition is greater; squares of what is do not overflow.
-_GREATEST: Final = 1e9
+_NO_NAMES: Final[Mapping[str, str]] = MappingProxyType({})
 
 
 class Bounds(TypedDict, total=False):
@@ -34,10 +35,14 @@ class Bounds(TypedDict, total=False):
 
 
 class WholeBounds(TypedDict, total=False):
-    """What a whole number may be; a key that is absent or None sets no bound."""
+    """What a whole number may be; a key that is absent or None sets no bound.
+
+    ``nothing`` is a word that stands for the default: it takes away what the definition extends.
+    """
 
     at_least: int | None
     at_most: int | None
+    nothing: str
 
 
 @dataclass(eq=False)
@@ -52,6 +57,7 @@ class Table:
     problems   shared with all tables of the definition
     read_keys  keys that a getter has been called for
     children   tables that getters have returned
+    questions  takes what getters ask for, if it is there; shared with all tables that are made of this one
     """
 
     content: LocatedValue
@@ -59,6 +65,7 @@ class Table:
     problems: list[Problem] = field(default_factory=list)
     read_keys: dict[str, None] = field(default_factory=dict)
     children: list["Table"] = field(default_factory=list)
+    questions: list[Question] | None = None
 
     # Locations
 
@@ -98,7 +105,16 @@ class Table:
 
     def unread_copy(self) -> "Table":
         """The same table with no key read and no problem noted."""
-        return Table(self.content, self.path)
+        return self.other(self.content, [])
+
+    def other(self, content: LocatedValue, problems: list[Problem], path: str | None = None) -> "Table":
+        """An unread table that notes what is asked where this one does; its path is this one's unless it is given."""
+        return Table(content, self.path if path is None else path, problems, questions=self.questions)
+
+    def names(self) -> list[str]:
+        """Every key of a table whose keys the definition chooses itself, in order: none of them is unknown."""
+        self._note("", Expected(Form.ANY_KEY))
+        return list(self._values)
 
     def files(self) -> list[str]:
         """Every file that a value of this table comes from, sorted."""
@@ -132,9 +148,10 @@ class Table:
 
     def report_unread_keys(self) -> None:
         """Note each key that has not been read; call it when the table has been read."""
-        for key in self._values:
-            if key in self.read_keys:
-                continue
+        unread = [key for key in self._values if key not in self.read_keys]
+        if len(unread) > _MOST_UNREAD:
+            self.add_problem("", f"has {len(unread)} keys that are not known here; the first are told")
+        for key in unread[:_MOST_UNREAD]:
             same_stem = (known for known in self.read_keys if without_unit(known) == without_unit(key))
             similar = next((known for known in same_stem if unit_of(known)), "")
             if similar and unit_of(key) != unit_of(similar):
@@ -156,11 +173,16 @@ class Table:
 
     # Getters
 
-    def _get(self, key: str, required: bool, cure: str) -> object | None:
+    def _note(self, key: str, expected: Expected) -> None:
+        if self.questions is not None:
+            self.questions.append(Question(self.path, key, expected))
+
+    def _get(self, key: str, expected: Expected, cure: str) -> object | None:
         self.read_keys[key] = None
+        self._note(key, expected)
         content = self._values.get(key)
         if content is None:
-            if required:
+            if expected.required:
                 self.add_problem(key, "is missing", cure, code="DEF310")
             return None
         return content.value
@@ -169,11 +191,13 @@ class Table:
     def text(
         self, key: str, default: str | Required = ..., *,
         one_of: Sequence[str] = ..., other_names: Mapping[str, str] = ..., example: str = ...,
+        pattern: str = ..., form: str = ...,
     ) -> str: ...  # fmt: skip
     @overload
     def text(
         self, key: str, default: None, *,
         one_of: Sequence[str] = ..., other_names: Mapping[str, str] = ..., example: str = ...,
+        pattern: str = ..., form: str = ...,
     ) -> str | None: ...  # fmt: skip
     def text(
         self,
@@ -183,19 +207,32 @@ class Table:
         one_of: Sequence[str] = (),
         other_names: Mapping[str, str] = _NO_NAMES,
         example: str = "",
+        pattern: str = "",
+        form: str = "",
     ) -> str | None:
-        """Return a text; with ``one_of``, one of these words, to which ``other_names`` lead in a message."""
+        """Return a text; with ``one_of``, one of these words, to which ``other_names`` lead in a message.
+
+        With ``pattern`` all of it matches this regular expression, and ``form`` says in words what to write. An empty
+        text, or one that does not match, is the default; a required one is returned as it is.
+        """
         fallback = "" if isinstance(default, Required) else default
         words = ", ".join(f'"{word}"' for word in one_of)
         such_as = f', such as "{example}"' if example else ""
         cure = f"write one of {words}" if one_of else f"write a text in quotes{such_as}"
-        value = self._get(key, isinstance(default, Required), cure)
+        cure = f"write {form}" if form else cure
+        required = isinstance(default, Required)
+        value = self._get(
+            key, Expected(Form.TEXT, required, _told(default), one_of=tuple(one_of), pattern=pattern), cure
+        )
         if value is None:
             return fallback
         if not isinstance(value, str) or (one_of and value not in one_of):
             near = did_you_mean(value, one_of, other_names) if isinstance(value, str) else ""
             quoted = "" if one_of or example else in_quotes(key, value)
             self.add_problem(key, f"is {as_written(value)}", (near + " " + cure if near else cure) + quoted)
+            return fallback
+        if pattern and not re.fullmatch(pattern, value):
+            self.add_problem(key, f"is {as_written(value)}", cure)
             return fallback
         return value
 
@@ -208,7 +245,10 @@ class Table:
         fallback = 0.0 if isinstance(default, Required) else default
         above, at_least, at_most = limits.get("above"), limits.get("at_least"), limits.get("at_most")
         cure = f"write {a_number(key)}{bounds(above, at_least, at_most)}"
-        value = self._get(key, isinstance(default, Required), cure)
+        expected = Expected(
+            Form.NUMBER, isinstance(default, Required), _told(default), above=above, at_least=at_least, at_most=at_most
+        )
+        value = self._get(key, expected, cure)
         if value is None:
             return fallback
         number = _finite(value)
@@ -228,9 +268,14 @@ class Table:
         """Return a whole number."""
         fallback = 0 if isinstance(default, Required) else default
         at_least, at_most = limits.get("at_least"), limits.get("at_most")
-        cure = f"write a whole number{bounds(None, at_least, at_most)}"
-        value = self._get(key, isinstance(default, Required), cure)
-        if value is None:
+        nothing = limits.get("nothing", "")
+        cure = f"write a whole number{bounds(None, at_least, at_most)}" + (f', or "{nothing}"' if nothing else "")
+        expected = Expected(
+            Form.WHOLE, isinstance(default, Required), _told(default), at_least=at_least, at_most=at_most,
+            nothing=nothing,
+        )  # fmt: skip
+        value = self._get(key, expected, cure)
+        if value is None or (nothing and value == nothing):
             return fallback
         if not isinstance(value, int) or isinstance(value, bool) or not _within(value, None, at_least, at_most):
             self.add_problem(key, f"is {as_written(value)}", cure)
@@ -244,7 +289,8 @@ class Table:
     def flag(self, key: str, default: bool | Required | None = REQUIRED) -> bool | None:
         """Return true or false."""
         fallback = False if isinstance(default, Required) else default
-        value = self._get(key, isinstance(default, Required), "write true or false")
+        expected = Expected(Form.FLAG, isinstance(default, Required), _told(default))
+        value = self._get(key, expected, "write true or false")
         if value is None:
             return fallback
         if not isinstance(value, bool):
@@ -262,7 +308,7 @@ class Table:
         """Return n finite numbers, in the unit that the key names."""
         fallback = (0.0,) * n if isinstance(default, Required) else None if default is None else tuple(default)
         cure = f"write [{', '.join('abcdefgh'[:n])}] with {n} numbers{in_unit(key, ' ')}"
-        value = self._get(key, isinstance(default, Required), cure)
+        value = self._get(key, Expected(Form.VECTOR, isinstance(default, Required), _told(default), size=n), cure)
         if value is None:
             return fallback
         numbers = _finite_numbers(value)
@@ -281,7 +327,7 @@ class Table:
         """Return [low, high] with low < high, in the unit that the key names."""
         fallback = (-math.inf, math.inf) if isinstance(default, Required) else default
         cure = f"write [low, high] with low < high{in_unit(key, ', ')}"
-        value = self._get(key, isinstance(default, Required), cure)
+        value = self._get(key, Expected(Form.INTERVAL, isinstance(default, Required), _told(default), size=2), cure)
         if value is None:
             return fallback
         numbers = _finite_numbers(value)
@@ -303,7 +349,7 @@ class Table:
         """Return a list of texts."""
         fallback = () if isinstance(default, Required) else None if default is None else tuple(default)
         cure = 'write ["one", "two"]'
-        value = self._get(key, isinstance(default, Required), cure)
+        value = self._get(key, Expected(Form.TEXTS, isinstance(default, Required), _told(default)), cure)
         if value is None:
             return fallback
         if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
@@ -314,28 +360,33 @@ class Table:
     def table(self, key: str, *, required: bool = False) -> "Table":
         """Return the table under a key; an empty one if there is none."""
         cure = f"write a table [{self.key_path(key)}]"
-        value = self._get(key, required, cure)
+        value = self._get(key, Expected(Form.TABLE, required), cure)
         if isinstance(value, dict):
-            child = Table(self._values[key], self.key_path(key), self.problems)
+            child = self.other(self._values[key], self.problems, self.key_path(key))
         else:
             if value is not None:
                 self.add_problem(key, f"is {as_written(value)}", cure)
-            child = Table(LocatedValue({}, self.file, self.line), self.key_path(key), self.problems)
+            child = self.other(LocatedValue({}, self.file, self.line), self.problems, self.key_path(key))
         self.children.append(child)
         return child
 
     def tables(self, key: str, *, required: bool = False) -> "list[Table]":
         """Return the array of tables under a key; an empty list if there is none."""
         cure = f"write tables [[{self.key_path(key)}]]"
-        value = self._get(key, required, cure)
+        value = self._get(key, Expected(Form.TABLES, required), cure)
         if value is None or value == []:
             return []
         if not isinstance(value, list) or not all(isinstance(item, LocatedValue) for item in value):
             self.add_problem(key, f"is {as_written(value)}", cure)
             return []
-        children = [Table(item, f"{self.key_path(key)}[{i}]", self.problems) for i, item in enumerate(value)]
+        children = [self.other(item, self.problems, f"{self.key_path(key)}[{i}]") for i, item in enumerate(value)]
         self.children.extend(children)
         return children
+
+
+def _told(default: object) -> object:
+    """A default as a file could state it; None where there is none."""
+    return None if isinstance(default, Required) else list(default) if isinstance(default, tuple) else default
 
 
 def _plain(content: LocatedValue) -> object:
@@ -364,16 +415,14 @@ def _finite(value: object) -> float | None:
         number = float(value)
     except OverflowError:
         return None
-    return number if abs(number) <= _GREATEST else None
+    return number if abs(number) <= GREATEST else None
 
 
 def _magnitude(value: object) -> str:
     """The bounds of all numbers in words, after a comma, if a number is beyond them; else empty."""
     numbers = [item for item in (value if isinstance(value, list) else [value]) if isinstance(item, int | float)]
     return (
-        f", from {-_GREATEST:g} to {_GREATEST:g}"
-        if any(_GREATEST < abs(number) < math.inf for number in numbers)
-        else ""
+        f", from {-GREATEST:g} to {GREATEST:g}" if any(GREATEST < abs(number) < math.inf for number in numbers) else ""
     )
 
 

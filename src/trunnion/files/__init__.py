@@ -1,7 +1,7 @@
 """Output files: settled before any work, complete or not there at all, alone or several together."""
 
 from trunnion.files.earlier_job import EarlierJob
-from trunnion.files.output import OutputFiles, atomic_file, atomic_output
+from trunnion.files.output import OutputFiles, OutputGroup, atomic_file, atomic_output, output_group
 from trunnion.files.places import OutputPlace, check_outputs, file_on_disk, resolve_output
 from trunnion.files.streams import check_stream
 from trunnion.files.write_progress import WriteProgress, WritingStoppedError
@@ -9,6 +9,7 @@ from trunnion.files.write_progress import WriteProgress, WritingStoppedError
 __all__ = [
     "EarlierJob",
     "OutputFiles",
+    "OutputGroup",
     "OutputPlace",
     "WriteProgress",
     "WritingStoppedError",
@@ -17,5 +18,6 @@ __all__ = [
     "check_outputs",
     "check_stream",
     "file_on_disk",
+    "output_group",
     "resolve_output",
 ]

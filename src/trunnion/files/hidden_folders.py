@@ -96,9 +96,11 @@ def move_all(files: Sequence[tuple[Path, OutputPlace]], withdrawn: Sequence[Outp
                 if place in withdrawn and place.path.exists():
                     undone.append((file, place.path, before))
                     place.path.replace(before)
+            gone = {target for _, target, _ in undone}
             for (file, place), before in zip(files, earlier, strict=True):
                 if place not in withdrawn:
                     _keep(place.path, before)
+                if place.path not in gone:
                     undone.append((file, place.path, before))
                 file.replace(place.path)
         except BaseException as error:

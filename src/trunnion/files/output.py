@@ -58,7 +58,7 @@ class OutputFiles:
         self._place, self._claims, self._earlier = place, claims or Claims(), earlier
         self.main: BinaryIO = _open(self.path, place.name if place else name)
         self._subprograms: dict[Path, tuple[BinaryIO, OutputPlace]] = {}
-        self._report: tuple[Path, BinaryIO, OutputPlace] | None = None
+        self._papers: list[tuple[Path, BinaryIO, OutputPlace]] = []
         self._sync_thread: ThreadPoolExecutor | None = None
 
     def add_file(self, name: str, other_name: str = "") -> BinaryIO:
@@ -98,17 +98,17 @@ class OutputFiles:
             raise InputError(Problem(place.name, 0, what, cure, code="FIL250"))
         return place
 
-    def add_report(self, place: OutputPlace) -> BinaryIO:
-        """Begin a report of the first file, which appears with it, and return its sink."""
-        assert self._report is None, "one report"
-        folder = self.path.parent / ".report"
+    def add_paper(self, place: OutputPlace) -> BinaryIO:
+        """Begin a report or another file about the first one, which appears with it, and return its sink."""
+        folder = self.path.parent / f".paper{len(self._papers)}"
         try:
             folder.mkdir()
         except OSError as error:
             raise cannot_write(place.name, error) from None
         path = folder / place.path.name
-        self._report = path, _open(path, place.name), place
-        return self._report[1]
+        sink = _open(path, place.name)
+        self._papers.append((path, sink, place))
+        return sink
 
     def protect(self, files: Iterable[str | os.PathLike[str]]) -> None:
         """Never write over these files.
@@ -124,6 +124,11 @@ class OutputFiles:
     def other_paths(self) -> list[Path]:
         """Paths of the further files, in the order in which they were begun."""
         return list(self._subprograms)
+
+    @property
+    def papers(self) -> list[tuple[Path, OutputPlace]]:
+        """Paths of the papers and their places, in the order in which they were begun."""
+        return [(path, place) for path, _, place in self._papers]
 
     def flush(self) -> None:
         """Make everything written readable at the paths."""
@@ -166,30 +171,39 @@ class OutputFiles:
 
     def publish(self, hidden: HiddenFolders, stream: BinaryIO | None) -> None:
         """Bring all files to their places, once they are closed; the first one goes to the stream if there is one."""
-        files = [(path, place) for path, (_, place) in self._subprograms.items()]
-        if self._place is not None and stream is None:
-            files.append((self.path, self._place))
-        report = [] if self._report is None else [(self._report[0], self._report[2])]
-        files += [(path, place) for path, place in report if not place.is_stream]
-        moves = [(hidden.bring(path, place), place) for path, place in files]
+        moves = self.bring(hidden, main=stream is None)
         if stream is not None:
             _send(self.path, stream, self._place.name if self._place else stream_name(stream))
-        for path, place in report:
+        for path, place in self.papers:
             if place.is_stream:
                 with open_stream(place) as device:
                     _send(path, device, place.name)
         if moves:
-            move_all(moves, [place for _, place in report])
-        if self._earlier is not None and stream is None:
-            others = {place.path for _, place in report}
-            self._earlier.remember(place.path for _, place in files if place.path not in others)
+            move_all(moves, [place for _, place in self.papers])
+        if stream is None:
+            self.remember()
+
+    def bring(self, hidden: HiddenFolders, *, main: bool = True) -> list[tuple[Path, OutputPlace]]:
+        """The complete files where they can be moved to their places from; ``main``: the first one is among them."""
+        files = self._program_files(main=main)
+        files += [(path, place) for path, place in self.papers if not place.is_stream]
+        return [(hidden.bring(path, place), place) for path, place in files]
+
+    def remember(self) -> None:
+        """Record what has been written, once it is in its places, for later jobs of the same first file."""
+        if self._earlier is not None:
+            self._earlier.remember(place.path for _, place in self._program_files())
+
+    def _program_files(self, *, main: bool = True) -> list[tuple[Path, OutputPlace]]:
+        files = [(path, place) for path, (_, place) in self._subprograms.items()]
+        return [*files, *([(self.path, self._place)] if main and self._place is not None else [])]
 
     def sinks(self) -> list[BinaryIO]:
-        """Return the sinks of all files of the program, the first file's first; not that of its report."""
+        """Return the sinks of all files of the program, the first file's first; not those of its papers."""
         return [self.main, *(sink for sink, _ in self._subprograms.values())]
 
     def _all_sinks(self) -> list[BinaryIO]:
-        return [*self.sinks(), *([] if self._report is None else [self._report[1]])]
+        return [*self.sinks(), *(sink for _, sink, _ in self._papers)]
 
 
 def _open(path: Path, known_as: str) -> BinaryIO:
@@ -212,7 +226,7 @@ def _send(path: Path, stream: BinaryIO, name: str) -> None:
 def atomic_output(
     target: str | os.PathLike[str] | Destination,
     *,
-    report: OutputPlace | None = None,
+    papers: Iterable[OutputPlace] = (),
     inputs: Iterable[str | os.PathLike[str]] = (),
     is_job: bool = False,
 ) -> Iterator[OutputFiles]:
@@ -222,8 +236,8 @@ def atomic_output(
     ----------
     target
         Of the first file: a path, whose folder takes the others, or a stream, which takes one file only.
-    report
-        A file that will be written as well: none of the others may be it.
+    papers
+        Files that will be written as well (``add_paper``): none of the others may be one of them.
     inputs
         Files that are read: none of them is written over.
     is_job
@@ -239,7 +253,7 @@ def atomic_output(
     place = resolve_output(target) if isinstance(target, str | os.PathLike) else target
     claims = Claims()
     claims.read(inputs)
-    for each in (place, report):
+    for each in (place, *papers):
         if isinstance(each, OutputPlace):
             claims.write(each)
     hidden = HiddenFolders()
@@ -266,6 +280,12 @@ def _fill_and_publish(
     name = "stream" if stream is not None or own is None else Path(own.name).name
     earlier = EarlierJob(own.path) if is_job and own is not None and stream is None else None
     files = OutputFiles(folder, name, own, claims, earlier)
+    yield from _fill(files)
+    files.publish(hidden, stream)
+
+
+def _fill(files: OutputFiles) -> Iterator[OutputFiles]:
+    """Yield the files to be filled, and leave them complete and closed."""
     # An interruption of the first closing leaves the second one to do it.
     try:
         try:
@@ -275,7 +295,85 @@ def _fill_and_publish(
             files.close()
     finally:
         files.close()
-    files.publish(hidden, stream)
+
+
+class OutputGroup:
+    """Several jobs, each with its files: all of them reach their places together."""
+
+    def __init__(self, *, remembers: bool = True) -> None:
+        self._remembers = remembers
+        self._claims = Claims()
+        self._folders: list[HiddenFolders] = []
+        self._complete: list[tuple[OutputFiles, HiddenFolders]] = []
+
+    @contextmanager
+    def open(
+        self,
+        place: OutputPlace,
+        *,
+        papers: Iterable[OutputPlace] = (),
+        inputs: Iterable[str | os.PathLike[str]] = (),
+    ) -> Iterator[OutputFiles]:
+        """The files of a job, as ``atomic_output`` has them; none appears before the group is published.
+
+        Raises
+        ------
+        InputError
+            As ``atomic_output``, also where another job of the group writes or reads the same file; or if a place is a
+            device, which takes what it gets at once.
+        """
+        places = [place, *papers]
+        for each in places:
+            if each.is_stream:
+                raise InputError(Problem(each.name, 0, "is a device, and several files appear together", "name a file"))
+        self._claims.read(inputs)
+        for each in places:
+            self._claims.write(each)
+        hidden = HiddenFolders()
+        self._folders.append(hidden)
+        earlier = EarlierJob(place.path) if self._remembers else None
+        files = OutputFiles(hidden.beside(place), Path(place.name).name, place, self._claims, earlier)
+        yield from _fill(files)
+        self._complete.append((files, hidden))
+
+    def publish(self) -> None:
+        """Bring the files of all jobs to their places."""
+        moves = [move for files, hidden in self._complete for move in files.bring(hidden)]
+        if moves:
+            move_all(moves, [place for files, _ in self._complete for _, place in files.papers])
+        for files, _ in self._complete:
+            files.remember()
+
+    def remove(self) -> None:
+        """Remove what has not reached its place; can be called again if it was interrupted."""
+        for hidden in self._folders:
+            hidden.remove()
+
+
+@contextmanager
+def output_group(*, remembers: bool = True) -> Iterator[OutputGroup]:
+    """Jobs whose files reach their places together when the block ends, or not at all if it raises.
+
+    Parameters
+    ----------
+    remembers
+        Files that nobody has named replace only what earlier jobs have written, and these are remembered.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be written. Earlier files of the same names stay as they were.
+    """
+    group = OutputGroup(remembers=remembers)
+    # An interruption of the first removal leaves the second one to do it.
+    try:
+        try:
+            yield group
+            group.publish()
+        finally:
+            group.remove()
+    finally:
+        group.remove()
 
 
 @contextmanager

@@ -91,7 +91,11 @@ def read_impeller(path: Path) -> ImpellerDefinition:
     InputError
         If a file cannot be read, with every mistake and its line.
     """
-    root = load_table(path, files(__package__), kind="impeller")
+    return read_impeller_table(load_table(path, files(__package__), kind="impeller"), path)
+
+
+def read_impeller_table(root: Table, path: Path) -> ImpellerDefinition:
+    """Read the table of a definition that stands, or would stand, in the file ``path``; errors as ``read_impeller``."""
     name = read_name(root, path.stem)
     blade, hub, stock = (root.table(key, required=True) for key in ("blade", "hub", "stock"))
     sections = _sections(blade, path)

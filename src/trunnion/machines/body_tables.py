@@ -18,7 +18,7 @@ SHAPES: Final = ("box", "cylinder", "file")
 #: Endings of meshes that a body may be.
 MESH_ENDINGS: Final = (".stl", ".obj", ".ply", ".3mf", ".glb")
 
-_COLOUR = re.compile(r"#[0-9a-fA-F]{6}")
+_COLOUR: Final = "#[0-9a-fA-F]{6}"
 
 #: The keys of each shape besides those that every body has.
 _OF_SHAPE: Final = {
@@ -26,6 +26,7 @@ _OF_SHAPE: Final = {
     "cylinder": {"diameter_mm", "length_mm", "centre_mm", "direction"},
     "file": {"file", "unit", "origin_mm", "turn_deg"},
 }
+_ALL_SHAPES: Final = frozenset().union(*_OF_SHAPE.values())
 
 
 def read_bodies(table: Table, axis_names: Sequence[str]) -> tuple[MachineBody, ...]:
@@ -55,65 +56,44 @@ def _body(entry: Table, axis_names: Sequence[str]) -> MachineBody:
             code="DEF430",
         )
     link = entry.text("link", one_of=(*axis_names, *FIXED_LINKS))
-    colour = entry.text("colour", PLAIN_COLOUR)
-    if not _COLOUR.fullmatch(colour):
-        entry.add_problem("colour", f'is "{colour}"', 'write "#rrggbb", such as "#9aa0a6"', code="DEF450")
+    colour = entry.text("colour", PLAIN_COLOUR, pattern=_COLOUR, form='"#rrggbb", such as "#9aa0a6"')
     shape = entry.text("shape", one_of=SHAPES)
-    file, unit = entry.text("file", None), entry.text("unit", None, one_of=("mm", "inch", "m"))
-    size, centre = entry.vector("size_mm", 3, None), entry.vector("centre_mm", 3, None)
-    diameter, length = entry.number("diameter_mm", None, above=0), entry.number("length_mm", None, above=0)
-    direction, origin = entry.vector("direction", 3, None), entry.vector("origin_mm", 3, None)
-    turn = _vector(entry.vector("turn_deg", 3, (0.0, 0.0, 0.0)))
+    made = _solid(entry, shape)
     entry.report_unread_keys()
-    for key in _foreign_keys(entry, shape):
-        entry.add_problem(
-            key,
-            f'is given for shape = "{shape}"',
-            "remove it; a body of another shape needs a name of its own",
-            code="DEF450",
-        )
-    made: BodyBox | BodyCylinder | BodyFile
-    if shape == "cylinder":
-        _need(entry, "diameter_mm", "length_mm", "centre_mm")
-        made = BodyCylinder(diameter or 1.0, length or 1.0, _vector(centre), _unit_vector(entry, direction))
-    elif shape == "file":
-        _need(entry, "file")
-        _check_file(entry, file)
-        made = BodyFile(file or "", entry.location("file")[0], _vector(origin), turn, unit)
-    else:
-        if shape:
-            _need(entry, "size_mm", "centre_mm")
-        if size is not None and min(size) <= 0.0:
-            entry.add_problem(
-                "size_mm",
-                "has a side that is not above 0",
-                "write [x, y, z], all above 0, in millimetres",
-                code="DEF450",
-            )
-        made = BodyBox(_vector(size), _vector(centre), turn)
     return MachineBody(name, link, made, colour, entry.location("name"))
 
 
-def _foreign_keys(entry: Table, shape: str) -> list[str]:
-    """The keys of an entry that belong to other shapes."""
+def _solid(entry: Table, shape: str) -> BodyBox | BodyCylinder | BodyFile:
+    """What a body is made of: the keys of its shape; those of other shapes are mistakes."""
     if shape not in _OF_SHAPE:
-        return []
-    others = set().union(*_OF_SHAPE.values()) - _OF_SHAPE[shape]
-    return [key for key in entry.keys() if key in others]  # noqa: SIM118 -- a table is no dict
+        entry.mark_read(*_ALL_SHAPES)  # what is missing or foreign is not known
+        return BodyBox((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    foreign = _ALL_SHAPES - _OF_SHAPE[shape]
+    for key in entry.keys():  # noqa: SIM118 -- a table is no dict
+        if key in foreign:
+            cure = "remove it; a body of another shape needs a name of its own"
+            entry.add_problem(key, f'is given for shape = "{shape}"', cure, code="DEF450")
+            entry.mark_read(key)
+    if shape == "cylinder":
+        diameter, length = entry.number("diameter_mm", above=0), entry.number("length_mm", above=0)
+        centre, direction = entry.vector("centre_mm", 3), entry.vector("direction", 3, None)
+        return BodyCylinder(diameter or 1.0, length or 1.0, _vector(centre), _unit_vector(entry, direction))
+    if shape == "file":
+        file = entry.text("file", form="the name of a mesh file")
+        unit = entry.text("unit", None, one_of=("mm", "inch", "m"))
+        _check_file(entry, file)
+        origin, turn = entry.vector("origin_mm", 3, None), entry.vector("turn_deg", 3, None)
+        return BodyFile(file, entry.location("file")[0], _vector(origin), _vector(turn), unit)
+    before = len(entry.problems)
+    size, centre = entry.vector("size_mm", 3), entry.vector("centre_mm", 3)
+    if min(size) <= 0.0 and len(entry.problems) == before:
+        entry.add_problem(
+            "size_mm", "has a side that is not above 0", "write [x, y, z], all above 0, in millimetres", code="DEF450"
+        )
+    return BodyBox(_vector(size), _vector(centre), _vector(entry.vector("turn_deg", 3, None)))
 
 
-def _need(entry: Table, *keys: str) -> None:
-    for key in keys:
-        if key not in entry:
-            cures = {
-                "diameter_mm": "a number above 0",
-                "length_mm": "a number above 0",
-                "file": "the name of a mesh file",
-            }
-            entry.add_problem(key, "is missing", f"write {cures.get(key, '[x, y, z]')}", code="DEF310")
-
-
-def _check_file(entry: Table, file: str | None) -> None:
+def _check_file(entry: Table, file: str) -> None:
     if not file:
         return
     pure = PurePosixPath(file)

@@ -79,6 +79,29 @@ def _check_slide_directions(axis_tables: list[Table], axes: tuple[Axis, ...], sl
         axis_tables[slides[2]].add_problem(
             "direction", what, "write three directions that do not lie in one plane", code="DEF420"
         )
+    else:
+        _check_slide_senses(axis_tables, axes, slides)
+
+
+def _check_slide_senses(axis_tables: list[Table], axes: tuple[Axis, ...], slides: list[int]) -> None:
+    """Note a slide X, Y or Z that counts another way than the frame, in which programs have these letters."""
+    for k in slides:
+        letter = "XYZ".find(axes[k].name.upper()) if len(axes[k].name) == 1 else -1
+        if letter < 0 or axes[k].direction[letter] * axes[k].sense > PARALLEL_TOLERANCE:
+            continue
+        name = axes[k].name
+        if axes[k].direction[letter] > PARALLEL_TOLERANCE:
+            wrong, cure = (
+                "positive",
+                (
+                    'write "standard": by ISO 841 growing values move the tool, as seen from the workpiece, to '
+                    f"+{name}, so that a table goes the other way"
+                ),
+            )
+        else:
+            wrong, cure = "direction", f"lay the frame of the whole file so that {name} grows to its +{name}"
+        what = f"makes {name} count another way than the {name} of programs, whose holes and arcs would be mirrored"
+        axis_tables[k].add_problem(wrong, what, cure, code="DEF420")
 
 
 def _sine(a: Floats, b: Floats) -> float:

@@ -5,7 +5,6 @@ compares the two. Keys contain their unit, because that of ``rapid`` or ``limits
 """
 
 import math
-import re
 from collections.abc import Mapping
 from importlib.resources import files
 from importlib.resources.abc import Traversable
@@ -13,7 +12,9 @@ from pathlib import Path, PurePath
 from typing import Final, NamedTuple
 
 from trunnion.definitions import Table, definition_names, load_table
+from trunnion.definitions.messages import did_you_mean
 from trunnion.definitions.twin_keys import report_twins, statement_form
+from trunnion.errors import InputError, Problem
 from trunnion.machines.body_tables import read_bodies
 from trunnion.machines.chain_checks import check_chain
 from trunnion.machines.machine import (
@@ -31,7 +32,7 @@ from trunnion.machines.machine import (
 #: Version of the schema of machine definitions; a new one makes changes to old files necessary.
 SCHEMA: Final = 1
 
-_AXIS_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,7}")
+_AXIS_NAME: Final = "[A-Za-z][A-Za-z0-9_]{0,7}"
 
 _VECTOR_FALLBACK: Vector = (0.0, 0.0, 1.0)
 
@@ -44,6 +45,17 @@ def machine_library() -> Traversable:
 def shipped_machines() -> list[str]:
     """Names of the shipped machines, sorted."""
     return definition_names(machine_library())
+
+
+def check_is_shipped(name: str) -> None:
+    """Raise ``InputError`` for a name that is not that of a shipped machine."""
+    names = shipped_machines()
+    if name not in names:
+        near = did_you_mean(name, names)
+        cure = f"{near} " if near else ""
+        raise InputError(
+            Problem(name, 0, "there is no shipped machine of this name", f"{cure}write one of {', '.join(names)}")
+        )
 
 
 def load_machine(name_or_path: str | Path, overrides: Mapping[str, object] | None = None) -> Machine:
@@ -87,7 +99,7 @@ def read_machine(table: Table, key: str) -> Machine:
     if "axis" in table and axis_tables:
         check_chain(table, axis_tables, axes, spindle_direction, sound=len(table.problems) == before)
     bodies = read_bodies(table, [axis.name for axis in axes])
-    cl_words = {word: words.text(word) for word in list(words.keys())}
+    cl_words = {word: words.text(word) for word in words.names()}
     report_twins(words, statement_form)
     for part in (spindle, workpiece, words, cl, table):
         part.report_unread_keys()
@@ -111,9 +123,7 @@ def read_machine(table: Table, key: str) -> Machine:
 
 
 def _axis(entry: Table) -> Axis:
-    name = entry.text("name")
-    if name and not _AXIS_NAME.fullmatch(name):
-        entry.add_problem("name", f'is "{name}"', "write a letter, then up to seven letters and digits", code="DEF430")
+    name = entry.text("name", pattern=_AXIS_NAME, form="a letter, then up to seven letters and digits")
     word = entry.text("kind", one_of=tuple(AxisKind))
     mount = Mount(entry.text("carries", one_of=tuple(Mount)) or Mount.PART)
     direction = _direction(entry, "direction", None)
@@ -127,6 +137,7 @@ def _axis(entry: Table) -> Axis:
     low, high = entry.interval(f"limits_{unit}", None) or (-math.inf, math.inf)
     rotary = _rotary_keys(entry) if kind is AxisKind.ROTARY else _RotaryKeys()
     home = _home(entry, f"home_{unit}", low, high)
+    _check_displayed(entry, home, rotary)
     rapid = entry.number(f"rapid_{unit}_min", None, above=0)
     acceleration = entry.number(f"acceleration_{unit}_s2", None, above=0)
     jerk = entry.number(f"jerk_{unit}_s3", None, above=0)
@@ -179,6 +190,16 @@ def _home(entry: Table, key: str, low: float, high: float) -> float:
             key, what if key in entry else f"{what} (it is 0 unless stated)", "write a home inside them", code="DEF440"
         )
     return home
+
+
+def _check_displayed(entry: Table, home: float, rotary: _RotaryKeys) -> None:
+    """Note a home that the control never displays: it would turn the axis to another place than it says."""
+    low, high = {AngleOutput.POSITIVE: (0.0, 360.0), AngleOutput.SYMMETRIC: (-180.0, 180.0)}.get(
+        rotary.output, (-math.inf, math.inf)
+    )
+    if rotary.endless and not low <= home <= high:
+        what = f'is {home:g}, and an axis with output = "{rotary.output}" never shows it'
+        entry.add_problem("home_deg", what, f"write {home % 360.0 if low == 0.0 else (home + 180.0) % 360.0 - 180.0:g}")
 
 
 def _check_winding(entry: Table, endless: bool, output: AngleOutput) -> None:

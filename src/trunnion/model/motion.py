@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from trunnion.arrays import Floats
+from trunnion.arrays import Floats, Ints
 from trunnion.errors import Problem, Severity
 from trunnion.model.arcs import with_closed_turns
 from trunnion.model.deviations import Deviations
@@ -44,6 +44,8 @@ class Motion:
     deviations        where it differs from its CL file
     starts_operation  False: it continues the operation of the motion before, in another plane or from home
     ends_in_hole      its last row is in a hole, so the tool retracts no farther than the cycle says
+    cl_rows           (n,) int64  the row of the CL file's operation that each row leads to; -1: it is none of its
+                      way. None: nobody asked for it
     """
 
     operation: Operation
@@ -53,6 +55,7 @@ class Motion:
     deviations: Deviations = field(default_factory=Deviations.none)
     starts_operation: bool = True
     ends_in_hole: bool = False
+    cl_rows: Ints | None = None
 
     def __post_init__(self) -> None:
         self.rotary.setflags(write=False)
@@ -81,6 +84,7 @@ class DecisionTopic(StrEnum):
     POINTS = "points"
     HOLES = "holes"
     NEAREST = "nearest"
+    HOOKS = "hooks"
 
 
 @dataclass(frozen=True, slots=True)

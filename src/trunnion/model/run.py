@@ -247,6 +247,7 @@ class Run:
     units_from                     row from which on the program has said mm or inches, or its control is known to
                                    count so; None: never
     language                       the same for all programs whose words mean the same; empty: not known
+    encoding                       of names and texts, as it was stated; empty: the likeliest for each line
     uses_length_numbers            programs select the tool length by a number (H), which is the column ``edge``
     work_offset_name               what programs of this control call a value of the column ``work_offset``
     compensation_planes  (k, 3)    unit normals of the planes in which radius compensation works, workpiece frame
@@ -294,6 +295,7 @@ class Run:
     events: list[RunEvent] = field(default_factory=list)
     diagnostics: tuple[Diagnostic, ...] = ()
     language: str = ""
+    encoding: str = ""
     uses_length_numbers: bool = False
     units_from: int | None = 0
     work_offset_name: Callable[[int], str] = field(default=_plain_offset_name)

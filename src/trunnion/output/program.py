@@ -6,10 +6,12 @@ from typing import NamedTuple
 
 from trunnion.controls.definition import Control
 from trunnion.controls.words import Word
+from trunnion.encoding import TextForm
 from trunnion.machines import Machine
 from trunnion.model.machining_method import machining_method
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Operation
+from trunnion.transliteration import spelled
 
 
 class RotaryWord(NamedTuple):
@@ -58,6 +60,16 @@ class Program:
     def effective_setting(self, name: str, operation: Operation | None = None) -> str:
         """Return a setting of the run, for an operation if one is given, or else of the definition; empty for none."""
         return self.effective_settings(operation).get(name, "")
+
+    @property
+    def text_form(self) -> TextForm:
+        """How its characters become bytes."""
+        line_end = b"\r\n" if self.effective_setting("line_ends") == "crlf" else b"\n"
+        return TextForm(self.effective_setting("encoding") or "utf-8", line_end)
+
+    def spelled(self, text: str) -> str:
+        """Return a text from outside in the characters that the program can have."""
+        return spelled(text, self.text_form.encoding)
 
     def file_of(self, operation: Operation) -> str:
         """Return the CL file of an operation, for messages."""

@@ -1,13 +1,13 @@
 """Programs in several files: a main program and the subprograms that it calls."""
 
 import re
-import unicodedata
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import BinaryIO, Final
 
 from trunnion.controls.definition import SubprogramNaming
 from trunnion.errors import InputError, argument_problem
+from trunnion.transliteration import spelled
 
 #: Bytes of a file that are reserved for the end of an operation.
 END_RESERVE_BYTES: Final = 4096
@@ -47,13 +47,12 @@ class SubprogramNames:
         Examples
         --------
         >>> SubprogramNames(SubprogramNaming(".SPF", True, 24), "PART").unique("Gehäuse-Schlichten (2)")
-        'GEHAUSE_SCHLICHTEN_2'
+        'GEHAEUSE_SCHLICHTEN_2'
         """
         naming = self._naming
         if naming.first_number is not None:
             return self._unique_number(naming.first_number)
-        letters = unicodedata.normalize("NFKD", text)
-        plain = _OTHER_CHARACTERS.sub("_", "".join(one for one in letters if not unicodedata.combining(one))).strip("_")
+        plain = _OTHER_CHARACTERS.sub("_", spelled(text, "ascii")).strip("_")
         valid = (
             _BEGINS_WITH_LETTERS.match(plain)
             and not DEVICE_NAME.fullmatch(plain)

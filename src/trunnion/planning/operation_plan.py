@@ -13,7 +13,14 @@ from trunnion.planning.poses.decision_log import ChosenPoses, pose_decisions
 from trunnion.planning.poses.placement import OUT_OF_REACH
 from trunnion.planning.poses.selection import PlannedPoses, choose_poses
 from trunnion.planning.request import PreparedOperation
-from trunnion.planning.retracts.rewind import Rewind, find_rewinds, insert_rewinds, row_after_rewinds, widen_extremes
+from trunnion.planning.retracts.rewind import (
+    Rewind,
+    find_rewinds,
+    insert_rewinds,
+    row_after_rewinds,
+    rows_with_rewinds,
+    widen_extremes,
+)
 from trunnion.planning.speed.feed_limits import limit_feeds
 
 
@@ -48,9 +55,11 @@ class PlannedOperation:
         prepared = self.prepared
         feed_share = prepared.request.options.reengage_feed_share
         operation, rotary = insert_rewinds(self.operation, self.poses.rotary, self.rewinds, feed_share)
+        is_wanted = prepared.request.options.fastest_feed
+        cl_rows = rows_with_rewinds(prepared.source_rows, self.rewinds) if is_wanted else None
         if not prepared.parts:
             plane = prepared.plane(prepared.operation.moves.axis[0], self.poses.rotary[0])
-            return [Motion(operation, rotary, prepared.mode, plane, self.deviations)]
+            return [Motion(operation, rotary, prepared.mode, plane, self.deviations, cl_rows=cl_rows)]
         motions = []
         for part in prepared.parts:
             first, end = (row_after_rewinds(row, self.rewinds) for row in (part.first, part.end))
@@ -63,6 +72,7 @@ class PlannedOperation:
                     self.deviations if part.first == 0 else Deviations.none(),
                     starts_operation=part.first == 0,
                     ends_in_hole=part.ends_in_hole,
+                    cl_rows=None if cl_rows is None else cl_rows[first:end],
                 )
             )
         return motions

@@ -38,6 +38,9 @@ class PlanOptions:
     pole_strategy        what is done near the pole where a rotary axis would have to be too fast
     pole_angle           the most the tool axis may lean for that, degrees
     lower_feed           lower the feed where a rotary axis would have to be too fast
+    fastest_feed         feeds will be those that the axes reach: motions say to which row of its CL file each of their
+                         rows leads
+    feed_limit           greatest feed of cuts then, in place of those of the CL files, mm/min; None: theirs
     tip_tolerance        without TCP: how far the tip may leave its line between CL points, mm
     axis_tolerance       how far the tool axis may leave its great circle between CL points, degrees; None: with TCP
                          ``default_axis_tolerance``, without TCP ``AXIS_TOLERANCE_WITHOUT_TCP``
@@ -57,6 +60,8 @@ class PlanOptions:
     pole_strategy: PoleStrategy = PoleStrategy.OFF
     pole_angle: float = 0.1
     lower_feed: bool = False
+    fastest_feed: bool = False
+    feed_limit: float | None = None
     tip_tolerance: float = 0.005
     axis_tolerance: float | None = None
     default_axis_tolerance: AxisTolerance = field(default_factory=AxisTolerance)

@@ -13,7 +13,7 @@ import numpy as np
 from trunnion.errors import Problem, RefusedError, Severity
 from trunnion.model.frames import into_frame, into_plane, relative_frame
 from trunnion.model.motion import Decision, DecisionTopic, MachiningMode
-from trunnion.model.toolpath import CycleOn, Frame, Kind, Operation
+from trunnion.model.toolpath import CycleOn, Frame, Kind, Operation, Phase
 from trunnion.planning.holes.cycles import HoleCycleError, SpindleState, SpindleStates
 from trunnion.planning.holes.operations import axis_change_rows, normalize_cycles, row_ranges, split_by_axis
 from trunnion.planning.linearization.arc_chords import (
@@ -69,9 +69,18 @@ def prepare_operations(sources: Sequence[tuple[str, Operation]], request: PlanRe
 
 def _in_frame(request: PlanRequest, file: str, original: Operation, frame: Frame) -> PreparedOperation:
     """The operation in the program's coordinate system ``frame``, with cycles around holes only."""
-    operation = into_frame(normalize_cycles(original), frame)
+    operation = _with_feed_limit(into_frame(normalize_cycles(original), frame), request.options.feed_limit)
     own_frame = relative_frame(original.frame, frame)
     return PreparedOperation(request, file, original, operation, own_frame, request.options.simultaneous_mode)
+
+
+def _with_feed_limit(operation: Operation, limit: float | None) -> Operation:
+    """The operation with the feed limit as the feed of its cuts; holes, which are rapids here, keep theirs."""
+    if limit is None:
+        return operation
+    moves = operation.moves
+    cuts = (moves.kind != Kind.RAPID) & (moves.phase == Phase.CUT) & ~moves.per_rev
+    return replace(operation, moves=replace(moves, feed=np.where(cuts, limit, moves.feed)))
 
 
 def _in_mode(prepared: PreparedOperation) -> tuple[PreparedOperation, list[Problem]]:

@@ -13,7 +13,7 @@ from trunnion.model.run import Run
 from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.known_words import check_known_words, plain_code
 from trunnion.readers.program.options import DEFAULT_STEP_LIMIT, RunOptions
-from trunnion.readers.program.settings import UNKNOWN, family_of, reading_of
+from trunnion.readers.program.settings import UNKNOWN, encoding_of, family_of, reading_of
 
 
 def run_program(
@@ -25,6 +25,7 @@ def run_program(
     step_limit: int = DEFAULT_STEP_LIMIT,
     skip: bool = False,
     shortest: bool | None = None,
+    encoding: str | None = None,
     write_progress: WriteProgress | None = None,
 ) -> Run:
     """Read a program and run it on a machine.
@@ -48,6 +49,9 @@ def run_program(
     shortest
         How endless rotary axes reach plain words: True by the shorter way, False within the displayed turn, None as
         the control does it. Axes whose output has all turns take the number as it is, except with True.
+    encoding
+        Of names and texts, as Python calls it; None: what the control's definition says its programs are written in, or
+        else what is likeliest for each line. A byte order mark decides before both.
     write_progress
         The progress of the program's file if it is still being written: the program runs as far as it is there, and
         waits for the rest. None for a complete file. The result is the same.
@@ -60,11 +64,13 @@ def run_program(
     """
     reader = reader_of(machine, family)
     check_reading(machine)
-    options = RunOptions(tuple(subprograms), step_limit, skip, shortest)
+    stated = encoding_of(machine) if encoding is None else encoding
+    options = RunOptions(tuple(subprograms), step_limit, skip, shortest, stated)
     run = reader.interpreter(Path(path), machine, options).run(write_progress)
     return replace(
         run,
         language=FAMILIES[family_of(machine) if family is None else family].reader or "",
+        encoding=stated,
         uses_length_numbers=reader.uses_length_numbers,
         work_offset_name=reader.work_offsets.name,
     )

@@ -74,15 +74,20 @@ def block_reference(run: Run, row: int) -> BlockReference:
 
 def tip_extent(run: Run, k: int, cutting: Flags) -> TipExtent:
     """The extent of the tip along direction ``k``; ``cutting`` (n,) is False for rapids."""
-    whole = _extremes(run, run.tip[:, k], np.arange(len(run)))
-    return TipExtent("XYZ"[k], whole, _extremes(run, run.tip[:, k], np.flatnonzero(cutting)))
+    column, rows = run.tip[:, k], np.flatnonzero(cutting)
+    return TipExtent("XYZ"[k], extremes_of(run, column, np.arange(len(run))), extremes_of(run, column[rows], rows))
 
 
 def axis_extent(run: Run, k: int, axis: Axis) -> AxisExtent:
     """The extent of an axis, which is column ``k`` of ``run.joints``."""
-    extremes = _extremes(run, run.joints[:, k], travel_rows(run, axis))
+    rows = travel_rows(run, axis)
+    return extent_of(run, axis, run.joints[rows, k], rows, zero_known=is_zero_known(run, k))
+
+
+def extent_of(run: Run, axis: Axis, values: Floats, rows: Ints, *, zero_known: bool) -> AxisExtent:
+    """The extent of an axis that has taken values (k,) in rows (k,)."""
+    extremes = extremes_of(run, values, rows)
     low, high = (value if math.isfinite(value) else None for value in (axis.low, axis.high))
-    zero_known = is_zero_known(run, k)
     return AxisExtent(
         name=clean(axis.name),
         unit="°" if axis.is_rotary else "mm",
@@ -113,13 +118,14 @@ def travel_rows(run: Run, axis: Axis) -> Ints:
     return np.flatnonzero(counts)
 
 
-def _extremes(run: Run, values: Floats, rows: Ints) -> Extremes | None:
-    """Extremes of a column in ``rows``; None if no value there is finite."""
-    rows = rows[np.isfinite(values[rows])]
-    if not len(rows):
+def extremes_of(run: Run, values: Floats, rows: Ints) -> Extremes | None:
+    """Extremes of values (k,), and the blocks of their rows (k,); None if no value is finite."""
+    known = np.flatnonzero(np.isfinite(values))
+    if not len(known):
         return None
-    low, high = int(rows[np.argmin(values[rows])]), int(rows[np.argmax(values[rows])])
-    return Extremes(float(values[low]), float(values[high]), block_reference(run, low), block_reference(run, high))
+    low, high = int(known[np.argmin(values[known])]), int(known[np.argmax(values[known])])
+    at = block_reference(run, int(rows[low])), block_reference(run, int(rows[high]))
+    return Extremes(float(values[low]), float(values[high]), *at)
 
 
 def _margin(extremes: Extremes, low: float | None, high: float | None, zero_known: bool) -> float | None:

@@ -25,10 +25,12 @@ from trunnion.wording import counted, format_duration
 #: Places that the page shows for each check; the JSON report has all of them.
 MAX_PLACES = 12
 
+_AXIS_HEADINGS = ("Axis", "#From", "at", "#To", "at", "#Limits", "#Margin")
+
 
 def page_body(content: ReportContent) -> str:
     """Return the page from its body tag up to the plots."""
-    tables = (_operation_table(content), _tool_table(content), _decisions(content), _extents(content))
+    tables = (_operation_table(content), _tool_table(content), _decisions(content), _extents(content), _used(content))
     simulated = "" if content.simulation is None else simulation_section(content.simulation)
     parts = (_title(content), _checks(content.checks), _worst_places(content.checks), simulated, *tables)
     return "<body>\n<main>\n" + "".join(parts)
@@ -180,9 +182,16 @@ def _decisions(content: ReportContent) -> str:
 def _extents(content: ReportContent) -> str:
     axes = [_axis(axis) for axis in content.axes]
     tips = [_tip(extent) for extent in content.tip]
-    headings = ("Axis", "#From", "at", "#To", "at", "#Limits", "#Margin")
     tip_heads = ("Tip, mm", "#From", "at", "#To", "at", "#In cuts from", "#to")
-    return _section("Extents", f'<div class="pair">{_table(headings, axes)}{_table(tip_heads, tips)}</div>')
+    return _section("Extents", f'<div class="pair">{_table(_AXIS_HEADINGS, axes)}{_table(tip_heads, tips)}</div>')
+
+
+def _used(content: ReportContent) -> str:
+    """What axes and spindle used of their travel in the recording."""
+    if content.recorded is None or not content.recorded.extents:
+        return ""
+    rows = [_axis(axis) for axis in content.recorded.extents]
+    return _section(f"Extents in {escape(content.recorded.file)}", _table(_AXIS_HEADINGS, rows))
 
 
 def _axis(axis: AxisExtent) -> str:

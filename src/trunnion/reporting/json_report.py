@@ -81,6 +81,7 @@ def _recorded(recorded: RecordedContent) -> dict[str, object]:
         "positions_elsewhere": recorded.other,
         "incomplete_rows": recorded.incomplete,
         "gaps": recorded.gaps,
+        "extents": [_axis(extent) for extent in recorded.extents],
     }
 
 

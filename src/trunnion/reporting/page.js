@@ -159,13 +159,6 @@ for (const own of ["", "recorded-"]) (() => {
       ctx.stroke();
       return x;
     };
-    for (const [time, tool] of report.marks) {
-      if (time < view[0] || time > view[1]) continue;
-      const x = upright(time, colours.mark, [2, 3]);
-      ctx.fillStyle = colours.soft;
-      ctx.textAlign = x > bbox.left + bbox.width - 40 * ratio ? "right" : "left";
-      if (u === plots[0].u) ctx.fillText(`${report.markWord}${tool}`, x + (ctx.textAlign === "left" ? 3 : -3) * ratio, bbox.top + bbox.height - 5 * ratio);
-    }
     spec.lines.forEach((line) => {
       for (const limit of line.limits) {
         const y = Math.round(u.valToPos(limit, "y", true)) + 0.5;
@@ -186,6 +179,23 @@ for (const own of ["", "recorded-"]) (() => {
         }
       }
     });
+    const ends = [];
+    for (const [time, tool] of report.marks) {
+      if (time < view[0] || time > view[1]) continue;
+      const x = upright(time, colours.mark, [2, 3]);
+      ctx.textAlign = x > bbox.left + bbox.width - (report.markWord ? 40 : 130) * ratio ? "right" : "left";
+      if (u !== plots[0].u) continue;
+      // One above the other where they would overlap.
+      const text = `${report.markWord}${tool}`, wide = ctx.measureText(text).width + 6 * ratio;
+      const left = ctx.textAlign === "left" ? x : x - wide;
+      const free = ends.findIndex((end) => end <= left), line = free < 0 ? ends.length : free;
+      ends[line] = left + wide;
+      const y = bbox.top + bbox.height - (5 + 12 * line) * ratio;
+      ctx.fillStyle = colours.paper;
+      ctx.fillRect(left + 2 * ratio, y - 9 * ratio, wide - 4 * ratio, 11 * ratio);
+      ctx.fillStyle = colours.soft;
+      ctx.fillText(text, x + (ctx.textAlign === "left" ? 3 : -3) * ratio, y);
+    }
     if (held) upright(held.table.time[held.at], colours.hold, []);
     ctx.restore();
   }

@@ -1,4 +1,5 @@
-"""What a report shows of a recording: curves of axes and spindle over time, and how far off each motion was.
+"""What a report shows of a recording: curves of axes and spindle over time, what of their travel was used, and how far
+off each motion was.
 
 In:     a ``Verification`` with a recording.
 Out:    ``RecordedContent``.
@@ -7,6 +8,7 @@ Units:  seconds, mm, degrees, rev/min.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from operator import itemgetter
 from pathlib import Path
 from typing import Final
 
@@ -15,6 +17,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints, Lines
 from trunnion.machines import Axis
 from trunnion.model.recording import SPINDLE, TIP, Mark
+from trunnion.reporting.extents import AxisExtent, extent_of, extremes_of, is_zero_known
 from trunnion.reporting.plot_series import Curve, Plot, PlotSeries, finite_values
 from trunnion.reporting.text import clean
 from trunnion.verification.recorded import RecordedComparison
@@ -23,8 +26,8 @@ from trunnion.verification.results import Verification
 #: What is marked where the connection was broken, and where it was there again.
 _GAP, _AFTER_GAP = "gap", "connected again"
 
-_NOTE: Final = """Between two positions the machine was not looked at. Dotted upright lines are where the connection
-was broken."""
+_NOTE: Final = """Between two positions the machine was not looked at. Dotted upright lines are where operations
+begin, and where the connection was broken."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,6 +42,7 @@ class RecordedContent:
     seconds    how long it is
     positions  (n,)    positions of each motion
     worst      (n, 2)  how far off tip and tool axis were at worst; NaN where there is no position
+    extents    of axes and spindle, in the order of their curves; none where the recording has the tip in their place
     series     curves over time
     """
 
@@ -50,6 +54,7 @@ class RecordedContent:
     seconds: float
     positions: Ints
     worst: Floats
+    extents: tuple[AxisExtent, ...]
     series: PlotSeries
 
 
@@ -68,6 +73,7 @@ def recorded_content(verification: Verification) -> RecordedContent | None:
         seconds=float(elapsed[-1]) if len(elapsed) else 0.0,
         positions=found.positions,
         worst=found.worst,
+        extents=tuple(_extents(verification, found)),
         series=_series(verification, found, elapsed),
     )
 
@@ -82,17 +88,21 @@ def _series(verification: Verification, found: RecordedComparison, elapsed: Floa
         after = int(np.searchsorted(shown, gap))
         marks += [(max(after - 1, 0), _GAP), *([(after, _AFTER_GAP)] if after < len(shown) else [])]
     rows = found.row[shown]
+    marks = sorted([*marks, *_operations(verification, rows)], key=itemgetter(0))
     # Row -1, of positions that were not compared, takes what is appended.
     block, number = np.append(run.line, 0)[rows], np.append(run.block_number, -1)[rows]
     has_cl = len(verification.cl_line) == len(run)
     cl = np.append(verification.cl_line, 0)[rows] if has_cl else np.zeros(len(rows), np.int64)
+    lines = {"block": _as_int32(block), "number": _as_int32(number), "cl": _as_int32(cl)}
+    if np.any(run.file):
+        lines["file"] = _as_int32(np.append(run.file, 0)[rows])
     values = {f"axis{k}": column[shown].astype(np.float32) for k, (_, column) in enumerate(curves.values())}
     if SPINDLE in recording.values:
         values[SPINDLE] = np.nan_to_num(recording.values[SPINDLE][shown]).astype(np.float32)
     return PlotSeries(
         seconds=np.diff(elapsed[shown], prepend=elapsed[shown][:1]).astype(np.float32),
         values=values,
-        lines={"block": _as_int32(block), "number": _as_int32(number), "cl": _as_int32(cl)},
+        lines=lines,
         plots=tuple(_plots(verification, curves, SPINDLE in recording.values)),
         files=tuple(clean(Path(file).name) for file in run.files),
         tool_changes=tuple(marks),
@@ -101,6 +111,38 @@ def _series(verification: Verification, found: RecordedComparison, elapsed: Floa
         title=f"As recorded in {clean(recording.name)}: axes and spindle over time",
         note=_NOTE,
     )
+
+
+def _operations(verification: Verification, rows: Ints) -> Iterator[tuple[int, str]]:
+    """Where operations begin, and their names, by the rows of positions; without CL files the subprograms."""
+    run = verification.run
+    operation = run.file.astype(np.int64) - 1
+    names = [clean(Path(file).name) for file in run.files[1:]]
+    if verification.operations:
+        operation[:], names = -1, [clean(each.name) for each in verification.operations]
+        for k, each in enumerate(verification.operations):
+            operation[each.first : each.end] = k
+    compared = np.flatnonzero(rows >= 0)
+    found = operation[rows[compared]]
+    for k in np.flatnonzero(np.diff(found, prepend=-1)).tolist():
+        if found[k] >= 0:
+            yield int(compared[k]), names[int(found[k])]
+
+
+def _extents(verification: Verification, found: RecordedComparison) -> Iterator[AxisExtent]:
+    """How far axes and spindle went in the recording, and at which blocks."""
+    run, machine = verification.run, verification.machine
+    # The block of a position that was not compared is the one before it.
+    last = np.maximum.accumulate(np.where(found.row >= 0, np.arange(len(found.row)), -1))
+    rows = np.where(last >= 0, found.row[last], 0)
+    for k in () if found.joints is None else (*machine.linear, *machine.rotary):
+        assert found.joints is not None
+        yield extent_of(run, machine.axes[k], found.joints[:, k], rows, zero_known=is_zero_known(run, k))
+    if (speeds := found.recording.values.get(SPINDLE)) is not None:
+        extremes = extremes_of(run, speeds, rows)
+        fastest = next(iter(finite_values(machine.spindle_max_rpm)), None)
+        margin = None if fastest is None or extremes is None else fastest - extremes.high
+        yield AxisExtent("Spindle", "rev/min", extremes, None, fastest, False, True, margin)
 
 
 def _curves(verification: Verification, found: RecordedComparison) -> Iterator[tuple[str, tuple[int | None, Floats]]]:

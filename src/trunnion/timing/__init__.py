@@ -1,11 +1,12 @@
 """Timing: a run as motion in time, under the speeds, accelerations and jerks of the axes of its machine."""
 
-from trunnion.timing.axis_pieces import AxisPieces, axis_pieces
+from trunnion.timing.axis_pieces import MOST_PIECES, AxisPieces, axis_pieces
 from trunnion.timing.dynamics import AxisDynamics
 from trunnion.timing.fastest import AxisMotion, FastestRun, SmoothPath, fastest_run
 from trunnion.timing.path import Path
 from trunnion.timing.path_modes import CORNER_TOLERANCE
-from trunnion.timing.planner import piece_seconds
+from trunnion.timing.planner import piece_seconds, timed_pieces
+from trunnion.timing.reached_feeds import ReachedFeeds, reached_feeds
 from trunnion.timing.row_feeds import RowFeeds, fill_feeds
 from trunnion.timing.row_interpolation import SAG
 from trunnion.timing.run_timer import RunTimer
@@ -18,6 +19,7 @@ KERNELS = (fill_feeds, plan_speeds)
 __all__ = [
     "CORNER_TOLERANCE",
     "KERNELS",
+    "MOST_PIECES",
     "SAG",
     "AxisDynamics",
     "AxisMotion",
@@ -25,6 +27,7 @@ __all__ = [
     "FastestRun",
     "MachineState",
     "Path",
+    "ReachedFeeds",
     "RowFeeds",
     "RunTimer",
     "SmoothPath",
@@ -33,5 +36,7 @@ __all__ = [
     "axis_pieces",
     "fastest_run",
     "piece_seconds",
+    "reached_feeds",
     "time_run",
+    "timed_pieces",
 ]

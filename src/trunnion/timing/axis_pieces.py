@@ -16,6 +16,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
+from trunnion.errors import InputError, Problem
 from trunnion.machines.links import link_chain
 from trunnion.model.run import CHUNK_ROWS, ProgrammedWord, Run
 from trunnion.model.stated_tips import StatedTips, turns_without_tcp
@@ -24,6 +25,11 @@ from trunnion.timing.row_interpolation import RowInterpolation
 _POSITION_WORDS: Final = int(
     ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z | ProgrammedWord.FIRST | ProgrammedWord.SECOND
 )
+
+
+#: Pieces of a program that is kept whole, as who keeps it says: some 2 GB of motion in time. A loop of ten lines may
+#: make hundreds of millions; those of programs for parts have about one for each block.
+MOST_PIECES: Final = 3_000_000
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,15 +55,23 @@ class AxisPieces:
     known: Flags
 
 
-def axis_pieces(run: Run, lengths: Mapping[int, float], end: int | None = None) -> Iterator[AxisPieces]:
+def axis_pieces(
+    run: Run, lengths: Mapping[int, float], end: int | None = None, most: int | None = None
+) -> Iterator[AxisPieces]:
     """Yield the motion of all rows, some thousands of them at a time.
 
     run      the run
     lengths  of tools, from tip to gauge point, mm, by their index in ``Run.tools``; others have that of the machine
     end      the first row that is left out; None: none is
+    most     how many pieces there may be; None: any number
+
+    Raises
+    ------
+    InputError
+        At the block with which there are more.
     """
     rows = len(run) if end is None else min(end, len(run))
-    motion = _Motion(run, lengths)
+    motion = _Motion(run, lengths, most)
     for first in range(0, rows, CHUNK_ROWS):
         yield motion.pieces(first, min(first + CHUNK_ROWS, rows))
 
@@ -65,8 +79,9 @@ def axis_pieces(run: Run, lengths: Mapping[int, float], end: int | None = None) 
 class _Motion:
     """Walks through a run and knows where the axes stand."""
 
-    def __init__(self, run: Run, lengths: Mapping[int, float]) -> None:
+    def __init__(self, run: Run, lengths: Mapping[int, float], most: int | None) -> None:
         self.run, self.lengths = run, lengths
+        self._most, self._made = most, 0
         self.read_with = run.machine.tool_length or 0.0
         self.joints = np.array(run.start, np.float64)
         self.from_machine = np.ones(3, np.bool_)
@@ -93,10 +108,23 @@ class _Motion:
         before = np.concatenate((self.joints[None], joints))
         for lost in np.flatnonzero(~np.isfinite(joints).all(axis=1)).tolist():
             before[lost + 1] = before[lost]  # the reader has said that no position is known there
-        row, begin, done, along = self._inside.pieces(first, before, length, self._inside.counts(first, before, length))
+        counts = self._inside.counts(first, before, length)
+        self._check_count(first, counts)
+        row, begin, done, along = self._inside.pieces(first, before, length, counts)
         start, self.joints = self.joints, before[-1].copy()
         along = np.concatenate((start[None], along))
         return AxisPieces(first, end, row + first, begin, done, along, tool[row], known[row])
+
+    def _check_count(self, first: int, counts: Ints) -> None:
+        """Count pieces before they are made, those of the rows from ``first`` on."""
+        made = self._made + np.cumsum(counts)
+        self._made = int(made[-1]) if len(made) else self._made
+        if self._most is not None and self._made > self._most:
+            row = first + int(np.searchsorted(made, self._most, "right"))
+            file = self.run.files[int(self.run.state.file[row])]
+            what = f"is where the program makes more than {self._most} pieces of motion, which are too many to keep"
+            cure = "take a part of the program, or fewer turns of circles and rotary axes"
+            raise InputError(Problem(file, int(self.run.lines[row]), what, cure))
 
     def _row_joints(self, first: int, end: int, xyz_is_tip: Flags, length: Floats, machine: Flags) -> Floats:
         """Axis values at the end of rows, with the real lengths of tools."""

@@ -36,11 +36,11 @@ class Path:
     stops_after: Flags
     counts: Ints
 
-    def of_rows(self, column: Floats) -> Floats:
-        """Sums of a column of pieces for each row."""
+    def of_rows(self, column: Floats, combine: np.ufunc = np.add) -> Floats:
+        """Sums of a column of pieces for each row, or what else ``combine`` makes of them."""
         if not len(self.counts):
             return column
-        return np.asarray(np.add.reduceat(column, np.cumsum(self.counts) - self.counts))
+        return np.asarray(combine.reduceat(column, np.cumsum(self.counts) - self.counts))
 
 
 class PathBuilder:

@@ -10,9 +10,19 @@ from trunnion.jit import inner, kernel
 from trunnion.timing.s_curves import fill_ramp, peak, ramp_way, time_of, way_of
 
 
-@kernel(writes="seconds phases")
-def run_stretches(stretch: Floats2, piece: Ints, caps: Floats, passed: Flags, seconds: Floats, phases: Floats2) -> int:
-    """Add the ``seconds`` (m,) of pieces, fill as many ``phases`` as there is room for, and return their number.
+@kernel(writes="seconds reached phases")
+def run_stretches(
+    stretch: Floats2,
+    piece: Ints,
+    caps: Floats,
+    passed: Flags,
+    seconds: Floats,
+    reached: Floats,
+    phases: Floats2,
+) -> int:
+    """Add the ``seconds`` (m,) of pieces, raise the highest speeds ``reached`` (m,) in them, and fill ``phases``.
+
+    As many phases are filled as there is room for; their number is returned.
 
     stretch, piece, caps, passed   as ``jerk_kernel`` has made them
     phases  (p, 6)  piece; seconds; way of the piece that is done where the phase begins, and speed, acceleration and
@@ -43,9 +53,12 @@ def run_stretches(stretch: Floats2, piece: Ints, caps: Floats, passed: Flags, se
                     way = way_of(takes, speed, acceleration, jerk)
                     stretch_done += way
                     piece_done += way
+                    # Within a phase the acceleration keeps its sign: the speed is highest at an end.
+                    reached[piece[at]] = max(reached[piece[at]], speed)
                     speed += takes * (acceleration + 0.5 * takes * jerk)
                     acceleration += takes * jerk
                     left -= takes
+                    reached[piece[at]] = max(reached[piece[at]], speed)
                 if leaves:
                     at, stretch_done = at + 1, 0.0
                     piece_done = piece_done if piece[at] == piece[at - 1] else 0.0

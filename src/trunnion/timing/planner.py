@@ -14,10 +14,22 @@ from trunnion.timing.dynamics import AxisDynamics
 from trunnion.timing.jerk_kernel import fill_stretches, lower_nodes
 from trunnion.timing.path import Path
 from trunnion.timing.phase_kernel import check_nodes, run_stretches
-from trunnion.timing.speed_kernel import ACCELERATION, BEGIN, CORNER, END, TOP, plan_speeds
+from trunnion.timing.speed_kernel import ACCELERATION, BEGIN, CORNER, END, TOP, fill_reached, plan_speeds
 
 #: After so many looks for nodes that are passed too fast all nodes of such curves are passed without acceleration.
 _MOST_ATTEMPTS: Final = 6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PieceTimes:
+    """The m pieces of a path in time; 0 in those without motion.
+
+    seconds  (m,)
+    reached  (m,)  highest speed along the piece, per second, the corners at its ends included
+    """
+
+    seconds: Floats
+    reached: Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,15 +52,24 @@ class Phases:
 
 def piece_seconds(path: Path, dynamics: AxisDynamics) -> Floats:
     """Seconds of each piece of a path that begins and ends at rest, (m,); 0 without motion."""
+    return timed_pieces(path, dynamics).seconds if dynamics.has_jerk else _planned(path, dynamics)[1]
+
+
+def timed_pieces(path: Path, dynamics: AxisDynamics) -> PieceTimes:
+    """The pieces of a path that begins and ends at rest."""
     if dynamics.has_jerk:
         return _with_jerk(path, dynamics, phases=False)[0]
-    return _planned(path, dynamics)[1]
+    columns, seconds = _planned(path, dynamics)
+    reached = np.empty(len(seconds))
+    fill_reached(path.length, columns, reached)
+    return PieceTimes(seconds, reached)
 
 
 def plan(path: Path, dynamics: AxisDynamics) -> tuple[Floats, Phases]:
     """Seconds of each piece of a path, (m,), and the phases in which it is run."""
     if dynamics.has_jerk:
-        return _with_jerk(path, dynamics, phases=True)
+        times, phases = _with_jerk(path, dynamics, phases=True)
+        return times.seconds, phases
     columns, seconds = _planned(path, dynamics)
     return seconds, _even_phases(path.length, columns)
 
@@ -61,19 +82,19 @@ def _planned(path: Path, dynamics: AxisDynamics) -> tuple[Floats, Floats]:
     return columns, seconds
 
 
-def _with_jerk(path: Path, dynamics: AxisDynamics, *, phases: bool) -> tuple[Floats, Phases]:
+def _with_jerk(path: Path, dynamics: AxisDynamics, *, phases: bool) -> tuple[PieceTimes, Phases]:
     m = len(path.length)
     limits = np.stack((dynamics.speed, dynamics.acceleration, dynamics.jerk))
     _, piece, caps, _ = _stretches(path, limits, np.zeros(0))
     reached = np.zeros(m)
     reached[piece] = caps[1:]
     stretch, piece, caps, passed = _stretches(path, limits, reached)
-    seconds = np.zeros(m)
-    found = run_stretches(stretch, piece, caps, passed, seconds, np.empty((0, 6)))
+    times = PieceTimes(np.zeros(m), np.zeros(m))
+    found = run_stretches(stretch, piece, caps, passed, times.seconds, times.reached, np.empty((0, 6)))
     table = np.empty((found if phases else 0, 6))
     if phases:
-        run_stretches(stretch, piece, caps, passed, np.zeros(m), table)
-    return seconds, Phases(table[:, 0].astype(np.int64), *table[:, 1:].T)
+        run_stretches(stretch, piece, caps, passed, np.zeros(m), np.zeros(m), table)
+    return times, Phases(table[:, 0].astype(np.int64), *table[:, 1:].T)
 
 
 def _stretches(path: Path, limits: Floats, reached: Floats) -> tuple[Floats, Ints, Floats, Flags]:

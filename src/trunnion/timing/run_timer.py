@@ -11,7 +11,7 @@ from trunnion.model.run import PositionChunk, Run
 from trunnion.timing.dynamics import AxisDynamics
 from trunnion.timing.path import PathBuilder
 from trunnion.timing.pauses import pauses
-from trunnion.timing.planner import piece_seconds
+from trunnion.timing.planner import piece_seconds, timed_pieces
 from trunnion.timing.row_feeds import FeedRow
 from trunnion.timing.row_interpolation import RowInterpolation
 
@@ -50,6 +50,12 @@ class RunTimer:
         _, begin, done, along = self._inside.pieces(first, joints, length, counts)
         steps = np.diff(along, axis=0, prepend=joints[:1])
         self._path.add(first, feeds, steps, counts, done - begin)
+
+    def reached(self) -> tuple[Floats, Floats]:
+        """Seconds of the axes' motion, and highest speed along what the feed counts, per minute, of all rows, (n,)."""
+        path = self._path.result()
+        times = timed_pieces(path, self._dynamics)
+        return path.of_rows(times.seconds), 60.0 * path.of_rows(times.reached, np.maximum)
 
     def result(self) -> tuple[Floats, Floats]:
         """Seconds, and mean speed of the tip in mm/min, of all rows, (n,) each."""

@@ -37,6 +37,27 @@ ACCELERATION: Final = 4
 STRAIGHT: Final = 1e-12
 
 
+@kernel(writes="reached")
+def fill_reached(length: Floats, plan: Floats2, reached: Floats) -> None:
+    """Fill the highest speed of each piece (m,), of what ``plan_speeds`` has planned; 0 without motion."""
+    before = -1
+    for at in range(plan.shape[0]):
+        reached[at] = 0.0
+        if not plan[at, 4] > 0.0:
+            continue
+        corner = plan[before, 0] if before >= 0 else 0.0
+        straight = _straight(length[at], corner, plan[at, 0])
+        greatest = max(plan[at, 1], plan[at, 2])
+        if straight > 0.0:
+            greatest = max(greatest, min(plan[at, 3], plan[at, 4] * straight + 0.5 * (plan[at, 1] + plan[at, 2])))
+        # In a corner the square of the speed changes evenly; half of it is in either piece.
+        if before >= 0 and corner > 0.0:
+            middle = 0.5 * (plan[before, 2] + plan[at, 1])
+            greatest, reached[before] = max(greatest, middle), max(reached[before], math.sqrt(middle))
+        reached[at] = math.sqrt(greatest)
+        before = at
+
+
 @kernel(writes="plan seconds")
 def plan_speeds(
     steps: Floats2,

@@ -16,7 +16,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run, RunEvent
-from trunnion.timing.axis_pieces import axis_pieces
+from trunnion.timing.axis_pieces import MOST_PIECES, axis_pieces
 from trunnion.timing.dynamics import AxisDynamics
 from trunnion.timing.path import PathBuilder
 from trunnion.timing.pauses import pauses
@@ -140,6 +140,11 @@ def time_run(run: Run, lengths: Mapping[int, float] = _ALL_LENGTHS, *, limits: A
         Of tools, from tip to gauge point, mm, by their index in ``Run.tools``; others have that of the machine.
     limits
         What the machine can do; None: what its definition states.
+
+    Raises
+    ------
+    InputError
+        If there is more motion than is kept in memory.
     """
     dynamics = AxisDynamics.of(run.machine) if limits is None else limits
     n, spindle_rate = len(run), dynamics.spindle
@@ -147,7 +152,7 @@ def time_run(run: Run, lengths: Mapping[int, float] = _ALL_LENGTHS, *, limits: A
     stops = np.array([row - 1 for _, row in waits_for if row], np.int64)
     builder, joints, piece_rows, tip_share = PathBuilder(run, stops), [run.start[None]], [np.zeros(0, np.int64)], []
     feeds = RowFeeds(run)
-    for part in axis_pieces(run, lengths):
+    for part in axis_pieces(run, lengths, most=MOST_PIECES):
         of_rows = feeds.part(part.first, part.end, run.chunk(part.first, part.end))
         counts = np.bincount(part.row - part.first, minlength=part.end - part.first)
         builder.add(part.first, of_rows, np.diff(part.joints, axis=0), counts, part.done - part.begin)

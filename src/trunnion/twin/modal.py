@@ -58,7 +58,7 @@ class Blocks:
 
     def __init__(self, run: Run, texts: Sequence[str]) -> None:
         self._run = run
-        self._lines = [text.splitlines() for text in texts]
+        self._lines = [[line.rstrip("\r") for line in text.split("\n")] for text in texts]
         self._names = [PurePath(file).name for file in run.files]
         coolant = [event for event in run.events if event.kind == "coolant"]
         self._coolant_rows = np.array([event.before_row for event in coolant], np.int64)

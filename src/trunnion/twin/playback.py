@@ -101,6 +101,11 @@ class Playback:
         """Let the wall time pass without the program."""
         self._wall = wall
 
+    @property
+    def stands(self) -> bool:
+        """Whether no axis moves, wherever the program is."""
+        return self.state is not PlayState.RUNNING or self.override == 0.0
+
     def remaining(self) -> float:
         """Wall seconds until the end of the program at the present speed; infinite where it stands."""
         rate = self._rate(moving=True)

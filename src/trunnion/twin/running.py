@@ -104,6 +104,7 @@ class Twin:
             await self._advance()
             if not self.playback.hold():
                 return False
+            await self._show_standing()
             await self._tell_state()
             return True
 
@@ -122,6 +123,8 @@ class Twin:
         async with self._turn:
             await self._advance()  # what has passed until now went as it was before
             self.playback.override = percent
+            if self.playback.stands:
+                await self._show_standing()
             await self._tell_state()
             return True
 
@@ -146,6 +149,8 @@ class Twin:
             self.playback.skip(self.clock())  # the program has waited as well
         for stretch in self.playback.advance(self.clock()):
             await self._tell(stretch)
+        if self.playback.state is not state:
+            await self._show_standing()
         if self.playback.state is not state or self.clock() - self._told >= 1.0:
             await self._tell_state()
 
@@ -183,7 +188,7 @@ class Twin:
         for first in range(0, len(seconds), _AT_A_TIME):
             part = slice(first, first + _AT_A_TIME)
             await self._wait_for_clients()
-            await self._show(seconds[part], ended[part], wall[part])
+            await self._show(seconds[part], ended[part], wall[part], standing=stretch.end <= stretch.begin)
             await asyncio.sleep(0.0)
         await self._tell_events(stretch)
 
@@ -195,11 +200,10 @@ class Twin:
         else:
             first, last = math.floor(stretch.wall_begin / period) + 1, math.floor(stretch.wall_end / period)
             grid = stretch.program(np.arange(first, last + 1, dtype=np.float64) * period)
-        stands = self.playback.state is not PlayState.RUNNING
-        return np.append(grid, stretch.end) if stands else np.asarray(grid, np.float64)
+        return np.asarray(grid, np.float64)
 
-    async def _show(self, seconds: Floats, ended: Ints, wall: Floats) -> None:
-        snapshots = self.program.at(seconds, ended)
+    async def _show(self, seconds: Floats, ended: Ints, wall: Floats, *, standing: bool = False) -> None:
+        snapshots = self.program.at(seconds, ended, standing=standing)
         microseconds = []
         for each in np.rint(wall * 1e6).astype(np.int64).tolist():
             # Each time has a stamp of its own, so that what is told twice can be told apart from what changed.
@@ -231,7 +235,11 @@ class Twin:
 
     async def _show_start(self) -> None:
         self._beyond[:] = False
-        await self._show(np.zeros(1), np.full(1, -1), np.array([self.clock()]))
+        await self._show(np.zeros(1), np.full(1, -1), np.array([self.clock()]), standing=True)
+
+    async def _show_standing(self) -> None:
+        """Tell that all axes stand where they are: at the end, at a stop, held, and at an override of 0."""
+        await self._show(np.array([self.playback.seconds]), np.full(1, -1), np.array([self.clock()]), standing=True)
 
     async def _tell_state(self) -> None:
         self._told = self.clock()

@@ -86,8 +86,11 @@ class TwinProgram:
         """Events after ``begin`` (from it on, at the start of the program) up to ``end``."""
         return [e for e in self.timed.events if (begin < e.seconds <= end) or (e.seconds == begin == 0.0)]
 
-    def at(self, seconds: Floats, ended: Ints) -> Snapshots:
-        """The machine at times (k,), ascending; ``ended`` (k,) are the rows that end at them, -1 where none does."""
+    def at(self, seconds: Floats, ended: Ints, *, standing: bool = False) -> Snapshots:
+        """The machine at times (k,), ascending; ``ended`` (k,) are the rows that end at them, -1 where none does.
+
+        ``standing``: the program does not go on there, and no axis moves.
+        """
         run, state = self.run, self.timed.at(seconds)
         is_end = ended >= 0
         row = np.where(is_end, ended, state.row)
@@ -99,9 +102,10 @@ class TwinProgram:
         remaining, to_go = of_row.joints - joints, of_row.tip - tip
         before = row < 0
         remaining[before], to_go[before] = 0.0, 0.0
-        moving = (state.velocity != 0.0) & ~is_end[:, None]
+        moving = (state.velocity != 0.0) & ~is_end[:, None] & (not standing)
+        tip_feed = np.zeros(len(seconds)) if standing else state.tip_feed
         blocks = tuple(self._blocks.at(k) for k in row.tolist())
-        return Snapshots(seconds, row, is_end, joints, remaining, moving, tip, to_go, state.tip_feed, state.rpm, blocks)
+        return Snapshots(seconds, row, is_end, joints, remaining, moving, tip, to_go, tip_feed, state.rpm, blocks)
 
     def beyond_travel(self, snapshots: Snapshots) -> Flags:
         """Which axes are beyond their travel, (k, 5), where it is known where they stand."""

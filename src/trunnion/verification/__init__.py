@@ -11,7 +11,7 @@ from trunnion.verification.kinematics.axis_motion_kernel import axis_motion_rows
 from trunnion.verification.kinematics.rapid_feeds import restore_rapids
 from trunnion.verification.results import Check, OperationRows, Place, Verification, durations, without_columns
 from trunnion.verification.text import check_lines, failures, place_line, place_lines, time_lines
-from trunnion.verification.verifier import verify, with_recording
+from trunnion.verification.verifier import reachable_feeds, verify, with_recording
 
 #: Kernels that every program needs.
 KERNELS = (tool_axis_rows, axis_motion_rows, compare_rows, *timing.KERNELS)
@@ -31,6 +31,7 @@ __all__ = [
     "failures",
     "place_line",
     "place_lines",
+    "reachable_feeds",
     "restore_rapids",
     "time_lines",
     "tolerances_in_planes",

@@ -39,6 +39,8 @@ class ExpectedValues:
     max_feed               largest F per minute of the control: no block need be faster; None: no limit
     blocks_in_compensation  most blocks in a row without motion in the plane within radius compensation
     stops_in_compensation  whether a stop may stand within it
+    fastest_feed           feeds are those that the axes reach under the feeds of the CL files, or under ``feed_limit``
+    feed_limit             greatest feed of cuts then, in place of those of the CL files, mm/min; None: theirs
     by_operation           tool, work offset and edge of single operations, by their names
     """
 
@@ -57,6 +59,8 @@ class ExpectedValues:
     axis_tolerance: AxisTolerance = field(default_factory=AxisTolerance)
     blocks_in_compensation: int = 1
     stops_in_compensation: bool = False
+    fastest_feed: bool = False
+    feed_limit: float | None = None
     by_operation: Mapping[str, OperationSettings] = field(default_factory=dict)
 
     def for_operation(self, name: str) -> OperationSettings:

@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from trunnion.arrays import Lines
+from trunnion.arrays import Floats, Lines
 from trunnion.model.recording import Recording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Operation, Toolpath
@@ -22,6 +22,7 @@ from trunnion.verification.checks.modal_checks import check_modal_state
 from trunnion.verification.checks.motion_checks import check_kind, check_order
 from trunnion.verification.checks.normal_checks import check_normals
 from trunnion.verification.checks.position_checks import check_axis, check_tip
+from trunnion.verification.checks.reach_check import check_reach
 from trunnion.verification.checks.spindle_checks import check_spindle
 from trunnion.verification.checks.spindle_range_check import check_spindle_range
 from trunnion.verification.checks.stop_checks import check_stops
@@ -33,6 +34,7 @@ from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, 
 from trunnion.verification.deviations.declared_deviations import AcceptedDeviations, accept_deviations
 from trunnion.verification.deviations.linearization import DefaultLimits, LinearizationErrors
 from trunnion.verification.deviations.point_deviations import PointDeviations
+from trunnion.verification.deviations.reached_rows import reached_rows
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.expected.tolerances import Tolerances
 from trunnion.verification.kinematics.axis_motion import AxisMotionAnalyzer
@@ -79,11 +81,7 @@ def verify(
     run = restore_rapids(run, settings.rapid_feed)
     analyzer = AxisMotionAnalyzer(run, MAX_PLACES, times=columns)
     if toolpaths:
-        path = partial(ExpectedPath, toolpaths, tolerances or Tolerances(), settings.absolute, settings.for_operation)
-        expected = path()
-        if written := written_splines(run, expected):
-            expected = path(written)
-        checked = _check_against(expected, run, settings, analyzer)
+        checked = _check_against(_expected_path(run, toolpaths, tolerances, settings), run, settings, analyzer)
     else:
         checked = _check_alone(run, settings, analyzer)
     context, motion = checked.context, analyzer.result()
@@ -98,6 +96,40 @@ def verify(
     cl_line = _cl_lines(context) if columns else np.zeros(0, np.int32)
     operations = tuple(_operation_rows(context))
     return Verification(run.files[0], run.machine, run, checks, motion.seconds, motion.tip_feed, cl_line, operations)
+
+
+def reachable_feeds(
+    run: Run, toolpaths: Sequence[Toolpath], tolerances: Sequence[Tolerances], settings: ExpectedValues
+) -> list[Floats]:
+    """The feeds that the axes reach on the way to the points of each operation that moves, (n,) mm/min each.
+
+    NaN where that is no question (rapids, holes, feeds per revolution) or not known. Parameters as for ``verify``; the
+    program has the greatest feeds.
+    """
+    run = restore_rapids(run, settings.rapid_feed)
+    original = _expected_path(run, toolpaths, tolerances, settings)
+    compared, _, _ = _compare(accept_deviations(original, run.machine).expected, run, settings)
+    found = reached_rows(run, original, compared.matching, settings.feed_limit)
+    feeds = []
+    operations = (operation for path in toolpaths for operation in path.operations if len(operation.moves))
+    for section, operation in zip(original.sections, operations, strict=True):
+        feed = np.full(len(operation.moves), np.nan)
+        feed[slice(None) if section.kept is None else section.kept] = found.feed[section.first : section.end]
+        feeds.append(feed)
+    return feeds
+
+
+def _expected_path(
+    run: Run,
+    toolpaths: Sequence[Toolpath],
+    tolerances: Tolerances | Sequence[Tolerances] | Callable[[Operation], Tolerances] | None,
+    settings: ExpectedValues,
+) -> ExpectedPath:
+    """The path that the CL files ask for, with the splines that the program writes."""
+    path = partial(ExpectedPath, toolpaths, tolerances or Tolerances(), settings.absolute, settings.for_operation)
+    expected = path()
+    written = written_splines(run, expected)
+    return path(written) if written else expected
 
 
 def with_recording(verification: Verification, recording: Recording, tolerance: float) -> Verification:
@@ -145,22 +177,27 @@ def _check_alone(run: Run, settings: ExpectedValues, analyzer: AxisMotionAnalyze
 def _check_against(
     expected: ExpectedPath, run: Run, settings: ExpectedValues, analyzer: AxisMotionAnalyzer
 ) -> _Checked:
-    """Checks of a program against its expected path.
-
-    Motions and points are matched by count if that fits, else by position.
-    """
+    """Checks of a program against its expected path, which has the feeds and tool axes of the CL files."""
     accepted = accept_deviations(expected, run.machine)
-    expected = accepted.expected
+    context, errors, deviations = _compare(accepted.expected, run, settings, analyzer)
+    order, others, general = _checks_without_positions(context, accepted)
+    others += check_reach(context, expected)
+    tip, axis = deviations.result()
+    checks = [order, check_tip(context, tip), check_axis(context, axis, accepted), *others]
+    return _Checked(context, errors, checks, general)
+
+
+def _compare(
+    expected: ExpectedPath, run: Run, settings: ExpectedValues, analyzer: AxisMotionAnalyzer | None = None
+) -> tuple[ComparedContext, LinearizationErrors, PointDeviations]:
+    """Match motions and points, by count if that fits, else by position, and measure how far they are apart."""
     counted = match_by_count(run, expected)
     context = ComparedContext(run, settings, expected, counted or _match_by_position(expected, run, settings))
     errors, deviations = _measure(context, analyzer)
     if counted and any(summary.count for summary in deviations.result()):
         context = ComparedContext(run, settings, expected, _match_by_position(expected, run, settings))
         errors, deviations = _measure(context)
-    order, others, general = _checks_without_positions(context, accepted)
-    tip, axis = deviations.result()
-    checks = [order, check_tip(context, tip), check_axis(context, axis, accepted), *others]
-    return _Checked(context, errors, checks, general)
+    return context, errors, deviations
 
 
 def _match_by_position(expected: ExpectedPath, run: Run, settings: ExpectedValues) -> Matching:

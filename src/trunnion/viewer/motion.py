@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
-from trunnion.timing import axis_pieces
+from trunnion.timing import MOST_PIECES, axis_pieces
 
 #: One count of an axis value, mm or degrees: a fiftieth of what the smallest printed digit is worth at a table's rim.
 COUNT: Final = 1e-5
@@ -52,7 +52,7 @@ def motion_columns(run: Run, seconds: Floats, lengths: Mapping[int, float]) -> M
     """
     of_row = seconds if len(seconds) else np.full(len(run), _UNTIMED)
     joints, rows, shares, known = [np.asarray(run.start)[None]], [], [], []
-    for pieces in axis_pieces(run, lengths):
+    for pieces in axis_pieces(run, lengths, most=MOST_PIECES):
         joints.append(pieces.joints[1:])
         rows.append(pieces.row)
         shares.append(pieces.done - pieces.begin)

@@ -1,5 +1,6 @@
 """The writer of a toy control: blocks such as ``LINE X1.5 Y2. B3. F300.``; circles have absolute centres."""
 
+import re
 from collections.abc import Mapping
 
 import numpy as np
@@ -21,6 +22,8 @@ SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {}
 COMPENSATES_WITH_TCP = True
 SETTING_MEANINGS: Mapping[str, str] = {}
 LINE_COMMENTS: tuple[str, ...] = ("; ",)
+COMMENTS: re.Pattern[str] = re.compile(r"(;.*)")
+BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 
 

@@ -1,21 +1,26 @@
 """``trunnion record`` on a twin that runs the golden program of the blade at 50 times its speed."""
 
 import asyncio
+import csv
 import io
+import json
 import os
 import re
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from asyncua import Client, ua
 
 from tests.support.locations import ROOT
+from tests.support.recordings import IMPELLER, impeller
 from tests.support.twins import BLADE_FINISH, served
-from trunnion import verify
+from trunnion import read_program, verify
 from trunnion.api.twin import add_twin_user
 from trunnion.cli import main
 from trunnion.model.recording import Mark, Recording
@@ -46,6 +51,17 @@ def wait_for(process: subprocess.Popen[str], words: str) -> None:
     raise AssertionError("".join(told))
 
 
+def wait_for_line(journal: Path, recorder: subprocess.Popen[str]) -> None:
+    """Wait until the last motion has been written: what a server that is killed has not sent, nobody can record."""
+    last = float(read_program(BLADE_FINISH, machine="yl569").line[-1])
+    while recorder.poll() is None:
+        with journal.open(encoding="utf-8", newline="") as file:
+            if any(row["line"] and float(row["line"]) >= last for row in csv.DictReader(file)):
+                return
+        time.sleep(0.1)
+    raise AssertionError("the recorder has ended")
+
+
 async def run_program(address: str) -> None:
     """Run the program of a twin to its end."""
     async with Client(address) as client:
@@ -64,6 +80,7 @@ def recording_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with served(BLADE_FINISH, "--speed", "50", "--hold", "--no-mtconnect") as twin:
         recorder = started(twin.opcua, file)
         asyncio.run(run_program(twin.opcua))
+        wait_for_line(file.with_name("blade.parquet.csv"), recorder)
         twin.process.kill()
     wait_for(recorder, "the connection is broken")
     port = twin.opcua.rpartition(":")[2].partition("/")[0]
@@ -120,6 +137,42 @@ def test_an_axis_that_was_off_fails_with_its_block(
     assert main(["verify", str(BLADE_FINISH), "--machine", "yl569", "--recorded", str(file),
                  "--recorded-tolerance", "0.3"]) == 0  # fmt: skip
     assert main(["verify", str(BLADE_FINISH), "--machine", "yl569", "--recorded", str(recording_file)]) == 0
+
+
+def test_one_recording_over_all_programs_of_a_part_is_in_the_report(tmp_path: Path) -> None:
+    main_program, file, report = impeller(tmp_path), tmp_path / "impeller.csv", tmp_path / "impeller.json"
+    files = [
+        "--with",
+        *(str(program) for program, _ in IMPELLER.values()),
+        "--zero",
+        "0,0,-200",
+        "--tool-length",
+        "150",
+    ]
+    with served(main_program, *files, "--speed", "200", "--hold", "--no-mtconnect") as twin:
+        recorder = started(twin.opcua, file)
+        asyncio.run(run_program(twin.opcua))
+        recorder.send_signal(signal.SIGINT)
+        recorder.communicate()
+    named = [argument for _, cl in IMPELLER.values() for argument in ("--cl", str(cl))]
+    verified = ["verify", str(main_program), "--machine", "yl569", *files, *named, "--recorded", str(file)]
+    assert main([*verified, "--report", str(report)]) == 0
+    told = json.loads(report.read_text(encoding="utf-8"))
+    assert [each["name"] for each in told["operations"]] == ["CAVITY_MILL", "MULTI_BLADE_ROUGH", "BLADE_FINISH"]
+    assert all(count or rest for count, rest in zip(told["columns"]["recorded_positions"], rests(told), strict=True))
+    used = {each["name"]: each for each in told["recorded"]["extents"]}
+    assert used["X"]["limits"] == [-250.0, 250.0]
+    assert used["X"]["margin"] == pytest.approx(36.802, abs=1e-3)
+    assert used["Spindle"]["whole"]["high"] == 2500.0
+
+
+def rests(report: dict[str, Any]) -> list[bool]:
+    """Which motions of a report move no axis."""
+    columns = [values for name, values in report["columns"].items() if name.startswith("axis ")]
+    before = [(values[:1] + values[:-1]) for values in columns]
+    return [
+        values == earlier for values, earlier in zip(zip(*columns, strict=True), zip(*before, strict=True), strict=True)
+    ]
 
 
 def test_a_recording_is_never_written_over(recording_file: Path, capsys: pytest.CaptureFixture[str]) -> None:

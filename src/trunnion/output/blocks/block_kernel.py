@@ -33,6 +33,10 @@ LETTERS = 12
 ) = range(11)
 
 
+#: Columns of the state of block numbers.
+NUMBER, STEP, FIRST, HIGHEST, WAIT, EVERY = range(6)
+
+
 @inlined
 def _put_pair(pair: int, out: Bytes, at: int) -> None:
     """Write two digits at ``at``: (pair * 103) >> 10 is pair // 10 for pairs below 100."""
@@ -136,7 +140,7 @@ def write_blocks(
     last: Ints,
     number: Ints,
     number_letter: Bytes,
-    numbered: bool,
+    line_end: Bytes,
     skip: Bytes,
     out: Bytes,
 ) -> int:
@@ -152,7 +156,9 @@ def write_blocks(
                                 letter, length of the text for zero, closing byte or 0, bare
     spelling     (w, 24) uint8  the letter in the first 12 bytes, the text for zero in the last 12
     last         (w,)   int64   counts printed last; updated
-    number       (4,)   int64   next block number, step, first, highest; the first is updated
+    number       (6,)   int64   next block number, step, first, highest; blocks before the next number, -1 for no more;
+                                blocks from one number to the next, 0 for no more. Next and wait are updated
+    line_end     (1 or 2,)      LF, or CR and LF
     """
     words, rows = table.shape
     at = unsigned(0)
@@ -164,11 +170,11 @@ def write_blocks(
             for k in range(skip.shape[0] if headed else 0):
                 out[at] = skip[k]
                 at += ONE
-            if numbered and headed:
+            if headed and number[WAIT] == 0:
                 for k in range(number_letter.shape[0]):
                     out[at] = number_letter[k]
                     at += ONE
-                at = _put_whole(number[0], out, at)
+                at = _put_whole(number[NUMBER], out, at)
                 out[at] = 32
                 at += ONE
             has_content = False
@@ -219,10 +225,16 @@ def write_blocks(
             if not has_content:
                 at = block_start
                 continue
-            out[at - ONE] = 10
-            if numbered and headed:
-                number[0] += number[1]
-                if number[0] > number[3]:
-                    number[0] = number[2]
+            at -= ONE
+            for k in range(line_end.shape[0]):
+                out[at] = line_end[k]
+                at += ONE
+            if headed and number[WAIT] == 0:
+                number[NUMBER] += number[STEP]
+                if number[NUMBER] > number[HIGHEST]:
+                    number[NUMBER] = number[FIRST]
+                number[WAIT] = number[EVERY]
+            if headed and number[WAIT] >= 0:
+                number[WAIT] -= 1
     written: int = signed(at)
     return written

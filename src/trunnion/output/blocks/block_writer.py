@@ -7,7 +7,8 @@ import numpy as np
 
 from trunnion.arrays import Bytes, Ints
 from trunnion.controls.words import ABSENT, BlockNumbers, Word, WordRangeError
-from trunnion.output.blocks.block_kernel import BARE, DIGITS, LETTERS, MODAL, write_blocks
+from trunnion.encoding import TextForm
+from trunnion.output.blocks.block_kernel import BARE, DIGITS, LETTERS, MODAL, WAIT, write_blocks
 
 #: Rows of a table at most: one chunk stays in the processor's cache.
 CHUNK: Final = 16384
@@ -16,6 +17,8 @@ CHUNK: Final = 16384
 BLOCK_NUMBER_BYTES: Final = 12
 
 _WORD_BYTES: Final = DIGITS + LETTERS + 2
+
+_PLAIN_FORM: Final = TextForm()
 
 
 class _WordColumns(NamedTuple):
@@ -43,8 +46,11 @@ class BlockWriter:
     size  bytes written to the present sink since ``switch_file``
     """
 
-    def __init__(self, sink: BinaryIO, words: Sequence[Word], numbers: BlockNumbers) -> None:
-        self._numbers = numbers
+    def __init__(
+        self, sink: BinaryIO, words: Sequence[Word], numbers: BlockNumbers, form: TextForm = _PLAIN_FORM
+    ) -> None:
+        self._numbers, self._form = numbers, form
+        self._line_end = np.frombuffer(form.line_end, np.uint8)
         self._next_numbers: dict[BinaryIO, Ints] = {}
         self.switch_file(sink)
         self._letter = np.frombuffer(numbers.letter.encode(), np.uint8)
@@ -62,7 +68,7 @@ class BlockWriter:
         The modal state stays known, whatever the file contains.
         """
         numbers = self._numbers
-        first = [numbers.start, numbers.step, numbers.start, numbers.highest]
+        first = [numbers.start, numbers.step, numbers.start, numbers.highest, *_first_wait(numbers)]
         self._sink = sink
         self._number = self._next_numbers.setdefault(sink, np.array(first, np.int64))
         self.size = 0
@@ -70,12 +76,17 @@ class BlockWriter:
     @property
     def widest_row(self) -> int:
         """Most bytes of the block of a row, without lines before it."""
-        return BLOCK_NUMBER_BYTES + len(self._letter) + 2 + len(self._keys) * _WORD_BYTES
+        return BLOCK_NUMBER_BYTES + len(self._letter) + 2 + len(self._line_end) + len(self._keys) * _WORD_BYTES
 
     @property
     def skips_blocks(self) -> bool:
         """Whether blocks get the block-skip sign."""
         return len(self._skip) > 0
+
+    def begin_operation(self) -> None:
+        """Number the next block, where operations have the numbers."""
+        if self._numbers.numbered and self._numbers.at_operations:
+            self._number[WAIT] = 0
 
     def set_block_skip(self, on: bool) -> None:
         """Start the next blocks with the block-skip sign, or no longer."""
@@ -95,6 +106,11 @@ class BlockWriter:
         for row, word in zip(self._spelling, words, strict=True):
             row[: len(word.letter)] = np.frombuffer(word.letter.encode(), np.uint8)
             row[LETTERS : LETTERS + len(word.format.zero)] = np.frombuffer(word.format.zero.encode(), np.uint8)
+
+    @property
+    def words(self) -> tuple[Word, ...]:
+        """The words of motion blocks."""
+        return tuple(self._words.values())
 
     def word(self, key: str) -> Word:
         """Return the word with this key."""
@@ -188,10 +204,10 @@ class BlockWriter:
 
     def _write(self, table: Ints, forced: Ints, words: _WordColumns, lines: _Lines) -> None:
         """Run the kernel and write its bytes; ``words.last`` is updated."""
-        encoded = [text.encode() for text in lines.texts]
+        encoded = [text.encode(self._form.encoding).replace(b"\n", self._form.line_end) for text in lines.texts]
         text_bytes = np.frombuffer(b"".join(encoded) or b" ", np.uint8)
         ends = np.cumsum([len(text) for text in encoded], dtype=np.int64) if encoded else np.zeros(1, np.int64)
-        head = BLOCK_NUMBER_BYTES + len(self._letter) + 1
+        head = BLOCK_NUMBER_BYTES + len(self._letter) + len(self._line_end)
         row_bytes = head + len(words.rule) * _WORD_BYTES + 1
         text_room = sum(len(encoded[k]) + head + 1 for k in lines.of)
         out = np.empty(table.shape[1] * row_bytes + text_room, np.uint8)
@@ -209,12 +225,19 @@ class BlockWriter:
             words.last,
             self._number,
             self._letter,
-            self._numbers.numbered,
+            self._line_end,
             self._skip,
             out,
         )
         self._sink.write(out[:written].data)
         self.size += written
+
+
+def _first_wait(numbers: BlockNumbers) -> tuple[int, int]:
+    """Blocks up to the first number, and from one to the next; -1 for none before ``begin_operation``."""
+    if not numbers.numbered or numbers.at_operations:
+        return -1, 0
+    return 0, numbers.every
 
 
 def _lines_before(rows: int, text_before: Ints | None, texts: Sequence[str], lines: Mapping[int, str]) -> _Lines:

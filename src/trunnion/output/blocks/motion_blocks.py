@@ -4,6 +4,7 @@ In:     motions as they are written, row by row, with the events at them.
 Out:    blocks, through the block writer.
 """
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import BinaryIO, Final
@@ -25,6 +26,7 @@ from trunnion.output.blocks.surface_normals import add_vector_lines, contact_row
 from trunnion.output.coordinates.axis_coordinates import AxisCoordinates, to_axis_coordinates
 from trunnion.output.program import Program
 from trunnion.output.shared.lines import divided_comment
+from trunnion.transliteration import lacking
 
 #: The keys of phase comments in a definition.
 _PHASE_KEYS: Final = {
@@ -77,7 +79,7 @@ class MotionBlockWriter:
         self.family: FamilyWriter = program.control.family
         self.progress = progress
         self._words = program.block_words(program.motions[0])
-        self.writer = BlockWriter(sink, self._words, self.control.block_numbers)
+        self.writer = BlockWriter(sink, self._words, self.control.block_numbers, program.text_form)
         self.feeds = FeedWords(program, self.writer)
         self._orientation = OrientationWords(program, self.writer, self._words)
         self._axis_coordinates: AxisCoordinates | None = None
@@ -93,6 +95,8 @@ class MotionBlockWriter:
         self._tool = ""
         self._length_register = 0
         self._words_to_repeat: dict[str, int] = {}
+        self._encoding = program.text_form.encoding
+        self._capitals = program.effective_setting("comments") == "capitals"
 
     # Motions
 
@@ -160,16 +164,18 @@ class MotionBlockWriter:
 
     # Lines and single blocks
 
-    def write_lines(self, lines: Sequence[str]) -> None:
+    def write_lines(self, lines: Sequence[str], *, as_they_are: bool = False) -> None:
         """Write lines of text, each a block; a line that ends with the continuation sign shares that of the next.
 
-        Comments that are longer than the control can read continue in the next line.
+        Comments that are longer than the control can read continue in the next line; they get capitals where these are
+        asked for, unless lines are to stay ``as_they_are``.
 
         Raises
         ------
         InputError
-            If another line is.
+            If another line is, or has a character that the program's encoding lacks.
         """
+        lines = lines if as_they_are else self._spelled(lines)
         room = self.control.longest_line - BLOCK_NUMBER_BYTES
         lines = [piece for line in lines for piece in divided_comment(line, room, self.family.LINE_COMMENTS)]
         for line in lines:
@@ -181,6 +187,21 @@ class MotionBlockWriter:
             blocks[len(blocks) - continues :] = [f"{blocks[-1]}\n{line}" if continues else line]
             continues = bool(sign) and line.endswith(sign)
         self.writer.write_lines(blocks)
+
+    def _spelled(self, lines: Sequence[str]) -> list[str]:
+        """Lines of a definition, with values that are spelled already, as the program has them."""
+        for line in lines:
+            if letter := lacking(line, self._encoding):
+                what = f"the definition of {self.control.name} writes {line!r}: {self._encoding} has no {letter!r}"
+                raise InputError(Problem(self._file, 0, what, "change it there, or write setting encoding=utf-8"))
+        return [self.family.COMMENTS.sub(self._in_capitals, line) for line in lines] if self._capitals else list(lines)
+
+    def _in_capitals(self, comment: re.Match[str]) -> str:
+        """A comment without small letters, but those whose capital is two letters or is lacking in the encoding."""
+        if comment[1] is None:
+            return comment[0]
+        capitals = ((each, each.upper()) for each in comment[0])
+        return "".join(big if len(big) == 1 and not lacking(big, self._encoding) else small for small, big in capitals)
 
     def write_block(self, words: Mapping[str, int]) -> None:
         """Write one block of words, as counts; none if all of them are active."""
@@ -222,7 +243,8 @@ class MotionBlockWriter:
         """Return an index of each ``Phase`` into the phase comments, -1 for none, (9,) int64; and the comments."""
         texts = [self.control.phases.get(_PHASE_KEYS.get(phase, ""), "") for phase in Phase]
         lines = list(dict.fromkeys(text for text in texts if text))
-        return np.array([lines.index(text) if text else -1 for text in texts], np.int64), lines
+        spelled = self._spelled(lines)
+        return np.array([lines.index(text) if text else -1 for text in texts], np.int64), spelled
 
     # Rows
 

@@ -113,5 +113,5 @@ def _blocks(program: Program, event: Event) -> int:
     if isinstance(event, Message):
         return sum(not line.startswith(_COMMENT_SIGNS) for line in control.family.message(event))
     if isinstance(event, Insert):
-        return int(not event.text.lstrip().startswith(_COMMENT_SIGNS))
+        return sum(not line.lstrip().startswith(_COMMENT_SIGNS) for line in event.text.split("\n"))
     return int(isinstance(event, Dwell | SelectTool | Stop))

@@ -58,7 +58,7 @@ def event_problems(
     if isinstance(event, SelectTool) and not control.family.tool_preselection("1"):
         what = f"SELECT/TOOL,{event.number} is not written: how {control.name} preselects a tool is not known"
         return [Problem(*location, what, "preselect the tool by INSERT/", Severity.WARNING, code="CTL440")]
-    if isinstance(event, Insert) and control.unit != 1.0:
+    if isinstance(event, Insert) and control.unit != 1.0 and not event.template:
         literal = literal_length(control, event.text)
         if literal:
             what = f"INSERT/{event.text.strip()}: {literal} may be a length, and nobody says whether in mm or inches"

@@ -6,10 +6,11 @@ from typing import Final
 
 import numpy as np
 
+from trunnion.arrays import Ints
 from trunnion.controls.words import NumberFormat
 from trunnion.errors import Problem, Severity
 from trunnion.model.motion import MachiningMode, Motion
-from trunnion.model.toolpath import Kind
+from trunnion.model.toolpath import Kind, Moves
 from trunnion.output.program import Program
 
 #: A feed that is printed with a greater error, as a share of it, is told; one of mm/min with an error above the second
@@ -43,17 +44,25 @@ def rounded_feed_problems(program: Program, motion: Motion) -> list[Problem]:
     moves, formats = motion.operation.moves, program.control.number_formats(motion.three_axis)
     if motion.mode is MachiningMode.WITHOUT_TCP or not len(moves):
         return []
-    changes = np.concatenate(([0], np.flatnonzero(moves.feed[1:] != moves.feed[:-1]) + 1))
-    rows = changes[(moves.kind[changes] != Kind.RAPID) & (moves.feed[changes] > 0.0)]
+    rows = np.flatnonzero((moves.kind != Kind.RAPID) & (moves.feed > 0.0))
     lowered = set(motion.deviations.slowed_feed.tolist())
     found = []
-    for k in rows.tolist():
+    for k in _first_of_each_feed(moves, rows):
         line, feed, per_rev = int(moves.line[k]), float(moves.feed[k]), bool(moves.per_rev[k])
         problem = rounding_problem(program.file_of(motion.operation), line, formats, feed, per_rev)
         if problem is not None and feed in lowered and feed >= feed_format(formats, per_rev).least:
             problem = replace(problem, severity=Severity.WARNING)
         found += [problem] if problem is not None else []
     return sorted(found, key=lambda problem: problem.severity is not Severity.ERROR)[:1]
+
+
+def _first_of_each_feed(moves: Moves, rows: Ints) -> list[int]:
+    """The first of ``rows`` (k,) with each feed, ascending."""
+    first = []
+    for per_rev in (False, True):
+        here = rows[moves.per_rev[rows] == per_rev]
+        first += here[np.unique(moves.feed[here], return_index=True)[1]].tolist()
+    return sorted(first)
 
 
 def feed_format(formats: Mapping[str, NumberFormat], per_rev: bool) -> NumberFormat:

@@ -20,6 +20,7 @@ from trunnion.output.validation.operations import (
     tool_problems,
 )
 from trunnion.output.validation.orientation import normal_problems, tool_vector_problems
+from trunnion.output.validation.texts import text_problems
 from trunnion.output.validation.without_tcp import problems_without_tcp
 from trunnion.planning.holes.cycles import SpindleState, SpindleStates
 
@@ -67,7 +68,7 @@ def check_program(program: Program) -> list[Problem]:
         tool_in_spindle = operation.tool.name
         problems += machining_mode_problems(program, motion)
         problems += tolerance_problems(program, motion)
-    return [*problems, *block_skip_problems(program), *machine_problems(program)]
+    return [*problems, *block_skip_problems(program), *machine_problems(program), *text_problems(program)]
 
 
 def _motion_problems(program: Program, motion: Motion) -> list[Problem]:

@@ -49,7 +49,7 @@ def tool_conflicts(program: Program, *, uses_length_numbers: bool) -> list[Probl
     problems: list[Problem] = []
     known: dict[str, list[Operation]] = {}
     registers: dict[int, str] = {}
-    for call, register, operation in TemplateValues(program).tool_calls():
+    for call, register, operation in TemplateValues(program).tool_calls:
         file = program.file_of(operation)
         other = registers.setdefault(register or tool_number(call) or 0, call)
         if uses_length_numbers and other != call:

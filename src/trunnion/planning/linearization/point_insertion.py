@@ -76,7 +76,8 @@ def linearize(file: str, motion: Motion, request: PlanRequest) -> LinearizedMoti
             return LinearizedMotion(motion, found.problems)
         return _with_points(file, motion, operation, machine, found.path, list(found.problems))
     if without_tcp:
-        operation, rotary = keep_slide_arcs(machine, operation, rotary, request.chord_tolerance)
+        operation, source = keep_slide_arcs(machine, operation, rotary, request.chord_tolerance)
+        rotary, motion = rotary[source], _with_cl_rows(motion, source)
     moves = operation.moves
     turning = rotary_motion(machine, moves, rotary)
     leaves_path = turning.bend > tolerance
@@ -97,6 +98,11 @@ def linearize(file: str, motion: Motion, request: PlanRequest) -> LinearizedMoti
     return _with_points(file, motion, operation, machine, path, problems)
 
 
+def _with_cl_rows(motion: Motion, source: Ints) -> Motion:
+    """The motion with the CL rows of its rows ``source`` (n,)."""
+    return motion if motion.cl_rows is None else replace(motion, cl_rows=motion.cl_rows[source])
+
+
 def _with_points(
     file: str, motion: Motion, operation: Operation, machine: Machine, path: DividedPath, problems: list[Problem]
 ) -> LinearizedMotion:
@@ -104,7 +110,7 @@ def _with_points(
     copies = np.bincount(path.source, minlength=len(operation.moves))
     problems += _limit_problems(file, operation, machine, path)
     linearized = replace(
-        motion,
+        _with_cl_rows(motion, path.source),
         operation=insert_rows(operation, copies, path.tip, path.axis, operation.moves.kind[path.source]),
         rotary=displayed_positions(machine, path.rotary),
     )

@@ -4,7 +4,7 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Floats
+from trunnion.arrays import Floats, Ints
 from trunnion.machines import Machine, forward
 from trunnion.model.toolpath import Operation
 from trunnion.planning.linearization.arc_chords import arc_piece_counts, lines_for_arcs
@@ -18,16 +18,16 @@ _NO_MOTION: Final = 1e-9
 
 def keep_slide_arcs(
     machine: Machine, operation: Operation, rotary: Floats, chord_tolerance: float
-) -> tuple[Operation, Floats]:
-    """The operation and its rotary positions (n, 2), with lines for arcs that X and Y alone do not make."""
+) -> tuple[Operation, Ints]:
+    """The operation with lines for arcs that X and Y alone do not make, and the row from which each row comes, (n,)."""
     arcs = operation.arcs
     if not len(arcs.row):
-        return operation, rotary
+        return operation, np.arange(len(operation.moves))
     turn = np.abs(rotary[arcs.row] - rotary[arcs.row - 1]).max(axis=1)
     about_z = [_is_about_z(machine, rotary[row], arcs.normal[k]) for k, row in enumerate(arcs.row.tolist())]
     keep = (turn <= _NO_MOTION) & np.array(about_z)
     copies = arc_piece_counts(operation, keep, chord_tolerance)
-    return lines_for_arcs(operation, keep, chord_tolerance), np.repeat(rotary, copies, axis=0)
+    return lines_for_arcs(operation, keep, chord_tolerance), np.repeat(np.arange(len(operation.moves)), copies)
 
 
 def _is_about_z(machine: Machine, rotary: Floats, normal: Floats) -> bool:

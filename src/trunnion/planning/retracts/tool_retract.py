@@ -41,6 +41,7 @@ def with_tool_retract(motion: Motion, distance: float) -> Motion:
         motion,
         operation=replace(operation, moves=_joined(moves, last), events=events),
         rotary=np.concatenate((motion.rotary, motion.rotary[-1:])),
+        cl_rows=None if motion.cl_rows is None else np.append(motion.cl_rows, -1),
     )
 
 

@@ -29,7 +29,7 @@ from trunnion.readers.program.limits import (
     StepCounter,
 )
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
-from trunnion.readers.program.source_text import SourceText, decode
+from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.program.subprograms import Subprograms
 from trunnion.readers.scan.buffers import ScanSettings
 
@@ -122,7 +122,7 @@ class Interpreter(ABC, Generic[A]):
 
     def run(self, write_progress: WriteProgress | None = None) -> Run:
         """Execute the program; ``write_progress`` is that of its file if it is still being written."""
-        main = self.source_type(self._path)
+        main = self.source_type(self._path, encoding=self._options.encoding)
         if write_progress is not None:
             main.follow(write_progress)
         try:
@@ -229,13 +229,14 @@ class Interpreter(ABC, Generic[A]):
         file = self.control.modal.file.current
         self._counter.count_records(len(comments), int((comments[:, 3] - comments[:, 2]).sum()))
         for line, row, start, end in comments.tolist():
-            text = decode(source.buffer[start:end].tobytes()).strip("\r")
+            text = source.text_of(source.buffer[start:end].tobytes()).strip("\r")
             self._comments.append(Comment(line, row, text, file))
 
     def _record_comment(self, line: int, comment: str | None) -> None:
         if comment is not None:
             self._counter.count_records(1, len(comment))
-            self._comments.append(Comment(line, self.control.row, comment, self.control.modal.file.current))
+            file = self.control.modal.file.current
+            self._comments.append(Comment(line, self.control.row, comment.rstrip("\r"), file))
 
     # Limits
 
@@ -266,7 +267,7 @@ class Interpreter(ABC, Generic[A]):
             if len(self._sources) >= MAX_SUBPROGRAMS:
                 raise self._limit_error(f"calls more than {MAX_SUBPROGRAMS} subprograms")
             self._files.append(str(path))
-            self._sources[path] = self.source_type(path), len(self._files) - 1
+            self._sources[path] = self.source_type(path, encoding=self._options.encoding), len(self._files) - 1
             source, file = self._sources[path]
         else:
             # A file may be active more than once: each time with a position of its own.

@@ -90,7 +90,7 @@ def check_known_words(machine: Machine, is_own_word: Callable[[str], bool]) -> N
 
 def _read(table: Table, is_own_word: Callable[[str], bool] | None) -> tuple[KnownWord, ...]:
     found: dict[str, KnownWord] = {}
-    for key in list(table.keys()):
+    for key in table.names():
         word = _known_word(table, key)
         normal = plain_code(word.word)
         if is_own_word is not None and is_own_word(normal):

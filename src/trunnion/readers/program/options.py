@@ -16,6 +16,7 @@ class RunOptions:
     step_limit: int = DEFAULT_STEP_LIMIT
     skip: bool = False
     shortest: bool | None = None
+    encoding: str = ""
 
 
 #: Without subprograms, as the control does it.

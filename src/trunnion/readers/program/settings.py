@@ -5,6 +5,7 @@ from importlib.resources import files
 from typing import Final
 
 from trunnion.definitions import Table, resolve_extends
+from trunnion.encoding import ENCODINGS
 from trunnion.families import DEFAULT_FAMILY
 from trunnion.machines import Machine
 
@@ -21,6 +22,12 @@ def family_of(machine: Machine) -> str:
 def reading_of(machine: Machine) -> Table:
     """Return the table ``reading`` of a machine's control, empty where it has none."""
     return control_of(machine).table("reading")
+
+
+def encoding_of(machine: Machine) -> str:
+    """Return what names and texts of a control's programs are encoded in; empty where its definition does not say."""
+    stated = control_of(machine).table("settings").to_dict().get("encoding")
+    return stated if isinstance(stated, str) and stated in ENCODINGS else ""
 
 
 def no_reading(machine: Machine) -> None:

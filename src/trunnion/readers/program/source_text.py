@@ -12,7 +12,7 @@ from typing import Final, Self
 import numpy as np
 
 from trunnion.arrays import Bytes, Ints
-from trunnion.encoding import EncodingDetector
+from trunnion.encoding import decode
 from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.files import WriteProgress
 
@@ -44,10 +44,13 @@ class SourceText:
     whole      the buffer is the whole file
     first_row  row of the run before which the text began
     jumps_back jumps back without a choice since the last condition with a variable in it
+
+    ``encoding`` is that of its texts; empty: what is likeliest for each line.
     """
 
-    def __init__(self, path: Path, *, whole: bool = False) -> None:
+    def __init__(self, path: Path, *, whole: bool = False, encoding: str = "") -> None:
         self.path = path
+        self._encoding = encoding
         self.name = path.name
         unusable = unusable_file(path, "an NC program")
         if unusable:
@@ -85,6 +88,10 @@ class SourceText:
     def close(self) -> None:
         """Close the file."""
         self._file.close()
+
+    def text_of(self, data: bytes) -> str:
+        """Return bytes of the program as text."""
+        return data.decode() if data.isascii() else decode(data, self._encoding)
 
     def problem(self, line: int, what: str, cure: str = "") -> InputError:
         """Return the error for a fault at a line."""
@@ -136,7 +143,7 @@ class SourceText:
             size *= 8
         self.position += length + 1
         self.line += 1
-        return decode(window[:length])
+        return self.text_of(window[:length])
 
     def _read(self) -> None:
         """Read the next chunk behind the incomplete last line of the chunk before."""
@@ -203,7 +210,10 @@ class SourceText:
         if b"\r" in data[:_PROBED] and b"\n" not in data:
             cure = "save it with line feeds, with or without CR: no control reads it so"
             raise self.problem(0, "has line ends of CR alone: it is one single line", cure)
-        return data.replace(codecs.BOM_UTF8, b"   ", 1) if data.startswith(codecs.BOM_UTF8) else data
+        if data.startswith(codecs.BOM_UTF8):
+            self._encoding = "utf-8"
+            return data.replace(codecs.BOM_UTF8, b"   ", 1)
+        return data
 
     def whole_bytes(self) -> bytes:
         """Return the bytes of the whole program."""
@@ -242,16 +252,3 @@ class SourceText:
     def line_of(self, byte: int) -> int:
         """Return the line of a byte; the program must be loaded."""
         return int(np.searchsorted(self.starts, byte, side="right"))
-
-
-def decode(data: bytes) -> str:
-    """Return bytes as text: UTF-8, or where they are not, GB18030 (GBK) or Latin-1, whichever is likelier."""
-    try:
-        return data.decode()
-    except UnicodeDecodeError:
-        detector = EncodingDetector()
-        detector.add(data)
-    try:
-        return data.decode(detector.encoding())
-    except UnicodeDecodeError:
-        return data.decode("latin-1")

@@ -65,7 +65,7 @@ def read_word_meanings(
     g: dict[int, int | None] = {}
     m: dict[int, int | None] = {}
     names = meanings or {}
-    for key in list(own.keys()):
+    for key in own.names():
         value = own.text(key)
         word, target = _code(key), _code(value)
         if word is None or (word[0] == "G" and word[1] in _PLAIN):

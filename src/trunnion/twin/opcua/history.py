@@ -77,21 +77,21 @@ class TwinHistory(HistoryStorageInterface):
 
     async def new_historized_node(self, node_id: ua.NodeId, period: timedelta | None, count: int = 0) -> None:
         """Histories are made with the address space, not while it is served."""
-        raise NotImplementedError
+        raise ua.uaerrors.BadHistoryOperationUnsupported
 
     async def save_node_value(self, node_id: ua.NodeId, datavalue: ua.DataValue) -> None:
         """Values come from the publisher."""
-        raise NotImplementedError
+        raise ua.uaerrors.BadHistoryOperationUnsupported
 
     async def new_historized_event(
         self, source_id: ua.NodeId, evtypes: list[Any], period: timedelta | None, count: int = 0
     ) -> None:
         """Events have no history."""
-        raise NotImplementedError
+        raise ua.uaerrors.BadHistoryOperationUnsupported
 
     async def save_event(self, event: Any) -> None:
         """Events have no history."""
-        raise NotImplementedError
+        raise ua.uaerrors.BadHistoryOperationUnsupported
 
     async def read_event_history(
         self, source_id: ua.NodeId, start: datetime | None, end: datetime | None, nb_values: int, evfilter: Any

@@ -110,7 +110,7 @@ class TwinProtocol(OPCUAProtocol):
                 header = header_from_binary(chunk)
             except NotEnoughData:
                 return
-            except Exception:
+            except Exception:  # whatever the parser raises: nobody knows what a client sends
                 self._end("it does not speak OPC UA")
                 return
             size = header.header_size + header.body_size
@@ -141,7 +141,7 @@ class TwinProtocol(OPCUAProtocol):
             try:
                 if await self._process_one_msg(header, chunk):
                     continue
-            except Exception as error:
+            except Exception as error:  # as above; one client's message must not end the server
                 self._end(f"its message cannot be understood: {error!r}")
             return
 

@@ -79,11 +79,21 @@ def load_nodes(name_or_path: str | Path) -> NodeList:
     InputError
         If there is none of this name, or with every mistake of the file.
     """
-    root = load_table(name_or_path, _LIBRARY, kind="list of nodes")
+    return read_nodes(load_table(name_or_path, _LIBRARY, kind="list of nodes"))
+
+
+def read_nodes(root: Table) -> NodeList:
+    """Read the table of a list of nodes.
+
+    Raises
+    ------
+    InputError
+        With every mistake of it.
+    """
     namespace = root.text("namespace", "")
     columns = root.table("columns", required=True)
-    found = [_column(name, columns.table(name), namespace) for name in columns.keys()]  # noqa: SIM118 - it is no mapping
-    for name in columns.keys():  # noqa: SIM118
+    found = [_column(name, columns.table(name), namespace) for name in columns.names()]
+    for name in columns.names():
         if not _NAME.fullmatch(name) or name in TIMES:
             columns.add_problem(name, "cannot be the name of a column", "write letters, digits and _, such as X")
     if not found and "columns" in root:

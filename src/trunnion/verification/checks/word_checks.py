@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
+from trunnion.encoding import decode
 from trunnion.errors import InputError, Problem, Severity
-from trunnion.model.run import Diagnostic
+from trunnion.model.run import Diagnostic, Run
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.results import Check, Place
@@ -18,7 +19,7 @@ def check_words(context: Context) -> Check:
     diagnostics = context.run.diagnostics
     errors = [diagnostic for diagnostic in diagnostics if diagnostic.severity is Severity.ERROR]
     if isinstance(context, ComparedContext):
-        errors = _compared_errors(context.expected, diagnostics, errors)
+        errors = _compared_errors(context.expected, context.run, errors)
     remarks = len(diagnostics) - len(errors)
     good = "every word is known" + (f", {remarks} remarks" if remarks else "")
     if not errors and remarks:
@@ -33,22 +34,20 @@ def _place(context: Context, diagnostic: Diagnostic) -> Place:
     return Place(diagnostic.line, -1, 0.0, diagnostic.text, nc_file=diagnostic.file if of_subprogram else "")
 
 
-def _compared_errors(
-    expected: ExpectedPath, diagnostics: Sequence[Diagnostic], errors: list[Diagnostic]
-) -> list[Diagnostic]:
+def _compared_errors(expected: ExpectedPath, run: Run, errors: list[Diagnostic]) -> list[Diagnostic]:
     """Errors that the CL file does not explain, and radius compensation that it never asks for."""
     inserted = expected.insert_texts
     if errors and inserted:
-        lines = {file: _lines_of(file) for file in {error.file for error in errors}}
+        lines = {file: _lines_of(file, run.encoding) for file in {error.file for error in errors}}
         errors = [error for error in errors if not _is_inserted(error, lines[error.file], inserted)]
     if expected.uses_compensation:
         return errors
-    return errors + [each for each in diagnostics if each not in errors and each.text.startswith(("G41", "G42"))]
+    return errors + [each for each in run.diagnostics if each not in errors and each.text.startswith(("G41", "G42"))]
 
 
-def _lines_of(file: str) -> list[str]:
+def _lines_of(file: str, encoding: str) -> list[str]:
     try:
-        return Path(file).read_text(encoding="utf-8", errors="replace").splitlines()
+        return [decode(line, encoding) for line in Path(file).read_bytes().split(b"\n")]
     except OSError as error:
         what = f"cannot be read again: {error.strerror}"
         raise InputError(Problem(file, 0, what, "keep the program until it has been verified")) from error

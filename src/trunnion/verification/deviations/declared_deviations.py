@@ -3,8 +3,8 @@
 A planner may lean the tool axis near a pole, and lower a feed, so that no rotary axis has to exceed its speed. It
 declares this row by row. A declaration is accepted only within bounds: the tool axis at the declared rotary positions
 may be off the CL file's by the angle that was requested, no more; a feed may be lower than the CL file's, but only as
-low as the rotary axes need it. The program must then be as declared, within half the last digit, and everywhere else
-as the CL file has it.
+low as the rotary axes need it. Feeds that are what all axes reach are judged by the check ``reach``. The program must
+then be as declared, within half the last digit, and everywhere else as the CL file has it.
 """
 
 from collections.abc import Iterator
@@ -70,9 +70,11 @@ def accept_deviations(expected: ExpectedPath, machine: Machine) -> AcceptedDevia
         axis, feed = moves.axis.copy(), moves.feed.copy()
         axis[declared.leaned_rows] = _declared_axes(declared, machine)
         feed[declared.slowed_rows] = declared.slowed_feed
+        feed[declared.reached_rows] = declared.reached_feed
         leans = degrees_apart(axis[declared.leaned_rows], moves.axis[declared.leaned_rows])
         off_axis += _excessive_leans(section, declared, leans)
         off_feed += _feeds_not_lowered(section, declared)
+        off_feed += _feeds_not_reached(section, declared)
         lean, leaned = max(lean, float(leans.max(initial=0.0))), leaned + len(leans)
         slowest = min(slowest, float(declared.slowed_feed.min(initial=np.inf)))
         slowed += len(declared.slowed_rows)
@@ -102,6 +104,15 @@ def _feeds_not_lowered(section: Section, declared: Deviations) -> Iterator[Devia
     for k in np.flatnonzero(~((declared.slowed_feed > 0.0) & (declared.slowed_feed <= own))).tolist():
         text = f"a feed of {declared.slowed_feed[k]:g} is declared as lowered, but is not below that of the CL file"
         yield DeviationFault(section.first + int(declared.slowed_rows[k]), float(declared.slowed_feed[k]), text)
+
+
+def _feeds_not_reached(section: Section, declared: Deviations) -> Iterator[DeviationFault]:
+    """Declared feeds at rows that have none to be reached: rapids, and feeds per revolution."""
+    moves, rows = section.operation.moves, declared.reached_rows
+    other = (moves.kind[rows] == Kind.RAPID) | moves.per_rev[rows] | ~(declared.reached_feed > 0.0)
+    for k in np.flatnonzero(other).tolist():
+        text = f"a feed of {declared.reached_feed[k]:g} is declared as what the axes reach, where there can be none"
+        yield DeviationFault(section.first + int(rows[k]), float(declared.reached_feed[k]), text)
 
 
 def misplaced_lean_positions(run: Run, expected: ExpectedPath, matching: Matching) -> list[DeviationFault]:

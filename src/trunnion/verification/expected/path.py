@@ -49,13 +49,17 @@ class OperationSettings:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Section:
-    """One operation within the expected path: rows ``first`` to ``end`` (exclusive), in the program's frame."""
+    """One operation within the expected path: rows ``first`` to ``end`` (exclusive), in the program's frame.
+
+    ``kept`` has the row of the CL file's operation for each of its rows; None where all are here.
+    """
 
     file: str
     operation: Operation
     first: int
     tolerances: Tolerances
     settings: OperationSettings
+    kept: Ints | None = None
 
     @property
     def end(self) -> int:
@@ -133,8 +137,13 @@ class ExpectedPath:
             spindle = ExpectedSpindles(placed, spindle).at(len(placed.moves))
             if limit.deviations is not None and hole_rows.any():
                 limit = replace(limit, deviations=limit.deviations.without_rows(hole_rows))
-            operation, limit = _with_ends_of_splines(operation, limit, written_splines, len(sections))
-            sections.append(Section(path.file, operation, first, limit, settings))
+            kept = np.flatnonzero(~hole_rows) if hole_rows.any() else None
+            if (gone := _inside_splines(operation, written_splines, len(sections))) is not None:
+                if limit.deviations is not None:
+                    limit = replace(limit, deviations=limit.deviations.without_rows(gone))
+                operation = without_rows(operation, gone)
+                kept = np.flatnonzero(~gone) if kept is None else kept[~gone]
+            sections.append(Section(path.file, operation, first, limit, settings, kept))
             hole_ends.append(len(found))
             first += len(operation.moves)
         self.sections: tuple[Section, ...] = tuple(sections)
@@ -260,20 +269,16 @@ class ExpectedPath:
         )
 
 
-def _with_ends_of_splines(
-    operation: Operation, limit: Tolerances, written: Sequence[WrittenSpline], section: int
-) -> tuple[Operation, Tolerances]:
-    """An operation without the rows between start and end of the splines that are written; its limits likewise."""
+def _inside_splines(operation: Operation, written: Sequence[WrittenSpline], section: int) -> Flags | None:
+    """The rows between start and end of the splines that are written, (n,); None: there are none."""
     numbers = [spline.number for spline in written if spline.section == section]
     if not numbers:
-        return operation, limit
+        return None
     gone = np.zeros(len(operation.moves), np.bool_)
     for k in numbers:
         first, last, _ = operation.splines[k]
         gone[first:last] = True
-    if limit.deviations is not None:
-        limit = replace(limit, deviations=limit.deviations.without_rows(gone))
-    return without_rows(operation, gone), limit
+    return gone
 
 
 def _by_operation(

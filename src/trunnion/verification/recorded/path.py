@@ -13,7 +13,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Machine, forward
 from trunnion.model.run import Run
-from trunnion.timing import axis_pieces
+from trunnion.timing import MOST_PIECES, axis_pieces
 
 #: How far the tip may be from the straight line between the ends of a piece, mm; and the pieces of one piece at most.
 SAG: Final = 0.005
@@ -45,7 +45,7 @@ class ProgramPath:
     def of(run: Run) -> "ProgramPath":
         """The path of a run."""
         parts = []
-        for pieces in axis_pieces(run, {}):
+        for pieces in axis_pieces(run, {}, most=MOST_PIECES):
             before, after = pieces.joints[:-1], pieces.joints[1:]
             counts = _counts(run.machine, before, after)
             of = np.repeat(np.arange(len(counts)), counts)

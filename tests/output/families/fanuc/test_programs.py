@@ -97,7 +97,7 @@ def test_a_whole_program_with_tcp(folder: Path) -> None:
         text
         == """\
 %
-O0001 (LAUFER [GROSSE 5]- 50?)
+O0001 (LAEUFER [GROESSE 5]- 50-)
 (MACHINE MATSUURA MX-330)
 N10 G21 G17 G40 G80 G90 G94
 (OPERATION OP1)
@@ -141,7 +141,7 @@ RAPID
 GOTO/30,10,50
 """
     text = proven(read(HEAD + statements + END, folder), folder, load_machine("matsuura_mx330"), contour="G05")
-    assert "(SPANE)" in text.splitlines()
+    assert "(SPAENE)" in text.splitlines()
     assert body(text) == [
         "G54",
         "G0 A0. C0.",

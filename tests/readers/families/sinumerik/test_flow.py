@@ -77,6 +77,8 @@ SUB = {
     "sub_1.spf": "PROC SUB_1(REAL _A, INT _B=5)\nX=_A Y=_B\nM17",
     "_N_OTHER_SPF": "X7\nM17",
     "OP20.MPF": "X20\nM17",
+    "MAIN2.MPF": "X2\nM30\nX3",
+    "MAIN3.MPF": "X3\nM2\nX4",
     "LOCAL.SPF": "DEF REAL _MINE\n_MINE=3\nR5=8\nX=_MINE\nRET",
 }
 
@@ -91,6 +93,7 @@ SUB = {
         ("OTHER\nX9", [7, 9]),
         ('EXTCALL("OP20")\nX9', [20, 9]),
         ('EXTCALL("OP20.MPF")', [20]),
+        ('EXTCALL("MAIN2")\nEXTCALL("MAIN3")\nX9\nM30', [2, 3, 9]),
         ('EXTCALL "OP20"', [20]),
         ('CALL "OTHER"', [7]),
         ('EXTCALL("/_N_WKS_DIR/_N_PART_WPD/_N_OTHER_SPF")', [7]),

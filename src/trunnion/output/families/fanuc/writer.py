@@ -5,7 +5,6 @@ parameters of the control.
 """
 
 import re
-import unicodedata
 from collections.abc import Mapping
 from textwrap import wrap
 from typing import Final
@@ -27,6 +26,7 @@ from trunnion.output.shared.iso import row_words as row_words
 from trunnion.output.shared.lines import program_stop
 from trunnion.output.shared.spindle import dwell_seconds, dwell_text
 from trunnion.planning.holes.cycles import Cycle, SpindleState
+from trunnion.transliteration import spelled
 
 #: Circles have no word for whole turns. Tool length and radius are data of the control, called by number.
 #: Radius compensation works in the working plane, wherever the tool points.
@@ -42,6 +42,7 @@ SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {
     "contour": ("none", "G05.1", "G05"),
     "orientation": ("angles", "vector"),
     SPLINES_SETTING: (LINES_FOR_SPLINES, "nurbs"),
+    "encoding": ("ascii",),
 }
 SETTING_MEANINGS: Mapping[str, str] = {
     "contour": "AI contour control (look-ahead) that is on while an operation cuts: none, G05.1 Q1 or G05 P10000.",
@@ -49,10 +50,14 @@ SETTING_MEANINGS: Mapping[str, str] = {
     "(G43.5) for whole operations.",
     SPLINES_SETTING: "Splines of three-axis operations: linearize writes the lines between their points; nurbs writes "
     "G06.2, for controls with the option of NURBS interpolation.",
+    "encoding": "What names and texts are written in: comments have no other characters here. Others are "
+    "transliterated, with a warning.",
 }
 _PLANE_FIELDS: Final = ("plane_first", "plane_second", "plane_third")
 SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {"contour": ("contour_on", "contour_off"), "call": ("call_word",)}
 LINE_COMMENTS: tuple[str, ...] = ()
+COMMENTS: re.Pattern[str] = re.compile(r"(\([^)]*\))")
+BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 TEMPLATE_FIELDS: frozenset[str] = frozenset(
     {*_PLANE_FIELDS, "contour_on", "contour_off", "call_word", "call_arguments"}
 )
@@ -64,13 +69,11 @@ _CONTOUR_CONTROL: Final = {"none": (None, None), "G05.1": ("G05.1 Q1", "G05.1 Q0
 _LENGTH_CODE: Final = 43.0
 _TCP_SETTINGS: Final = {"angles": "tcp_on", "vector": "tcp_on_vector"}
 
-#: Characters of a comment besides letters and digits; others become a question mark. ``%`` would end the program.
+#: Characters of a comment besides letters and digits; others become a dash. ``%`` would end the program.
 _COMMENT_SIGNS: Final = frozenset(" .,=+-*/_#[]'!?&<>@")
 
-#: Letters that are not a plain letter with an accent, and signs that a comment cannot have.
-_TRANSLITERATION: Final = str.maketrans(
-    {"Ø": "O", "Æ": "AE", "Œ": "OE", "Ł": "L", "Đ": "D", "Þ": "TH", "(": "[", ")": "]", ":": "-", ";": "-"}
-)
+#: What stands for signs that a comment cannot have.
+_OTHER_SIGNS: Final = str.maketrans('(){}"|\\', "[][]'//")
 
 #: Characters of a comment: a line of 80 has room for them, with brackets.
 _COMMENT_LENGTH: Final = 76
@@ -87,13 +90,12 @@ def comment(text: str) -> list[str]:
 
 
 def escape_comment(text: str) -> str:
-    """Return the text in capitals without accents; characters that the control lacks become ``?``.
+    """Return the text in the capitals and signs that a comment can have.
 
     Round brackets become square ones: a closing one would end the comment.
     """
-    letters = "".join(c for c in unicodedata.normalize("NFKD", text) if not unicodedata.combining(c))
-    capitals = letters.upper().translate(_TRANSLITERATION)
-    return "".join(c if c.isascii() and (c.isalnum() or c in _COMMENT_SIGNS) else "?" for c in capitals)
+    capitals = spelled(text, "ascii").upper().translate(_OTHER_SIGNS)
+    return "".join(c if c.isalnum() or c in _COMMENT_SIGNS else "-" for c in capitals)
 
 
 def tool_call(number: int, name: str, by_name: bool) -> str:

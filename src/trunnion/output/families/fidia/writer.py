@@ -4,6 +4,7 @@ Facts: the program that ran on an HS664RT, and public posts for Fidia controls; 
 those that are unconfirmed.
 """
 
+import re
 from collections.abc import Mapping
 from typing import Final
 
@@ -40,6 +41,8 @@ SETTING_MEANINGS: Mapping[str, str] = {
 _CANCELLING_FIELDS: Final = ("cancel_tcp", "cancel_plane")
 SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {SAFE_START_SETTING: _CANCELLING_FIELDS}
 LINE_COMMENTS: tuple[str, ...] = ()
+COMMENTS: re.Pattern[str] = re.compile(r"(\([^)]*\))")
+BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 TEMPLATE_FIELDS: frozenset[str] = frozenset(_CANCELLING_FIELDS)
 
 #: Words that switch TCP on and off: for a table with both rotary axes, and for a head.

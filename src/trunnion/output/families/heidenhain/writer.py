@@ -79,6 +79,8 @@ SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {
     "blank": ("blank_low", "blank_high"),
 }
 LINE_COMMENTS: tuple[str, ...] = ("; ", "* - ")
+COMMENTS: re.Pattern[str] = re.compile(r'(;.*|^\* - .*)|"[^"]*"')
+BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("",)
 TEMPLATE_FIELDS: frozenset[str] = frozenset(
     {
         "tcp_on", "tcp_off", "feed_at_tip", "feed_in_degrees", "retract_along", "positioning", "blank_low",

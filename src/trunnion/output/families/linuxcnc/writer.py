@@ -3,6 +3,7 @@
 Facts: LinuxCNC's G code reference; docs/controls/linuxcnc.md lists them.
 """
 
+import re
 from collections.abc import Mapping
 from typing import Final
 
@@ -34,6 +35,8 @@ SETTING_CHOICES: Mapping[str, tuple[str, ...]] = {}
 SETTING_MEANINGS: Mapping[str, str] = {}
 SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {}
 LINE_COMMENTS: tuple[str, ...] = ("; ",)
+COMMENTS: re.Pattern[str] = re.compile(r"(;.*|\([^)]*\))")
+BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 
 #: Bytes of a text in one line: a line has room for 255, with the block number and what surrounds the text.

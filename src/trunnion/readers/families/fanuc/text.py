@@ -36,10 +36,10 @@ class _JumpTargets:
 class FanucText(SourceText):
     """A program file with the targets of its jumps and calls."""
 
-    def __init__(self, path: Path, *, whole: bool = False) -> None:
+    def __init__(self, path: Path, *, whole: bool = False, encoding: str = "") -> None:
         # Shared by the copies that ``restarted`` makes.
         self._jump_targets = _JumpTargets()
-        super().__init__(path, whole=whole)
+        super().__init__(path, whole=whole, encoding=encoding)
 
     def program(self, number: int) -> int | None:
         """Return the line of an O number, None if the file does not have it."""

@@ -53,10 +53,10 @@ def label_of(text: str) -> str:
 class LinuxcncText(SourceText):
     """A program file with the targets of its O words."""
 
-    def __init__(self, path: Path, *, whole: bool = False) -> None:
+    def __init__(self, path: Path, *, whole: bool = False, encoding: str = "") -> None:
         # Shared by the copies that ``restarted`` makes.
         self._jump_targets = _JumpTargets()
-        super().__init__(path, whole=whole)
+        super().__init__(path, whole=whole, encoding=encoding)
 
     def subprogram(self, label: str) -> Structure | None:
         """Return a subprogram of this file, or None."""

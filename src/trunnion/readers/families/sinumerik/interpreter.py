@@ -343,11 +343,11 @@ class SinumerikInterpreter(CallInterpreter):
             control.add_event("spindle", "axis")
         elif code == TOOL_CHANGE:
             control.change_tool()
+        elif code == M_RETURN or (code in PROGRAM_ENDS and len(self._stack) > 1):
+            self._leave_program()  # M2 and M30 of a program that another one has called end only itself
         elif code in PROGRAM_ENDS:
             control.add_event("end", f"M{code}")
             raise ProgramEnd
-        elif code == M_RETURN:
-            self._leave_program()
         elif code in M_GEARS:
             text = "chooses a gear, whose speeds only the machine knows; a definition can declare it"
             self._note(f"M{code} {text}", Severity.ERROR)

@@ -42,10 +42,10 @@ class _JumpTargets:
 class SinumerikText(SourceText):
     """A program file with the targets of its jumps."""
 
-    def __init__(self, path: Path, *, whole: bool = False) -> None:
+    def __init__(self, path: Path, *, whole: bool = False, encoding: str = "") -> None:
         # Shared by the copies that ``restarted`` makes.
         self._jump_targets = _JumpTargets()
-        super().__init__(path, whole=whole)
+        super().__init__(path, whole=whole, encoding=encoding)
 
     def label(self, name: str, here: int, *, forward: bool, backward: bool) -> int | None:
         """Return the line of a label: the next one after ``here`` if ``forward``, else the last one before it."""

@@ -33,7 +33,11 @@ def read_toml_library(path: Path) -> ToolLibrary:
     InputError
         If it cannot be read, with every mistake in it and its line.
     """
-    root = load_table(path, files(__package__), kind="tool library")
+    return read_library_table(load_table(path, files(__package__), kind="tool library"), path)
+
+
+def read_library_table(root: Table, path: Path) -> ToolLibrary:
+    """Read the table of a library that stands, or would stand, in ``path``; errors as ``read_toml_library``."""
     tools = read_tool_tables(root)
     root.report_unread_keys()
     root.raise_problems()

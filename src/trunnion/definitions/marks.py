@@ -2,37 +2,38 @@
 
 from typing import Final
 
-from trunnion.builder.document import FieldPath, located
-from trunnion.definitions import KeyPath, layout
+from trunnion.definitions.source_lines import KeyPath, layout
 
-#: How the comments begin.
+#: How the comments begin that ask for another value.
 MARKS: Final = ("# enter:", "# measure:")
 
+#: How those begin that only say that a value is none of the machine's.
+ASSUMED: Final = ("# assumption",)
 
-def marked_values(text: str) -> list[tuple[str, int, str]]:
+
+def marked_values(text: str, begins: tuple[str, ...] = MARKS) -> list[tuple[str, int, str]]:
     """Return the values with a mark behind them: key, such as ``axis[1].limits_deg``, line, and what the mark says."""
     found = layout(text)
     return [
         (_dotted(path), found.lines.get(path, 0), text[begin:end].removeprefix("#").strip())
-        for path, (begin, end) in _marks(text).items()
+        for path, (begin, end) in _marks(text, begins).items()
     ]
 
 
-def without_mark(text: str, content: object, path: FieldPath) -> str:
-    """Return a definition without the mark behind a value, which has been entered now; ``content``: what it says."""
-    where = located(content, path)
-    place = _marks(text).get(where) if where is not None else None
+def without_mark(text: str, where: KeyPath | None) -> str:
+    """Return a definition without the mark behind the value at ``where``, which has been entered now."""
+    place = _marks(text, MARKS).get(where) if where is not None else None
     return text if place is None else text[: place[0]].rstrip(" \t") + text[place[1] :]
 
 
-def _marks(text: str) -> dict[KeyPath, tuple[int, int]]:
+def _marks(text: str, begins: tuple[str, ...]) -> dict[KeyPath, tuple[int, int]]:
     """Begin and end of the mark behind each value that has one."""
     found = layout(text)
     starts = {text.rfind("\n", 0, begin) + 1: (begin, end) for begin, end in found.comments}
     marks = {}
     for path, place in found.values.items():
         begin, end = starts.get(text.rfind("\n", 0, place.end) + 1, (0, 0))
-        if place.key < place.start and begin >= place.end and text.startswith(MARKS, begin):
+        if place.key < place.start and begin >= place.end and text.startswith(begins, begin):
             marks[path] = begin, end
     return marks
 

@@ -1,0 +1,122 @@
+"""What is taken for granted of a machine: what its definition leaves open, and what it has from another machine.
+
+In:     a machine, and the table of its definition if that is known.
+Out:    sentences for a person beside the machine.
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import Final
+
+from trunnion.definitions import Table
+from trunnion.definitions.marks import ASSUMED, MARKS, marked_values
+from trunnion.errors import InputError
+from trunnion.machines import Axis, Machine
+from trunnion.machines.loading import machine_library
+
+#: Keys of axes that no two machines of a type share for certain, and what they are.
+_MEASURED: Final = {
+    "point_mm": "the lines about which axes turn", "limits_mm": "travel", "limits_deg": "travel",
+    "home_mm": "home", "home_deg": "home", "rapid_mm_min": "rapid traverse", "rapid_deg_min": "rapid traverse",
+    "acceleration_mm_s2": "acceleration", "acceleration_deg_s2": "acceleration",
+}  # fmt: skip
+
+
+def assumptions(machine: Machine, table: Table | None) -> tuple[str, ...]:
+    """Return what is assumed of a machine.
+
+    Parameters
+    ----------
+    machine
+        The machine.
+    table
+        Its definition, merged with what it extends; None: the machine comes from no file.
+    """
+    own = None if table is None else table.unread_copy()
+    of_files = () if own is None else (*_marked(own), *_inherited(own))
+    return (*of_files, *_left_open(machine))
+
+
+def _marked(table: Table) -> Iterator[str]:
+    """Values whose comments say that they are none of the machine's."""
+    for file in sorted(table.files(), key=lambda each: each.startswith(str(machine_library()))):
+        try:
+            text = Path(file).read_text(encoding="utf-8-sig").replace("\r\n", "\n")
+        except (OSError, ValueError, InputError):
+            continue
+        name = Path(file).name
+        for begins, what in ((MARKS, "still to enter"), (ASSUMED, "assumed by the shipped definition")):
+            found = (_owner(table, key.rpartition(".")[2], file, line) for key, line, _ in marked_values(text, begins))
+            places = [f"{key} ({name}:{line})" for key, line in filter(None, found)]
+            if places:
+                yield f"{what[0].upper()}{what[1:]}: {', '.join(places)}."
+
+
+def _owner(table: Table, key: str, file: str, line: int) -> tuple[str, int] | None:
+    """A key with its axis or table, ``C point_mm``, and its line; None where another value counts."""
+    parts = {name: table.table(name) for name in ("spindle", "workpiece", "facts")}
+    axes = {axis.text("name"): axis for axis in table.tables("axis")}
+    for name, part in {"": table, **parts, **axes}.items():
+        if key in part and part.location(key) == (file, line):
+            return f"{name} {key}".strip(), line
+    return None
+
+
+def _inherited(table: Table) -> Iterator[str]:
+    """Measured things that another machine's definition says, told for a definition of one's own only."""
+    library = str(machine_library())
+    if table.location("name")[0].startswith(library):
+        return
+    found: dict[str, dict[str, list[str]]] = {}
+    for axis in table.tables("axis"):
+        for key, what in _MEASURED.items():
+            file, _ = axis.location(key)
+            if key in axis and file.startswith(library):
+                found.setdefault(Path(file).name, {}).setdefault(what, []).append(axis.text("name"))
+    spindle, zero = table.table("spindle"), table.table("workpiece")
+    singles = (
+        (spindle, "gauge_point_mm", "gauge point"), (spindle, "max_rpm", "highest spindle speed"),
+        (zero, "zero_mm", "workpiece zero"),
+    )  # fmt: skip
+    for part, key, what in singles:
+        file, _ = part.location(key)
+        if key in part and file.startswith(library):
+            found.setdefault(Path(file).name, {})[what] = []
+    for body in table.tables("body"):
+        file, _ = body.location("name")
+        if file.startswith(library):
+            found.setdefault(Path(file).name, {})["bodies of the simulation"] = []
+    for name, things in found.items():
+        told = [f"{what} ({', '.join(dict.fromkeys(axes))})" if axes else what for what, axes in things.items()]
+        yield f"From {name}, which is another machine until you have compared it with yours: {', '.join(told)}."
+
+
+def _left_open(machine: Machine) -> Iterator[str]:
+    """What the definition does not state, and what that means."""
+    if machine.workpiece_zero is None:
+        yield (
+            "Workpiece zero: not stated, and taken for the origin. Slides are checked for whether the program fits "
+            "their travel anywhere; programs without TCP want --set zero=X,Y,Z."
+        )
+    yield "Tool lengths: not known, for no definition has them. Programs without TCP want --set tool_length=MM."
+    if not machine.spindle_point_is_stated:
+        heads = [axis.name for axis in machine.axes if axis.is_rotary and axis.mount == "tool"]
+        pivot = f" The pivot length of {heads[-1]} counts from there." if heads else ""
+        yield f"Gauge point: not stated, and taken for the origin of the frame.{pivot}"
+    checks: tuple[tuple[str, Callable[[Axis], bool], str], ...] = (
+        ("Travel", lambda axis: not axis.endless and not axis.has_limits, "and not checked"),
+        ("Home", lambda axis: not axis.home_is_stated, "and taken for 0"),
+        ("Rapid traverse", lambda axis: axis.rapid is None, "so that rapids take no time"),
+        ("Acceleration", lambda axis: axis.acceleration is None, "so that times are estimates that are too short"),
+    )
+    for what, is_open, means in checks:
+        if names := _names(axis for axis in machine.axes if is_open(axis)):
+            yield f"{what} of {names}: not stated, {means}."
+    if machine.spindle_max_rpm is None:
+        yield "Highest spindle speed: not stated, and not checked."
+    if machine.facts.tool_change_s is None:
+        yield "Tool change: not stated, so that times count none."
+
+
+def _names(axes: Iterable[Axis]) -> str:
+    return ", ".join(axis.name for axis in axes)

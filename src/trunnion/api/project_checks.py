@@ -1,0 +1,151 @@
+"""What a project asks for once its programs are proven: the simulation of all set-ups, released programs, times.
+
+In:     a project with the programs that were posted for it; none of them has its place yet.
+Out:    what was found, as errors or warnings as the project judges it.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from trunnion.api.comparing import diff
+from trunnion.api.observer import Observer
+from trunnion.api.post_result import PostResult
+from trunnion.api.project import Division, Judgement, PostedSetup, Project
+from trunnion.api.simulation_setups import SetupInput
+from trunnion.api.writing import named_run
+from trunnion.errors import Problem, Severity
+from trunnion.model.run import Run
+from trunnion.verification import durations
+from trunnion.wording import counted, format_duration
+
+if TYPE_CHECKING:  # imported where a project is simulated
+    from trunnion.api.simulation_result import SimulationResult
+
+#: Findings of a set-up that are told one by one.
+_MOST_TOLD = 10
+
+#: The severity of what a check finds.
+_SEVERITIES = {Judgement.WARN: Severity.WARNING, Judgement.REFUSE: Severity.ERROR}
+
+
+def check_project(
+    project: Project, posted: Sequence[tuple[PostedSetup, Sequence[PostResult]]], observer: Observer
+) -> tuple["SimulationResult | None", list[Problem]]:
+    """Carry out the checks of a project.
+
+    Returns
+    -------
+    simulation
+        None: it is not asked for.
+    problems
+        What was found, in the order of set-ups.
+
+    Raises
+    ------
+    InputError
+        When a file of the simulation or a released program cannot be used.
+    """
+    checks = project.checks
+    found = list[Problem]()
+    for setup, results in posted:
+        if checks.longest_s is not None:
+            found += _too_long(project, results)
+        if checks.released is not Judgement.OFF and setup.released:
+            severity = _SEVERITIES[checks.released]
+            found += [replace(each, severity=severity) for each in _compare_released(project, setup, results)]
+    if checks.simulate is Judgement.OFF:
+        return None, found
+    simulation, problems = _simulate(project, posted, observer)
+    return simulation, [*found, *(replace(each, severity=_SEVERITIES[checks.simulate]) for each in problems)]
+
+
+def _name(project: Project, result: PostResult) -> str:
+    assert result.output is not None, "every program of a project has a file"
+    return str(project.place_of(result.output))
+
+
+def _run(project: Project, result: PostResult) -> Run:
+    """The run of a program under the name that it will have."""
+    assert result.run is not None, "nothing is posted here that nobody reads"
+    return named_run(result.run, _name(project, result))
+
+
+def _too_long(project: Project, results: Sequence[PostResult]) -> Iterator[Problem]:
+    """Programs that take longer than they may."""
+    longest = project.checks.longest_s
+    assert longest is not None
+    for result in results:
+        assert result.verification is not None
+        seconds, known = durations(result.verification)
+        if seconds.sum() > longest:
+            least = "" if known.all() else "at least "
+            what = f"takes {least}{format_duration(float(seconds.sum()))}, and may take {format_duration(longest)}"
+            yield Problem(_name(project, result), 0, what, "divide the work, or raise longest_s of [checks]")
+
+
+def _compare_released(
+    project: Project, setup: PostedSetup, results: Sequence[PostResult]
+) -> Iterator[Problem]:  # fmt: skip
+    """Programs that move otherwise than the released ones."""
+    if setup.division is not Division.OPERATIONS:
+        pairs = [(results[0], setup.released[0], setup.released[1:])]
+    else:
+        pairs = [(result, released, ()) for result, released in zip(results, setup.released, strict=False)]
+        if len(results) != len(setup.released):
+            what = f"becomes {counted(len(results), 'program')}, and {len(setup.released)} are released"
+            yield Problem(
+                str(project.place_of(setup.output)), 0, what, "look at what CAM has changed, then release the new ones"
+            )
+    for result, released, beside in pairs:
+        run = _run(project, result)
+        compared = diff(
+            released, run, machine=run.machine, subprograms=[*beside, *setup.subprograms],
+        )  # fmt: skip
+        if not compared.same:
+            what = f"does not move as {Path(released).name} does: {'; '.join(compared.lines())}"
+            yield Problem(_name(project, result), 0, what, "look at both, then release the new one")
+
+
+def _simulate(
+    project: Project, posted: Sequence[tuple[PostedSetup, Sequence[PostResult]]], observer: Observer
+) -> tuple["SimulationResult", list[Problem]]:
+    """Cut the stock in all set-ups one after another, and say what must not be."""
+    from trunnion.api.simulation_steps import simulate_setups
+
+    waiting = iter(posted)
+    setups = [
+        each if setup is None else _with_runs(project, each, next(waiting)[1])
+        for each, setup in zip(project.simulation.setups, project.posted, strict=True)
+    ]
+    found = simulate_setups(replace(project.simulation, setups=setups), observer)
+    return found, [
+        problem for one in found.setups or (found,) for problem in _found(one, f"trunnion simulate {project.path.name}")
+    ]
+
+
+def _found(simulated: "SimulationResult", command: str) -> Iterator[Problem]:
+    """What a set-up must not do, each at its program and line; ``command`` shows more of it."""
+    for finding in simulated.findings[:_MOST_TOLD]:
+        x, y, z = finding.place
+        between = f"{finding.kind}: {finding.between[0]}, {finding.between[1]}"
+        what = f"the simulation finds: {between}: {finding.depth:.3f} mm deep at X{x:.3f} Y{y:.3f} Z{z:.3f}"
+        yield Problem(finding.file, finding.line, what)
+    if len(simulated.findings) > _MOST_TOLD:
+        more = counted(len(simulated.findings) - _MOST_TOLD, "finding")
+        yield Problem(simulated.programs[0], 0, f"the simulation has {more} more", f"{command} shows them")
+    yield from (remark for remark in simulated.remarks if remark.severity is Severity.ERROR)
+    gouge = simulated.gouge
+    if gouge is not None and gouge.largest > simulated.limit and not simulated.findings:
+        what = f"the simulation finds up to {gouge.largest:.3f} mm missing from the part"
+        yield Problem(simulated.programs[0], 0, what, f"{command} shows where")
+
+
+def _with_runs(project: Project, setup: SetupInput, results: Sequence[PostResult]) -> SetupInput:
+    """A set-up with the programs that have been posted for it, on their machine as it was set up."""
+    toolpaths = [toolpath for result in results for toolpath in result.toolpaths]
+    runs = [_run(project, result) for result in results]
+    return replace(
+        setup, programs=runs, machine=runs[0].machine, cl=toolpaths, subprograms=(), zero=None, tool_length=None
+    )  # fmt: skip

@@ -1,0 +1,82 @@
+"""The files that a project names, to read and to write: they lie beside the project or below, wherever links go."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path, PurePosixPath
+from typing import Final
+
+from trunnion.definitions import Table
+from trunnion.definitions.extends import is_within
+from trunnion.errors import InputError, Problem
+
+#: Files that one key may name, and a project.
+_MOST_FILES: Final = 1000
+_MOST_NAMES: Final = 10_000
+
+#: The cure of a name that leads elsewhere.
+_WITHIN: Final = "write the path of a file in the folder of the project or below it"
+
+
+class ProjectPaths:
+    """Turns names in a project into paths; mistakes become problems of the tables."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._count = 0
+
+    def files(self, table: Table, key: str, *, required: bool = False) -> tuple[str, ...]:
+        names = table.texts(key) if required else table.texts(key, ())
+        if required and key in table and not names:
+            table.add_problem(key, "is []", 'write ["one.mpf"]')
+        if len(names) > _MOST_FILES:
+            table.add_problem(key, f"names {len(names)} files", f"name at most {_MOST_FILES}")
+            return ()
+        return tuple(self.file(table, key, name) for name in names)
+
+    def output(self, table: Table, key: str) -> Path | None:
+        """The path of a file that a project writes; it lies beside the project or below. None: it is not stated."""
+        name = table.text(key, "")
+        if not name:
+            if key in table and table.text(key, None) is not None:
+                table.add_problem(key, 'is ""', "name a file in the folder of the project or below it")
+            return None
+        location = self._located(table, key, name)
+        if name.endswith("/") or _answer(Path.is_dir, location):
+            table.add_problem(key, f'"{name[:100]}" is a folder', "name a file in it")
+        return location
+
+    def file(self, table: Table, key: str, name: str) -> str:
+        """The path of a file that is read; it lies beside the project or below."""
+        if not name:
+            return ""
+        told = len(table.problems)
+        location = self._located(table, key, name)
+        if len(table.problems) == told and not is_file(location):
+            table.add_problem(key, f'names "{name}", and there is no such file', _WITHIN)
+        return str(location)
+
+    def _located(self, table: Table, key: str, name: str) -> Path:
+        """The path that a name in a project leads to; one that leads out of its folder is a mistake."""
+        self._count += 1
+        if self._count > _MOST_NAMES:  # asking the system about each takes a while
+            what = f"{table.key_path(key)} is beyond the {_MOST_NAMES} files that a project may name"
+            raise InputError(Problem(*table.location(key), what, "write several projects"))
+        pure = PurePosixPath(name)
+        location = self._folder / pure
+        outside = pure.is_absolute() or ".." in pure.parts or re.search(r"[\\:\x00-\x1f]", name) or len(name) > 1000
+        if outside or not is_within(location, self._folder):
+            table.add_problem(key, f'"{name[:100]}" leads out of the folder of the project', _WITHIN)
+            return self._folder / "outside"
+        return location
+
+
+def is_file(location: Path) -> bool:
+    """Whether a path is that of a file; one that is too long for the system, or a link that goes round, is not."""
+    return _answer(Path.is_file, location)
+
+
+def _answer(question: Callable[[Path], bool], location: Path) -> bool:
+    try:
+        return question(location)
+    except (OSError, RuntimeError, ValueError):
+        return False

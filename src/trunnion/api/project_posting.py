@@ -1,0 +1,249 @@
+"""Posting a project: the programs of all its set-ups appear together, once each is proven, or none of them.
+
+In:     a project.
+Out:    its programs, what the checks of the project found, and an error where one of them must not run.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from trunnion.api.arguments import check_observer, check_path
+from trunnion.api.dividing import check_tools, operation_programs, programs_of_operations
+from trunnion.api.input_files import definition_files
+from trunnion.api.job import prepare
+from trunnion.api.observer import SILENT, Observer
+from trunnion.api.paper_files import NO_PAPERS, PaperFiles
+from trunnion.api.planning import load_toolpaths
+from trunnion.api.post_result import PostResult
+from trunnion.api.posting import post_beside
+from trunnion.api.project import Division, PostedSetup, Project
+from trunnion.api.project_checks import check_project
+from trunnion.api.project_file import load_project, named_files, told_by_keys
+from trunnion.api.project_settings import told_in_project
+from trunnion.api.reading import FilePath, ToolpathLike, as_machine
+from trunnion.api.settings import Settings, SettingValue
+from trunnion.definitions.extends import is_within
+from trunnion.errors import InputError, Problem, RefusedError, Severity, TrunnionError
+from trunnion.files import EarlierJob, OutputGroup, check_outputs, output_group, resolve_output
+from trunnion.machines import Machine
+from trunnion.model.motion import Motion
+
+if TYPE_CHECKING:  # imported where a project is simulated
+    from trunnion.api.simulation_result import SimulationResult
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ProjectResult:
+    """A project that was posted: every program of it is proven, and written.
+
+    project     as it was read
+    posted      set-ups of which something was posted, each with its programs in their order
+    simulation  of all set-ups; None: it was not asked for
+    problems    what the checks of the project warn of; each program has its own warnings
+    """
+
+    project: Project
+    posted: tuple[tuple[PostedSetup, tuple[PostResult, ...]], ...]
+    simulation: "SimulationResult | None" = None
+    problems: tuple[Problem, ...] = ()
+
+    @property
+    def results(self) -> tuple[PostResult, ...]:
+        """Every program, in the order of set-ups."""
+        return tuple(result for _, results in self.posted for result in results)
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The files of all programs and of their subprograms."""
+        return tuple(file for each in self.results for file in files_of(each))
+
+
+def files_of(program: PostResult) -> list[Path]:
+    """The file of a program, and those of its subprograms."""
+    return [*([] if program.output is None else [program.output]), *program.subprograms]
+
+
+def post_project(
+    project: FilePath,
+    *,
+    settings: Settings | None = None,
+    strict: bool = False,
+    explain: bool = False,
+    observer: Observer = SILENT,
+) -> ProjectResult:
+    """Post all that a project states, and prove, simulate and compare it as the project asks for.
+
+    Parameters
+    ----------
+    project
+        Its file (``.toml``; docs/projects.md).
+    settings
+        In place of those of the project, for all set-ups.
+    strict
+        Raise an error for unknown CL statements even if the definition says what becomes of them.
+    explain
+        Record why the axes were planned as they are.
+    observer
+        Receives the progress, warnings, and the plan and the proof of each program.
+
+    Returns
+    -------
+    ProjectResult
+        ``files``, the programs in ``results`` and the ``simulation``. Each program is proven.
+
+    Raises
+    ------
+    InputError
+        When the project, a file, a machine or a setting cannot be used.
+    RefusedError
+        When a program must not run, or a check of the project refuses it. No file of the project is written then.
+    """
+    check_observer(observer)
+    loaded = load_project(check_path("project", project))
+    with output_group() as group:
+        return post_into(group, loaded, settings=settings, strict=strict, explain=explain, observer=observer)
+
+
+def project_inputs(project: Project) -> list[FilePath]:
+    """All files that posting a project reads, those of its machines' definitions too.
+
+    Raises
+    ------
+    InputError
+        If a machine cannot be loaded.
+    """
+    named = [project.path, *named_files(project)]
+    for machine in dict.fromkeys(each.machine for each in project.setups):
+        named += definition_files(machine, as_machine(machine))
+    return named
+
+
+def post_into(
+    group: OutputGroup, project: Project, *, settings: Settings | None, strict: bool, explain: bool, observer: Observer
+) -> ProjectResult:
+    """Post a project; its files appear with those of the ``group``. Errors are those of ``post_project``.
+
+    A set-up that is refused does not hide what is wrong with the next ones.
+    """
+    inputs = project_inputs(project)
+    papers = [paper for each in project.setups for paper in each.papers.by_name().values()]
+    check_outputs([*(each.output for each in project.setups), *papers], inputs)
+    observer.problems(_running_hooks(project))
+    post = _SetupPost(group, project, inputs, dict(settings or {}), strict or project.strict, explain, observer)
+    posted, errors = list[tuple[PostedSetup, tuple[PostResult, ...]]](), list[TrunnionError]()
+    for setup in project.setups:
+        try:
+            observer.setup(setup.name)
+            with told_in_project(setup, settings or {}):
+                posted.append((setup, tuple(post.programs(setup))))
+        except TrunnionError as error:
+            errors.append(error)
+    if errors:
+        raise _joined(errors)
+    check_within([file for _, results in posted for each in results for file in files_of(each)], project)
+    with told_by_keys(project.path):
+        simulation, found = check_project(project, posted, observer)
+    found += _left_over(posted)
+    refused = [problem for problem in found if problem.severity is Severity.ERROR]
+    warnings = [problem for problem in found if problem.severity is Severity.WARNING]
+    observer.problems(warnings)
+    if refused:
+        nothing = Problem(str(project.path), 0, "no program of the project is written")
+        raise RefusedError([*refused, nothing])
+    return ProjectResult(project, tuple(posted), simulation, tuple(warnings))
+
+
+def _running_hooks(project: Project) -> list[Problem]:
+    """Warnings of the code that a project has run: it may come from anyone."""
+    what, cure = f"runs as Python, because {project.path.name} names it", "read it before, if it is not yours"
+    return [Problem(file, 0, what, cure, Severity.WARNING) for file in project.hooks]
+
+
+def check_within(files: Sequence[Path], project: Project) -> None:
+    """Raise ``InputError`` for files of subprograms and operations that links lead out of the folder."""
+    folder = project.into or project.folder
+    what, cure = "leads out of the folder of the project", "remove the link"
+    if outside := [file for file in files if not is_within(file, folder)]:
+        raise InputError([Problem(str(file), 0, what, cure) for file in outside])
+
+
+@dataclass(frozen=True, slots=True)
+class _SetupPost:
+    """Posts set-ups of a project: what all of them share."""
+
+    group: OutputGroup
+    project: Project
+    inputs: Sequence[FilePath]
+    settings: Mapping[str, SettingValue]
+    strict: bool
+    explain: bool
+    observer: Observer
+
+    def programs(self, setup: PostedSetup) -> Iterator[PostResult]:
+        """Post the programs of a set-up, one after the other."""
+        machine = as_machine(setup.machine)
+        settings = {**setup.settings, **self.settings}
+        if setup.division is not Division.OPERATIONS:
+            if setup.division is Division.SUBPROGRAMS:
+                settings["programs"] = "operations"
+            yield self._program(setup, machine, setup.cl, settings, setup.output, setup.papers)
+            return
+        job = prepare(machine, settings)
+        toolpaths = load_toolpaths(setup.cl, job, self.strict, Observer())
+        motions: list[Motion] = []
+        for each in operation_programs(toolpaths, job, setup.output):
+            _check_unnamed(each.output)
+            result = self._program(setup, machine, each.toolpath, each.settings, each.output, NO_PAPERS)
+            motions += result.motions
+            yield result
+        self.observer.problems(check_tools(motions, job, toolpaths[0].file))
+
+    def _program(
+        self,
+        setup: PostedSetup,
+        machine: Machine,
+        cl: ToolpathLike | Sequence[ToolpathLike],
+        settings: Settings,
+        output: Path,
+        papers: PaperFiles,
+    ) -> PostResult:
+        return post_beside(
+            cl, self.inputs, machine=machine, output=output, settings=settings, strict=self.strict, force=False,
+            explain=self.explain, papers=papers, columns=self.project.checks.longest_s is not None,
+            subprograms=setup.subprograms, hooks=self.project.hooks, observer=self.observer, group=self.group,
+            forcing="",
+        )  # fmt: skip
+
+
+def _check_unnamed(output: Path) -> None:
+    """Raise ``InputError`` if a file whose name nobody chose is there, and is not as a post has written it."""
+    place = resolve_output(output).path
+    if place.exists() and not EarlierJob(place).wrote(place):
+        what = "would be replaced, although no post has written it as it is"
+        raise InputError(
+            Problem(str(output), 0, what, "remove it, or take the new one over: trunnion test PROJECT --accept")
+        )
+
+
+def _left_over(posted: Sequence[tuple[PostedSetup, tuple[PostResult, ...]]]) -> list[Problem]:
+    """Warnings of programs of operations that the CL files no longer have."""
+    found = []
+    for setup, results in posted:
+        if setup.division is not Division.OPERATIONS:
+            continue
+        written = {result.output.name for result in results if result.output is not None}
+        for file in programs_of_operations(setup.output):
+            if file.name not in written:
+                what = "is the program of an operation that the CL files no longer have"
+                found.append(Problem(str(file), 0, what, "remove it from here and from the control", Severity.WARNING))
+    return found
+
+
+def _joined(errors: Sequence[TrunnionError]) -> TrunnionError:
+    """All errors as one: a refusal only if there is no other."""
+    if len(errors) == 1:
+        return errors[0]
+    kind = RefusedError if all(isinstance(error, RefusedError) for error in errors) else InputError
+    return kind(dict.fromkeys(problem for error in errors for problem in error.problems))

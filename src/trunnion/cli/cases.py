@@ -1,0 +1,90 @@
+"""``trunnion test``: whether the cases of a shop still come out as they did."""
+
+import argparse
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+from trunnion.api.cases import Case, ChangedProgram, find_cases, posted_case
+from trunnion.cli.results import print_result, tell
+from trunnion.cli.wording import problem_line
+from trunnion.errors import InputError, RefusedError, TrunnionError
+from trunnion.wording import counted, one_line
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Post every case, and compare; 0 if all of them are as they were, or accepted."""
+    paths = find_cases(Path(arguments.folder))
+    became, code = Counter[str](), 0
+    for path in paths:
+        outcome, own = _test(path, accept=arguments.accept)
+        became[outcome] += 1
+        code = max(code, own)
+    parts = ", ".join(f"{count} {outcome}" for outcome, count in became.items())
+    print_result(f"{counted(len(paths), 'case')}: {parts}")
+    if code and not arguments.accept and became["different"] + became["new"]:
+        tell("trunnion test --accept takes the new programs over, once you have looked at them")
+    return code
+
+
+def _test(path: Path, *, accept: bool) -> tuple[str, int]:
+    """What became of a case, and the exit code that it alone would have."""
+    with posted_case(path) as case:
+        tell(*map(problem_line, case.warnings))
+        if case.error is not None:
+            return _tell_error(case, case.error)
+        outcome = _outcome(case)
+        print_result(*map(one_line, _lines(case, outcome)))
+        if not accept:
+            return outcome, 0 if case.passed else 1
+        try:
+            accepted = case.accept()
+        except TrunnionError as error:
+            return _tell_error(case, error)
+        if not accepted:
+            return outcome, 0 if case.passed else 1
+        print_result(one_line(f"{path}: accepted: {', '.join(file.name for file in accepted)}"))
+        return "accepted", 1 if case.gone else 0
+
+
+def _tell_error(case: Case, error: TrunnionError) -> tuple[str, int]:
+    tell(*map(problem_line, error.problems))
+    is_refused = isinstance(error, RefusedError)
+    what = "REFUSED: a program must not run" if is_refused else "NOT TESTED: it cannot be posted"
+    print_result(one_line(f"{case.path}: {what}"))
+    assert is_refused or isinstance(error, InputError)
+    return ("refused", 1) if is_refused else ("not tested", 2)
+
+
+def _outcome(case: Case) -> str:
+    if any(each.text for program in case.changed for each in program.files):
+        return "different"
+    return "new" if case.changed else "different" if case.gone else "same"
+
+
+def _lines(case: Case, outcome: str) -> Iterator[str]:
+    """A case in lines."""
+    if outcome == "same":
+        yield f"{case.path}: same: {', '.join(file.name for file in case.same)}"
+        return
+    for program in case.changed:
+        yield f"{case.path}: {outcome.upper()}: {'; '.join(_of_files(program))}"
+        if any(each.text for each in program.files):
+            first, *more = program.motion
+            if program.moves:
+                yield f"  motion the same: {first.removeprefix('same: ')}"
+            else:
+                yield f"  motion DIFFERS: {first.removeprefix('different: ')}"
+            yield from (f"  {line}" for line in more)
+        for each in program.files:
+            if each.text is not None:
+                yield from (f"  {line}" for line in each.text.lines)
+                if each.text.is_cut:
+                    yield "  and so on"
+    for file in case.gone:
+        yield f"{case.path}: GONE: {file.name} is of an operation that there is no more; remove it"
+
+
+def _of_files(program: ChangedProgram) -> Iterator[str]:
+    for each in program.files:
+        yield f"{each.file.name} is new" if each.text is None else f"{each.file.name}: text: {each.text.summary}"

@@ -1,0 +1,205 @@
+"""``trunnion post --watch``: post again whenever CAM, or anyone else, writes one of the files that are read."""
+
+import argparse
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from datetime import datetime
+from pathlib import Path
+from typing import Protocol
+
+from trunnion.api.dividing import programs_of_operations
+from trunnion.api.input_files import definition_files
+from trunnion.api.observer import Observer
+from trunnion.api.posted_simulation import simulation_files
+from trunnion.api.project import Division, Project
+from trunnion.api.project_file import load_project
+from trunnion.api.project_posting import post_into, project_inputs
+from trunnion.api.reading import load_machine
+from trunnion.api.watching import FolderNotices, Waiting, mentioned_files, watch
+from trunnion.cli.post import files_by_target, simulation_of
+from trunnion.cli.post_arguments import names_project
+from trunnion.cli.process import Ended
+from trunnion.cli.progress import progress
+from trunnion.cli.results import print_result, tell
+from trunnion.cli.startup import post_files
+from trunnion.cli.wording import problem_line
+from trunnion.errors import InputError, Problem, RefusedError, TrunnionError
+from trunnion.files import OutputGroup, file_on_disk, output_group
+from trunnion.wording import counted, one_line
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Post again and again; Ctrl-C ends it with 0, as nothing else does."""
+    notices = FolderNotices()
+    try:
+        return follow(arguments, notices)
+    finally:
+        notices.close()
+
+
+def follow(arguments: argparse.Namespace, waiting: Waiting, now: Callable[[], datetime] = datetime.now) -> int:
+    """Post as ``run`` does, where time passes as ``waiting`` says."""
+    work: _Work = _ProjectWork(arguments) if names_project(arguments.files) else _FilesWork(arguments)
+    try:
+        tell(f"{work.name}: watched; Ctrl-C ends it")
+        watch(_Told(work, now), waiting)
+    except Ended:
+        raise
+    except KeyboardInterrupt:
+        return 0
+    raise AssertionError("a watch has no end of its own")
+
+
+class _Work(Protocol):
+    """Something that is posted again."""
+
+    name: str
+
+    def files(self) -> set[str]:
+        """The files that it reads."""
+
+    def post(self, group: OutputGroup) -> tuple[bool, list[str]]:
+        """Post it once: whether what is written may run, and what is written."""
+
+    def outputs(self) -> list[str]:
+        """The files that it writes, as far as they are known."""
+
+
+class _Warnings(Observer):
+    """Prints warnings and progress, and nothing of what is well."""
+
+    def problems(self, problems: Sequence[Problem]) -> None:
+        """Print problems, one a line."""
+        tell(*map(problem_line, problems))
+
+    def progress(self, stage: str, total: int, unit: str) -> AbstractContextManager[Callable[[int], None]]:
+        """Show a progress bar."""
+        return progress(stage, total, unit)
+
+
+class _Told:
+    """Work of which each round is told in one line, with the time."""
+
+    def __init__(self, work: _Work, now: Callable[[], datetime]) -> None:
+        self._work, self._now = work, now
+
+    def files(self) -> set[str]:
+        """The files that the work reads."""
+        return self._work.files()
+
+    def work(self, is_unchanged: Callable[[], bool]) -> None:
+        """Post once, and say what became of it."""
+        try:
+            with output_group() as group:
+                may_run, written = self._work.post(group)
+                if not is_unchanged():
+                    raise _ChangedError(Problem(self._work.name, 0, "has changed while it was posted"))
+        except (TrunnionError, OSError) as error:
+            self._tell(_failure(error, is_unchanged()))
+            self._warn_of_old_programs()
+            return
+        self._tell(f"{'posted' if may_run else 'written by force, and must not run'}: {', '.join(written)}")
+
+    def _tell(self, what: str) -> None:
+        print_result(one_line(f"{self._now():%H:%M:%S} {self._work.name}: {what}"))
+
+    def _warn_of_old_programs(self) -> None:
+        """Say that programs which are there are not those of the files as they are now."""
+        old = [name for name in self._work.outputs() if Path(name).is_file()]
+        if old:
+            tell(f"{', '.join(old)}: warning: of before this change: do not run until it is posted again")
+
+
+class _ChangedError(InputError):
+    """Files have changed while they were posted."""
+
+
+def _failure(error: TrunnionError | OSError, is_unchanged: bool) -> str:
+    """What a round that failed says, after its problems are printed."""
+    if isinstance(error, _ChangedError) or not is_unchanged:
+        return "has changed while it was posted; it is posted again when it rests"
+    if isinstance(error, OSError):
+        return f"NOT posted: {error.strerror or error}"
+    tell(*map(problem_line, error.problems))
+    kind = "the program must not run" if isinstance(error, RefusedError) else "what it is made from cannot be used"
+    return f"NOT posted: {kind} ({counted(len(error.problems), 'message')})"
+
+
+def _of_definition(machine: str) -> set[str]:
+    """The file of a machine, and what it may extend: also files of which no value counts yet."""
+    return {machine, *mentioned_files(Path(machine))} if machine.endswith(".toml") else set()
+
+
+class _ProjectWork:
+    """A project that is posted again."""
+
+    def __init__(self, arguments: argparse.Namespace) -> None:
+        self.name = arguments.files[0]
+        self._arguments = arguments
+        self._project: Project | None = None
+        self._files = {self.name}
+
+    def files(self) -> set[str]:
+        """The files that the project reads; while it is broken, those that it read before."""
+        try:
+            self._project = load_project(Path(self.name))
+            self._files = {str(file) for file in project_inputs(self._project)}
+            self._files.update(*(_of_definition(each.machine) for each in self._project.setups))
+        except (TrunnionError, OSError):
+            self._files |= {self.name, *mentioned_files(Path(self.name))}
+        return set(self._files)
+
+    def post(self, group: OutputGroup) -> tuple[bool, list[str]]:
+        """Post the project."""
+        given = self._arguments
+        result = post_into(
+            group, load_project(Path(self.name)), settings=dict(given.settings), strict=given.strict, explain=False,
+            observer=_Warnings(),
+        )  # fmt: skip
+        return True, [str(file) for file in result.files]
+
+    def outputs(self) -> list[str]:
+        """Programs of the project as it was last read."""
+        found: list[str] = []
+        for setup in [] if self._project is None else self._project.setups:
+            if setup.division is not Division.OPERATIONS:
+                found.append(str(setup.output))
+            else:
+                found += map(str, programs_of_operations(setup.output))
+        return found
+
+
+class _FilesWork:
+    """CL files that are posted again."""
+
+    def __init__(self, arguments: argparse.Namespace) -> None:
+        self.name = ", ".join(arguments.files)
+        self._arguments = arguments
+        self._definitions: set[str] = set()
+
+    def files(self) -> set[str]:
+        """CL files, definitions, and what the simulation reads."""
+        given = self._arguments
+        named = {*map(file_on_disk, given.files), *given.subprograms, *given.hooks, *_of_definition(given.machine)}
+        try:
+            found = definition_files(given.machine, load_machine(given.machine))
+            self._definitions = {str(file) for file in found}
+        except (TrunnionError, OSError):  # those that it had before stay
+            pass
+        try:
+            named |= {str(file) for file in simulation_files(simulation_of(given) or {})}
+        except (TrunnionError, OSError):  # a project that is broken; posting will tell
+            named |= {given.project, *mentioned_files(Path(given.project))} if given.project else set()
+        return named | self._definitions
+
+    def post(self, group: OutputGroup) -> tuple[bool, list[str]]:
+        """Post the CL files."""
+        code = post_files(self._arguments, group, _Warnings())
+        return code == 0, self.outputs()
+
+    def outputs(self) -> list[str]:
+        """The programs that they become."""
+        try:
+            return list(files_by_target(self._arguments, load_machine(self._arguments.machine)))
+        except (TrunnionError, OSError):
+            return []

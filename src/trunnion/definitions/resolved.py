@@ -1,0 +1,58 @@
+"""A merged definition as TOML, with the file and line behind each value from which it comes."""
+
+from collections.abc import Iterator, Mapping
+from pathlib import PurePath
+
+from trunnion.definitions.source_lines import LocatedValue
+from trunnion.definitions.toml_text import written, written_key
+
+
+def resolved_text(root: LocatedValue) -> str:
+    """Return a merged definition as TOML that says the same; what it extends is in it, and not named.
+
+    A comment behind each value names file and line; the files are listed at the top, with their folders.
+    """
+    names = _short_names(sorted(set(_files(root))))
+    head = "".join(f"# {name}: {file}\n" for file, name in names.items())
+    lines = "\n".join(_table(root, (), names))
+    return f"# Where each value comes from:\n{head}\n{lines}\n"
+
+
+def _files(value: LocatedValue) -> Iterator[str]:
+    inner = value.value
+    if isinstance(inner, dict):
+        for item in inner.values():
+            yield from _files(item)
+    elif _is_tables(value):
+        for item in inner if isinstance(inner, list) else []:
+            yield from _files(item)
+    else:
+        yield value.file
+
+
+def _short_names(files: list[str]) -> Mapping[str, str]:
+    """The name of each file without its folder, where no other one has the same."""
+    names = [PurePath(file.replace("\\", "/")).name for file in files]
+    return {file: name if names.count(name) == 1 else file for file, name in zip(files, names, strict=True)}
+
+
+def _is_tables(value: LocatedValue) -> bool:
+    return isinstance(value.value, list) and bool(value.value) and isinstance(value.value[0], LocatedValue)
+
+
+def _table(table: LocatedValue, path: tuple[str, ...], names: Mapping[str, str]) -> Iterator[str]:
+    """The lines of a table: values first, then the tables in it."""
+    content = table.value if isinstance(table.value, dict) else {}
+    for key, item in content.items():
+        if not isinstance(item.value, dict) and not _is_tables(item) and key != "extends":
+            yield f"{written_key(key)} = {written(item.value)}  # {names[item.file]}:{item.line}"
+    for key, item in content.items():
+        below = (*path, key)
+        dotted = ".".join(map(written_key, below))
+        if isinstance(item.value, dict):
+            yield from ("", f"[{dotted}]")
+            yield from _table(item, below, names)
+        elif _is_tables(item) and isinstance(item.value, list):
+            for each in item.value:
+                yield from ("", f"[[{dotted}]]")
+                yield from _table(each, below, names)

@@ -1,0 +1,87 @@
+"""Names and texts that the encoding of a program cannot hold."""
+
+from collections.abc import Iterator
+from contextlib import suppress
+
+from trunnion.controls.family_writer import UnsupportedFeatureError
+from trunnion.errors import InputError, Problem, Severity
+from trunnion.model.toolpath import Insert, Message, Operation, Stop
+from trunnion.output.program import Program
+from trunnion.output.template_values import TemplateValues
+from trunnion.transliteration import lacking, spelled
+
+
+def text_problems(program: Program) -> list[Problem]:
+    """Return a warning for each text that is transliterated, and an error for one that must stay as it is."""
+    encoding, found = program.text_form.encoding, dict[str, Problem]()
+    for what, text, file, line in (*_texts(program), *_settings(program)):
+        written = spelled(text, encoding)
+        if written != text and text not in found:
+            why = f"is written {written!r}: {_missing(program, text)}"
+            found[text] = Problem(file, line, f"{what} {text!r} {why}", _cure(program), Severity.WARNING)
+    return [*found.values(), *_called(program), *_inserted(program)]
+
+
+def _missing(program: Program, text: str) -> str:
+    encoding = program.text_form.encoding
+    letter = lacking(text, encoding)
+    return f"{encoding} has no {letter!r}" if letter else "it has characters that nobody sees"
+
+
+def _cure(program: Program) -> str:
+    family_only = program.control.family.SETTING_CHOICES.get("encoding")
+    return "rename it if it must not be" if family_only else "rename it, or write setting encoding=utf-8"
+
+
+def _texts(program: Program) -> Iterator[tuple[str, str, str, int]]:
+    """What is printed of operations: what it is, the text, CL file and line."""
+    fields = _printed(program)
+    lists_tools = program.effective_setting("tool_list") == "on"
+    lists_operations = program.effective_setting("operation_list") == "on"
+    for motion in program.motions:
+        operation = motion.operation
+        place = program.file_of(operation), operation.line
+        if motion.starts_operation and ("operation" in fields or lists_operations):
+            yield "the operation", operation.name, *place
+        if motion.starts_operation and ("tool_name" in fields or lists_tools):
+            yield "the tool", operation.tool.name, *place
+        if motion.starts_operation and ("tool_holder" in fields or lists_tools):
+            yield "the holder", operation.tool.holder, *place
+        for event in operation.events:
+            if isinstance(event, Message | Stop) and event.text:
+                yield "the text", event.text, place[0], event.line
+
+
+def _settings(program: Program) -> Iterator[tuple[str, str, str, int]]:
+    """Settings that templates print."""
+    fields = _printed(program)
+    for values in (program.settings, *program.own_settings.values()):
+        for key, text in values.items():
+            if key in fields:
+                yield f"setting {key}", text, program.file, 0
+
+
+def _printed(program: Program) -> set[str]:
+    return {name for template in program.control.templates.values() for name, _ in template.fields()}
+
+
+def _called(program: Program) -> Iterator[Problem]:
+    """Tools that are called by a name which would be another one."""
+    calls: dict[str, Operation] = {}
+    with suppress(InputError, UnsupportedFeatureError):  # what a tool is called by is another check
+        calls = {call: operation for call, _, operation in reversed(TemplateValues(program).tool_calls)}
+    for call, operation in calls.items():
+        if program.spelled(call) != call:
+            what = f"the tool {call} is called by a name that the program cannot have: {_missing(program, call)}"
+            cure = "write setting tool_call=number or tool=NUMBER, or rename the tool"
+            yield Problem(program.file_of(operation), operation.line, what, cure)
+
+
+def _inserted(program: Program) -> Iterator[Problem]:
+    """Texts that go into the program as they are."""
+    encoding = program.text_form.encoding
+    for motion in program.motions:
+        for event in motion.operation.events:
+            if isinstance(event, Insert) and (letter := lacking(event.text, encoding)):
+                what = f"INSERT/{event.text.strip()} goes into the program as it is, and {encoding} has no {letter!r}"
+                yield Problem(program.file_of(motion.operation), event.line, what, "write it in other letters")

@@ -1,0 +1,156 @@
+"""What a setup sheet says, as values from which its page and its data are made.
+
+In:     a proven program: its verification, and what the post knows of tools, operations and files.
+Out:    ``SetupSheet``.
+Units:  mm, degrees, seconds, rev/min; feeds mm/min and mm/rev.
+
+Text from outside is cleaned here of characters that no file can hold.
+"""
+
+from bisect import bisect_left
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
+from trunnion.reporting.content import ReportContent
+from trunnion.reporting.extents import BlockReference, block_reference
+from trunnion.reporting.text import clean
+from trunnion.verification.results import OperationRows
+
+#: A lowest and a highest value.
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class SheetTool:
+    """A tool: ``call`` is what the program calls it by; lengths are 0 where they are not known.
+
+    length      from the shoulder of its holder, as the CAM system states it
+    stick_out   out of the holder
+    set_length  in the spindle, from the gauge point to the tip
+    register    number of its length, 0 for that of the tool
+    operations  numbers of the operations that use it, from 1
+    seconds     in cuts
+    """
+
+    call: str
+    name: str
+    kind: str
+    diameter: float
+    corner_radius: float
+    length: float
+    flute_length: float
+    stick_out: float
+    set_length: float
+    holder: str
+    register: int
+    operations: tuple[int, ...]
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class CutRanges:
+    """What a run does in the cuts of one operation, and where that begins.
+
+    rotary  range of the primary and of the secondary rotary axis
+    start   its first block
+    """
+
+    rotary: tuple[Range | None, Range | None]
+    rpm: Range | None
+    sense: str
+    feed: Range | None
+    feed_per_rev: Range | None
+    coolant: str
+    start: BlockReference | None
+
+
+@dataclass(frozen=True, slots=True)
+class SheetOperation:
+    """An operation: ``box`` has the lower and the upper corner of what the tip cuts, None if nothing.
+
+    mode     such as ``three-axis``; several where it has several
+    seconds  with what leads to it; ``cutting_seconds`` in cuts
+    """
+
+    number: int
+    name: str
+    method: str
+    mode: str
+    tool: str
+    cl_file: str
+    seconds: float
+    cutting_seconds: float
+    box: tuple[tuple[float, float, float], tuple[float, float, float]] | None
+    cuts: CutRanges
+
+
+@dataclass(frozen=True, slots=True)
+class SheetFile:
+    """A file of the program as it was written."""
+
+    name: str
+    size: int
+    sha256: str
+
+
+@dataclass(frozen=True, slots=True)
+class SetupSheet:
+    """Everything on the sheet.
+
+    content     what the report says of checks, axes and times
+    may_run     proven, and nothing was overruled
+    offsets     the work offsets that the program takes
+    zero        where the workpiece zero is on the machine; None: it was not said
+    system      which coordinate system the program counts in, in words
+    start       what stands at its beginning, in sentences
+    to_check    what the proof cannot see, in sentences
+    rotary      names of the primary and of the secondary rotary axis
+    picture     SVG of the set-up; empty: there is none
+    """
+
+    content: ReportContent
+    version: str
+    part: str
+    may_run: bool
+    offsets: tuple[str, ...]
+    zero: tuple[float, float, float] | None
+    tool_length: float | None
+    system: str
+    rotary: tuple[str, str]
+    tools: tuple[SheetTool, ...]
+    operations: tuple[SheetOperation, ...]
+    start: tuple[str, ...]
+    to_check: tuple[str, ...]
+    files: tuple[SheetFile, ...]
+    picture: str
+
+
+def cut_ranges(run: Run, operation: OperationRows) -> CutRanges:
+    """Return what a run does in the cuts of an operation."""
+    rows = slice(operation.first, operation.end)
+    cuts = run.kind[rows] != Kind.RAPID
+    feed, mode = run.feed[rows], run.feed_mode[rows]
+    spindle = run.spindle[rows][cuts]
+    senses = [word for sign, word in ((1, "clockwise"), (-1, "counterclockwise"), (0, "standing")) if sign in spindle]
+    joints = run.joints[rows]
+    first = bisect_left(run.events, operation.first, key=lambda event: event.before_row)
+    end = bisect_left(run.events, operation.end, key=lambda event: event.before_row)
+    coolants = [str(event.value) for event in run.events[first:end] if event.kind == "coolant"]
+    return CutRanges(
+        rotary=(_range(joints[:, run.machine.primary], cuts), _range(joints[:, run.machine.secondary], cuts)),
+        rpm=_range(run.rpm[rows], cuts & (run.spindle[rows] != 0)),
+        sense=", ".join(senses),
+        feed=_range(feed, cuts & (mode == 94)),
+        feed_per_rev=_range(feed, cuts & (mode == 95)),
+        coolant=clean(", ".join(dict.fromkeys(each for each in coolants if each != "off"))),
+        start=block_reference(run, operation.first) if operation.end > operation.first else None,
+    )
+
+
+def _range(values: Floats, chosen: Flags) -> Range | None:
+    found = values[chosen & np.isfinite(values)]
+    return (float(found.min()), float(found.max())) if len(found) else None

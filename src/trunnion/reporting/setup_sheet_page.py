@@ -1,0 +1,296 @@
+"""A setup sheet as one HTML page that prints on A4, and as JSON.
+
+In:     ``SetupSheet``.
+Out:    UTF-8. The page needs nothing else and runs no script; all text from outside is escaped.
+"""
+
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
+from importlib.resources import files
+from typing import Final
+
+from trunnion.reporting.extents import AxisExtent, BlockReference
+from trunnion.reporting.html_text import (
+    capitalised,
+    escape,
+    format_fixed,
+    format_limit,
+    format_number,
+    format_range,
+    source_hash,
+)
+from trunnion.reporting.setup_sheet import Range, SetupSheet, SheetOperation, SheetTool
+from trunnion.reporting.text import finite_or_none
+from trunnion.verification.results import Check
+from trunnion.wording import counted, format_duration
+
+#: Version of the data. It rises when programs that read older files would be misled.
+SCHEMA: Final = 1
+
+#: Who signs.
+_SIGNATURES: Final = ("Programmed by", "Set up by", "First part released by")
+
+
+def sheet_page(sheet: SetupSheet) -> bytes:
+    """Return the page."""
+    style = "\n" + files("trunnion.reporting").joinpath("setup_sheet.css").read_text(encoding="utf-8")
+    policy = f"default-src 'none'; style-src {source_hash(style)}; base-uri 'none'; form-action 'none'"
+    parts = (_title(sheet), _picture(sheet), _tools(sheet), _operations(sheet), _axes(sheet), _start(sheet),
+             _to_check(sheet), _checks(sheet.content.checks), _files(sheet), _signatures(sheet))  # fmt: skip
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>Setup sheet of {escape(sheet.content.program)}</title>
+<style>{style}</style>
+</head>
+<body>
+{"".join(parts)}</body>
+</html>
+""".encode()
+
+
+def sheet_json(sheet: SetupSheet) -> bytes:
+    """Return the data: everything on the page but the picture."""
+    content = sheet.content
+    data = {
+        "schema": SCHEMA,
+        "program": content.program,
+        "part": sheet.part or None,
+        "may_run": sheet.may_run,
+        "machine": {"key": content.machine_key, "name": content.machine},
+        "control": content.control or None,
+        "made_by": sheet.version,
+        "program_units": list(content.units),
+        "work_offsets": list(sheet.offsets),
+        "zero": sheet.zero,
+        "tool_length": sheet.tool_length,
+        "coordinates": sheet.system,
+        "seconds": content.seconds,
+        "cutting_seconds": content.cutting_seconds,
+        "tools": [asdict(tool) for tool in sheet.tools],
+        "operations": [_operation_data(each, sheet.rotary) for each in sheet.operations],
+        "axes": [_axis_data(axis) for axis in content.axes],
+        "start": list(sheet.start),
+        "to_check": list(sheet.to_check),
+        "checks": [
+            {
+                "key": check.key,
+                "title": check.title,
+                "passed": check.passed,
+                "summary": check.summary,
+                "worst": finite_or_none(check.worst),
+                "limit": finite_or_none(check.limit),
+                "unit": check.unit,
+            }
+            for check in content.checks
+        ],
+        "files": [asdict(file) for file in sheet.files],
+    }
+    return (json.dumps(data, ensure_ascii=False, allow_nan=False, indent=1) + "\n").encode()
+
+
+def _operation_data(operation: SheetOperation, rotary: Sequence[str]) -> dict[str, object]:
+    data = asdict(operation)
+    found: dict[str, object] = {**data.pop("cuts"), **data}
+    return {**found, "rotary": dict(zip(rotary, operation.cuts.rotary, strict=True))}
+
+
+def _axis_data(axis: AxisExtent) -> dict[str, object]:
+    extremes = axis.extremes
+    return {
+        "name": axis.name,
+        "unit": "deg" if axis.unit == "°" else axis.unit,
+        "used": None if extremes is None else [extremes.low, extremes.high],
+        "limits": [axis.low_limit, axis.high_limit],
+        "endless": axis.endless,
+        "placed": axis.zero_known,
+        "margin": axis.margin,
+    }
+
+
+# The page
+
+
+def _title(sheet: SetupSheet) -> str:
+    content = sheet.content
+    failed, checks = sum(not check.passed for check in content.checks), counted(len(content.checks), "check")
+    if sheet.may_run:
+        verdict = f'<div class="verdict">Proven<small>{checks}, all passed</small></div>'
+    else:
+        why = f"{failed} of {checks} failed" if failed else "refused, and written by force"
+        verdict = f'<div class="verdict bad">MUST NOT RUN AS IT IS<small>{why}</small></div>'
+    zero = (
+        "not told"
+        if sheet.zero is None
+        else " ".join(f"{name}{format_fixed(value)}" for name, value in zip("XYZ", sheet.zero, strict=True))
+    )
+    items = [
+        ("Machine", content.machine),
+        ("Control", content.control),
+        ("Part", sheet.part),
+        ("Work offset", ", ".join(sheet.offsets) or "none"),
+        ("Workpiece zero on the machine, mm", zero),
+        ("Program counts from", sheet.system),
+        ("Machining time", format_duration(content.seconds)),
+        ("of which in cuts", format_duration(content.cutting_seconds)),
+        ("Lengths in the program", " and ".join(content.units)),
+    ]
+    if sheet.tool_length is not None:
+        items.append(("Tool length from the gauge point, mm", format_fixed(sheet.tool_length)))
+    shown = ((name, escape(value)) for name, value in items if value)
+    entries = "".join(f"<div><dt>{name}</dt><dd><bdi>{value}</bdi></dd></div>" for name, value in shown)
+    return (
+        f"<header><div><h1><bdi>{escape(content.program)}</bdi></h1>Setup sheet</div>{verdict}</header>\n"
+        f"<dl>{entries}</dl>\n"
+    )
+
+
+def _picture(sheet: SetupSheet) -> str:
+    if not sheet.picture:
+        return ""
+    caption = "Tool path in the workpiece: cuts as lines, rapids dashed; the axes stand at the program zero."
+    return f"<figure>{sheet.picture}<figcaption>{caption}</figcaption></figure>\n"
+
+
+def _tools(sheet: SetupSheet) -> str:
+    rows = [_tool(tool) for tool in sheet.tools]
+    heads = ("Call", "Tool", "#Ø mm", "#Corner R", "#Length", "#Sticks out", "#In spindle", "Holder", "Operations",
+             "#In cuts", "Measured length")  # fmt: skip
+    return _section("Tools", _table(heads, rows))
+
+
+def _tool(tool: SheetTool) -> str:
+    kind = f"<br><small>{escape(tool.kind)}</small>" if tool.kind else ""
+    call = escape(tool.call) + (f"<br>H{tool.register}" if tool.register else "")
+    sizes = (tool.diameter, tool.corner_radius, tool.length, tool.stick_out, tool.set_length)
+    known = tool.kind != ""
+    cells = "".join(
+        f"<td class=n>{format_number(size) if size or (k == 1 and known) else ''}</td>" for k, size in enumerate(sizes)
+    )
+    numbers = ", ".join(map(str, tool.operations))
+    return (
+        f"<tr><th scope=row><bdi>{call}</bdi></th><td><bdi>{escape(tool.name)}</bdi>{kind}</td>{cells}"
+        f"<td><bdi>{escape(tool.holder)}</bdi></td><td>{numbers}</td>"
+        f"<td class=n>{format_duration(tool.seconds)}</td><td></td></tr>"
+    )
+
+
+def _operations(sheet: SetupSheet) -> str:
+    rows = [_operation(each, sheet.rotary) for each in sheet.operations]
+    heads = ("No.", "Operation", "Tool", "#First motion", "#Time", "#In cuts", "Cuts from … to, mm and °",
+             "#F mm/min", "#S rev/min", "Coolant")  # fmt: skip
+    return _section("Operations", _table(heads, rows))
+
+
+def _operation(each: SheetOperation, names: Sequence[str]) -> str:
+    facts = ", ".join(escape(text) for text in (each.mode, each.method) if text)
+    box = (
+        []
+        if each.box is None
+        else [
+            f"{name} {format_fixed(low)} … {format_fixed(high)}"
+            for name, low, high in zip("XYZ", *each.box, strict=True)
+        ]
+    )
+    box += [f"{escape(name)} {_degrees(turn)}" for name, turn in zip(names, each.cuts.rotary, strict=True) if turn]
+    feeds = [format_range(each.cuts.feed)] if each.cuts.feed else []
+    feeds += [f"{format_range(each.cuts.feed_per_rev)} mm/rev"] if each.cuts.feed_per_rev else []
+    sense = "" if each.cuts.sense in ("", "clockwise") else f"<br><small>{escape(each.cuts.sense)}</small>"
+    return (
+        f"<tr><td>{each.number}</td><th scope=row><bdi>{escape(each.name)}</bdi><br><small>{facts}</small></th>"
+        f"<td><bdi>{escape(each.tool)}</bdi></td><td class=n>{_block(each.cuts.start)}</td>"
+        f"<td class=n>{format_duration(each.seconds)}</td><td class=n>{format_duration(each.cutting_seconds)}</td>"
+        f"<td class=cuts>{'<br>'.join(box)}</td><td class=n>{'<br>'.join(feeds)}</td>"
+        f"<td class=n>{format_range(each.cuts.rpm)}{sense}</td><td>{escape(each.cuts.coolant)}</td></tr>"
+    )
+
+
+def _degrees(turn: Range) -> str:
+    low, high = (format_fixed(value) for value in turn)
+    return f"{low}°" if low == high else f"{low} … {high}°"
+
+
+def _axes(sheet: SetupSheet) -> str:
+    rows = []
+    for axis in sheet.content.axes:
+        limits = "endless" if axis.endless else "not stated"
+        if not axis.endless and (axis.low_limit is not None or axis.high_limit is not None):
+            limits = f"{format_limit(axis.low_limit)} … {format_limit(axis.high_limit)}"
+        if not axis.zero_known and axis.low_limit is not None and axis.high_limit is not None:
+            limits = f"travel {format_number(axis.high_limit - axis.low_limit)}"
+        used = (
+            ("", "") if axis.extremes is None else (format_fixed(axis.extremes.low), format_fixed(axis.extremes.high))
+        )
+        left = "" if axis.margin is None else format_fixed(axis.margin)
+        bad = ' class="bad"' if axis.margin is not None and axis.margin < 0.0 else ""
+        counted_from = "the machine's zero" if axis.zero_known else "the workpiece zero"
+        rows.append(
+            f"<tr{bad}><th scope=row>{escape(axis.name)} <small>{axis.unit}</small></th><td class=n>{used[0]}</td>"
+            f"<td class=n>{used[1]}</td><td class=n>{limits}</td><td class=n>{left}</td><td>{counted_from}</td></tr>"
+        )
+    heads = ("Axis", "#From", "#To", "#Limits", "#Left", "Counted from")
+    return _section("Travel", _table(heads, rows), "whole")
+
+
+def _start(sheet: SetupSheet) -> str:
+    return _section("Start", _list(sheet.start, "plain"), "whole")
+
+
+def _to_check(sheet: SetupSheet) -> str:
+    return _section("To be checked at the machine: the proof cannot see it", _list(sheet.to_check))
+
+
+def _checks(checks: Sequence[Check]) -> str:
+    rows = [
+        f'<tr class="{"" if check.passed else "bad"}"><td>{"✓" if check.passed else "✗ FAILED"}</td>'
+        f"<td>{capitalised(check.title)}</td><td>{escape(check.summary)}</td></tr>"
+        for check in checks
+    ]
+    return _section("What was proven", _table(("", "Check", "Result"), rows), "small")
+
+
+def _files(sheet: SetupSheet) -> str:
+    rows = [
+        f"<tr><th scope=row><bdi>{escape(file.name)}</bdi></th><td class=n>{file.size:,}</td>"
+        f'<td class="hash">{file.sha256}</td></tr>'
+        for file in sheet.files
+    ]
+    return _section("Files of the program", _table(("File", "#Bytes", "SHA-256"), rows)) if rows else ""
+
+
+def _signatures(sheet: SetupSheet) -> str:
+    rows = [f"<tr><th scope=row>{who}</th><td></td><td></td><td></td></tr>" for who in _SIGNATURES]
+    table = _table(("", "Name", "Date", "Signature"), rows)
+    return (
+        f'<section class="sign">\n<h2>Released</h2>\n{table}</section>\n'
+        f"<footer>{escape(sheet.version)}. A sheet belongs to the files whose checksums it has.</footer>\n"
+    )
+
+
+def _list(texts: Iterable[str], kind: str = "") -> str:
+    return f'<ul class="{kind}">' + "".join(f"<li>{escape(text)}</li>\n" for text in texts) + "</ul>\n"
+
+
+def _section(title: str, body: str, kind: str = "") -> str:
+    return f'<section class="{kind}">\n<h2>{title}</h2>\n{body}</section>\n'
+
+
+def _table(headings: Sequence[str], rows: Sequence[str]) -> str:
+    """Return a table; a heading with ``#`` is that of a column of numbers."""
+    cells = "".join(
+        f"<th scope=col class=n>{head[1:]}</th>" if head[:1] == "#" else f"<th scope=col>{head}</th>"
+        for head in headings
+    )
+    body = "\n".join(rows)
+    return f"<table>\n<thead><tr>{cells}</tr></thead>\n<tbody>\n{body}\n</tbody></table>\n"
+
+
+def _block(block: BlockReference | None) -> str:
+    if block is None:
+        return ""
+    place = f"N{block.number}" if block.number >= 0 else f"line {block.nc_line}"
+    return f"{escape(block.file)} {place}".strip()

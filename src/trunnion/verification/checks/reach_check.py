@@ -1,0 +1,72 @@
+"""Feeds per block that the machine can follow: each as high as the axes reach there, and no higher."""
+
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats
+from trunnion.timing import reached_feeds
+from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
+from trunnion.verification.deviations.reached_rows import ReachedRows, reached_rows
+from trunnion.verification.expected.path import ExpectedPath
+from trunnion.verification.results import Check
+from trunnion.wording import counted, format_duration
+
+#: Shares by which a feed may be below what is reached, for three digits are printed at least, and above, for the
+#: positions of both runs may be rounded.
+_BELOW: Final = 0.011
+_ABOVE: Final = 0.001
+
+_TITLE: Final = "feeds as the axes reach them"
+
+
+def check_reach(context: ComparedContext, original: ExpectedPath) -> list[Check]:
+    """One check where feeds are those that the axes reach; none elsewhere.
+
+    ``original`` has the feeds of the CL files, the path of the context those that are declared.
+    """
+    settings = context.settings
+    if not settings.fastest_feed:
+        return []
+    found = reached_rows(context.run, original, context.matching, settings.feed_limit)
+    feed, digit = _declared(context.expected)
+    with np.errstate(invalid="ignore"):
+        above_most = feed > found.most * (1.0 + 1e-9) + 0.5 * digit
+        too_high = feed > found.feed * (1.0 + _ABOVE) + digit
+        too_low = feed < np.minimum(found.feed * (1.0 - _BELOW), found.most) - digit
+        lowered = feed < found.most - 0.5 * digit
+    unknown = lowered & np.isnan(found.feed)
+    bad = np.flatnonzero(above_most | too_high | too_low | unknown)
+    places = []
+    for row in bad[:MAX_PLACES].tolist():
+        text = f"has a feed of {feed[row]:g}, and the axes reach {found.feed[row]:.5g} there"
+        if above_most[row]:
+            text = f"has a feed of {feed[row]:g}, more than the {found.most[row]:g} that it may have"
+        elif unknown[row]:
+            text = f"has a feed of {feed[row]:g} in place of {found.most[row]:g}, and what the axes reach is not known"
+        places.append(context.place_of_cl_row(row, float(feed[row]), text))
+    return [check_from_places("reach", _TITLE, places, _summary(context, original, found, feed, lowered), len(bad))]
+
+
+def _declared(expected: ExpectedPath) -> tuple[Floats, Floats]:
+    """The feeds of all rows, (m,), and the last printed digit of each."""
+    feeds = [section.operation.moves.feed for section in expected.sections]
+    digits = [np.full(len(feed), 2.0 * s.tolerances.feed) for feed, s in zip(feeds, expected.sections, strict=True)]
+    return np.concatenate(feeds), np.concatenate(digits)
+
+
+def _summary(context: ComparedContext, original: ExpectedPath, found: ReachedRows, feed: Floats, lowered: Flags) -> str:
+    """How many feeds are lower, by how much, and what that takes."""
+    run, limit = context.run, context.settings.feed_limit
+    total, count = (int(np.count_nonzero(rows)) for rows in (np.isfinite(found.most), lowered))
+    if not total:
+        return "nothing is cut at a feed per minute"
+    text = f"lower than {'in the CL file' if limit is None else f'{limit:g} mm/min'} at {count} of"
+    text += f" {counted(total, 'point')}"
+    if count:
+        share = 100.0 * float((1.0 - feed[lowered] / found.most[lowered]).max())
+        text += f", by {share:.0f} % at most"
+    now, seconds = float(reached_feeds(run, np.full(len(run), np.nan)).seconds.sum()), found.seconds
+    if limit is not None:
+        seconds = reached_rows(run, original, context.matching, None).seconds
+    return f"{text}; {format_duration(now)} of motion, {format_duration(seconds)} at the feeds of the CL file"
