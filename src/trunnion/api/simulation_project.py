@@ -85,13 +85,15 @@ def read_project(path: Path, elsewhere: Collection[str] = ()) -> SimulationInput
         If it cannot be read, with every mistake in it and its line.
     """
     if path.suffix != ".toml":
-        raise InputError(Problem(str(path), 0, "is a project by its content", "let its name end in .toml"))
+        raise InputError(
+            Problem(str(path), 0, "is a project by its content", "let its name end in .toml", code="SIM112")
+        )
     if unusable := unusable_file(path, "a project"):
         raise InputError(unusable)
     root = load_table(path, files(__package__), kind="project")
     if "simulation" not in root:
         what, cure = "has no table [simulation]", "write one, or give NC programs"
-        raise InputError(Problem(str(path), 0, what, cure))
+        raise InputError(Problem(str(path), 0, what, cure, code="SIM112"))
     found = _Reader(path, elsewhere).simulation(root.table("simulation"))
     root.report_unread_keys()
     root.raise_problems()

@@ -65,7 +65,7 @@ def judge(text: str, path: Path) -> Draft:
     """
     if len(text) > MOST_LETTERS:
         what = f"has {len(text)} letters; more than {MOST_LETTERS} are not edited here"
-        return Draft(text, path, None, None, (Problem(str(path), 0, what, "edit the file itself"),))
+        return Draft(text, path, None, None, (Problem(str(path), 0, what, "edit the file itself", code="PAG213"),))
     try:
         table = load_draft(text, path, machine_library())
     except InputError as error:

@@ -51,7 +51,7 @@ def _lines_of(file: str) -> list[str]:
         return Path(file).read_text(encoding="utf-8", errors="replace").splitlines()
     except OSError as error:
         what = f"cannot be read again: {error.strerror}"
-        raise InputError(Problem(file, 0, what, "keep the program until it has been verified")) from error
+        raise InputError(Problem(file, 0, what, "keep the program until it has been verified", code="NC111")) from error
 
 
 def _is_inserted(diagnostic: Diagnostic, lines: Sequence[str], texts: set[str]) -> bool:
