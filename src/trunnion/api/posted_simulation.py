@@ -173,7 +173,7 @@ def _check(
         summary = f"nothing touches of {counted(found.pairs, 'pair')} of bodies that were checked"
     else:
         summary = "nothing was checked: there are neither fixtures, nor zero and tool length for the machine's bodies"
-    places = (*_places(findings), *(Place(each.line, -1, math.nan, each.what) for each in broken))
+    places = (*_places(findings), *(Place(each.line, -1, math.nan, each.what, code=each.code) for each in broken))
     return Check(key, title, passed, summary, deepest, 0.0 if key == "collision" else found.limit, "mm", places)
 
 

@@ -135,6 +135,7 @@ def _problem(problem: Problem, draft: Draft) -> dict[str, Any]:
         "path": _steps(path),
         "what": problem.what,
         "cure": problem.cure,
+        "code": problem.code,
     }
 
 

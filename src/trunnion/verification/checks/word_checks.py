@@ -30,7 +30,8 @@ def check_words(context: Context) -> Check:
 
 def _place(context: Context, diagnostic: Diagnostic) -> Place:
     of_subprogram = diagnostic.file in context.run.files[1:]
-    return Place(diagnostic.line, -1, 0.0, diagnostic.text, nc_file=diagnostic.file if of_subprogram else "")
+    nc_file = diagnostic.file if of_subprogram else ""
+    return Place(diagnostic.line, -1, 0.0, diagnostic.text, nc_file=nc_file, code=diagnostic.code)
 
 
 def _compared_errors(
