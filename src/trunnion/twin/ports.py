@@ -27,4 +27,4 @@ def listen(what: str, host: str, port: int, argument: str) -> socket.socket:
     except (OSError, OverflowError) as error:
         fault = f"cannot be served on {host}, port {port}: {getattr(error, 'strerror', None) or error}"
         cure = f"choose another one with argument {argument}=NUMBER; 0 takes a free one"
-        raise InputError(Problem(what, 0, fault, cure)) from None
+        raise InputError(Problem(what, 0, fault, cure, code="TWN150")) from None

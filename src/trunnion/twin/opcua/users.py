@@ -96,9 +96,9 @@ def write_user(path: Path, name: str, role: Role, password: str) -> None:
     """
     if not _NAME.fullmatch(name):
         cure = "take 1 to 64 letters, digits or _ . @ -"
-        raise InputError(Problem(str(path), 0, f"{name!r} is no name of a user", cure))
+        raise InputError(Problem(str(path), 0, f"{name!r} is no name of a user", cure, code="TWN130"))
     if len(password) < 8:
-        raise InputError(Problem(str(path), 0, "the password is too short", "take 8 characters or more"))
+        raise InputError(Problem(str(path), 0, "the password is too short", "take 8 characters or more", code="TWN130"))
     others = [user for user in _read(path) if user.name != name] if path.exists() else []
     lines = [_line(user) for user in (*others, _hashed(name, role, password))]
     try:
@@ -110,7 +110,9 @@ def write_user(path: Path, name: str, role: Role, password: str) -> None:
             sink.write("# Users of a Trunnion twin: name:role:scrypt:N:r:p:salt:hash\n" + "".join(lines))
         beside.replace(path)
     except OSError as error:
-        raise InputError(Problem(str(path), 0, f"cannot be written: {error.strerror}", "name another file")) from None
+        raise InputError(
+            Problem(str(path), 0, f"cannot be written: {error.strerror}", "name another file", code="TWN131")
+        ) from None
 
 
 def _read(path: Path) -> list[StoredUser]:
@@ -119,7 +121,9 @@ def _read(path: Path) -> list[StoredUser]:
     except (OSError, UnicodeDecodeError) as error:
         what = getattr(error, "strerror", None) or "it is no text in UTF-8"
         cure = "add a user with argument add_user=NAME"
-        raise InputError(Problem(str(path), 0, f"the file of users cannot be read: {what}", cure)) from None
+        raise InputError(
+            Problem(str(path), 0, f"the file of users cannot be read: {what}", cure, code="TWN131")
+        ) from None
     users, problems = [], []
     for number, line in enumerate(text.splitlines(), 1):
         if not line.strip() or line.startswith("#"):
@@ -127,7 +131,9 @@ def _read(path: Path) -> list[StoredUser]:
         user = _parsed(line)
         if user is None:
             what = "is no user; a line is name:role:scrypt:N:r:p:salt:hash"
-            problems.append(Problem(str(path), number, what, "remove it, and add the user again with add_user=True"))
+            problems.append(
+                Problem(str(path), number, what, "remove it, and add the user again with add_user=True", code="TWN131")
+            )
         else:
             users.append(user)
     if problems:

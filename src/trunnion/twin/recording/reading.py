@@ -44,11 +44,15 @@ def read_recording(path: Path) -> Recording:
         raise InputError(problem)
     suffix = path.suffix.lower()
     if suffix not in (".csv", ".parquet"):
-        raise InputError(Problem(str(path), 0, "is no recording", "give one that ends in .csv or .parquet"))
+        raise InputError(
+            Problem(str(path), 0, "is no recording", "give one that ends in .csv or .parquet", code="TWN320")
+        )
     try:
         return _Reader(str(path)).read(_csv_groups(path) if suffix == ".csv" else _parquet_groups(path))
     except (OSError, csv.Error) as error:
-        raise InputError(Problem(str(path), 0, f"cannot be read: {error}", "give a recording of trunnion")) from None
+        raise InputError(
+            Problem(str(path), 0, f"cannot be read: {error}", "give a recording of trunnion", code="TWN320")
+        ) from None
 
 
 class _Reader:
@@ -70,7 +74,9 @@ class _Reader:
                 parts.setdefault(name, []).append(self._column(name, group[name]))
             self._rows += len(group[names[0]])
             if self._rows > _MOST_ROWS:
-                raise InputError(Problem(self._file, 0, f"has more than {_MOST_ROWS} rows", "record it in parts"))
+                raise InputError(
+                    Problem(self._file, 0, f"has more than {_MOST_ROWS} rows", "record it in parts", code="TWN320")
+                )
             if len(self._problems) >= _MOST_PROBLEMS:
                 break
         if self._problems:
@@ -129,7 +135,9 @@ class _Reader:
                     self._wrong(k, "mark", cell, "is no mark", f"known are {', '.join(Mark)}")
 
     def _wrong(self, k: int, name: str, cell: object, what: str, cure: str) -> None:
-        self._problems.append(Problem(self._file, self._rows + k + 2, f"{name} {what}: {str(cell)[:40]!r}", cure))
+        self._problems.append(
+            Problem(self._file, self._rows + k + 2, f"{name} {what}: {str(cell)[:40]!r}", cure, code="TWN321")
+        )
 
 
 def _csv_groups(path: Path) -> Iterator[dict[str, _Cells]]:
@@ -138,7 +146,7 @@ def _csv_groups(path: Path) -> Iterator[dict[str, _Cells]]:
         lines = csv.reader(source)
         names = [name.strip() for name in next(lines, [])]
         if not names:
-            raise InputError(Problem(str(path), 0, "is empty", "give a recording"))
+            raise InputError(Problem(str(path), 0, "is empty", "give a recording", code="TWN320"))
         _check_names(path, names)
         first = True
         while group := list(islice(lines, _GROUP)):
@@ -147,7 +155,7 @@ def _csv_groups(path: Path) -> Iterator[dict[str, _Cells]]:
             for k, line in enumerate(group):
                 if len(line) != len(names):
                     what, cure = f"has {len(line)} cells, not {len(names)}", "write one for each column"
-                    raise InputError(Problem(str(path), lines.line_num - len(group) + k + 1, what, cure))
+                    raise InputError(Problem(str(path), lines.line_num - len(group) + k + 1, what, cure, code="TWN321"))
             if group or first:
                 yield dict(zip(names, zip(*group, strict=True), strict=True)) if group else dict.fromkeys(names, ())
             first = False
@@ -166,7 +174,7 @@ def _check_names(path: Path, names: Sequence[str]) -> None:
         what = "has no column source"
     if what:
         cure = "the columns of a recording are source, received, mark, X, Y, …"
-        raise InputError(Problem(str(path), 1, what, cure))
+        raise InputError(Problem(str(path), 1, what, cure, code="TWN320"))
 
 
 def _ends_with_a_line(path: Path) -> bool:
@@ -186,4 +194,6 @@ def _parquet_groups(path: Path) -> Iterator[dict[str, _Cells]]:
             for batch in file.iter_batches(_GROUP):
                 yield {name: batch.column(k).to_pylist() for k, name in enumerate(names)}
     except arrow.ArrowException as error:
-        raise InputError(Problem(str(path), 0, f"is no Parquet file: {error}", "give a recording")) from None
+        raise InputError(
+            Problem(str(path), 0, f"is no Parquet file: {error}", "give a recording", code="TWN320")
+        ) from None
