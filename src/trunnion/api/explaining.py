@@ -30,7 +30,7 @@ def explain(code: str) -> Explanation:
     'There is no such code'
     """
     known = explanations()
-    wanted = code.strip().strip("[]")
+    wanted = str(code).strip().strip("[]")
     found = known.get(wanted) or known.get(wanted.upper()) or known.get(wanted.lower())
     if found is not None:
         return found

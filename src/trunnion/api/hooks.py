@@ -145,7 +145,7 @@ class Hooks:
             Decision(before.file, before.name, before.line, -1, DecisionTopic.HOOKS, f"{file.path.name}: {text}")
         )
         name = next(iter(file.functions))
-        return [Problem(str(file.path), file.line_of(name), text, severity=Severity.WARNING)]
+        return [Problem(str(file.path), file.line_of(name), text, severity=Severity.WARNING, code="HOK140")]
 
 
 def _motion_change(before: Operation, after: Sequence[Operation]) -> list[str]:
@@ -193,7 +193,9 @@ class _Caller:
 
     def refuse(self, name: str, what: str, cure: str) -> InputError:
         """The error for what a function has returned."""
-        return InputError(Problem(str(self._file.path), self._file.line_of(name), f"{name} returns {what}", cure))
+        return InputError(
+            Problem(str(self._file.path), self._file.line_of(name), f"{name} returns {what}", cure, code="HOK130")
+        )
 
     def listed(self, name: str, returned: object, kind: type[_Kind]) -> list[_Kind]:
         """What a function has returned, as a list."""
@@ -324,7 +326,9 @@ def _blocks(moves: Moves) -> Iterable[Block]:
 def _load(path: Path) -> HookFile:
     problem = unusable_file(path, "a file of hooks")
     if problem is None and path.suffix != ".py":
-        problem = Problem(str(path), 0, "is no Python file", "give the path of a file of hooks, such as shop.py")
+        problem = Problem(
+            str(path), 0, "is no Python file", "give the path of a file of hooks, such as shop.py", code="HOK110"
+        )
     if problem is not None:
         raise InputError(problem)
     module = types.ModuleType(_MODULE)
@@ -338,11 +342,11 @@ def _load(path: Path) -> HookFile:
         if name not in _FUNCTIONS:
             line = getattr(getattr(function, "__code__", None), "co_firstlineno", 0)
             cure = did_you_mean(name, _FUNCTIONS) or f"hooks are {', '.join(_FUNCTIONS)}"
-            raise InputError(Problem(str(path), line, f"{name} is no hook", cure))
+            raise InputError(Problem(str(path), line, f"{name} is no hook", cure, code="HOK110"))
         _check_signature(path, name, function)
     if not named:
         cure = f"write a function {' or '.join(_FUNCTIONS)}"
-        raise InputError(Problem(str(path), 0, "the file has no hooks", cure))
+        raise InputError(Problem(str(path), 0, "the file has no hooks", cure, code="HOK110"))
     return HookFile(path, {name: named[name] for name in _FUNCTIONS if name in named})
 
 
@@ -352,7 +356,7 @@ def _check_signature(path: Path, name: str, function: Callable[..., object]) -> 
     except (TypeError, ValueError):
         line = getattr(getattr(function, "__code__", None), "co_firstlineno", 0)
         cure = f"write def {name}({', '.join(_FUNCTIONS[name])}):"
-        raise InputError(Problem(str(path), line, f"{name} takes other arguments", cure)) from None
+        raise InputError(Problem(str(path), line, f"{name} takes other arguments", cure, code="HOK110")) from None
 
 
 def _failure(path: Path, error: BaseException, what: str) -> Problem:
@@ -366,4 +370,6 @@ def _failure(path: Path, error: BaseException, what: str) -> Problem:
         line = error.lineno or 0
     text = str(error).splitlines()
     said = f": {text[0]}" if text else ""
-    return Problem(str(path), line, f"{what}: {type(error).__name__}{said}", "mend it there, or leave the hooks out")
+    return Problem(
+        str(path), line, f"{what}: {type(error).__name__}{said}", "mend it there, or leave the hooks out", code="HOK120"
+    )

@@ -183,7 +183,9 @@ def _with_numbers(control: Control, asked: str | None) -> Control:
     numbers = control.block_numbers
     if asked == "operations" and not numbers.letter:
         cure = "leave it out: its numbers have no letter, and stand before every block"
-        raise InputError(argument_problem("settings", f"numbers is operations, and {control.name} has no such", cure))
+        raise InputError(
+            argument_problem("settings", f"numbers is operations, and {control.name} has no such", cure, code="ARG250")
+        )
     if asked is None or (asked == "on" and not numbers.letter):
         return control
     every = numbers.every if asked == "off" else 1
@@ -240,10 +242,12 @@ def parse_plan_options(settings: Mapping[str, str], control: Control, explain: b
     fastest, limit = settings.get("feed") == "fastest", number_setting(settings, "feed_limit")
     lower_feed = settings.get("lower_feed", "no") == "yes"
     if limit is not None and not fastest:
-        raise InputError(argument_problem("settings", "feed_limit is for feed=fastest only", "write feed=fastest too"))
+        raise InputError(
+            argument_problem("settings", "feed_limit is for feed=fastest only", "write feed=fastest too", code="ARG220")
+        )
     if fastest and lower_feed:
         what = "lower_feed is yes, and feed=fastest keeps all axes within their speeds"
-        raise InputError(argument_problem("settings", what, "leave lower_feed out"))
+        raise InputError(argument_problem("settings", what, "leave lower_feed out", code="ARG220"))
     known: dict[str, Any] = {key: value for key, value in numbers.items() if value is not None}
     if "clearance" in settings:
         known["clearance"] = _parse_clearance(settings["clearance"])

@@ -28,7 +28,7 @@ from trunnion.schemas import first_line
 def machines(arguments: argparse.Namespace) -> int:
     """List the shipped machines, or print one definition as its file has it, or with all that it extends."""
     if arguments.resolved and not arguments.name:
-        raise InputError(argument_problem("resolved", "wants a machine", "name one, or the file of one"))
+        raise InputError(argument_problem("resolved", "wants a machine", "name one, or the file of one", code="ARG130"))
     if arguments.resolved:
         load_machine(arguments.name)
         table = load_table(arguments.name, machine_library(), kind="machine")

@@ -93,7 +93,7 @@ class _Told:
             with output_group() as group:
                 may_run, written = self._work.post(group)
                 if not is_unchanged():
-                    raise _ChangedError(Problem(self._work.name, 0, "has changed while it was posted"))
+                    raise _ChangedError(Problem(self._work.name, 0, "has changed while it was posted", code="PRJ160"))
         except (TrunnionError, OSError) as error:
             self._tell(_failure(error, is_unchanged()))
             self._warn_of_old_programs()

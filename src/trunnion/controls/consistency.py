@@ -66,9 +66,9 @@ def _check_names(
         if template.is_text:
             file, at = template.place_of(line)
             key = table.key_path(template.name)
-            table.problems.append(Problem(file, at, f"{key} {what}", cure, key=key))
+            table.problems.append(Problem(file, at, f"{key} {what}", cure, key=key, code="DEF510"))
         else:
-            table.add_problem(template.name, what, cure)
+            table.add_problem(template.name, what, cure, code="DEF510")
 
 
 def _is_about_event(name: str) -> bool:

@@ -18,6 +18,8 @@ SUBJECTS: Final = {
     "definitions": "Definitions",
     "planning": "Planning",
     "controls": "What a control cannot do",
+    "projects": "Projects and tests",
+    "hooks": "Hooks",
     "programs": "Reading programs",
     "checks": "Checks",
     "conversion": "Conversion",

@@ -325,7 +325,11 @@ class OutputGroup:
         places = [place, *papers]
         for each in places:
             if each.is_stream:
-                raise InputError(Problem(each.name, 0, "is a device, and several files appear together", "name a file"))
+                raise InputError(
+                    Problem(
+                        each.name, 0, "is a device, and several files appear together", "name a file", code="FIL210"
+                    )
+                )
         self._claims.read(inputs)
         for each in places:
             self._claims.write(each)

@@ -54,7 +54,13 @@ def check_is_shipped(name: str) -> None:
         near = did_you_mean(name, names)
         cure = f"{near} " if near else ""
         raise InputError(
-            Problem(name, 0, "there is no shipped machine of this name", f"{cure}write one of {', '.join(names)}")
+            Problem(
+                name,
+                0,
+                "there is no shipped machine of this name",
+                f"{cure}write one of {', '.join(names)}",
+                code="DEF110",
+            )
         )
 
 

@@ -246,7 +246,9 @@ class EventWriter:
         if not any(word.search(without_comments(self._control, line)) for line in lines):
             file, at = self._control.templates[STOP_PLACE].place_of(0)
             what = f"template {STOP_PLACE} does not stop the program: it has no M{code} at line {event.line}"
-            raise InputError(Problem(file, at, what, "write M{number} on a line of it, without a condition"))
+            raise InputError(
+                Problem(file, at, what, "write M{number} on a line of it, without a condition", code="DEF560")
+            )
         return lines
 
     def _turn_again_after_thread(self, cycle: CycleOn, event: CycleOn | CycleOff) -> None:
