@@ -130,7 +130,7 @@ def test_settings_are_told_where_the_project_states_them(tmp_path: Path) -> None
     assert problems(path)[0].startswith(f"{path}:4: error: settings.titel is not a setting")
     path.write_text(PROJECT.replace("title = ", "split = 20480, title = "))
     (found,) = problems(path)
-    assert found.endswith('settings.split divides subprograms, and there are none; write divide = "subprograms" too')
+    assert found.endswith('settings.split divides subprograms, and there are none; write divide = "subprograms" too [ARG240]')
     path.write_text(PROJECT.replace("yl569", "hs664rt").replace("top.mpf", "top.nc") + 'divide = "subprograms"\n')
     (found,) = problems(path)
     assert found.startswith(f'{path}:5: error: divide is "subprograms", and Fidia')
