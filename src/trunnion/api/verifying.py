@@ -149,7 +149,7 @@ def verify(
     control = written_control(loaded)
     defaults = default_settings(loaded)
     toolpaths = as_toolpaths(cl, units, False, observer, dialect)
-    toolpaths = replace_unknown_statements(toolpaths, control.statements if control else {}, loaded)
+    toolpaths = replace_unknown_statements(toolpaths, control, loaded)
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     run = as_run(nc, loaded, subprograms)

@@ -24,7 +24,12 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     missing = [name for name, value in (("nc", arguments.file), ("machine", arguments.machine)) if value is None]
     if missing:
-        raise InputError([argument_problem(name, "is missing", "name the program and its machine") for name in missing])
+        raise InputError(
+            [
+                argument_problem(name, "is missing", "name the program and its machine", code="ARG130")
+                for name in missing
+            ]
+        )
     if arguments.device_xml is not None:
         check_outputs([arguments.device_xml], [arguments.file, *arguments.subprograms])
         write_device_xml(
@@ -63,5 +68,5 @@ def _password() -> str:
         return sys.stdin.readline().rstrip("\r\n")
     password = getpass.getpass("Password: ")
     if getpass.getpass("Once more: ") != password:
-        raise InputError(Problem("password", 0, "is not the same both times", "start again"))
+        raise InputError(Problem("password", 0, "is not the same both times", "start again", code="ARG180"))
     return password

@@ -76,11 +76,11 @@ class ImpellerDefinition:
     premachined: tuple[StepKind, ...] = ()
     places: Mapping[str, tuple[str, int]] = field(default_factory=dict)
 
-    def problem(self, key: str, what: str, cure: str) -> Problem:
+    def problem(self, key: str, what: str, cure: str, *, code: str) -> Problem:
         """A mistake that a key makes; it is told at the line of its table where the key is not written."""
         table = key.rpartition(".")[0]
         file, line = self.places.get(key) or self.places.get(table) or (self.file, 0)
-        return Problem(file, line, what, cure, key=key)
+        return Problem(file, line, what, cure, key=key, code=code)
 
 
 def read_impeller(path: Path) -> ImpellerDefinition:

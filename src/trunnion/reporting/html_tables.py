@@ -100,7 +100,7 @@ def _check_places(check: Check) -> str:
         f"<tr><td class=n>{format_number(place.value)}</td>"
         f"<td class=n>{_number(place.number)}</td><td class=n>{_nc_line(place)}</td>"
         f"<td class=n>{_cl_line(place)}</td>"
-        f"<td>{escape(place.text)}</td>"
+        f"<td>{escape(place.told)}</td>"
         f"<td class=go>{_plot_button(place)}</td></tr>"
         for place in check.places[:MAX_PLACES]
     ]

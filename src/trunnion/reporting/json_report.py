@@ -108,6 +108,7 @@ def _place(place: Place) -> dict[str, object]:
         "cl_line": place.cl_line or None,
         "value": finite_or_none(place.value),
         "text": place.text,
+        "code": place.code or None,
     }
 
 

@@ -27,6 +27,7 @@ class Place:
     value            what was found there, in the unit of the check
     text             the same in words
     cl_file, cl_line place in a CL file; line 0 for none
+    code             that of the message which ``text`` is, see ``trunnion.explanations``; empty: a finding of the check
     """
 
     nc_line: int
@@ -37,6 +38,12 @@ class Place:
     cl_line: int = 0
     nc_file: str = ""
     row: int = -1
+    code: str = ""
+
+    @property
+    def told(self) -> str:
+        """``text`` as it is printed: with its code, if it has one."""
+        return f"{self.text} [{self.code}]" if self.code else self.text
 
     @property
     def block_name(self) -> str:

@@ -34,7 +34,7 @@ def place_line(program: str, place: Place) -> str:
     """One place, in the form that editors can jump to."""
     number = f" (N{place.number})" if place.number >= 0 else ""
     cl = f", {place.cl_file}:{place.cl_line}" if place.cl_line else ""
-    return f"{place.nc_file or program}:{place.nc_line}{number}{cl}: {place.text}"
+    return f"{place.nc_file or program}:{place.nc_line}{number}{cl}: {place.told}"
 
 
 def time_lines(verification: Verification) -> Iterator[str]:

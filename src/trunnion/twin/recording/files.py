@@ -47,11 +47,11 @@ def check_is_new(place: OutputPlace) -> None:
         If something is there.
     """
     if place.is_stream:
-        raise InputError(Problem(place.name, 0, "is no file, and a recording is one", "name a file"))
+        raise InputError(Problem(place.name, 0, "is no file, and a recording is one", "name a file", code="TWN310"))
     for path in dict.fromkeys((place.path, journal_of(place.path))):
         if path.exists():
             what = f"exists, and a recording is never written over{'' if path == place.path else ' (it was not ended)'}"
-            raise InputError(Problem(str(path), 0, what, "name another file, or move this one away"))
+            raise InputError(Problem(str(path), 0, what, "name another file, or move this one away", code="TWN310"))
 
 
 class RecordingWriter:
@@ -143,7 +143,7 @@ class RecordingWriter:
 
     def _failed(self, error: OSError) -> InputError:
         what = f"cannot be written: {error.strerror or error}"
-        return InputError(Problem(str(self._journal), 0, what, "what was recorded so far stays"))
+        return InputError(Problem(str(self._journal), 0, what, "what was recorded so far stays", code="TWN311"))
 
 
 def _groups(lines: Iterator[list[str]]) -> Iterator[list[list[str]]]:

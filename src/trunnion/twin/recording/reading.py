@@ -50,11 +50,15 @@ def read_recording(path: Path) -> Recording:
         raise InputError(problem)
     suffix = path.suffix.lower()
     if suffix not in (".csv", ".parquet"):
-        raise InputError(Problem(str(path), 0, "is no recording", "give one that ends in .csv or .parquet"))
+        raise InputError(
+            Problem(str(path), 0, "is no recording", "give one that ends in .csv or .parquet", code="TWN320")
+        )
     try:
         return _Reader(str(path)).read(_csv_groups(path) if suffix == ".csv" else _parquet_groups(path))
     except (OSError, csv.Error) as error:
-        raise InputError(Problem(str(path), 0, f"cannot be read: {error}", "give a recording of trunnion")) from None
+        raise InputError(
+            Problem(str(path), 0, f"cannot be read: {error}", "give a recording of trunnion", code="TWN320")
+        ) from None
 
 
 class _Reader:
@@ -76,7 +80,9 @@ class _Reader:
                 parts.setdefault(name, []).append(self._column(name, group[name]))
             self._rows += len(group[names[0]])
             if self._rows > _MOST_ROWS:
-                raise InputError(Problem(self._file, 0, f"has more than {_MOST_ROWS} rows", "record it in parts"))
+                raise InputError(
+                    Problem(self._file, 0, f"has more than {_MOST_ROWS} rows", "record it in parts", code="TWN320")
+                )
             if len(self._problems) >= _MOST_PROBLEMS:
                 break
         if self._problems:
@@ -134,7 +140,9 @@ class _Reader:
                     self._wrong(k, "mark", cell, "is no mark", f"known are {', '.join(Mark)}")
 
     def _wrong(self, k: int, name: str, cell: object, what: str, cure: str) -> None:
-        self._problems.append(Problem(self._file, self._rows + k + 2, f"{name} {what}: {str(cell)[:40]!r}", cure))
+        self._problems.append(
+            Problem(self._file, self._rows + k + 2, f"{name} {what}: {str(cell)[:40]!r}", cure, code="TWN321")
+        )
 
 
 def _number(cell: object) -> float:
@@ -159,7 +167,7 @@ def _csv_groups(path: Path) -> Iterator[dict[str, _Cells]]:
         lines = csv.reader(source)
         names = [name.strip() for name in next(lines, [])]
         if not names:
-            raise InputError(Problem(str(path), 0, "is empty", "give a recording"))
+            raise InputError(Problem(str(path), 0, "is empty", "give a recording", code="TWN320"))
         _check_names(path, names)
         first = True
         while group := list(islice(lines, _GROUP)):
@@ -169,7 +177,7 @@ def _csv_groups(path: Path) -> Iterator[dict[str, _Cells]]:
             for k, line in enumerate(group):
                 if len(line) != len(names):
                     what, cure = f"has {len(line)} cells, not {len(names)}", "write one for each column"
-                    raise InputError(Problem(str(path), lines.line_num - len(group) + k + 1, what, cure))
+                    raise InputError(Problem(str(path), lines.line_num - len(group) + k + 1, what, cure, code="TWN321"))
             if group or first:
                 yield dict(zip(names, zip(*group, strict=True), strict=True)) if group else dict.fromkeys(names, ())
             first = False
@@ -188,7 +196,7 @@ def _check_names(path: Path, names: Sequence[str]) -> None:
         what = "has no column source"
     if what:
         cure = "the columns of a recording are source, received, mark, X, Y, …"
-        raise InputError(Problem(str(path), 1, what, cure))
+        raise InputError(Problem(str(path), 1, what, cure, code="TWN320"))
 
 
 def _ends_with_a_line(path: Path) -> bool:
@@ -212,7 +220,9 @@ def _parquet_groups(path: Path) -> Iterator[dict[str, _Cells]]:
                 for batch in whole.iter_batches(_batch_rows(path, file)):
                     yield {name: _cells(batch.column(k), arrow, path, name) for k, name in enumerate(names)}
     except arrow.ArrowException as error:
-        raise InputError(Problem(str(path), 0, f"is no Parquet file: {error}", "give a recording")) from None
+        raise InputError(
+            Problem(str(path), 0, f"is no Parquet file: {error}", "give a recording", code="TWN320")
+        ) from None
 
 
 def _check_kinds(path: Path, schema: Any) -> None:
@@ -231,7 +241,7 @@ def _check_kinds(path: Path, schema: Any) -> None:
             good, what = is_text or kind in _NUMBERS, "holds no numbers"
         if not good:
             cure = "times are timestamps, block, program and mark texts, and all else numbers"
-            raise InputError(Problem(str(path), 1, f"column {field.name} {what} but {kind}", cure))
+            raise InputError(Problem(str(path), 1, f"column {field.name} {what} but {kind}", cure, code="TWN320"))
 
 
 def _batch_rows(path: Path, file: Any) -> int:
@@ -242,7 +252,7 @@ def _batch_rows(path: Path, file: Any) -> int:
         group = metadata.row_group(k)
         if group.total_byte_size > _MOST_BYTES:
             what = f"has a row group of {group.total_byte_size} bytes, more than {_MOST_BYTES}"
-            raise InputError(Problem(str(path), 0, what, "write it with smaller row groups"))
+            raise InputError(Problem(str(path), 0, what, "write it with smaller row groups", code="TWN320"))
         most = max(most, group.num_rows)
     return min(_GROUP, most)
 
@@ -258,7 +268,9 @@ def _cells(column: Any, arrow: Any, path: Path, name: str) -> list[Any]:
         _check_texts(path, name, texts)
         return [None if k is None else texts[k] for k in column.indices.to_pylist()]
     if column.nbytes > _MOST_BYTES:
-        raise InputError(Problem(str(path), 0, f"holds more than {_MOST_BYTES} bytes in {name}", "give a recording"))
+        raise InputError(
+            Problem(str(path), 0, f"holds more than {_MOST_BYTES} bytes in {name}", "give a recording", code="TWN320")
+        )
     cells: list[Any] = column.to_pylist()
     _check_texts(path, name, [cell for cell in cells if isinstance(cell, str)])
     return cells
@@ -267,4 +279,4 @@ def _cells(column: Any, arrow: Any, path: Path, name: str) -> list[Any]:
 def _check_texts(path: Path, name: str, texts: Sequence[str | None]) -> None:
     if any(text is not None and len(text) > LONGEST_TEXT for text in texts):
         what = f"has a text of more than {LONGEST_TEXT} characters in {name}"
-        raise InputError(Problem(str(path), 0, what, "no block of a program is so long"))
+        raise InputError(Problem(str(path), 0, what, "no block of a program is so long", code="TWN320"))

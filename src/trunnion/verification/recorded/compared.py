@@ -156,13 +156,17 @@ def _poses(machine: Machine, recording: Recording) -> tuple[Floats | None, Float
     doubled = [name for name in names if sum(each.casefold() == name for each in recording.values) > 1]
     if doubled:
         what = f"has two columns for axis {doubled[0].upper()}"
-        raise InputError(Problem(recording.file, 1, what, "leave the one that holds it: capitals make no difference"))
+        raise InputError(
+            Problem(recording.file, 1, what, "leave the one that holds it: capitals make no difference", code="TWN321")
+        )
     missing = [machine.names[k] for k, name in enumerate(names) if name not in columns]
     has_tip = all(name in columns for name in TIP)
     if missing and not (has_tip and all(names[k] in columns for k in machine.rotary)):
         what = f"has no column {missing[0]}" if len(missing) == 1 else f"has no columns {', '.join(missing)}"
         cure = f"a recording for {machine.key} has the axes {', '.join(machine.names)}"
-        raise InputError(Problem(recording.file, 1, what, f"{cure}, or {', '.join(TIP)} in place of the slides"))
+        raise InputError(
+            Problem(recording.file, 1, what, f"{cure}, or {', '.join(TIP)} in place of the slides", code="TWN350")
+        )
     joints = np.zeros((len(recording), 5))
     for k, name in enumerate(names):
         if name in columns and (not missing or k in machine.rotary):
