@@ -9,7 +9,7 @@ import numpy as np
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine, inverse, spindle_speed_fault
 from trunnion.model.motion import PoleStrategy
-from trunnion.model.toolpath import Moves, Operation, SpindleOn
+from trunnion.model.toolpath import Kind, Moves, Operation, SpindleOn
 from trunnion.planning.axis_limits import exceeds_travel, limit_remedy, limit_violation_text, limits_of, outside_limits
 from trunnion.planning.poses.decision_log import ChosenPoses, describe_pose
 from trunnion.planning.poses.limit_lookahead import degrees_out_of_reach
@@ -148,7 +148,9 @@ def _pose_problem(file: str, moves: Moves, poses: PlannedPoses, request: PlanReq
         )
     column, value = code - 1, float(poses.beyond_value[row])
     cure = limit_remedy(machine, column, value, _other_pose_remark(machine, moves, poses, row))
-    return Problem(file, line, limit_violation_text(machine, column, value), cure + remedy, code="PLN120")
+    where = "on this arc " if moves.kind[row] == Kind.ARC else ""
+    what = where + limit_violation_text(machine, column, value)
+    return Problem(file, line, what, cure + remedy, code="PLN120")
 
 
 def _other_pose_remark(machine: Machine, moves: Moves, poses: PlannedPoses, row: int) -> str:

@@ -17,6 +17,7 @@ import numpy as np
 
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
+from trunnion.model.arc_extremes import RunArcs
 from trunnion.model.motion import Decision
 from trunnion.model.toolpath import Kind
 from trunnion.reporting.extents import AxisExtent, TipExtent, axis_extent, tip_extent
@@ -71,7 +72,8 @@ def collect_content(
     """Collect the content of a report; the arguments are those of ``trunnion.reporting.write_report``."""
     run, machine = verification.run, verification.machine
     seconds, known = durations(verification)
-    cutting, moving = run.kind != Kind.RAPID, moving_seconds(verification)
+    arcs, moving = RunArcs.of(run), moving_seconds(verification)
+    cutting = run.kind != Kind.RAPID
     return ReportContent(
         program=clean(verification.program),
         machine_key=clean(machine.key),
@@ -89,8 +91,8 @@ def collect_content(
         tools=tuple(tool_usages(run, seconds, moving, cutting)),
         operations=tuple(operation_usage(run, each, seconds, moving, cutting) for each in verification.operations),
         decisions=tuple(map(_clean_decision, decisions)),
-        tip=tuple(tip_extent(run, k, cutting) for k in range(3)),
-        axes=tuple(axis_extent(run, k, axis) for k, axis in enumerate(machine.axes)),
+        tip=tuple(tip_extent(run, k, cutting, arcs) for k in range(3)),
+        axes=tuple(axis_extent(run, k, axis, arcs) for k, axis in enumerate(machine.axes)),
         units=tuple(_UNITS[inches] for inches in dict.fromkeys(run.state.inches.values.tolist())),
         simulation=simulation,
         recorded=recorded_content(verification),

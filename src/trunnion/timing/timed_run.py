@@ -119,6 +119,22 @@ class TimedRun:
                 joints[moves], velocity[moves], row[moves], feed[moves], tip_feed[moves] = found
         return MachineState(joints, velocity, row, feed, tip_feed, *self._spindle.at(times, after))
 
+    def passed(self, since: Floats, until: Floats) -> tuple[Floats, Floats]:
+        """Return the least and the greatest values of all axes at the ends of pieces after ``since``, up to ``until``.
+
+        Both (k,) seconds; the values (k, 5) are +inf and -inf where no piece ends.
+        """
+        motion, width = self._motion, self._motion.joints.shape[1]
+        done = motion.ends[motion.completes]
+        least, most = np.full((len(until), width), np.inf), np.full((len(until), width), -np.inf)
+        firsts, lasts = (np.searchsorted(done, times, "right").tolist() for times in (since, until))
+        pieces = motion.phases.piece[motion.completes]
+        for k, (first, last) in enumerate(zip(firsts, lasts, strict=True)):
+            if last > first:
+                joints = motion.joints[pieces[first:last] + 1]
+                least[k], most[k] = joints.min(axis=0), joints.max(axis=0)
+        return least, most
+
 
 def _moving(motion: _Motion, phase: Ints, times: Floats) -> tuple[Floats, Floats, Ints, Floats, Floats]:
     """Axis values, velocities, rows, feeds and those of the tip at times within phases."""

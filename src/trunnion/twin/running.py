@@ -84,6 +84,7 @@ class Twin:
         self.outlets: list[Outlet] = []
         self._last_stamp = 0
         self._beyond = np.zeros(5, np.bool_)
+        self._watched = 0.0
         self._lost: dict[object, int] = {}
         self._told = -1.0
         self._turn = asyncio.Lock()  # what is told is told in the order of its time, whoever asks
@@ -243,7 +244,8 @@ class Twin:
     async def _watch_travel(self, snapshots: Snapshots, stamps: list[datetime]) -> None:
         """Tell when an axis leaves its travel, and when it is back."""
         machine = self.program.machine
-        for k, beyond in enumerate(self.program.beyond_travel(snapshots)):
+        since, self._watched = self._watched, float(snapshots.seconds[-1])
+        for k, beyond in enumerate(self.program.beyond_travel(snapshots, since)):
             for column in np.flatnonzero(beyond != self._beyond).tolist():
                 axis, block = machine.axes[column], snapshots.blocks[k]
                 place = block.number or f"line {block.line}"
@@ -265,6 +267,7 @@ class Twin:
                     await outlet.message(str(timed.event.value or ""), _EPOCH + timedelta(seconds=wall))
 
     async def _show_start(self, wall: float | None = None) -> None:
+        self._watched = 0.0
         await self._publish(self.program.before_start(), np.array([self.clock() if wall is None else wall]))
 
     async def _tell_state(self, wall: float | None = None) -> None:

@@ -133,13 +133,18 @@ class TwinProgram:
             return int(name)
         return self.tools.index(name) + 1 if name in self.tools else 0
 
-    def beyond_travel(self, snapshots: Snapshots) -> Flags:
-        """Which axes are beyond their travel, (k, 5), where it is known where they stand."""
+    def beyond_travel(self, snapshots: Snapshots, since: float) -> Flags:
+        """Which axes are beyond their travel, (k, 5), where it is known where they stand.
+
+        There, or on the way since the time before; ``since`` is that of the first. An arc may go beyond a limit and be
+        back at its end.
+        """
         low, high = self.machine.limits.T
         placed = np.array([self.machine.is_placed(column) for column in range(5)])
-        joints = snapshots.joints
+        least, most = self.timed.passed(np.append(since, snapshots.seconds[:-1]), snapshots.seconds)
         with np.errstate(invalid="ignore"):
-            beyond = (joints < low - _TRAVEL_TOLERANCE) | (joints > high + _TRAVEL_TOLERANCE)
+            beyond = np.minimum(least, snapshots.joints) < low - _TRAVEL_TOLERANCE
+            beyond |= np.maximum(most, snapshots.joints) > high + _TRAVEL_TOLERANCE
         return np.asarray(beyond & placed)
 
 
