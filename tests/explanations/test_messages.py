@@ -115,7 +115,7 @@ def test_a_usage_error_ends_with_its_code(arguments: list[str], capsys: pytest.C
 def test_the_report_of_a_refused_program_has_codes() -> None:
     problems = [Problem("a.cls", 3, "wrong", "right", code="CL310"), Problem("a.cls", 4, "odd", "", Severity.WARNING)]
     (check,) = refused_content(trunnion.load_machine("yl569"), "a.mpf", problems[:1]).checks
-    assert [place.text for place in check.places] == ["wrong; right [CL310]"]
+    assert [place.told for place in check.places] == ["wrong; right [CL310]"]
 
 
 def test_explanations_as_data(capsys: pytest.CaptureFixture[str]) -> None:

@@ -101,14 +101,14 @@ def collect_content(
 
 def _told(problem: Problem) -> str:
     """A problem without its place."""
-    return f"{problem.what}; {problem.cure}".removesuffix("; ") + f" [{problem.code}]"
+    return f"{problem.what}; {problem.cure}".removesuffix("; ")
 
 
 def refused_content(machine: Machine, program: str, problems: Sequence[Problem]) -> ReportContent:
     """The content for a program that was refused before it was run: one check, with the problems as places."""
     errors = [problem for problem in problems if problem.severity is Severity.ERROR]
     places = tuple(
-        Place(0, -1, math.nan, _told(problem), problem.file, problem.line)
+        Place(0, -1, math.nan, _told(problem), problem.file, problem.line, code=problem.code)
         for problem in sorted(problems, key=lambda problem: problem.severity is not Severity.ERROR)
     )
     summary = f"refused before it was run: {errors[0].what}" if errors else "refused before it was run"

@@ -96,11 +96,13 @@ def read_nodes(root: Table) -> NodeList:
     found = [_column(name, columns.table(name), namespace) for name in columns.names()]
     for name in columns.names():
         if not _NAME.fullmatch(name) or name in TIMES:
-            columns.add_problem(name, "cannot be the name of a column", "write letters, digits and _, such as X")
+            columns.add_problem(
+                name, "cannot be the name of a column", "write letters, digits and _, such as X", code="TWN232"
+            )
     if not found and "columns" in root:
-        root.add_problem("columns", "is empty", "name what is recorded, such as [columns.X]")
+        root.add_problem("columns", "is empty", "name what is recorded, such as [columns.X]", code="TWN232")
     if len(found) > _MOST_COLUMNS:
-        root.add_problem("columns", f"has {len(found)} columns", f"write at most {_MOST_COLUMNS}")
+        root.add_problem("columns", f"has {len(found)} columns", f"write at most {_MOST_COLUMNS}", code="TWN232")
     root.report_unread_keys()
     root.raise_problems()
     return NodeList(tuple(found))
@@ -125,14 +127,16 @@ def _place(table: Table, identifier: str, path: str, namespace: str, *, required
     """The place that one of two keys states."""
     by_id, by_path = table.text(identifier, ""), table.text(path, "")
     if by_id and by_path:
-        table.add_problem(path, f"is given beside {identifier}", "write one of them")
+        table.add_problem(path, f"is given beside {identifier}", "write one of them", code="TWN232")
     if by_path:
         return Place(path=tuple(filter(None, by_path.split("/"))))
     if by_id:
         if not namespace:
-            table.add_problem(identifier, "has no namespace", 'write namespace = "…", the URI in which the id counts')
+            table.add_problem(
+                identifier, "has no namespace", 'write namespace = "…", the URI in which the id counts', code="TWN232"
+            )
         return Place(namespace, by_id if re.match(r"[isgb]=", by_id) else f"s={by_id}")
     if required:
         cure = f"write {identifier} = of a NodeId, or {path} = of names from the objects on"
-        table.add_problem("", "does not say which variable it is", cure)
+        table.add_problem("", "does not say which variable it is", cure, code="TWN232")
     return None
