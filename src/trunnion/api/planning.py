@@ -191,8 +191,7 @@ def plan_program(
     file = toolpaths[0].file
     program = Program(job.machine, job.control, planned.motions, job.printed, file, own_settings=job.own_settings)
     program = with_place_texts(program)
-    problems = new_problems(program)
-    observer.problems(problems)
+    problems = new_problems(program, observer)
     unproven = _missing_reader(job)
     by_register = readers.can_read(job.machine) and readers.reader_of(job.machine).uses_length_numbers
     conflicts = tool_conflicts(program, uses_length_numbers=by_register)
@@ -206,19 +205,21 @@ def plan_program(
     return replace(program, notices=[*job.notices, *notices]), planned, [*problems, *found]
 
 
-def new_problems(program: Program, known: Sequence[Problem] = ()) -> list[Problem]:
-    """Warnings about a program that are not known yet.
+def new_problems(program: Program, observer: Observer, known: Sequence[Problem] = ()) -> list[Problem]:
+    """Warnings about a program that are not known yet; they have been reported, also where there are errors.
 
     Raises
     ------
     InputError
         When the control cannot be told what the program says.
     """
-    problems = merge_repeated(check_program(program))
+    problems = [problem for problem in merge_repeated(check_program(program)) if problem not in known]
     errors = [problem for problem in problems if problem.severity is Severity.ERROR]
+    found = [problem for problem in problems if problem not in errors]
+    observer.problems(found)
     if errors:
         raise InputError(sorted(errors, key=lambda problem: (problem.file, problem.line)))
-    return [problem for problem in problems if problem not in known]
+    return found
 
 
 def _missing_reader(job: PostJob) -> list[Problem]:

@@ -205,9 +205,9 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
             from trunnion.api.fastest_feeds import unlimited_axes, with_reached_feeds  # few posts ask for it
 
             program = with_reached_feeds(program, run, toolpaths, job.options)
-            found = [*unlimited_axes(job.machine), *new_problems(program, problems)]
+            found = unlimited_axes(job.machine)
             observer.problems(found)
-            problems += found
+            problems += [*found, *new_problems(program, observer, problems)]
             planned = replace(planned, motions=tuple(program.motions))
             del run, running
             target.files.restart()

@@ -227,7 +227,7 @@ def _check_unnamed(output: Path) -> None:
                 str(output),
                 0,
                 what,
-                "remove it, or take the new one over: trunnion test PROJECT --accept",
+                "remove it, or take the new one over with trunnion test",
                 code="FIL250",
             )
         )

@@ -160,6 +160,7 @@ class Twin:
         if self.playback.state is PlayState.RUNNING and self.playback.completed != completed:
             await self._begin_again(wall)
         elif self.playback.state is not state:
+            await self._wait_for_clients()
             await self._show_now(wall)
             await self._tell_state(wall)
         elif self.clock() - self._told >= 1.0:
@@ -168,9 +169,11 @@ class Twin:
     async def _begin_again(self, wall: float | None) -> None:
         """Tell the end of a program that runs in a loop, and its start."""
         self.playback.state, self.playback.seconds = PlayState.ENDED, self.playback.duration
+        await self._wait_for_clients()
         await self._show_now(wall)
         await self._tell_state(wall)
         self.playback.state, self.playback.seconds = PlayState.RUNNING, 0.0
+        await self._wait_for_clients()
         await self._show_start(wall)
         await self._tell_state(wall)
 
