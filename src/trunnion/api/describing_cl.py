@@ -108,7 +108,7 @@ class OperationDescription:
     rapid_length        from point to point
     moves_without_time  those at feed that have no feed, or a feed per revolution while the spindle stands
     feed, feed_per_rev, rpm  lowest and highest while cutting; None: there is none
-    extents             lowest and highest coordinates of its points, in its own coordinate system
+    extents             lowest and highest coordinates of its points and arcs, in its own coordinate system
     joined              names of the operations of the file that it goes on with
     """
 
@@ -155,8 +155,9 @@ class ClDescription:
     """What one or more CL files hold, as one job.
 
     dialect, units  of all files; None if they differ
-    extents         lowest and highest coordinates of all points in the coordinate system of the first operation, mm;
-                    None without points, or if the files have coordinate systems that cannot be put together
+    extents         lowest and highest coordinates of all points and arcs in the coordinate system of the first
+                    operation, mm; None without points, or if the files have coordinate systems that cannot be put
+                    together
     systems         the coordinate systems of the operations: origin, X and Y in the CAM's absolute system
     unknown         statements that are not known
     remarks         warnings of the reader
@@ -231,7 +232,7 @@ def describe_cl(
     """
     toolpaths = read_toolpaths(cl, units, strict, observer, dialect)
     if not toolpaths:
-        raise InputError(argument_problem("cl", "there is no CL file", "give at least one"))
+        raise InputError(argument_problem("cl", "there is no CL file", "give at least one", code="ARG130"))
     files = tuple(map(_file, toolpaths))
     pairs = [(toolpath.file, operation) for toolpath in toolpaths for operation in toolpath.operations]
     first = next((operation.frame for _, operation in pairs if len(operation.moves)), Frame())
@@ -299,8 +300,8 @@ class _Description:
         measured = measure(moved, self._start(moved), self._spindle)
         holes = hole_rows(operation)
         arcs = len(operation.arcs.row)
-        for range_, column in zip(self._extents, moved.moves.tip.T, strict=True):
-            range_.add(column)
+        for range_, *ends in zip(self._extents, *(extents(moved) or ()), strict=False):
+            range_.add(np.array(ends))
         self.operations.append(
             OperationDescription(
                 name=operation.name,
@@ -322,7 +323,7 @@ class _Description:
                 feed=measured.feed.pair(),
                 feed_per_rev=measured.feed_per_rev.pair(),
                 rpm=measured.rpm.pair(),
-                extents=extents(operation.moves.tip),
+                extents=extents(operation),
                 joined=operation.joined,
             )
         )
@@ -344,7 +345,7 @@ class _Description:
         )  # fmt: skip
 
     def extents(self) -> tuple[Vector, Vector] | None:
-        """Lowest and highest coordinates of all points."""
+        """Lowest and highest coordinates of all points and arcs."""
         if self._extents[0].pair() is None:
             return None
         x, y, z = self._extents

@@ -54,7 +54,7 @@ def with_reached_feeds(
     """
     if run is None:
         what = f"feed is fastest, and programs for {program.control.name} cannot be read back: nothing times them"
-        raise InputError(argument_problem("settings", what, "leave it out"))
+        raise InputError(argument_problem("settings", what, "leave it out", code="CTL920"))
     expected = expectation(program, options)
     reached = reachable_feeds(run, toolpaths, expected.tolerances, expected.settings)
     own = [operation.moves.feed for path in toolpaths for operation in path.operations if len(operation.moves)]
@@ -167,7 +167,7 @@ def raised_feeds(program: Program, toolpaths: Sequence[Toolpath]) -> list[Proble
         return []
     what = f"{counted(count, 'block')} cut faster than the CL file says, up to {greatest:.3g} times as fast: feed_limit"
     cure = "make sure that tool and material bear it; plunges, and phases other than cuts, keep their feeds"
-    return [Problem(toolpaths[0].file, 0, what, cure, Severity.WARNING)]
+    return [Problem(toolpaths[0].file, 0, what, cure, Severity.WARNING, code="PLN435")]
 
 
 def unlimited_axes(machine: Machine) -> list[Problem]:
@@ -177,4 +177,4 @@ def unlimited_axes(machine: Machine) -> list[Problem]:
         return []
     what = f"states no acceleration of {', '.join(names)}: feeds are lowered as if they changed their speed at once"
     cure = "state acceleration_mm_s2 and acceleration_deg_s2 of the axes, and jerks if they are known"
-    return [Problem(machine.key, 0, what, cure, Severity.WARNING)]
+    return [Problem(machine.key, 0, what, cure, Severity.WARNING, code="PLN425")]

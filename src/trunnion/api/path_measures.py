@@ -11,6 +11,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats
 from trunnion.cl.arcs import arc_lengths
+from trunnion.model.arc_extremes import operation_arcs, tip_reach
 from trunnion.model.toolpath import CycleOff, CycleOn, Dwell, Event, Kind, Operation, SpindleOff, SpindleOn
 from trunnion.planning.holes.cycles import HoleCycleError, HoleMethod, SpindleState, cycle_feed, cycle_from_event
 from trunnion.planning.holes.operations import axis_change_rows, hole_rows
@@ -134,11 +135,14 @@ def measure(operation: Operation, before: Floats | None, spindle: SpindleState |
     return found
 
 
-def extents(tip: Floats) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
-    """The lowest and the highest coordinates of points, (n, 3); None if there are none."""
+def extents(operation: Operation) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
+    """The lowest and the highest coordinates of points and arcs, in those of the operation; None if it has none."""
+    tip = operation.moves.tip
     if not len(tip):
         return None
-    (a, b, c), (d, e, f) = tip.min(axis=0).tolist(), tip.max(axis=0).tolist()
+    reach = tip_reach(operation_arcs(operation))
+    a, b, c = np.minimum(tip.min(axis=0), reach.low.min(axis=0, initial=np.inf)).tolist()
+    d, e, f = np.maximum(tip.max(axis=0), reach.high.max(axis=0, initial=-np.inf)).tolist()
     return (a, b, c), (d, e, f)
 
 

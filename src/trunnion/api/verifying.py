@@ -146,7 +146,7 @@ def verify(
     limit = _feed_limit(feed_limit, feed)
     if feed == "fastest" and (isinstance(cl, tuple | list) and not cl):
         what = "is fastest, and only CL files say what feeds may be at most"
-        raise InputError(argument_problem("feed", what, "name them with cl"))
+        raise InputError(argument_problem("feed", what, "name them with cl", code="ARG130"))
     if units is not None:
         check_choice("units", units, ("mm", "inch"))
     tool = _tool(tool)
@@ -163,7 +163,7 @@ def verify(
     control = written_control(loaded)
     defaults = default_settings(loaded)
     toolpaths = as_toolpaths(cl, units, False, observer, dialect)
-    toolpaths = replace_unknown_statements(toolpaths, control.statements if control else {}, loaded)
+    toolpaths = replace_unknown_statements(toolpaths, control, loaded)
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     run = as_run(nc, loaded, subprograms)
@@ -219,9 +219,13 @@ def _feed_limit(limit: float | None, feed: str) -> float | None:
     if limit is None:
         return None
     if feed != "fastest":
-        raise InputError(argument_problem("feed_limit", "is for feed=fastest only", "write feed=fastest too"))
+        raise InputError(
+            argument_problem("feed_limit", "is for feed=fastest only", "write feed=fastest too", code="ARG130")
+        )
     if isinstance(limit, bool) or not isinstance(limit, int | float) or not 0.0 < limit < math.inf:
-        raise InputError(argument_problem("feed_limit", f"is {limit!r}", "write a number above 0, mm/min"))
+        raise InputError(
+            argument_problem("feed_limit", f"is {limit!r}", "write a number above 0, mm/min", code="ARG220")
+        )
     return float(limit)
 
 

@@ -25,7 +25,9 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.machine is None:
         if arguments.file.lower().endswith(".json"):
             return _run_manifest(arguments)
-        raise InputError(argument_problem("machine", "is missing", "name the machine that runs the program"))
+        raise InputError(
+            argument_problem("machine", "is missing", "name the machine that runs the program", code="ARG130")
+        )
     machine = load_machine(arguments.machine)
     if arguments.report is not None:
         read = [arguments.file, *named_files(arguments.cl), *arguments.subprograms]
@@ -81,7 +83,7 @@ def _run_manifest(arguments: argparse.Namespace) -> int:
     for name in (*others, "feed_limit", "units", "dialect"):
         if getattr(arguments, name):
             what, cure = "says nothing about a manifest", "leave it out; --cl compares CL files, too"
-            raise InputError(argument_problem(name, what, cure))
+            raise InputError(argument_problem(name, what, cure, code="ARG130"))
     found = verify_manifest(arguments.file, cl=arguments.cl)
     print_result(*(one_line(str(file)) for file in found.files))
     if not found.proven:

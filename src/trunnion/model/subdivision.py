@@ -123,8 +123,26 @@ def _interpolated_tips(run: Run, row: Ints, fraction: Floats, start_joints: Floa
     return np.asarray(tip)
 
 
-def circle_points(start: Floats, end: Floats, centre: Floats, normal: Floats, turns: Ints, fraction: Floats) -> Floats:
-    """Return points of circles and helices, (k, 3) mm; the radius changes evenly from that at start to that at end."""
+@dataclass(frozen=True, slots=True, eq=False)
+class ArcFrames:
+    """How the tip moves on m arcs and helices.
+
+    across  (m, 3)  from the axis to the start, mm
+    height  (m,)    of the start over the centre, along the normal
+    rise    (m,)    from start to end, along the normal
+    sweep   (m,)    angle from start to end with all turns, rad
+    growth  (m,)    radius at the end by that at the start
+    """
+
+    across: Floats
+    height: Floats
+    rise: Floats
+    sweep: Floats
+    growth: Floats
+
+
+def arc_frames(start: Floats, end: Floats, centre: Floats, normal: Floats, turns: Ints) -> ArcFrames:
+    """Return the frames of arcs; start, end, centre and normal (m, 3)."""
     rise = np.einsum("ij,ij->i", end - start, normal)
     a = start - centre
     a = a - np.einsum("ij,ij->i", a, normal)[:, None] * normal
@@ -135,10 +153,16 @@ def circle_points(start: Floats, end: Floats, centre: Floats, normal: Floats, tu
     full = np.linalg.norm(a - b, axis=1) < FULL_CIRCLE_GAP
     sweep = np.where(full, 2.0 * np.pi, np.where(sweep <= 0.0, sweep + 2.0 * np.pi, sweep)) + 2.0 * np.pi * turns
     first, last = np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)
-    angle = fraction * sweep
-    size = (1.0 + fraction * (last - first) / np.where(first > 0.0, first, 1.0))[:, None]
+    return ArcFrames(a, height, rise, sweep, 1.0 + (last - first) / np.where(first > 0.0, first, 1.0))
+
+
+def circle_points(start: Floats, end: Floats, centre: Floats, normal: Floats, turns: Ints, fraction: Floats) -> Floats:
+    """Return points of circles and helices, (k, 3) mm; the radius changes evenly from that at start to that at end."""
+    frame = arc_frames(start, end, centre, normal, turns)
+    a, angle = frame.across, fraction * frame.sweep
+    size = (1.0 + fraction * (frame.growth - 1.0))[:, None]
     rotated = np.cos(angle)[:, None] * a + np.sin(angle)[:, None] * np.cross(normal, a)
-    return np.asarray(centre + size * rotated + (height + fraction * rise)[:, None] * normal)
+    return np.asarray(centre + size * rotated + (frame.height + fraction * frame.rise)[:, None] * normal)
 
 
 def slerp(start: Floats, end: Floats, fraction: Floats) -> Floats:

@@ -9,6 +9,7 @@ from trunnion.model.toolpath import Operation
 from trunnion.planning.holes.operations import extract_rows
 from trunnion.planning.plan_problems import pose_problems, rewind_problems, winding_problems
 from trunnion.planning.pole.handling import handle_pole
+from trunnion.planning.poses.arc_limits import judge_arcs
 from trunnion.planning.poses.decision_log import ChosenPoses, pose_decisions
 from trunnion.planning.poses.placement import OUT_OF_REACH
 from trunnion.planning.poses.selection import PlannedPoses, choose_poses
@@ -88,6 +89,7 @@ def plan_operation(prepared: PreparedOperation) -> PlannedOperation:
         return PlannedOperation(prepared, prepared.operation, poses, problems=problems, log=tuple(prepared.log))
     near_pole = handle_pole(prepared, poses)
     poses = near_pole.poses
+    judge_arcs(poses, machine, near_pole.operation, keep_slide_limits)
     chosen = ChosenPoses(machine, file, near_pole.operation, poses.rotary, poses.state, keep_slide_limits)
     # Rapids are straight under TCP; without it each slide may arrive in its own time.
     rewinds = find_rewinds(chosen, poses, options.clearance, at_rapid=prepared.mode is MachiningMode.TCP)

@@ -65,7 +65,7 @@ def prepare_operations(sources: Sequence[tuple[str, Operation]], request: PlanRe
             errors += conflicts
             prepared.append(_with_holes(_with_lines_for_arcs(_with_lines_for_splines(operation)), spindle))
         except HoleCycleError as error:
-            errors.append(Problem(file, error.line, error.what, error.cure))
+            errors.append(Problem(file, error.line, error.what, error.cure, code=error.code))
         spindle = SpindleStates(original.events, spindle).at(len(original.moves))
     if errors:
         raise RefusedError(errors)
@@ -186,7 +186,9 @@ def _with_holes(prepared: PreparedOperation, spindle: SpindleState | None) -> Pr
         text = f"{cycles.description}: {cycles.reason}"
         log.append(Decision(prepared.file, operation.name, cycles.line, -1, DecisionTopic.HOLES, text))
         if cycles.reason != REQUESTED:
-            warnings.append(Problem(prepared.file, cycles.line, cycles.reason, cycles.description, Severity.WARNING))
+            warnings.append(
+                Problem(prepared.file, cycles.line, cycles.reason, cycles.description, Severity.WARNING, code="PLN640")
+            )
     return replace(
         prepared,
         operation=holes.operation,

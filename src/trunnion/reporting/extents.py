@@ -11,9 +11,10 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Axis
+from trunnion.model.arc_extremes import Reach, RunArcs
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.reporting.text import clean
-from trunnion.verification.kinematics.positioning_moves import approach_rows
+from trunnion.verification.kinematics.positioning_moves import approach_rows, names_no_axis
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,16 +73,28 @@ def block_reference(run: Run, row: int) -> BlockReference:
     )
 
 
-def tip_extent(run: Run, k: int, cutting: Flags) -> TipExtent:
+def tip_extent(run: Run, k: int, cutting: Flags, arcs: RunArcs) -> TipExtent:
     """The extent of the tip along direction ``k``; ``cutting`` (n,) is False for rapids."""
-    column, rows = run.tip[:, k], np.flatnonzero(cutting)
-    return TipExtent("XYZ"[k], extremes_of(run, column, np.arange(len(run))), extremes_of(run, column[rows], rows))
+    column = run.tip[:, k]
+    whole, cut = (
+        extremes_of(run, *_with_arcs(column[rows], rows, arcs, arcs.tip, k))
+        for rows in (np.arange(len(run)), np.flatnonzero(cutting))
+    )
+    return TipExtent("XYZ"[k], whole, cut)
 
 
-def axis_extent(run: Run, k: int, axis: Axis) -> AxisExtent:
+def axis_extent(run: Run, k: int, axis: Axis, arcs: RunArcs) -> AxisExtent:
     """The extent of an axis, which is column ``k`` of ``run.joints``."""
     rows = travel_rows(run, axis)
-    return extent_of(run, axis, run.joints[rows, k], rows, zero_known=is_zero_known(run, k))
+    values, of_rows = _with_arcs(run.joints[rows, k], rows, arcs, arcs.axes, k)
+    return extent_of(run, axis, values, of_rows, zero_known=is_zero_known(run, k))
+
+
+def _with_arcs(values: Floats, rows: Ints, arcs: RunArcs, reach: Reach, k: int) -> tuple[Floats, Ints]:
+    """Values at the ends of rows, and on those that are arcs between them, with their rows."""
+    count = np.isin(arcs.rows, rows)
+    between = arcs.rows[count]
+    return np.concatenate((values, reach.low[count, k], reach.high[count, k])), np.concatenate((rows, between, between))
 
 
 def extent_of(run: Run, axis: Axis, values: Floats, rows: Ints, *, zero_known: bool) -> AxisExtent:
@@ -113,7 +126,7 @@ def travel_rows(run: Run, axis: Axis) -> Ints:
     if axis.is_rotary:
         return np.arange(len(run))
     linear = ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z
-    counts = ~run.machine_frame & (run.tcp | ((run.programmed & linear) != 0))
+    counts = ~run.machine_frame & (run.tcp | ((run.programmed & linear) != 0) | names_no_axis(run.programmed))
     counts[approach_rows(run)] = False
     return np.flatnonzero(counts)
 

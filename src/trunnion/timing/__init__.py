@@ -9,9 +9,10 @@ from trunnion.timing.planner import piece_seconds, timed_pieces
 from trunnion.timing.reached_feeds import HARDLY_MOVES, ReachedFeeds, reached_feeds
 from trunnion.timing.row_feeds import RowFeeds, fill_feeds
 from trunnion.timing.row_interpolation import SAG
-from trunnion.timing.run_timer import RunTimer
+from trunnion.timing.run_timer import RowTimes, RunTimer
+from trunnion.timing.schedule import TimedEvent
 from trunnion.timing.speed_kernel import plan_speeds
-from trunnion.timing.timed_run import MachineState, TimedEvent, TimedRun, time_run
+from trunnion.timing.timed_run import MachineState, TimedRun, time_run
 
 #: Kernels that time most programs.
 KERNELS = (fill_feeds, plan_speeds)
@@ -30,6 +31,7 @@ __all__ = [
     "Path",
     "ReachedFeeds",
     "RowFeeds",
+    "RowTimes",
     "RunTimer",
     "SmoothPath",
     "TimedEvent",

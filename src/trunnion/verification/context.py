@@ -169,4 +169,4 @@ def check_from_places(key: str, title: str, places: Sequence[Place], good: str, 
         return Check(key, title, True, good)
     first = places[0]
     more = f", and {count - 1} more" if count > 1 else ""
-    return Check(key, title, False, f"{first.block_name}: {first.text}{more}", places=tuple(places[:MAX_PLACES]))
+    return Check(key, title, False, f"{first.block_name}: {first.told}{more}", places=tuple(places[:MAX_PLACES]))

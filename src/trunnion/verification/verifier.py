@@ -95,7 +95,10 @@ def verify(
     )
     cl_line = _cl_lines(context) if columns else np.zeros(0, np.int32)
     operations = tuple(_operation_rows(context))
-    return Verification(run.files[0], run.machine, run, checks, motion.seconds, motion.tip_feed, cl_line, operations)
+    return Verification(
+        run.files[0], run.machine, run, checks, motion.seconds, motion.tip_feed, cl_line, operations,
+        waiting=motion.waiting,
+    )  # fmt: skip
 
 
 def reachable_feeds(

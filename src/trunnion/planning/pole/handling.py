@@ -113,5 +113,5 @@ def _problems(prepared: PreparedOperation, poses: PlannedPoses, leaned: LeanedMo
             f"no lean of the tool axis by up to {angle:g} degrees keeps axis {name} within its speed"
             f" up to line {line[region.end - 1]}"
         )
-        problems.append(Problem(prepared.file, int(line[region.first]), what, cure, Severity.WARNING))
+        problems.append(Problem(prepared.file, int(line[region.first]), what, cure, Severity.WARNING, code="PLN410"))
     return problems

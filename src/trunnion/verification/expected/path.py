@@ -116,7 +116,9 @@ class ExpectedPath:
         moving = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
         if not moving:
             file = toolpaths[0].file if toolpaths else "CL file"
-            raise InputError(Problem(file, 0, "there is no motion in it to compare with", "output the toolpath again"))
+            raise InputError(
+                Problem(file, 0, "there is no motion in it to compare with", "output the toolpath again", code="NC180")
+            )
         frame = Frame() if absolute else moving[0][1].frame
         limits = _by_operation(tolerances, len(moving))
         sections: list[Section] = []

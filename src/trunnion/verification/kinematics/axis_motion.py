@@ -19,6 +19,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Machine, forward
+from trunnion.model.arc_extremes import run_reach
 from trunnion.model.feed_path import NO_ROTATION
 from trunnion.model.run import Orientation, PositionChunk, Run
 from trunnion.model.toolpath import Kind
@@ -33,16 +34,19 @@ class AxisMotion:
     """What a program makes the axes do.
 
     seconds         (n,) float64; no rows unless times were asked for
+    waiting         (n,) float64, those of them that the axes wait; no rows unless times were asked for
     tip_feed        (n,) float64, mm/min; no rows unless times were asked for
     speed           for each axis, the share of its rapid speed that rows at feed need; 1 is all of it
     acceleration    for each axis, the share of its acceleration
     axis_deviation  degrees between the tool axis half-way and the great circle, in rows at feed
     tip_deviation   mm between the tip half-way and its straight line, in lines without TCP
-    extremes        (5, 2) lowest and highest values, mm or deg: of slides in workpiece motions, of rotary axes in all
+    extremes        (5, 2) lowest and highest values, mm or deg: of slides in workpiece motions, and on arcs between
+                    their ends; of rotary axes in all
     extreme_rows    (5, 2) the rows that reach them, -1 for none
     """
 
     seconds: Floats
+    waiting: Floats
     tip_feed: Floats
     speed: tuple[WorstRows, ...]
     acceleration: tuple[WorstRows, ...]
@@ -68,6 +72,7 @@ class AxisMotionAnalyzer:
         axes = run.machine.axes
         self._motion = AxisMotion(
             seconds=np.zeros(0),
+            waiting=np.zeros(0),
             tip_feed=np.zeros(0),
             speed=tuple(WorstRows(1.0 + 1e-9, max_rows) for _ in axes),
             acceleration=tuple(WorstRows(1.0 + 1e-9, max_rows) for _ in axes),
@@ -102,6 +107,7 @@ class AxisMotionAnalyzer:
         axis_motion_rows(
             first, rows, self._limits, self._carry, motion.extremes, motion.extreme_rows, shares, deviation
         )
+        self._add_arcs(first, end, positions, machine_frame)
         if self._timer is not None:
             self._timer.add(first, positions, feeds)
         for k, axis in enumerate(run.machine.axes):
@@ -114,6 +120,21 @@ class AxisMotionAnalyzer:
             free = np.flatnonzero(self._turns(positions) & ~tcp & (kind == Kind.LINEAR))
             motion.tip_deviation.add(first, _tip_deviations(run.machine, positions, free, count))
 
+    def _add_arcs(self, first: int, end: int, positions: PositionChunk, machine_frame: Flags) -> None:
+        """Widen the extremes of slides by what arcs reach between their ends."""
+        rows, reach = run_reach(self._run, first, end, positions)
+        counts = ~machine_frame[rows - first]
+        if not counts.any():
+            return
+        rows, low, high = rows[counts], reach.low[counts], reach.high[counts]
+        extremes, extreme_rows = self._motion.extremes, self._motion.extreme_rows
+        for column in self._run.machine.linear:
+            least, most = int(np.argmin(low[:, column])), int(np.argmax(high[:, column]))
+            if low[least, column] < extremes[column, 0]:
+                extremes[column, 0], extreme_rows[column, 0] = low[least, column], rows[least]
+            if high[most, column] > extremes[column, 1]:
+                extremes[column, 1], extreme_rows[column, 1] = high[most, column], rows[most]
+
     def _turns(self, positions: PositionChunk) -> Flags:
         """Which rows turn a rotary axis, (k,) bool."""
         steps = np.diff(positions.joints[:, self._limits.rotary], axis=0)
@@ -123,8 +144,9 @@ class AxisMotionAnalyzer:
         """Everything, once all rows have been added."""
         if self._timer is None:
             return self._motion
-        seconds, tip_feed = self._timer.result()
-        return replace(self._motion, seconds=seconds, tip_feed=tip_feed)
+        times = self._timer.result()
+        seconds = times.moving + times.waiting
+        return replace(self._motion, seconds=seconds, waiting=times.waiting, tip_feed=times.tip_feed)
 
 
 def _tip_deviations(machine: Machine, positions: PositionChunk, rows: Ints, count: int) -> Floats:

@@ -97,7 +97,9 @@ def axis_motion_rows(
     minutes_before = carry[0]
     for at in range(kind.shape[0]):
         row = first + at
-        slides_count = not machine_frame[at] and (tcp[at] or programmed[at] & 7 != 0)
+        # Circles by their centre and motions of cycles name no axis (bits 0 to 5), and move slides.
+        names_slides = programmed[at] & 7 != 0 or programmed[at] & 63 == 0
+        slides_count = not machine_frame[at] and (tcp[at] or names_slides)
         turned = _axis_steps(joints, at, row, rotary, slides_count, extremes, extreme_rows)
         minutes = feeds[0, at] / feeds[1, at] if feeds[1, at] < math.inf else 0.0
         deviation[at] = 0.0

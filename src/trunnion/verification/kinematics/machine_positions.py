@@ -14,7 +14,7 @@ import numpy as np
 
 from trunnion.arrays import Codes, Flags, Ints
 from trunnion.model.run import ProgrammedWord, Run
-from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS, ROTARY_WORDS
+from trunnion.verification.kinematics.positioning_moves import POSITION_WORDS, ROTARY_WORDS, names_no_axis
 
 #: Rows that are searched at first for the next motion in workpiece coordinates; later ever more.
 _FEW = 64
@@ -87,5 +87,4 @@ def _next_in_workpiece(run: Run, word: ProgrammedWord, first: int) -> int:
 
 def _slide_moves(programmed: Codes, word: ProgrammedWord) -> Flags:
     """Which words move a slide: its own, and those of a circle or a cycle, which name no axis."""
-    names_nothing = (programmed & int(POSITION_WORDS | ROTARY_WORDS)) == 0
-    return np.asarray(((programmed & int(word)) != 0) | names_nothing)
+    return np.asarray(((programmed & int(word)) != 0) | names_no_axis(programmed))

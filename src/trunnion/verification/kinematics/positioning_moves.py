@@ -56,6 +56,11 @@ def _turns_only(programmed: Codes) -> Flags:
     return np.asarray(~_positions(programmed) & ((programmed & int(ROTARY_WORDS)) != 0))
 
 
+def names_no_axis(programmed: Codes) -> Flags:
+    """Which rows are of blocks that name no axis and move all the same: circles by their centre, and cycles."""
+    return np.asarray((programmed & int(POSITION_WORDS | ROTARY_WORDS)) == 0)
+
+
 def _positions(programmed: Codes) -> Flags:
     return np.asarray((programmed & int(POSITION_WORDS)) != 0)
 
