@@ -133,15 +133,15 @@ def quick() -> None:
 def test() -> None:
     """Everything that CI runs."""
     set_up(".[test,docs]")
-    check()
     with ThreadPoolExecutor(1) as beside:  # each of its programs keeps one processor busy at most
-        others = beside.submit(site_and_build)
+        others = beside.submit(check_and_build)
         run(*TESTS)
         others.result()
 
 
-def site_and_build() -> None:
-    """The site, then the archives."""
+def check_and_build() -> None:
+    """What is no test: style and types, the site, the archives."""
+    check()
     site()
     build()
 

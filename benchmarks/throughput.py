@@ -30,6 +30,7 @@ SMALL = 200
 
 C_RATIO = 0.16  # of the C floor's points/s, at least
 NAIVE_RATIO = 4.0  # times the naive post's points/s, at least
+TEMPLATE_SHARE = 0.03  # of the processor time, at most, that templates of a shop take
 MEMORY_RATIO = 4.0  # peak memory in input sizes, below
 SMALL_SECONDS = 0.7  # a small file from start to end, at most
 FIRST_SECONDS = 15.0  # the first post of the sample, its kernels compiled on two cores, at most
@@ -39,6 +40,7 @@ SAMPLE = HERE.parent / "tests" / "golden" / "yl569" / "3_blade_finish.cls"
 
 FLOOR = "C floor"
 BARE = "trunnion without its proof"
+SHOP = "trunnion with templates of a shop"
 NAIVE = "naive post"
 
 #: A block that moves, without its number and G word, and with the words of its position alone.
@@ -136,9 +138,9 @@ def run(command: Sequence[str], environment: Mapping[str, str] | None = None) ->
     return Run(wall, cpu, peak)
 
 
-def trunnion(source: Path, target: Path) -> list[str]:
+def trunnion(source: Path, target: Path, machine: str = MACHINE) -> list[str]:
     """The command that posts ``source`` with Trunnion."""
-    return [sys.executable, "-m", "trunnion", "post", str(source), "--machine", MACHINE, "--output", str(target)]
+    return [sys.executable, "-m", "trunnion", "post", str(source), "--machine", machine, "--output", str(target)]
 
 
 def compile_sources() -> None:
@@ -344,11 +346,12 @@ def table(rows: Sequence[Sequence[str]]) -> None:
 
 def contestants(source: Path, folder: Path) -> list[Contestant]:
     """Everything that posts the large file: Trunnion, without its proof too, the naive post, and the C floor."""
-    names = ("trunnion", BARE, NAIVE, FLOOR)
+    names = ("trunnion", SHOP, BARE, NAIVE, FLOOR)
     outputs = {name: folder / f"{name.replace(' ', '_')}.mpf" for name in names}
     bare = [sys.executable, str(HERE / "unproven.py"), str(source), MACHINE, str(outputs[BARE])]
     naive = [sys.executable, str(HERE / "naive_post.py"), str(source), str(outputs[NAIVE])]
-    commands = {"trunnion": trunnion(source, outputs["trunnion"]), BARE: bare, NAIVE: naive}
+    shop = trunnion(source, outputs[SHOP], str(HERE / "shop.toml"))
+    commands = {"trunnion": trunnion(source, outputs["trunnion"]), SHOP: shop, BARE: bare, NAIVE: naive}
     if program := compile_floor(folder):
         commands[FLOOR] = [str(program), str(source), str(outputs[FLOOR])]
     return [Contestant(name, command, outputs[name]) for name, command in commands.items()]
@@ -416,10 +419,16 @@ def measure(points: int, runs: int, folder: Path) -> list[Figure]:
     started = contestants(source, folder)
     able = race(started, runs)
     print_times(able, points)
-    product, bare = (next((one for one in able if one.name == name), None) for name in ("trunnion", BARE))
-    rivals = [one for one in able if one not in (product, bare)]
+    product, bare, shop = (next((one for one in able if one.name == name), None) for name in ("trunnion", BARE, SHOP))
+    rivals = [one for one in able if one not in (product, bare, shop)]
     figures = speed_figures(product, rivals, large)
     figures += speed_figures(bare, rivals, False)
+    if product is not None and shop is not None:
+        share = shop.cpu / product.cpu - 1.0
+        asked = f"<= {TEMPLATE_SHARE:.0%}"
+        figures.append(
+            Figure("processor time for templates", asked, f"{share:.1%}", share <= TEMPLATE_SHARE if large else None)
+        )
     if not any(one.name == FLOOR for one in started):
         figures.append(Figure(f"points/s, trunnion / {FLOOR}", f">= {C_RATIO:g}", f"skipped: no {FLOOR}", None))
     slower = slowness(able, points)

@@ -19,6 +19,7 @@ Functions
     verify         NC program against its CL files, and against a recording of the machine -> Verification
     convert        NC program -> CL file, or program for another machine
     diff           two NC programs -> Comparison
+    explain        code of a message, or name of a check -> Explanation
     simulate       NC programs and stock -> SimulationResult: what is cut, and what is hit
     read_points    table of measured points -> PointTable of each curve
     fit_curve      points -> CurveFit: a B-spline curve, and how far it is off
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
     from trunnion.api.describing_cl import describe_cl as describe_cl
     from trunnion.api.describing_machine import MachineDescription as MachineDescription
     from trunnion.api.describing_machine import describe_machine as describe_machine
+    from trunnion.api.explaining import explain as explain
     from trunnion.api.impeller_cutting import ImpellerCut as ImpellerCut
     from trunnion.api.impeller_cutting import cut_impeller as cut_impeller
     from trunnion.api.impellers import load_impeller as load_impeller
@@ -79,6 +81,7 @@ if TYPE_CHECKING:
     from trunnion.errors import RefusedError as RefusedError
     from trunnion.errors import Severity as Severity
     from trunnion.errors import TrunnionError as TrunnionError
+    from trunnion.explanations import Explanation as Explanation
     from trunnion.geometry.curves import BSplineCurve as BSplineCurve
     from trunnion.geometry.fitting import CurveFit as CurveFit
     from trunnion.geometry.point_tables import PointTable as PointTable
@@ -112,6 +115,7 @@ _MODULES: Final = {
     "ConvertResult": "api.converting",
     "CurveFit": "geometry.fitting",
     "Decision": "model.motion",
+    "Explanation": "explanations",
     "Impeller": "impeller.impeller",
     "ImpellerCut": "api.impeller_cutting",
     "ImpellerModel": "impeller.model",
@@ -145,6 +149,7 @@ _MODULES: Final = {
     "describe_controls": "api.describing",
     "describe_machine": "api.describing_machine",
     "diff": "api.comparing",
+    "explain": "api.explaining",
     "fit_curve": "api.curves",
     "load_impeller": "api.impellers",
     "load_machine": "api.reading",
@@ -175,6 +180,7 @@ __all__ = [
     "ConvertResult",
     "CurveFit",
     "Decision",
+    "Explanation",
     "Impeller",
     "ImpellerCut",
     "ImpellerModel",
@@ -209,6 +215,7 @@ __all__ = [
     "describe_controls",
     "describe_machine",
     "diff",
+    "explain",
     "fit_curve",
     "load_impeller",
     "load_machine",

@@ -4,8 +4,8 @@
     ├── InputError           a file, a definition or a command cannot be used           (exit 2)
     └── RefusedError         the input is understood, but its program must not run      (exit 1)
 
-A Problem prints as ``file:line: error: what is wrong; how to correct it``, from which editors and
-CI systems jump to the line.
+A Problem prints as ``file:line: error: what is wrong; how to correct it [CODE]``, from which editors and
+CI systems jump to the line. ``trunnion.explanations`` knows what each code means.
 """
 
 import stat
@@ -38,6 +38,7 @@ class Problem:
     what  the fault
     cure  how to correct it; may be empty
     key   of a definition, from its root, such as ``axis[1].limits_deg``; empty elsewhere
+    code  of what kind it is, such as ``CL110``: stays the same while messages change
     """
 
     file: str
@@ -46,12 +47,14 @@ class Problem:
     cure: str = ""
     severity: Severity = Severity.ERROR
     key: str = ""
+    code: str = ""
 
     def __str__(self) -> str:
-        """Return ``file:line: severity: what; cure``."""
+        """Return ``file:line: severity: what; cure [code]``."""
         place = f"{self.file}:{self.line}" if self.line else self.file
         cure = f"; {self.cure}" if self.cure else ""
-        return one_line(f"{place}: {self.severity}: {self.what}{cure}")
+        code = f" [{self.code}]" if self.code else ""
+        return one_line(f"{place}: {self.severity}: {self.what}{cure}{code}")
 
 
 def merge_repeated(problems: Iterable[Problem]) -> tuple[Problem, ...]:
@@ -65,9 +68,11 @@ def merge_repeated(problems: Iterable[Problem]) -> tuple[Problem, ...]:
     )
 
 
-def argument_problem(name: str, what: str, cure: str = "", severity: Severity = Severity.ERROR) -> Problem:
+def argument_problem(
+    name: str, what: str, cure: str = "", severity: Severity = Severity.ERROR, *, code: str = ""
+) -> Problem:
     """Return a problem with an argument of a function of the library."""
-    return Problem(ArgumentName(name), 0, what, cure, severity)
+    return Problem(ArgumentName(name), 0, what, cure, severity, code=code)
 
 
 def unusable_file(path: Path, what: str) -> Problem | None:
@@ -78,10 +83,16 @@ def unusable_file(path: Path, what: str) -> Problem | None:
     except (OSError, ValueError) as error:  # also names that no system allows
         is_missing = isinstance(error, FileNotFoundError | NotADirectoryError)
         reason = getattr(error, "strerror", None) or error
-        return Problem(str(path), 0, "file not found" if is_missing else f"cannot be read: {reason}", cure)
+        if is_missing:
+            return Problem(str(path), 0, "file not found", cure, code="FIL110")
+        return Problem(str(path), 0, f"cannot be read: {reason}", cure, code="FIL120")
     if stat.S_ISDIR(mode):
-        return Problem(str(path), 0, f"is a folder, not {what}", cure)
-    return None if stat.S_ISREG(mode) else Problem(str(path), 0, f"is not a regular file, but {what} is one", cure)
+        return Problem(str(path), 0, f"is a folder, not {what}", cure, code="FIL130")
+    return (
+        None
+        if stat.S_ISREG(mode)
+        else Problem(str(path), 0, f"is not a regular file, but {what} is one", cure, code="FIL130")
+    )
 
 
 class TrunnionError(Exception):

@@ -18,4 +18,4 @@ def import_extra(module: str, extra: str) -> Any:
         return importlib.import_module(module)
     except ImportError:
         what, cure = f"needs {module}, which is not installed", f'pip install "trunnion[{extra}]"'
-        raise InputError(Problem("trunnion", 0, what, cure)) from None
+        raise InputError(Problem("trunnion", 0, what, cure, code="ARG150")) from None

@@ -130,7 +130,9 @@ def test_settings_are_told_where_the_project_states_them(tmp_path: Path) -> None
     assert problems(path)[0].startswith(f"{path}:4: error: settings.titel is not a setting")
     path.write_text(PROJECT.replace("title = ", "split = 20480, title = "))
     (found,) = problems(path)
-    assert found.endswith('settings.split divides subprograms, and there are none; write divide = "subprograms" too')
+    assert found.endswith(
+        'settings.split divides subprograms, and there are none; write divide = "subprograms" too [ARG240]'
+    )
     path.write_text(PROJECT.replace("yl569", "hs664rt").replace("top.mpf", "top.nc") + 'divide = "subprograms"\n')
     (found,) = problems(path)
     assert found.startswith(f'{path}:5: error: divide is "subprograms", and Fidia')
@@ -157,10 +159,30 @@ def test_links_in_a_project_lead_nowhere_else(tmp_path: Path) -> None:
     assert texts(folder) == {}
 
 
-def test_hooks_are_not_run_before_they_are_known(tmp_path: Path) -> None:
+HOOK = """from trunnion.hooks import Message
+
+def on_operation(operation, context):
+    from dataclasses import replace
+    return replace(operation, events=(Message(0, 0, "HOOKED"), *operation.events))
+"""
+
+
+def test_a_project_runs_the_hooks_that_it_names_and_says_so(tmp_path: Path, capsys: Capture) -> None:
+    (tmp_path / "hook.py").write_text(HOOK)
+    assert main(["post", str(project(tmp_path, PROJECT))]) == 0
+    assert "hook.py" not in capsys.readouterr().err
+    assert "HOOKED" not in texts(tmp_path)["top.mpf"]
     path = project(tmp_path, PROJECT + 'hooks = ["hook.py"]\n')
-    (tmp_path / "hook.py").write_text("raise SystemExit(7)\n")
-    assert "hooks" in problems(path)[0]
+    assert main(["post", str(path)]) == 0
+    assert "hook.py: warning: runs as Python, because part.toml names it" in capsys.readouterr().err
+    assert "HOOKED" in texts(tmp_path)["top.mpf"]
+
+
+def test_a_hook_that_fails_is_told_with_its_line_and_nothing_is_written(tmp_path: Path) -> None:
+    path = project(tmp_path, PROJECT + 'hooks = ["hook.py"]\n')
+    (tmp_path / "hook.py").write_text("def on_operation(operation, context):\n    return 1 / 0\n")
+    assert "hook.py:2: error: " in problems(path)[0]
+    assert texts(tmp_path) == {}
 
 
 @pytest.mark.parametrize(

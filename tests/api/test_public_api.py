@@ -2,6 +2,7 @@
 
 import doctest
 import inspect
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -9,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import trunnion
-from tests.support.locations import YL569
+from tests.support.locations import ROOT, YL569
 
 FUNCTIONS = [name for name in trunnion.__all__ if inspect.isfunction(getattr(trunnion, name))]
 
@@ -28,7 +29,7 @@ def test_every_public_name_is_there_and_documented() -> None:
         assert inspect.getdoc(getattr(trunnion, name)) or name == "__version__", name
     assert FUNCTIONS == [
         "convert", "cut_impeller", "describe_cl", "describe_control", "describe_controls", "describe_machine",
-        "diff", "fit_curve", "load_impeller", "load_machine", "model_impeller",
+        "diff", "explain", "fit_curve", "load_impeller", "load_machine", "model_impeller",
         "plan", "post", "post_project", "read_cl", "read_points", "read_program",
         "simulate", "verify", "verify_manifest",
         "write_curve_picture", "write_impeller_step", "write_plot", "write_report", "write_view",
@@ -55,8 +56,14 @@ def test_every_argument_is_typed_and_documented(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["trunnion", *FUNCTIONS])
-def test_the_examples_of_the_documentation_give_what_they_show(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(Path(__file__).resolve().parents[2])
+def test_the_examples_of_the_documentation_give_what_they_show(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(ROOT)
+    if name == "cut_impeller":  # it writes files, whose names an earlier run of the tests may have taken
+        shutil.copytree(ROOT / "examples" / "impeller", tmp_path / "examples" / "impeller")
+        (tmp_path / "build").mkdir()
+        monkeypatch.chdir(tmp_path)
     documented = trunnion if name == "trunnion" else getattr(trunnion, name)
     examples = [found for found in doctest.DocTestFinder(recurse=False).find(documented, name) if found.examples]
     assert examples or name.startswith("write_") or name == "post_project", "these leave files"

@@ -29,11 +29,15 @@ def test_a_model_is_written_and_described(tmp_path: Path, capfd: Capture) -> Non
             'ends in ".iges", a format that is not written; end it in one of .stl, .ply, .3mf, .glb, .png, .step, .stp',
         ),
         ([IMPELLER, "--tolerance", "5"], "--tolerance: error: is 5.0; give a number from 0.0001 to 1"),
-        (["none.toml"], "none.toml: error: file not found; give the path of an impeller definition\n"),
-        (["none"], "none: error: file not found; give the path of an impeller definition, whose name ends in .toml\n"),
+        (["none.toml"], "none.toml: error: file not found; give the path of an impeller definition [FIL110]\n"),
+        (
+            ["none"],
+            "none: error: file not found; give the path of an impeller definition, whose name ends in .toml [DEF110]\n",
+        ),
         (
             [__file__],
-            "is not an impeller definition, whose name ends in .toml; give the path of an impeller definition\n",
+            "is not an impeller definition, whose name ends in .toml; "
+            "give the path of an impeller definition [DEF140]\n",
         ),
     ],
 )

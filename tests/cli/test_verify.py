@@ -218,7 +218,7 @@ def test_a_program_that_lacks_a_block_is_refused_with_its_place(
     assert f"{target}:60 (N610), {CL}:31: no block goes to this CL point [order]" in err
     assert err.splitlines()[-1] == (
         f"{CL}: error: the program fails its proof: N610: no block goes to this CL point (order); "
-        "no program is written; --force writes it"
+        "no program is written; --force writes it [CTL910]"
     )
     assert post(CL, "--machine", "yl569", "--output", "-") == 1
     assert capfd.readouterr().out == ""

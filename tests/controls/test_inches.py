@@ -6,6 +6,7 @@ import pytest
 
 from trunnion.controls import Control, load_control
 from trunnion.controls.inches import in_units, literal_length
+from trunnion.controls.template import Printing
 from trunnion.errors import InputError
 from trunnion.machines import load_machine
 
@@ -95,7 +96,7 @@ def test_a_number_with_a_format_is_a_length_in_mm(tmp_path: Path) -> None:
     control = own_machine(tmp_path, TEMPLATE.replace("{line}", "G53 G0 Z{-25.4:coordinate} P{3:code}"))
     for units, text in (("mm", "G53 G0 Z-25.4 P3"), ("inch", "G53 G0 Z-1. P3")):
         converted = in_units(control, units)
-        lines = converted.templates["program_end"].expand({}, converted.number_formats(three_axis=True))
+        lines = converted.templates["program_end"].expand({}, Printing(converted.number_formats(three_axis=True)))
         assert lines[1] == text
 
 

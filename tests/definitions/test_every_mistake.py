@@ -36,7 +36,7 @@ def test_mistakes_of_axes_and_of_the_control_come_together(tmp_path: Path, capsy
         ":10: error: control.statements.GOTO is a statement that is read: the entry would never count",
         ":12: error: control.settings.edge is 2",
     ]
-    assert lines[-1].endswith('write a text in quotes: edge = "2"')
+    assert lines[-1].endswith('write a text in quotes: edge = "2" [DEF330]')
 
 
 def test_a_name_that_stands_twice_is_one_mistake(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -62,14 +62,14 @@ def test_a_number_that_no_machine_has_is_refused(
     limits: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (line,) = told(tmp_path, capsys, f'{AXES_OF_CONTROL}[[axis]]\nname = "X"\nlimits_mm = {limits}\n')
-    assert line.endswith("low < high, in millimetres, from -1e+09 to 1e+09")
+    assert line.endswith("low < high, in millimetres, from -1e+09 to 1e+09 [DEF330]")
     axis = f"{AXES_OF_CONTROL}[workpiece]\nzero_mm = [0, 0, -1e200]\n[spindle]\nmax_rpm = 1e99\n"
-    assert all(line.endswith("from -1e+09 to 1e+09") for line in told(tmp_path, capsys, axis))
+    assert all(line.endswith("from -1e+09 to 1e+09 [DEF330]") for line in told(tmp_path, capsys, axis))
 
 
 def test_a_coolant_that_does_not_exist_names_all_that_do(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (line,) = told(tmp_path, capsys, f"{AXES_OF_CONTROL}[control.coolant]\nHIGH = 88\n")
-    assert line.endswith("known here: AIR, FLOOD, MIST, OFF, ON, TAP, THRU")
+    assert line.endswith("known here: AIR, FLOOD, MIST, OFF, ON, TAP, THRU [DEF320]")
 
 
 @pytest.mark.parametrize(
@@ -114,6 +114,6 @@ def test_the_file_of_a_control_is_told_from_that_of_a_machine(
 def test_capitals_of_the_extension_are_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "SHOP.TOML").write_text('extends = "yl569"\n', encoding="utf-8")
     (line,) = told(tmp_path, capsys, 'extends = "SHOP.TOML"\nname = "A"\n')
-    assert line.endswith(".toml in small letters")
+    assert line.endswith(".toml in small letters [DEF210]")
     with pytest.raises(InputError, match=r"whose name ends in \.toml, in small letters"):
         load_machine(tmp_path / "SHOP.TOML")

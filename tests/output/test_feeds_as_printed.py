@@ -57,7 +57,7 @@ def test_feeds_are_held_against_their_digits(
     text = HOLE.format(feed="MMPM,100", cycle=DRILL + feed) if in_a_cycle else PATH.format(feed=feed)
     code, _, err = post(tmp_path, capsys, text, machine)
     assert code == (2 if "error" in told else 0), err
-    assert (f"part.cls:10: {told}\n" in err) if told else "a feed of" not in err
+    assert (f"part.cls:10: {told} [CTL320]\n" in err) if told else "a feed of" not in err
 
 
 @pytest.mark.parametrize("feed", ["0.025", "0.015", "0.005", "0.0143", "0.0125"])

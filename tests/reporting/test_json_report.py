@@ -31,7 +31,7 @@ def test_the_data_hold_what_the_page_says(tmp_path: Path) -> None:
     assert len(said["checks"][0]["places"]) == len(PLACES)
     assert said["checks"][0]["places"][0] == {
         "nc_line": 50, "nc_file": None, "number": 500, "cl_file": "3_blade_finish.cls", "cl_line": 45, "value": 0.0004,
-        "text": "the tip is 0 off",
+        "text": "the tip is 0 off", "code": None,
     }  # fmt: skip
     assert [tool["name"] for tool in said["tools"]] == ["", "2"]
     assert said["tools"][1]["rpm"] == [2500, 2500]

@@ -7,7 +7,7 @@ SLOW = (
     "api/test_impeller_cutting.py", "api/test_impellers_on_machines.py", "api/test_papers.py",
     "api/test_project_posting.py",
     "api/test_same_as_command.py",
-    "api/test_viewing_stock.py",
+    "api/test_hooks.py", "api/test_recipes.py", "api/test_shop_texts.py", "api/test_viewing_stock.py",
     "cli/test_cases.py", "cli/test_watch.py",
     "builder/test_browser.py", "cl/test_scan.py", "cl/test_surface_normals.py", "cl/test_write.py",
     "conversion/test_angles.py", "conversion/test_leaving_the_part.py", "conversion/test_pairs.py",

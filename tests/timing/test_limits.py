@@ -35,7 +35,7 @@ def paths(draw: st.DrawFn) -> Path:
     length = np.linalg.norm(steps, axis=1) * np.where(seed.random(n) < 0.9, 1.0, seed.uniform(0.01, 1.0, n))
     rate = np.where(seed.random(n) < 0.2, math.inf, draw(st.floats(10.0, 1e5)))
     tolerance = seed.choice([0.0, 0.01, 0.2, math.inf], n) if draw(st.booleans()) else np.full(n, 0.01)
-    return Path(steps, length, rate, tolerance, seed.random(n) < 0.1, np.zeros(0, np.int64))
+    return Path(steps, length, rate, tolerance, seed.random(n) < 0.1, np.zeros(n, bool), np.zeros(0, np.int64))
 
 
 def directions(path: Path) -> Floats:
@@ -103,7 +103,10 @@ def test_corners_are_parabolas_within_the_tolerance_and_the_accelerations(path: 
     """The parabola, point for point: the direction changes evenly, and so does the square of the speed."""
     columns, seconds = np.zeros((len(path.length), 5)), np.zeros(len(path.length))
     limits = np.stack((EVEN.speed, EVEN.acceleration))
-    plan_speeds(path.steps, path.length, path.rate / 60.0, path.tolerance, path.stops_after, limits, columns, seconds)
+    no = path.bends_after
+    plan_speeds(
+        path.steps, path.length, path.rate / 60.0, path.tolerance, path.stops_after, no, limits, columns, seconds
+    )
     moves = np.flatnonzero((np.abs(path.steps).max(axis=1) > 0.0) & (path.length > 0.0))
     along = directions(path)
     for one, two in pairwise(moves.tolist()):
@@ -143,7 +146,8 @@ def test_one_straight_move_under_jerk_is_that_of_the_textbook(length: float, fee
         expected = 4.0 * (length / (2.0 * jerk)) ** (1.0 / 3.0)
     steps = np.zeros((1, 5))
     steps[0, 1] = length
-    path = Path(steps, np.array([length]), np.array([feed]), np.array([0.01]), np.zeros(1, bool), np.zeros(0, np.int64))
+    no, none = np.zeros(1, bool), np.zeros(0, np.int64)
+    path = Path(steps, np.array([length]), np.array([feed]), np.array([0.01]), no, no, none)
     assert piece_seconds(path, SMOOTH)[0] == pytest.approx(expected, rel=1e-9)
     split = replace(path, steps=np.repeat(steps / 64.0, 64, axis=0), length=np.full(64, length / 64.0))
     split = replace(split, rate=np.full(64, feed), tolerance=np.full(64, 0.01), stops_after=np.zeros(64, bool))

@@ -37,7 +37,9 @@ def taken(steps: Floats, feed: float = math.inf, machine: Machine = BC, stops: t
 def path_of(steps: Floats, length: Floats, feed: float, stop: Flags) -> Path:
     """A path with one feed, and the usual tolerance."""
     n = len(steps)
-    return Path(steps, length, np.full(n, feed), np.full(n, CORNER_TOLERANCE), stop, np.zeros(0, np.int64))
+    return Path(
+        steps, length, np.full(n, feed), np.full(n, CORNER_TOLERANCE), stop, np.zeros(n, bool), np.zeros(0, np.int64)
+    )
 
 
 def rest_to_rest(length: float, top: float, ramp: float) -> float:

@@ -23,7 +23,9 @@ def with_events(*events: tuple[float, float, str]) -> TimedRun:
     """The golden program with events at other times."""
     run = timed()
     made = tuple(TimedEvent(at, takes, RunEvent(1, 0, kind)) for at, takes, kind in events)
-    fields = {name: getattr(run, name) for name in TimedRun.__dataclass_fields__} | {"events": made}
+    waits = np.array([(at, at + takes) for at, takes, _ in events if takes > 0.0]).reshape(-1, 2)
+    fields = {name: getattr(run, name) for name in TimedRun.__dataclass_fields__}
+    fields |= {"events": made, "waits": waits}
     return TimedRun(**fields)
 
 
@@ -101,7 +103,7 @@ def test_a_stop_of_the_program_holds_it_once() -> None:
     for begin in (0.0, 100.0):
         playback.start(begin)
         playback.advance(begin + 10.0)
-        assert (playback.state, playback.seconds) == (PlayState.HELD, 2.0)
+        assert (playback.state, playback.seconds) == (PlayState.STOPPED, 2.0)
         playback.start(begin + 10.0)
         playback.advance(begin + 11.0)
         assert playback.seconds == pytest.approx(3.0)

@@ -30,7 +30,7 @@ class Subscriber:
 
     async def show(self, snapshots: Snapshots, stamps: list[datetime], microseconds: list[int]) -> None:
         self.moving += [bool(each.any()) for each in snapshots.moving]
-        self.feeds += snapshots.tip_feed.tolist()
+        self.feeds += snapshots.feed.tolist()
         self.queue += zip(microseconds, snapshots.joints[:, 0].tolist(), strict=True)
         self.fullest = max(self.fullest, len(self.queue))
 
@@ -41,6 +41,9 @@ class Subscriber:
         self.messages.append(text)
 
     async def alarm(self, identifier: str, text: str, stamp: datetime) -> None:
+        raise AssertionError(text)
+
+    async def alarm_over(self, identifier: str, text: str, stamp: datetime) -> None:
         raise AssertionError(text)
 
     def lagging(self) -> dict[object, int]:
@@ -122,8 +125,11 @@ def test_axes_of_a_program_that_does_not_go_on_stand() -> None:
         await twin.set_override(0.0)
         assert last() == (False, 0.0)
         now += 1.0
-        await twin.set_override(100.0)
+        await twin.set_override(0.0)
         assert last() == (False, 0.0)
+        await twin.set_override(100.0)
+        assert last()[0]
+        assert last()[1] > 0.0
         assert subscriber.moving.count(True) > 10
         while twin.playback.state is PlayState.RUNNING:
             now += 1.0

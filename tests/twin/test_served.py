@@ -17,6 +17,7 @@ from asyncua import Client, ua
 from tests.support.locations import TESTS
 from tests.support.twins import BLADE_FINISH, ServedTwin, served
 from trunnion.api.twin import twin_program
+from trunnion.twin.snapshots import displayed
 
 NODE = shutil.which("node")
 JUDGE = TESTS / "twin" / "node"
@@ -67,13 +68,14 @@ def no_end_of_a_block_is_lost(seen: dict[str, Any]) -> None:
     run = twin_program(BLADE_FINISH, machine="yl569").run
     assert seen["lost"] == 0
     for name, axis in seen["axes"].items():
-        wanted = run.joints[:, run.machine.column(name)].tolist()
+        column = run.machine.column(name)
+        wanted = displayed(run.machine, column, run.joints[:, column]).tolist()
         values = [value for _, value in axis["values"]]
         assert rows_lost(values, wanted) == [], name
         assert rows_lost([actual for _, (actual, _) in seen["positions"][name]], wanted) == [], name
         stamps = [stamp for stamp, _ in axis["values"]]
         assert stamps == sorted(set(stamps))
-        moved = next(row for row, value in enumerate(wanted) if value != run.start[run.machine.column(name)])
+        moved = next(row for row, value in enumerate(wanted) if value != run.start[column])
         assert rows_lost(seen["history"][name], wanted[moved:]) == [], name
 
 

@@ -1,11 +1,14 @@
 """The file of users: hashed passwords, told line by line where it is broken."""
 
+import os
+import socket
 from pathlib import Path
 
 import pytest
 
 from trunnion.errors import InputError
 from trunnion.twin.opcua.users import Role, read_users, write_user
+from trunnion.twin.ports import listen
 
 
 def test_a_user_is_known_by_the_password_alone(tmp_path: Path) -> None:
@@ -49,3 +52,30 @@ def test_names_and_passwords_that_cannot_be_taken(tmp_path: Path, name: str, pas
     with pytest.raises(InputError):
         write_user(tmp_path / "users", name, Role.VIEWER, password)
     assert not (tmp_path / "users").exists()
+
+
+@pytest.mark.parametrize("password", ["p\udce4ss-word-\udcff", " " * 8])
+def test_a_password_that_is_no_text_is_refused(tmp_path: Path, password: str) -> None:
+    with pytest.raises(InputError, match="password"):
+        write_user(tmp_path / "users", "bob", Role.OPERATOR, password)
+    assert not (tmp_path / "users").exists()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="rights of others are those of POSIX")
+def test_a_file_that_everybody_can_write_names_no_users(tmp_path: Path) -> None:
+    path = tmp_path / "users"
+    write_user(path, "ada", Role.OPERATOR, "good password")
+    path.chmod(0o666)
+    with pytest.raises(InputError, match="everybody can write it"):
+        read_users(path)
+    os.mkfifo(tmp_path / "fifo")
+    with pytest.raises(InputError, match="is no file of users"):
+        read_users(tmp_path / "fifo")
+
+
+def test_a_port_that_does_not_exist_is_told() -> None:
+    for port in (70000, -1):
+        with pytest.raises(InputError, match="there is no port"):
+            listen("OPC UA", "127.0.0.1", port, "port").close()
+    with listen("OPC UA", "127.0.0.1", 0, "port") as served:
+        assert isinstance(served, socket.socket)

@@ -14,10 +14,10 @@ def test_every_check_has_a_section_and_every_name_in_the_table_is_a_check(verifi
     keys = [check.key for check in verified(program, CL_HEAD + CL_FOOT).checks]
     assert {check.key for check in verified(program).checks} <= set(keys)
     sections = re.findall(r"^## (.*)$", PAGE, re.MULTILINE)
-    assert [key for key in keys if key not in sections] == []
+    assert [key for key in (*keys, "reach") if key not in sections] == []
     table = "".join(line for line in PAGE.splitlines() if line.startswith("| ["))
     linked = re.findall(r"\[([a-z]+)\]\(#\1\)", table)
-    assert sorted(linked) == sorted(keys)
+    assert sorted(linked) == sorted([*keys, "reach"]), "reach judges feeds that were asked to be the fastest"
 
 
 def test_every_reason_why_a_fault_is_not_caught_is_in_the_page() -> None:

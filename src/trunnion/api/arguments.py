@@ -14,7 +14,7 @@ _Choice = TypeVar("_Choice", bound=str)
 def wrong_argument(name: str, value: object, cure: str) -> InputError:
     """The error for an argument of a type or value that cannot be used."""
     shown = repr(value) if isinstance(value, str | int | float | bytes | tuple | None) else f"a {type(value).__name__}"
-    return InputError(argument_problem(name, f"is {shown}", cure))
+    return InputError(argument_problem(name, f"is {shown}", cure, code="ARG140"))
 
 
 def check_path(name: str, value: object) -> Path:

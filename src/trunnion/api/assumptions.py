@@ -96,9 +96,9 @@ def _left_open(machine: Machine) -> Iterator[str]:
     if machine.workpiece_zero is None:
         yield (
             "Workpiece zero: not stated, and taken for the origin. Slides are checked for whether the program fits "
-            "their travel anywhere; programs without TCP want --set zero=X,Y,Z."
+            "their travel anywhere; programs without TCP want setting zero=X,Y,Z."
         )
-    yield "Tool lengths: not known, for no definition has them. Programs without TCP want --set tool_length=MM."
+    yield "Tool lengths: not known, for no definition has them. Programs without TCP want setting tool_length=MM."
     if not machine.spindle_point_is_stated:
         heads = [axis.name for axis in machine.axes if axis.is_rotary and axis.mount == "tool"]
         pivot = f" The pivot length of {heads[-1]} counts from there." if heads else ""

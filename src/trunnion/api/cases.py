@@ -121,16 +121,22 @@ def find_cases(place: Path) -> list[Path]:
     if not place.is_dir():
         if place.suffix == ".toml":
             return [place]
-        raise InputError(Problem(str(place), 0, "is no folder, and no project (.toml)", "give a folder of cases"))
+        raise InputError(
+            Problem(str(place), 0, "is no folder, and no project (.toml)", "give a folder of cases", code="PRJ310")
+        )
     found: list[Path] = []
     for folder, below, names in os.walk(place):
         below[:] = sorted(name for name in below if not name.startswith("."))
         found += [Path(folder) / name for name in sorted(names) if name in _NAMES or name.endswith(_ENDING)]
         if len(found) > _MOST_CASES:
-            raise InputError(Problem(str(place), 0, f"has more than {_MOST_CASES} cases", "test a part of it"))
+            raise InputError(
+                Problem(str(place), 0, f"has more than {_MOST_CASES} cases", "test a part of it", code="PRJ310")
+            )
     if not found:
         what = f"has no case: no {', '.join(_NAMES)} or file that ends in {_ENDING} in it or below"
-        raise InputError(Problem(str(place), 0, what, "write a project for each case (docs/projects.md)"))
+        raise InputError(
+            Problem(str(place), 0, what, "write a project for each case (docs/projects.md)", code="PRJ310")
+        )
     return found
 
 
@@ -144,7 +150,7 @@ def posted_case(path: Path) -> Iterator[Case]:
             case = Case(path, error=error)
         except OSError as error:
             what = f"cannot be compared: {error.strerror or error}"
-            case = Case(path, error=InputError(Problem(str(error.filename or path), 0, what)))
+            case = Case(path, error=InputError(Problem(str(error.filename or path), 0, what, code="FIL120")))
         yield case
 
 

@@ -5,7 +5,7 @@ Out:    toolpaths with the events or the lines of the definition in place of the
         machine, and of which the definition says nothing, is an error; any other is left out, with a warning.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import Final
@@ -14,11 +14,14 @@ from trunnion.cl import (
     StatementError,
     can_be_unknown,
     events_of,
+    shop_statement,
     statement_words,
     unknown_statement_errors,
     unknown_statement_remarks,
 )
+from trunnion.controls.definition import Control
 from trunnion.controls.loading import control_library
+from trunnion.controls.vocabulary import EVENT_PLACE
 from trunnion.definitions import resolve_extends
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine
@@ -29,6 +32,10 @@ _Entries = Sequence[tuple[str, frozenset[str], tuple[Event, ...]]]
 
 #: More statements than this are counted, not listed.
 _MOST_LISTED: Final = 100
+
+#: Statements of texts, which templates may print in another way.
+_TEXT_STATEMENTS: Final = ("PPRINT", "DISPLY", "INSERT")
+_OR: Final = ", "
 
 _CURE: Final = (
     "remove it, or write under [control.statements] of the machine's definition what becomes of it: a line of the"
@@ -48,18 +55,35 @@ def check_statements(machine: Machine) -> None:
     what, cure = "is a statement that is read: the entry would never count", "leave it out"
     table = resolve_extends(machine.control.unread_copy(), control_library()).table("statements")
     for name in [name for name in list(table.keys()) if not can_be_unknown(name)]:
-        table.add_problem(name, what, cure)
+        table.add_problem(name, what, cure, code="DEF550")
+    templates = resolve_extends(machine.control.unread_copy(), control_library()).table("templates")
+    for name in [name for name in list(templates.keys()) if name.startswith(EVENT_PLACE)]:
+        word = name.removeprefix(EVENT_PLACE)
+        if word not in _TEXT_STATEMENTS and not can_be_unknown(word):
+            templates.add_problem(
+                name, what, f"write a template for {_OR.join(_TEXT_STATEMENTS)} or a word of a shop", code="DEF510"
+            )
+        elif word != word.upper():
+            templates.add_problem(
+                name, "is not in capitals, as words of CL files are", f"write {name.upper()}", code="DEF510"
+            )
     file = machine.files[-1] if machine.files else machine.key
     words = [word for word in machine.cl_words if not can_be_unknown(word)]
-    problems = [*table.problems, *(Problem(file, 0, f"cl.words.{word} {what}", cure) for word in words)]
+    problems = [
+        *table.problems,
+        *templates.problems,
+        *(Problem(file, 0, f"cl.words.{word} {what}", cure, code="DEF550") for word in words),
+    ]
     if problems:
         raise InputError(problems)
 
 
 def replace_unknown_statements(
-    toolpaths: Iterable[Toolpath], statements: Mapping[str, str], machine: Machine
+    toolpaths: Iterable[Toolpath], control: Control | None, machine: Machine
 ) -> list[Toolpath]:
     """Replace the statements that the reader does not know by what a definition makes of them.
+
+    A statement that has a template, and is in neither table, becomes a ``ShopStatement``.
 
     Raises
     ------
@@ -67,24 +91,29 @@ def replace_unknown_statements(
         With every statement that may change the machine and of which the definition says nothing, or if what it says is
         no event.
     """
+    statements, templates = (control.statements, control.templates) if control else ({}, {})
     lines = {statement: (Insert(0, 0, line),) if line else () for statement, line in statements.items()}
     found_words = {word: _events(machine, word, text) for word, text in machine.cl_words.items()}
     entries = [(*statement_words(name), events) for name, events in (*found_words.items(), *lines.items())]
     entries.sort(key=lambda entry: -len(entry[1]))  # the one that says most comes first
-    found = [(toolpath, _replaced(toolpath, entries)) for toolpath in toolpaths]
+    words = frozenset(name.removeprefix(EVENT_PLACE) for name in templates if name.startswith(EVENT_PLACE))
+    found = [(toolpath, _replaced(toolpath, entries, words)) for toolpath in toolpaths]
     problems = [problem for _, new in found for problem in unknown_statement_errors(new, _CURE)]
     if len(problems) > _MOST_LISTED:
-        more = Problem(problems[0].file, 0, f"and {len(problems) - _MOST_LISTED} more")
+        more = Problem(problems[0].file, 0, f"and {len(problems) - _MOST_LISTED} more", code="CL180")
         problems = [*problems[:_MOST_LISTED], more]
     if problems:
         raise InputError(problems)
     return [_without_unknown(new) for _, new in found]
 
 
-def _replaced(toolpath: Toolpath, entries: _Entries) -> Toolpath:
-    """The toolpath without the statements that ``entries`` have; its remarks are about those that are left."""
+def _replaced(toolpath: Toolpath, entries: _Entries, words: frozenset[str]) -> Toolpath:
+    """The toolpath without the statements that ``entries`` or templates have; its remarks are about those left.
+
+    words  those of statements that have templates
+    """
     before = frozenset(unknown_statement_remarks(toolpath))
-    operations = tuple(_replaced_in_operation(operation, entries) for operation in toolpath.operations)
+    operations = tuple(_replaced_in_operation(operation, entries, words) for operation in toolpath.operations)
     others = [remark for remark in toolpath.remarks if remark not in before]
     left = unknown_statement_remarks(replace(toolpath, operations=operations))
     remarks = sorted((*others, *left), key=lambda remark: remark.line) if before else toolpath.remarks
@@ -102,20 +131,21 @@ def _without_unknown(toolpath: Toolpath) -> Toolpath:
     return replace(toolpath, operations=operations)
 
 
-def _replaced_in_operation(operation: Operation, entries: _Entries) -> Operation:
+def _replaced_in_operation(operation: Operation, entries: _Entries, words: frozenset[str]) -> Operation:
     if not any(isinstance(event, UnknownStatement) for event in operation.events):
         return operation
-    return replace(operation, events=tuple(new for old in operation.events for new in _replaced_event(old, entries)))
+    events = (new for old in operation.events for new in _replaced_event(old, entries, words))
+    return replace(operation, events=tuple(events))
 
 
-def _replaced_event(event: Event, entries: _Entries) -> list[Event]:
+def _replaced_event(event: Event, entries: _Entries, templates: frozenset[str]) -> list[Event]:
     if not isinstance(event, UnknownStatement):
         return [event]
     major, words = statement_words(event.text)
     for entry_major, entry_words, events in entries:
         if entry_major == major and entry_words <= words and entry_words.issuperset(event.words):
             return [replace(new, row=event.row, line=event.line) for new in events]
-    return [event]
+    return [shop_statement(event)] if major in templates else [event]
 
 
 def _events(machine: Machine, word: str, text: str) -> tuple[Event, ...]:
@@ -124,4 +154,4 @@ def _events(machine: Machine, word: str, text: str) -> tuple[Event, ...]:
         return events_of(text)
     except StatementError as error:
         file = machine.files[-1] if machine.files else machine.key
-        raise InputError(Problem(file, 0, f"[cl.words] {word}: {error.what}", error.cure)) from None
+        raise InputError(Problem(file, 0, f"[cl.words] {word}: {error.what}", error.cure, code=error.code)) from None

@@ -140,7 +140,7 @@ def convert(
     others = check_paths("subprograms", subprograms)
     if (to_machine is None) is not to_cl:
         what, cure = "is given with to_cl" if to_cl else "is missing", "give either to_machine or to_cl=True"
-        raise InputError(argument_problem("to_machine", what, cure))
+        raise InputError(argument_problem("to_machine", what, cure, code="CNV110"))
     check_choice("dialect", dialect, tuple(WRITERS))
     if machine is None:
         _refuse_for_cl(to_machine=to_machine, subprograms=others, zero=zero, tool_length=tool_length, force=force)
@@ -150,7 +150,9 @@ def convert(
         return ConvertResult(toolpath, {}, remarks, None, target.path, target.memory)
     program = check_path("nc", nc)
     if dialect != "clsf" and not to_cl:
-        raise InputError(argument_problem("dialect", "is given with to_machine", "leave it out, or give to_cl=True"))
+        raise InputError(
+            argument_problem("dialect", "is given with to_machine", "leave it out, or give to_cl=True", code="CNV110")
+        )
     source = as_machine(machine)
     target_machine = source if to_machine is None else as_machine(to_machine, "to_machine")
     control = load_control(source.control)
@@ -187,10 +189,10 @@ def _refuse_for_cl(**given: object) -> None:
     """Refuse arguments that are about NC programs."""
     if given["to_machine"] is not None:
         what, cure = "is missing", "give the machine that the NC program is for; post writes the program of a CL file"
-        raise InputError(argument_problem("machine", what, cure))
+        raise InputError(argument_problem("machine", what, cure, code="CNV110"))
     if name := next((name for name, value in given.items() if value), ""):
         what, cure = "has no meaning for a CL file", "leave it out, or give the machine that the NC program is for"
-        raise InputError(argument_problem(name, what, cure))
+        raise InputError(argument_problem(name, what, cure, code="CNV110"))
 
 
 def _with_settings(job: PostJob, carried: Mapping[str, str]) -> PostJob:
@@ -233,14 +235,18 @@ def _check_settings(job: PostJob, to_cl: bool) -> None:
     """Raise ``InputError`` for settings that have no meaning in a conversion."""
     if "dialect" in job.settings:
         what, cure = "dialect has no meaning here", "an NC program is no CL file: leave it out"
-        raise InputError(argument_problem("settings", what, cure))
+        raise InputError(argument_problem("settings", what, cure, code="CNV111"))
     if "cl_units" in job.settings:
         what, cure = "cl_units has no meaning here", "an NC program says its unit itself"
-        raise InputError(argument_problem("settings", what, cure))
+        raise InputError(argument_problem("settings", what, cure, code="CNV111"))
     if "units" in job.settings and to_cl:
-        raise InputError(argument_problem("settings", "units has no meaning here", "a CL file is written in mm"))
+        raise InputError(
+            argument_problem("settings", "units has no meaning here", "a CL file is written in mm", code="CNV111")
+        )
     if "zero" in job.settings and to_cl:
-        raise InputError(argument_problem("settings", "zero has no meaning in a CL file", "give it to trunnion post"))
+        raise InputError(
+            argument_problem("settings", "zero has no meaning in a CL file", "give it to trunnion post", code="CNV111")
+        )
 
 
 class _ProgramConverter:
@@ -257,12 +263,12 @@ class _ProgramConverter:
 
     def read(self, run: Run, control: Control, target: Machine | None) -> Conversion:
         """The toolpath of a run for another machine, None for a CL file; one that was not understood is refused."""
-        found = [Problem(one.file, one.line, one.text, "", one.severity) for one in run.diagnostics]
+        found = [Problem(one.file, one.line, one.text, "", one.severity, code=one.code) for one in run.diagnostics]
         errors = [problem for problem in found if problem.severity is Severity.ERROR]
         if errors and not self._force:
             what = f"{counted(len(errors), 'place')} not understood, and nothing is written"
             cure = "force=True converts what was understood"
-            raise RefusedError((*errors[:_MOST_NAMED], Problem(self._file, 0, what, cure)))
+            raise RefusedError((*errors[:_MOST_NAMED], Problem(self._file, 0, what, cure, code="CNV120")))
         self.report([problem for problem in found if not problem.what.startswith(COMPENSATION_FINDINGS)])
         converted = conversion.convert(run, control)
         toolpath, of_builder = conversion.carry_machine_words(converted.toolpath, run.machine, target)
@@ -272,7 +278,7 @@ class _ProgramConverter:
         self.report([problem for problem in of_builder if problem.severity is Severity.WARNING])
         if not converted.toolpath.operations:
             what = "there is no motion at the part in it"
-            raise InputError(Problem(self._file, 0, what, "give a program that cuts"))
+            raise InputError(Problem(self._file, 0, what, "give a program that cuts", code="CNV121"))
         self.report(converted.warnings)
         return converted
 
@@ -281,13 +287,15 @@ class _ProgramConverter:
         if lost and not self._force:
             what = f"{counted(len(lost), 'place')} cannot be converted, and nothing is written"
             cure = "force=True converts the rest without them"
-            raise RefusedError((*lost[:_MOST_NAMED], Problem(self._file, 0, what, cure)))
+            raise RefusedError((*lost[:_MOST_NAMED], Problem(self._file, 0, what, cure, code="CNV130")))
         self.report(lost)
 
     def warn_of_one_program(self, files: int) -> None:
         """Warn that a program with subprograms becomes one without."""
         cure = "setting programs=operations writes several"
-        self.report([Problem(self._file, 0, f"{files} files become one program", cure, Severity.WARNING)])
+        self.report(
+            [Problem(self._file, 0, f"{files} files become one program", cure, Severity.WARNING, code="CNV162")]
+        )
 
     def warn_of_new_offset(self, run: Run, job: PostJob) -> None:
         """Warn where the old program cuts without a work offset of its own, and the new one selects one."""
@@ -298,7 +306,9 @@ class _ProgramConverter:
         what = f"selects no work offset before it cuts; the new program selects work_offset={offset}"
         cure = "put the zero that held before into it, or give the setting work_offset"
         row = int(rows[0])
-        self.report([Problem(run.files[int(run.file[row])], int(run.line[row]), what, cure, Severity.WARNING)])
+        self.report(
+            [Problem(run.files[int(run.file[row])], int(run.line[row]), what, cure, Severity.WARNING, code="CNV144")]
+        )
 
     def carry(self, stated: Mapping[str, str], control: Control, job: PostJob, source: Machine) -> dict[str, str]:
         """The settings of the new program: those that the old one states, as far as they mean the same, and the job's.
@@ -317,7 +327,7 @@ class _ProgramConverter:
             known = key in target.settings
             cure = f"say it as {target.name} does" if known else f"{target.name} has no such setting"
             what = f"{key} is {stated[key]!r}, which is not carried over"
-            self.report([Problem(self._file, 0, what, cure, Severity.WARNING)])
+            self.report([Problem(self._file, 0, what, cure, Severity.WARNING, code="CNV140")])
         for key, cure in _setting_faults(carried, job).items():
             self._not_carried(key, carried.pop(key), f"which {target.name} cannot have", cure, key in given)
         carried = _with_own(carried | job.printed, job)
@@ -343,14 +353,22 @@ class _ProgramConverter:
             return {} if found == default and "work_offset" not in stated else {"work_offset": found}
         if "work_offset" in stated:
             what = f"the work offset is {text}, which {target.name} does not have{words}"
-            self._refuse([Problem(self._file, 0, what, "setting work_offset=… says it as the other control does")])
+            self._refuse(
+                [Problem(self._file, 0, what, "setting work_offset=… says it as the other control does", code="CNV141")]
+            )
         return {}
 
     def _not_carried(self, key: str, text: str, why: str, cure: str, is_given: bool) -> None:
         """Warn of a setting that is not carried over; refuse if it is work offsets that no given setting replaces."""
         if key == "work_offset" and ":" in text and not is_given:
             what = f"operations have different work offsets ({text}), {why}"
-            self._refuse([Problem(self._file, 0, what, "setting work_offset=… says them as the other control does")])
+            self._refuse(
+                [
+                    Problem(
+                        self._file, 0, what, "setting work_offset=… says them as the other control does", code="CNV143"
+                    )
+                ]
+            )
             return
         what = f"{key} is {text!r}, {why}: it is not carried over"
-        self.report([Problem(self._file, 0, what, cure, Severity.WARNING)])
+        self.report([Problem(self._file, 0, what, cure, Severity.WARNING, code="CNV140")])

@@ -55,7 +55,7 @@ def convert_cl(
         if "not a CL file" not in error.problems[0].what:
             raise
         hint = argument_problem(
-            "machine", "is missing, so that the file is read as a CL file", "give it for an NC program"
+            "machine", "is missing, so that the file is read as a CL file", "give it for an NC program", code="CNV110"
         )
         raise InputError((*error.problems, hint)) from None
     observer.problems(toolpath.remarks)
@@ -69,14 +69,16 @@ def _checked(settings: Settings | None) -> dict[str, str]:
     """The settings as texts."""
     texts = as_texts(settings)
     problems = [
-        argument_problem("settings", f"{key} has no meaning between two CL files", f"leave it out, or write {allowed}")
+        argument_problem(
+            "settings", f"{key} has no meaning between two CL files", f"leave it out, or write {allowed}", code="CNV111"
+        )
         for allowed in [" or ".join(_SETTINGS)]
         for key in texts.keys() - _SETTINGS.keys()
     ]
     for key, choices in _SETTINGS.items():
         if texts.get(key, choices[0]) not in choices:
             cure = f"write {' or '.join(f'{key}={choice}' for choice in choices)}"
-            problems.append(argument_problem("settings", f"{key} is {texts[key]!r}", cure))
+            problems.append(argument_problem("settings", f"{key} is {texts[key]!r}", cure, code="CNV111"))
     if problems:
         raise InputError(problems)
     return texts

@@ -232,7 +232,7 @@ def describe_cl(
     """
     toolpaths = read_toolpaths(cl, units, strict, observer, dialect)
     if not toolpaths:
-        raise InputError(argument_problem("cl", "there is no CL file", "give at least one"))
+        raise InputError(argument_problem("cl", "there is no CL file", "give at least one", code="ARG130"))
     files = tuple(map(_file, toolpaths))
     pairs = [(toolpath.file, operation) for toolpath in toolpaths for operation in toolpath.operations]
     first = next((operation.frame for _, operation in pairs if len(operation.moves)), Frame())

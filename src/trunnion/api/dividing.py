@@ -68,7 +68,9 @@ def operation_programs(toolpaths: Sequence[Toolpath], job: PostJob, output: Path
     """
     moving = [(path, own) for path in toolpaths for own in path.operations if len(own.moves)]
     if not moving:
-        raise InputError(Problem(toolpaths[0].file, 0, "has no operation that moves", "check what CAM has written"))
+        raise InputError(
+            Problem(toolpaths[0].file, 0, "has no operation that moves", "check what CAM has written", code="CL140")
+        )
     names = [operation.name for _, operation in moving]
     check_operation_names(job.own_settings, job.settings, names)
     _check_modes(job.settings.get("mode", ""), names)
@@ -140,7 +142,7 @@ def _check_modes(text: str, names: Iterable[str]) -> None:
     for name in (entry.rpartition(":")[0] for entry in text.split(",")):
         if name and name not in known:
             what = f"mode is set for operation {name}, and there is none of that name"
-            raise InputError(argument_problem("settings", what, f"write one of {', '.join(known)}"))
+            raise InputError(argument_problem("settings", what, f"write one of {', '.join(known)}", code="ARG230"))
 
 
 def _check_apart(moving: Sequence[tuple[Toolpath, Operation]], *, is_absolute: bool) -> None:
@@ -151,7 +153,7 @@ def _check_apart(moving: Sequence[tuple[Toolpath, Operation]], *, is_absolute: b
         if left is not None:
             what = f"{operation.name} leaves on what line {left.line} switches on, and {following.name} goes on with it"
             cure = "switch it off in the operation, or write one program"
-            problems.append(Problem(operation.file or toolpath.file, left.line, what, cure))
+            problems.append(Problem(operation.file or toolpath.file, left.line, what, cure, code="PRJ140"))
     first = moving[0][1].frame
     for toolpath, operation in moving:
         if operation.frame != first and not is_absolute:
@@ -160,7 +162,7 @@ def _check_apart(moving: Sequence[tuple[Toolpath, Operation]], *, is_absolute: b
             )
             what += " they would count from different zeros"
             cure = "write setting frame=absolute, or one program"
-            problems.append(Problem(operation.file or toolpath.file, operation.line, what, cure))
+            problems.append(Problem(operation.file or toolpath.file, operation.line, what, cure, code="PRJ140"))
     if problems:
         raise RefusedError(problems)
 

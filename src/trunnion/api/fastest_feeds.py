@@ -14,16 +14,19 @@ from typing import Final
 import numpy as np
 
 from trunnion.api.expectation import expectation
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.words import NumberFormat
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.machines import Machine
+from trunnion.model.feed_path import NO_ROTATION
 from trunnion.model.motion import Motion
 from trunnion.model.run import Run
-from trunnion.model.toolpath import Kind, Toolpath
+from trunnion.model.toolpath import Kind, Phase, Toolpath
 from trunnion.output.program import Program
 from trunnion.planning import PlanOptions
+from trunnion.timing import HARDLY_MOVES
 from trunnion.verification import reachable_feeds
+from trunnion.wording import counted
 
 #: A feed that is reached but for this share is reached.
 _REACHED: Final = 1e-6
@@ -51,7 +54,7 @@ def with_reached_feeds(
     """
     if run is None:
         what = f"feed is fastest, and programs for {program.control.name} cannot be read back: nothing times them"
-        raise InputError(argument_problem("settings", what, "leave it out"))
+        raise InputError(argument_problem("settings", what, "leave it out", code="CTL920"))
     expected = expectation(program, options)
     reached = reachable_feeds(run, toolpaths, expected.tolerances, expected.settings)
     own = [operation.moves.feed for path in toolpaths for operation in path.operations if len(operation.moves)]
@@ -61,29 +64,45 @@ def with_reached_feeds(
             groups.append([])
         groups[-1].append(motion)
     motions: list[Motion] = []
-    for group, feeds, cl_feeds in zip(groups, reached, own, strict=True):
-        slower = [_with_feeds(program, motion, feeds) for motion in group]
-        motions += [_declared(slower, cl_feeds), *slower[1:]]
+    for group, (feeds, kept), cl_feeds in zip(groups, reached, own, strict=True):
+        slower = [_with_feeds(program, motion, np.where(kept, np.nan, feeds), cl_feeds) for motion in group]
+        motions += [_declared(slower, cl_feeds, kept), *slower[1:]]
     return replace(program, motions=motions)
 
 
-def _with_feeds(program: Program, motion: Motion, reached: Floats) -> Motion:
-    """A motion with what is ``reached`` at the rows of its CL file, (n,), where that is less than its feeds."""
+def _with_feeds(program: Program, motion: Motion, reached: Floats, cl_feeds: Floats) -> Motion:
+    """A motion with what is ``reached`` at the rows of its CL file, (n,), where that is less than its feeds.
+
+    Where it is not known, or to be kept, and where the tip rests, the feed is no higher than that of the CL file.
+    """
     moves, splines = motion.operation.moves, motion.operation.splines
     number_format = program.control.number_formats(motion.three_axis)["feed"]
     rows, at = _rows_at_feed(motion)
-    found = np.full(len(moves), np.nan)
-    found[at] = reached[rows]
+    found, own = np.full(len(moves), np.nan), np.full(len(moves), np.nan)
+    found[at], own[at] = reached[rows], cl_feeds[rows]
     for k in range(len(splines)):  # a spline has one feed
         first, last, _ = splines[k]
         found[first : last + 1] = found[last]
-    lower = found < moves.feed * (1.0 - _REACHED)
+    stays = np.isnan(found) | _tip_rests(motion)
+    lower = ~stays & (found < moves.feed * (1.0 - _REACHED))
     feed = moves.feed.copy()
     feed[lower] = np.minimum(rounded_down(found[lower], number_format), feed[lower])
+    limited = stays & (moves.phase == Phase.CUT)
+    feed[limited] = np.fmin(feed[limited], own[limited])
     _lower_rewinds(motion, feed, number_format)
     if rapid := program.effective_setting("rapid_feed"):  # a line at this feed is a rapid
         feed[(feed < moves.feed) & (np.abs(feed - float(rapid)) < number_format.digit)] -= number_format.digit
     return replace(motion, operation=replace(motion.operation, moves=replace(moves, feed=feed)))
+
+
+def _tip_rests(motion: Motion) -> Flags:
+    """Rows that turn rotary axes while the tip hardly moves, (n,): the feed of the others is none of theirs."""
+    turned = np.abs(np.diff(motion.rotary, axis=0)).max(axis=1, initial=0.0)
+    travel = np.linalg.norm(np.diff(motion.operation.moves.tip, axis=0), axis=1)
+    rests = np.zeros(len(motion.rotary), np.bool_)
+    rests[1:] = (turned > NO_ROTATION) & (travel < HARDLY_MOVES)
+    rests[motion.operation.arcs.row] = False
+    return rests
 
 
 def _lower_rewinds(motion: Motion, feed: Floats, number_format: NumberFormat) -> None:
@@ -107,13 +126,19 @@ def _rows_at_feed(motion: Motion) -> tuple[Ints, Ints]:
     return motion.cl_rows[at], at
 
 
-def _declared(motions: Sequence[Motion], cl_feeds: Floats) -> Motion:
-    """The first motion of an operation, with a declaration of the feeds in all of them that are not the CL file's."""
-    feeds = cl_feeds.copy()
+def _declared(motions: Sequence[Motion], cl_feeds: Floats, kept: Flags) -> Motion:
+    """The first motion of an operation, with a declaration of the feeds in all of them.
+
+    Declared are those that are not the CL file's, and those that are kept although axes do not reach them.
+    """
+    feeds, declared = cl_feeds.copy(), np.zeros(len(cl_feeds), np.bool_)
     for motion in motions:
         rows, at = _rows_at_feed(motion)
-        feeds[rows] = motion.operation.moves.feed[at]
-    rows = np.flatnonzero((feeds != cl_feeds) & ~np.isnan(feeds))
+        feed, rests = motion.operation.moves.feed, _tip_rests(motion)[at]
+        for some in (rests, ~rests):  # a row that moves the tip has the feed of its point
+            feeds[rows[some]] = feed[at[some]]
+        declared[rows] = True
+    rows = np.flatnonzero(declared & ((feeds != cl_feeds) | kept) & ~np.isnan(feeds))
     deviations = replace(motions[0].deviations, reached_rows=rows, reached_feed=feeds[rows])
     return replace(motions[0], deviations=deviations)
 
@@ -128,6 +153,23 @@ def rounded_down(feed: Floats, number_format: NumberFormat) -> Floats:
     return number_format.values(np.maximum(count, least))
 
 
+def raised_feeds(program: Program, toolpaths: Sequence[Toolpath]) -> list[Problem]:
+    """A warning of blocks that are faster than the CL file says, as a feed limit may make them."""
+    own = [operation.moves.feed for path in toolpaths for operation in path.operations if len(operation.moves)]
+    number, count, greatest = -1, 0, 1.0
+    for motion in program.motions:
+        number += motion.starts_operation
+        rows, at = _rows_at_feed(motion)
+        share = motion.operation.moves.feed[at] / own[number][rows]
+        share = share[share > 1.0 + _REACHED]
+        count, greatest = count + len(share), max(greatest, float(share.max(initial=1.0)))
+    if not count:
+        return []
+    what = f"{counted(count, 'block')} cut faster than the CL file says, up to {greatest:.3g} times as fast: feed_limit"
+    cure = "make sure that tool and material bear it; plunges, and phases other than cuts, keep their feeds"
+    return [Problem(toolpaths[0].file, 0, what, cure, Severity.WARNING, code="PLN435")]
+
+
 def unlimited_axes(machine: Machine) -> list[Problem]:
     """A warning for a machine of which not all is known that limits feeds."""
     names = [axis.name for axis in machine.axes if axis.acceleration is None]
@@ -135,4 +177,4 @@ def unlimited_axes(machine: Machine) -> list[Problem]:
         return []
     what = f"states no acceleration of {', '.join(names)}: feeds are lowered as if they changed their speed at once"
     cure = "state acceleration_mm_s2 and acceleration_deg_s2 of the axes, and jerks if they are known"
-    return [Problem(machine.key, 0, what, cure, Severity.WARNING)]
+    return [Problem(machine.key, 0, what, cure, Severity.WARNING, code="PLN425")]

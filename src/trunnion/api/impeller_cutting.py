@@ -247,12 +247,14 @@ def _chosen(impeller: Impeller, names: Sequence[str]) -> list[str]:
     known = [step.name for step in impeller.definition.steps]
     if not known:
         what, cure = "has no operations", "write tables [[operation]] and [[tool]] in the definition"
-        raise InputError(argument_problem("impeller", what, cure))
+        raise InputError(argument_problem("impeller", what, cure, code="IMP310"))
     if isinstance(names, str) or not all(isinstance(name, str) for name in names):
         raise wrong_argument("operations", names, "give a list of names")
     if unknown := [name for name in names if name not in known]:
         cure = f"the definition has {', '.join(known)}"
-        raise InputError([argument_problem("operations", f"has {name!r}, which is none", cure) for name in unknown])
+        raise InputError(
+            [argument_problem("operations", f"has {name!r}, which is none", cure, code="IMP310") for name in unknown]
+        )
     return [name for name in known if name in names or not names]
 
 
@@ -261,7 +263,11 @@ def _check_speeds(impeller: Impeller, chosen: Sequence[str], machine: Machine) -
     definition = impeller.definition
     faults = [(step.name, spindle_speed_fault(machine, step.rpm)) for step in definition.steps if step.name in chosen]
     cure = "give it an rpm that the machine has"
-    if problems := [Problem(definition.file, 0, f"operation {name}: {fault}", cure) for name, fault in faults if fault]:
+    if problems := [
+        Problem(definition.file, 0, f"operation {name}: {fault}", cure, code="IMP311")
+        for name, fault in faults
+        if fault
+    ]:
         raise InputError(problems)
 
 
@@ -348,7 +354,9 @@ def _shared(file: str, paths: StepPaths) -> Problem:
     cutter, shank, holder, _ = paths.step.clearance
     wanted = f"{cutter:g}, {shank:g} and {holder:g} mm are wanted of cutter, shank and holder"
     what = f"{paths.step.name}: keeps only {paths.share:.0%} of its clearances: {wanted}"
-    return Problem(file, paths.step.line, what, "choose a thinner or longer tool, or want less", Severity.WARNING)
+    return Problem(
+        file, paths.step.line, what, "choose a thinner or longer tool, or want less", Severity.WARNING, code="IMP330"
+    )
 
 
 def _one_layer(file: str, paths: StepPaths) -> Iterator[Problem]:
@@ -360,7 +368,9 @@ def _one_layer(file: str, paths: StepPaths) -> Iterator[Problem]:
         and not any(one.layer for one in passes)
     ):
         what = f"{step.name}: step_down_mm = {step.step_down:g} cuts the whole depth of a channel in one layer"
-        yield Problem(file, step.line, what, "give a step_down_mm that the tool can cut", Severity.WARNING)
+        yield Problem(
+            file, step.line, what, "give a step_down_mm that the tool can cut", Severity.WARNING, code="IMP331"
+        )
 
 
 def _simulated(

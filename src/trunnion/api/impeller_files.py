@@ -59,7 +59,9 @@ class ImpellerFiles:
             place = resolve_output(file)
             if place.path.exists() and not EarlierJob(place.path).wrote(place.path):
                 what = "would be replaced, although no earlier cut has written it as it is"
-                problems.append(Problem(place.name, 0, what, "choose another folder, or remove the file"))
+                problems.append(
+                    Problem(place.name, 0, what, "choose another folder, or remove the file", code="IMP410")
+                )
         if problems:
             raise InputError(problems)
 
@@ -108,7 +110,9 @@ def output_folder(output: object) -> Iterator[Path]:
     folder = check_path("output", output)
     if str(folder) == "-":
         raise InputError(
-            argument_problem("output", "is -, and several files have no place in a stream", "name a folder")
+            argument_problem(
+                "output", "is -, and several files have no place in a stream", "name a folder", code="IMP410"
+            )
         )
     made = list(_missing([folder, *folder.parents]))
     try:

@@ -31,4 +31,4 @@ def winding_problems(file: str, step: MachiningStep, motions: Sequence[Motion], 
     if costs:
         what = f"{step.name}: tilt_deg = {step.tilt:g} turns a rotary axis with every turn of the helix, and costs "
         cure = "tilt_deg = 0 costs none of it"
-        yield Problem(file, step.line, what + " and ".join(costs), cure, Severity.WARNING)
+        yield Problem(file, step.line, what + " and ".join(costs), cure, Severity.WARNING, code="IMP334")

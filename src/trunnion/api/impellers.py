@@ -104,7 +104,9 @@ def write_impeller_step(impeller: Impeller | FilePath, output: FilePath, *, tole
     """
     path = check_path("output", output)
     if path.suffix.lower() not in STEP_ENDINGS:
-        raise InputError(Problem(str(path), 0, "is not the name of a STEP file", "end it in .stp or .step"))
+        raise InputError(
+            Problem(str(path), 0, "is not the name of a STEP file", "end it in .stp or .step", code="IMP411")
+        )
     wanted = _checked(tolerance)
     found = _loaded(impeller)
     definition = found.definition

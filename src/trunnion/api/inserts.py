@@ -24,6 +24,7 @@ from trunnion.model.splines import Splines
 from trunnion.model.toolpath import Arcs, Event, Insert, Kind, LoadTool, SpindleOff, SpindleOn
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
+from trunnion.output.said_words import said_words
 from trunnion.readers.program.known_words import HOME, begins_with
 
 #: Columns of a run that a text must leave as they are, and what each of them is.
@@ -48,10 +49,16 @@ _COLUMNS: Final = {
 #: Events that a text may make: functions of the machine's builder, dwells, stops, messages.
 _HARMLESS_EVENTS: Final = frozenset({"m", "h", "dwell", "stop", "optional_stop", "message"})
 
+#: Events of a motion's first row that a trial has too.
+_SWITCHES: Final = (LoadTool, SpindleOn, SpindleOff)
+
 #: Blocks that jumps and loops of a text may execute.
 _STEP_LIMIT: Final = 20_000
 
 _MOST_LISTED: Final = 20
+_TEMPLATE_CURE: Final = (
+    "write what moves nothing and changes no mode, and declare words of the machine's builder under [control.known]"
+)
 _CURE: Final = "write it as a CL statement, or leave it out: INSERT takes what moves nothing and changes no mode"
 
 
@@ -60,29 +67,54 @@ def insert_problems(program: Program) -> list[Problem]:
     if not readers.can_read(program.machine):
         return []
     problems: list[Problem] = []
+    harmless: set[object] = set()
     with tempfile.TemporaryDirectory() as folder:
         for motion in program.motions:
-            lines: dict[str, int] = {}
+            texts: dict[str, Insert] = {}
             for event in motion.operation.events:
-                if isinstance(event, Insert):
-                    lines.setdefault(event.text, event.line)
-            trial = _Trial(program, motion, Path(folder))
-            effects = dict(trial.effects(list(lines)))
-            for text in lines:
+                if isinstance(event, Insert) and not _is_remark(event, program):
+                    texts.setdefault(event.text, event)
+            if not texts:
+                continue
+            trial, before = _Trial(program, motion, Path(folder)), len(problems)
+            alike = trial.conditions(tuple(texts))
+            if alike in harmless:
+                continue
+            effects = dict(trial.effects(list(texts)))
+            for text, event in texts.items():
                 effect = effects.get(text) or _not_known(text, program)
                 if not effect:
                     continue
-                problems.append(
-                    Problem(program.file_of(motion.operation), lines[text], f"INSERT/{text.strip()}: {effect}", _CURE)
-                )
+                problems.append(_problem(program, motion, event, effect))
                 if len(problems) >= _MOST_LISTED:
                     return problems
+            if len(problems) == before:
+                harmless.add(alike)
     return problems
+
+
+def _is_remark(event: Insert, program: Program) -> bool:
+    """Whether the text of a template is nothing but remarks, of which a program may have one a block."""
+    lines = event.text.split("\n")
+    return (
+        bool(event.template) and said_words(lines, program.control, ()) == set() and not _not_known(event.text, program)
+    )
+
+
+def _problem(program: Program, motion: Motion, event: Insert, effect: str) -> Problem:
+    """What is wrong with a text, at its line of the CL file or at its template."""
+    file, text = program.file_of(motion.operation), event.text.strip().replace("\n", " | ")
+    if not event.template:
+        return Problem(file, event.line, f"INSERT/{text}: {effect}", _CURE, code="CTL455")
+    place = program.control.templates[event.template].place_of(0)
+    what = f"template {event.template} writes {text} at {file}:{event.line}: {effect}"
+    return Problem(*place, what, _TEMPLATE_CURE, code="CTL455")
 
 
 def _not_known(text: str, program: Program) -> str:
     """Which word of a text nobody knows to change nothing: a run shows only what its reader follows."""
-    word = readers.reader_of(program.machine).raw_words.not_known(text, program.machine)
+    known = readers.reader_of(program.machine).raw_words.not_known
+    word = next((word for line in text.split("\n") if (word := known(line, program.machine))), "")
     return f"nobody knows that {word} changes nothing" if word else ""
 
 
@@ -93,6 +125,16 @@ class _Trial:
         self._program, self._motion = program, motion
         self._file = folder / "trial"
         self._quiet = program.control.family.comment("text")[0]
+
+    def conditions(self, texts: tuple[str, ...]) -> object:
+        """What the effect of texts depends on: in another motion with the same they have the same."""
+        motion, operation = self._motion, self._motion.operation
+        switched = [event for event in operation.events if event.row == 0 and isinstance(event, _SWITCHES)]
+        settings = self._program.effective_settings(operation)
+        return (
+            texts, motion.mode, motion.plane, operation.tool, _first_feed(operation.moves.feed),
+            tuple(replace(event, line=0) for event in switched), tuple(sorted(settings.items())),
+        )  # fmt: skip
 
     def effects(self, texts: Sequence[str]) -> list[tuple[str, str]]:
         """The texts that change something, each with what it does: alone, or with those around it."""
@@ -133,9 +175,7 @@ def _with_texts(motion: Motion, texts: Sequence[str]) -> Motion:
     feed = np.where(moves.feed > 0.0, moves.feed, _first_feed(operation.moves.feed))
     kind = np.full(len(rows), Kind.LINEAR, np.uint8)
     kind[0] = Kind.RAPID
-    events: list[Event] = [
-        event for event in operation.events if event.row == 0 and isinstance(event, LoadTool | SpindleOn | SpindleOff)
-    ]
+    events: list[Event] = [event for event in operation.events if event.row == 0 and isinstance(event, _SWITCHES)]
     events += [Insert(2 * k + at + 1, 0, text) for k, text in enumerate(texts) for at in (0, 1)]
     return replace(
         motion,

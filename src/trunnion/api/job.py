@@ -25,7 +25,7 @@ from trunnion.controls.vocabulary import MM, PROGRAM_CHOICES
 from trunnion.errors import InputError, argument_problem
 from trunnion.files import OutputFiles
 from trunnion.machines import Machine
-from trunnion.model.motion import MachiningMode, PoleStrategy
+from trunnion.model.motion import Decision, MachiningMode, PoleStrategy
 from trunnion.output.capabilities import control_capabilities
 from trunnion.output.subprograms import SubprogramOutput
 from trunnion.planning import Clearance, ClearanceSurface, ControlCapabilities, PlanOptions
@@ -64,6 +64,8 @@ class PostJob:
     columns       work out the columns of the verification
     beside        files of subprograms that exist already and that templates call
     simulation    stock and all else that the program is simulated with; None: it is not; and the files of that
+    notices       comments for the head of the program
+    decisions     what was decided before planning, for reports
     forcing       what a refusal says of ``force``; empty where it cannot be asked for
     """
 
@@ -79,6 +81,8 @@ class PostJob:
     beside: tuple[Path, ...] = ()
     simulation: "SimulationInput | None" = None
     simulation_files: tuple[str | os.PathLike[str], ...] = ()
+    notices: tuple[str, ...] = ()
+    decisions: tuple[Decision, ...] = ()
     forcing: str = FORCING
 
     @property
@@ -120,14 +124,18 @@ class PostJob:
         if self.settings.get("programs", "one") == "one":
             if size is not None:
                 cure = "write programs=operations too"
-                raise InputError(argument_problem("settings", "split divides subprograms, and there are none", cure))
+                raise InputError(
+                    argument_problem("settings", "split divides subprograms, and there are none", cure, code="ARG240")
+                )
             return None
         if self.control.subprograms is None:
             what = f"programs is operations, and {self.control.name} has no words for subprograms here"
-            raise InputError(argument_problem("settings", what, "leave it out"))
+            raise InputError(argument_problem("settings", what, "leave it out", code="ARG250"))
         if path is None:
             cure = "name a file or a folder, or write setting programs=one"
-            raise InputError(argument_problem("output", "a program of several files needs a place for them", cure))
+            raise InputError(
+                argument_problem("output", "a program of several files needs a place for them", cure, code="FIL210")
+            )
         numbered = self.control.subprograms.first_number is not None
         open_file = partial(files.add_file, other_name=_OTHER_NUMBERS) if numbered else files.add_file
         return SubprogramOutput(path.stem, open_file, None if size is None else int(size))
@@ -175,7 +183,9 @@ def _with_numbers(control: Control, asked: str | None) -> Control:
     numbers = control.block_numbers
     if asked == "operations" and not numbers.letter:
         cure = "leave it out: its numbers have no letter, and stand before every block"
-        raise InputError(argument_problem("settings", f"numbers is operations, and {control.name} has no such", cure))
+        raise InputError(
+            argument_problem("settings", f"numbers is operations, and {control.name} has no such", cure, code="ARG250")
+        )
     if asked is None or (asked == "on" and not numbers.letter):
         return control
     every = numbers.every if asked == "off" else 1
@@ -199,11 +209,15 @@ def _with_first_number(control: Control, settings: Mapping[str, str]) -> Control
         why = f"{control.name} names its subprograms" if naming and not naming.first_number else "there are none"
         what = "first_number is that of subprograms that have numbers"
         raise InputError(
-            argument_problem("settings", f"{what}: {why}", "leave it out, or write programs=operations too")
+            argument_problem(
+                "settings", f"{what}: {why}", "leave it out, or write programs=operations too", code="ARG240"
+            )
         )
     if first != int(first):
         raise InputError(
-            argument_problem("settings", f"first_number is {settings['first_number']!r}", "write a whole number")
+            argument_problem(
+                "settings", f"first_number is {settings['first_number']!r}", "write a whole number", code="ARG220"
+            )
         )
     return replace(control, subprograms=replace(naming, first_number=int(first)))
 
@@ -218,16 +232,22 @@ def parse_plan_options(settings: Mapping[str, str], control: Control, explain: b
     """
     tcp = settings.get("tcp", "on" if control.tcp else "off") == "on"
     if tcp and not control.tcp:
-        raise InputError(argument_problem("settings", "tcp is on, and the machine's control has none", "write tcp=off"))
+        raise InputError(
+            argument_problem(
+                "settings", "tcp is on, and the machine's control has none", "write tcp=off", code="ARG250"
+            )
+        )
     mode, mode_by_operation = _mode_setting(settings.get("mode", "auto"), tcp)
     numbers = {key: number_setting(settings, key) for key in ("pole_angle", "tip_tolerance", "axis_tolerance")}
     fastest, limit = settings.get("feed") == "fastest", number_setting(settings, "feed_limit")
     lower_feed = settings.get("lower_feed", "no") == "yes"
     if limit is not None and not fastest:
-        raise InputError(argument_problem("settings", "feed_limit is for feed=fastest only", "write feed=fastest too"))
+        raise InputError(
+            argument_problem("settings", "feed_limit is for feed=fastest only", "write feed=fastest too", code="ARG220")
+        )
     if fastest and lower_feed:
         what = "lower_feed is yes, and feed=fastest keeps all axes within their speeds"
-        raise InputError(argument_problem("settings", what, "leave lower_feed out"))
+        raise InputError(argument_problem("settings", what, "leave lower_feed out", code="ARG220"))
     known: dict[str, Any] = {key: value for key, value in numbers.items() if value is not None}
     if "clearance" in settings:
         known["clearance"] = _parse_clearance(settings["clearance"])
@@ -257,7 +277,7 @@ def _mode_setting(text: str, tcp: bool) -> tuple[MachiningMode | None, dict[str,
         if word not in known:
             what = "mode is tcp, and there is no TCP" if word == "tcp" else f"mode is {text!r}"
             cure = f"write one of {', '.join(known)}; OPERATION:WORD says it of one operation"
-            raise InputError(argument_problem("settings", what, cure))
+            raise InputError(argument_problem("settings", what, cure, code="ARG220"))
         if name:
             own[name] = known[word]
         else:
@@ -276,4 +296,4 @@ def _parse_clearance(text: str) -> Clearance:
     if least <= value <= 10000.0:
         return Clearance(value, surface)
     cure = RUN_SETTINGS["clearance"].cure("clearance")
-    raise InputError(argument_problem("settings", f"clearance is {text!r}", cure))
+    raise InputError(argument_problem("settings", f"clearance is {text!r}", cure, code="ARG220"))

@@ -265,8 +265,10 @@ def _sum_of(file: Path) -> str:
     try:
         return checksum(file)
     except OSError as error:
-        raise InputError(Problem(str(file), 0, f"cannot be read: {error.strerror}", "")) from None
+        raise InputError(Problem(str(file), 0, f"cannot be read: {error.strerror}", "", code="FIL120")) from None
 
 
 def _fault(path: Path, why: str) -> InputError:
-    return InputError(Problem(str(path), 0, f"{_NO_MANIFEST}: {why}", "name the manifest that a post has written"))
+    return InputError(
+        Problem(str(path), 0, f"{_NO_MANIFEST}: {why}", "name the manifest that a post has written", code="FIL330")
+    )

@@ -62,6 +62,6 @@ def paper_files(
         program = Path(output) if isinstance(output, str | os.PathLike) else None
         if program is None or program.parent.resolve() != Path(manifest).parent.resolve():
             cure = "name a file in the folder of the program, and write the program to a file"
-            raise InputError(Problem(place.name, 0, "a manifest tells of the files beside it", cure))
+            raise InputError(Problem(place.name, 0, "a manifest tells of the files beside it", cure, code="FIL320"))
     places = (None if each is None else Path(each) for each in (report, sheet, listing, manifest))
     return PaperFiles(*places)

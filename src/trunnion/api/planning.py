@@ -1,6 +1,6 @@
 """Planning: toolpaths to motions on a machine, before any text is written."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from trunnion import planning, readers
@@ -15,6 +15,7 @@ from trunnion.controls.vocabulary import FORCED_NOTICE, INCH
 from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem, merge_repeated
 from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Toolpath
+from trunnion.output.place_texts import with_place_texts
 from trunnion.output.program import Program
 from trunnion.output.validation import check_program
 from trunnion.output.validation.tools import tool_conflicts
@@ -80,9 +81,15 @@ def plan(
 
 
 def load_toolpaths(
-    cl: ToolpathLike | Iterable[ToolpathLike], job: PostJob, strict: bool, observer: Observer
+    cl: ToolpathLike | Iterable[ToolpathLike],
+    job: PostJob,
+    strict: bool,
+    observer: Observer,
+    changed: Callable[[list[Toolpath]], list[Toolpath]] = list,
 ) -> list[Toolpath]:
     """The toolpaths of a post, with surface normals if the program has them; their remarks are reported.
+
+    ``changed`` returns what becomes of them once they are read.
 
     Raises
     ------
@@ -99,13 +106,13 @@ def load_toolpaths(
     )
     if job.control.units == INCH:
         _check_units_of(toolpaths)
-    toolpaths = replace_unknown_statements(toolpaths, job.control.statements, job.machine)
     if not toolpaths:
-        raise InputError(argument_problem("cl", "there is no CL file", "give at least one"))
+        raise InputError(argument_problem("cl", "there is no CL file", "give at least one", code="ARG130"))
     if job.has_normals:
         from trunnion.cl.surface_normals import with_normals
 
         toolpaths = [with_normals(toolpath) for toolpath in toolpaths]
+    toolpaths = replace_unknown_statements(changed(toolpaths), job.control, job.machine)
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     return toolpaths
@@ -114,7 +121,9 @@ def load_toolpaths(
 def _check_units_of(toolpaths: Iterable[Toolpath]) -> None:
     """Raise ``InputError`` for a CL file that would be taken for one in mm while the program counts in inches."""
     what, cure = "nothing says whether it is in mm or inches", "write setting cl_units=mm or setting cl_units=inch"
-    unknown = [Problem(toolpath.file, 0, what, cure) for toolpath in toolpaths if not toolpath.states_unit]
+    unknown = [
+        Problem(toolpath.file, 0, what, cure, code="CL410") for toolpath in toolpaths if not toolpath.states_unit
+    ]
     if unknown:
         raise InputError(unknown)
 
@@ -135,7 +144,12 @@ def _settings_of_twins(own: Mapping[str, object], cut: Sequence[tuple[str, str]]
     cure = "rename one of them in the CL file if it must not have it"
     return [
         Problem(
-            file, 0, f"{names.count(name)} operations are called {name}: all have its settings", cure, Severity.WARNING
+            file,
+            0,
+            f"{names.count(name)} operations are called {name}: all have its settings",
+            cure,
+            Severity.WARNING,
+            code="ARG270",
         )
         for name, file in {name: file for file, name in reversed(cut) if name in own}.items()
         if names.count(name) > 1
@@ -172,37 +186,40 @@ def plan_program(
     check_operation_names(job.own_settings, job.settings, [name for _, name in cut])
     observer.problems(_settings_of_twins(job.own_settings, cut))
     planned = _planned(toolpaths, job)
+    planned = replace(planned, decisions=(*job.decisions, *planned.decisions))
     observer.planned(planned)
     file = toolpaths[0].file
     program = Program(job.machine, job.control, planned.motions, job.printed, file, own_settings=job.own_settings)
-    problems = new_problems(program)
-    observer.problems(problems)
+    program = with_place_texts(program)
+    problems = new_problems(program, observer)
     unproven = _missing_reader(job)
     by_register = readers.can_read(job.machine) and readers.reader_of(job.machine).uses_length_numbers
     conflicts = tool_conflicts(program, uses_length_numbers=by_register)
     found = [*merge_repeated(planned.problems), *conflicts, *insert_problems(program)]
     blocking = [problem for problem in found if problem.severity is Severity.ERROR] + unproven
     if blocking and not job.force:
-        refused = Problem(file, 0, "no program is written", job.forcing)
+        refused = Problem(file, 0, "no program is written", job.forcing, code="CTL940")
         raise RefusedError((*found, *unproven, refused))
     observer.problems(found)
     notices = [f"{FORCED_NOTICE}, written by --force: {problem.what}" for problem in blocking]
-    return replace(program, notices=notices), planned, [*problems, *found]
+    return replace(program, notices=[*job.notices, *notices]), planned, [*problems, *found]
 
 
-def new_problems(program: Program, known: Sequence[Problem] = ()) -> list[Problem]:
-    """Warnings about a program that are not known yet.
+def new_problems(program: Program, observer: Observer, known: Sequence[Problem] = ()) -> list[Problem]:
+    """Warnings about a program that are not known yet; they have been reported, also where there are errors.
 
     Raises
     ------
     InputError
         When the control cannot be told what the program says.
     """
-    problems = merge_repeated(check_program(program))
+    problems = [problem for problem in merge_repeated(check_program(program)) if problem not in known]
     errors = [problem for problem in problems if problem.severity is Severity.ERROR]
+    found = [problem for problem in problems if problem not in errors]
+    observer.problems(found)
     if errors:
         raise InputError(sorted(errors, key=lambda problem: (problem.file, problem.line)))
-    return [problem for problem in problems if problem not in known]
+    return found
 
 
 def _missing_reader(job: PostJob) -> list[Problem]:
@@ -210,4 +227,4 @@ def _missing_reader(job: PostJob) -> list[Problem]:
     if readers.can_read(job.machine):
         return []
     what = f"programs for {job.control.name} cannot be read back yet: nothing proves this one"
-    return [Problem(job.machine.key, 0, what)]
+    return [Problem(job.machine.key, 0, what, code="CTL920")]

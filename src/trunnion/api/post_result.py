@@ -90,7 +90,9 @@ class PostResult:
             be written.
         """
         if self.verification is None:
-            raise InputError(Problem(str(file), 0, "nothing was proven", "post for a control that has a reader"))
+            raise InputError(
+                Problem(str(file), 0, "nothing was proven", "post for a control that has a reader", code="CTL920")
+            )
         write_post_report(self.verification, file, self.decisions, self.simulation)
 
 

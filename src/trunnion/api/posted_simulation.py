@@ -56,7 +56,7 @@ def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput
         if name not in (*_WHOLE, *_OF_SETUP):
             names = ("project", *_WHOLE, *_OF_SETUP)
             cure = did_you_mean(name, names) or f"known here: {', '.join(names)}"
-            raise InputError(argument_problem("simulation", f"has no {name!r}", cure))
+            raise InputError(argument_problem("simulation", f"has no {name!r}", cure, code="SIM110"))
     stated = {name: value for name, value in stated.items() if value is not None and value != () and value != []}
     if project is None:
         base = SimulationInput("", [SetupInput((), machine)])
@@ -65,7 +65,9 @@ def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput
     setup = replace(base.setups[0], machine=machine, **{name: stated[name] for name in _OF_SETUP if name in stated})
     found = replace(base, setups=[setup], **{name: stated[name] for name in _WHOLE if name in stated})
     if not found.stock:
-        raise InputError(argument_problem("stock", "is missing", "give it, or a project file that states it"))
+        raise InputError(
+            argument_problem("stock", "is missing", "give it, or a project file that states it", code="SIM110")
+        )
     if not _is_mesh(found.stock):
         stock_shape(found.stock)  # what cannot be is told before any work
     return found
@@ -96,27 +98,27 @@ def _of_project(path: Path, machine: Machine, stated: Mapping[str, Any]) -> Simu
     """A project, whose programs are not looked at: the one that is posted is simulated."""
     if not is_project(path):
         cure = "give the path of a project (.toml)"
-        raise InputError(Problem(str(path), 0, "is no project of a simulation", cure))
+        raise InputError(Problem(str(path), 0, "is no project of a simulation", cure, code="SIM112"))
     found = read_project(path, ("nc", "machine", *stated))
     if len(found.setups) > 1:
         what, cure = f"has {len(found.setups)} set-ups, and one program is posted", "write a project of this one set-up"
-        raise InputError(Problem(str(path), 0, what, cure))
+        raise InputError(Problem(str(path), 0, what, cure, code="SIM112"))
     setup = found.setups[0]
     if setup.machine and as_machine(setup.machine).key != machine.key:
         file, line, key = setup.places["machine"]
         what = f"{key} is {as_machine(setup.machine).key}, and the program is posted for {machine.key}"
-        raise InputError(Problem(file, line, what, "post it for the machine of the project"))
+        raise InputError(Problem(file, line, what, "post it for the machine of the project", code="SIM113"))
     for name, own in (("zero", machine.workpiece_zero), ("tool_length", machine.tool_length)):
         wanted = getattr(setup, name)
         if wanted is not None and wanted != own:
             file, line, key = setup.places[name]
             value = ",".join(f"{number:g}" for number in wanted) if isinstance(wanted, tuple) else f"{wanted:g}"
             what = f"{key} is {value}, and the post has {'none' if own is None else 'another one'}"
-            raise InputError(Problem(file, line, what, f"give setting {name}={value}"))
+            raise InputError(Problem(file, line, what, f"give setting {name}={value}", code="SIM113"))
     if setup.until is not None:
         file, line, key = found.places["until"]
         what = f"{key} is {setup.until}, and the program that is posted is simulated as a whole"
-        raise InputError(Problem(file, line, what, "leave it out"))
+        raise InputError(Problem(file, line, what, "leave it out", code="SIM113"))
     return replace(found, setups=[replace(setup, zero=None, tool_length=None)])
 
 
@@ -144,7 +146,7 @@ def simulate_posted(
     """
     if run is None:
         what = "nobody reads programs of this control, and what is not read cannot be simulated"
-        raise InputError(argument_problem("simulation", what, "leave it out"))
+        raise InputError(argument_problem("simulation", what, "leave it out", code="SIM115"))
     setup = replace(given.setups[0], programs=(named_run(run, name),), machine=run.machine, cl=toolpaths)
     return simulate_setups(replace(given, setups=[setup]), observer)
 
@@ -184,7 +186,7 @@ def _check(
         summary = f"nothing touches of {counted(found.pairs, 'pair')} of bodies that were checked"
     else:
         summary = "nothing was checked: there are neither fixtures, nor zero and tool length for the machine's bodies"
-    places = (*_places(findings), *(Place(each.line, -1, math.nan, each.what) for each in broken))
+    places = (*_places(findings), *(Place(each.line, -1, math.nan, each.what, code=each.code) for each in broken))
     return Check(key, title, passed, summary, deepest, 0.0 if key == "collision" else found.limit, "mm", places)
 
 

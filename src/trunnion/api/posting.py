@@ -14,6 +14,7 @@ from trunnion.api import kernels
 from trunnion.api.arguments import check_observer, check_paths
 from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.forcing import Proof, Untold, write_forced
+from trunnion.api.hooks import Hooks, load_hooks
 from trunnion.api.input_files import cl_files, definition_files
 from trunnion.api.job import FORCING, PostJob, prepare
 from trunnion.api.machining_times import operation_times, prints_times, write_times
@@ -54,6 +55,7 @@ def post(
     columns: bool = True,
     subprograms: Sequence[FilePath] = (),
     simulation: "SimulationLike | None" = None,
+    hooks: Sequence[FilePath] = (),
     observer: Observer = SILENT,
 ) -> PostResult:
     """Post CL files as one NC program, and prove it.
@@ -101,6 +103,10 @@ def post(
         path of a project file of one set-up, also as ``{"project": path}`` with others in its place. Tools come from
         the CL files where nothing else has them. What is found fails the checks ``removal``, ``collision`` and
         ``gouge``; the result has it as ``simulation``.
+    hooks
+        Python files whose functions change what the CL files ask for (``trunnion.hooks``). They are run: name none that
+        you have not read. The program is proven against what they make of the CL files, and ``problems`` says which
+        operations they changed.
     observer
         Receives the progress, warnings, the plan and the proof.
 
@@ -132,7 +138,7 @@ def post(
     return post_beside(
         cl, (), machine=machine, output=output, settings=settings, strict=strict, force=force, explain=explain,
         papers=paper_files(report, sheet, listing, manifest, output), columns=columns, subprograms=subprograms,
-        simulation=simulation, observer=observer,
+        simulation=simulation, hooks=hooks, observer=observer,
     )  # fmt: skip
 
 
@@ -151,6 +157,7 @@ def post_beside(
     subprograms: Sequence[FilePath],
     observer: Observer,
     simulation: "SimulationLike | None" = None,
+    hooks: Sequence[FilePath] = (),
     group: OutputGroup | None = None,
     forcing: str = FORCING,
 ) -> PostResult:
@@ -163,7 +170,8 @@ def post_beside(
     job = prepare(loaded, settings, force=force, explain=explain, papers=papers, columns=columns)
     existing = check_paths("subprograms", subprograms)
     job = replace(job, beside=tuple(existing), forcing=forcing)
-    inputs = [*cl_files(cl), *definition_files(machine, loaded), *existing, *others]
+    hook_files = check_paths("hooks", hooks)
+    inputs = [*cl_files(cl), *definition_files(machine, loaded), *existing, *hook_files, *others]
     if simulation is not None:
         from trunnion.api.posted_simulation import simulation_files, simulation_input
 
@@ -173,7 +181,9 @@ def post_beside(
     with open_target(output, papers=papers.by_name(), inputs=inputs, group=group) as target:
         compile_ahead(kernels.POSTING)
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
-        toolpaths = load_toolpaths(cl, job, strict, observer)
+        changes = Hooks(load_hooks(hook_files), job)
+        toolpaths = load_toolpaths(cl, job, strict, observer, changes.change)
+        job = replace(job, notices=changes.notices, decisions=tuple(changes.decisions) if job.options.explain else ())
         target.files.protect(file_on_disk(toolpath.file) for toolpath in toolpaths)
         return post_toolpaths(toolpaths, job, target, observer)
 
@@ -192,12 +202,16 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
             write(program, target.files.main, progress, subprograms, observer)
         run = running.result()
         if job.options.fastest_feed:
-            from trunnion.api.fastest_feeds import unlimited_axes, with_reached_feeds  # few posts ask for it
+            from trunnion.api.fastest_feeds import (
+                raised_feeds,
+                unlimited_axes,
+                with_reached_feeds,
+            )  # few posts ask for it
 
             program = with_reached_feeds(program, run, toolpaths, job.options)
-            found = [*unlimited_axes(job.machine), *new_problems(program, problems)]
+            found = [*unlimited_axes(job.machine), *raised_feeds(program, toolpaths)]
             observer.problems(found)
-            problems += found
+            problems += [*found, *new_problems(program, observer, problems)]
             planned = replace(planned, motions=tuple(program.motions))
             del run, running
             target.files.restart()
@@ -282,7 +296,7 @@ def _nothing_checked(job: PostJob, target: Target) -> Problem:
     what = "it is written by force, and nothing has been checked"
     without = ["setup sheet" if name == "sheet" else name for name in job.papers.by_name() if name != "manifest"]
     lost = f": there is no {' and no '.join(without)}" if without else ""
-    return Problem(target.name, 0, f"{what}{lost}", severity=Severity.WARNING)
+    return Problem(target.name, 0, f"{what}{lost}", severity=Severity.WARNING, code="CTL930")
 
 
 def _proof_failed(result: PostResult, forcing: str) -> ProofFailedError:
@@ -290,5 +304,5 @@ def _proof_failed(result: PostResult, forcing: str) -> ProofFailedError:
     failed = "; ".join(f"{check.summary} ({check.key})" for check in result.checks if not check.passed)
     what = f"the program fails its proof: {failed}"
     cure = "; ".join(filter(None, ("no program is written", forcing)))
-    problem = Problem(result.toolpaths[0].file, 0, what, cure)
+    problem = Problem(result.toolpaths[0].file, 0, what, cure, code="CTL910")
     return ProofFailedError(problem, result)

@@ -82,7 +82,9 @@ def _too_long(project: Project, results: Sequence[PostResult]) -> Iterator[Probl
         if seconds.sum() > longest:
             least = "" if known.all() else "at least "
             what = f"takes {least}{format_duration(float(seconds.sum()))}, and may take {format_duration(longest)}"
-            yield Problem(_name(project, result), 0, what, "divide the work, or raise longest_s of [checks]")
+            yield Problem(
+                _name(project, result), 0, what, "divide the work, or raise longest_s of [checks]", code="PRJ230"
+            )
 
 
 def _compare_released(
@@ -96,7 +98,11 @@ def _compare_released(
         if len(results) != len(setup.released):
             what = f"becomes {counted(len(results), 'program')}, and {len(setup.released)} are released"
             yield Problem(
-                str(project.place_of(setup.output)), 0, what, "look at what CAM has changed, then release the new ones"
+                str(project.place_of(setup.output)),
+                0,
+                what,
+                "look at what CAM has changed, then release the new ones",
+                code="PRJ220",
             )
     for result, released, beside in pairs:
         run = _run(project, result)
@@ -105,7 +111,7 @@ def _compare_released(
         )  # fmt: skip
         if not compared.same:
             what = f"does not move as {Path(released).name} does: {'; '.join(compared.lines())}"
-            yield Problem(_name(project, result), 0, what, "look at both, then release the new one")
+            yield Problem(_name(project, result), 0, what, "look at both, then release the new one", code="PRJ220")
 
 
 def _simulate(
@@ -131,15 +137,17 @@ def _found(simulated: "SimulationResult", command: str) -> Iterator[Problem]:
         x, y, z = finding.place
         between = f"{finding.kind}: {finding.between[0]}, {finding.between[1]}"
         what = f"the simulation finds: {between}: {finding.depth:.3f} mm deep at X{x:.3f} Y{y:.3f} Z{z:.3f}"
-        yield Problem(finding.file, finding.line, what)
+        yield Problem(finding.file, finding.line, what, code="PRJ210")
     if len(simulated.findings) > _MOST_TOLD:
         more = counted(len(simulated.findings) - _MOST_TOLD, "finding")
-        yield Problem(simulated.programs[0], 0, f"the simulation has {more} more", f"{command} shows them")
+        yield Problem(
+            simulated.programs[0], 0, f"the simulation has {more} more", f"{command} shows them", code="PRJ210"
+        )
     yield from (remark for remark in simulated.remarks if remark.severity is Severity.ERROR)
     gouge = simulated.gouge
     if gouge is not None and gouge.largest > simulated.limit and not simulated.findings:
         what = f"the simulation finds up to {gouge.largest:.3f} mm missing from the part"
-        yield Problem(simulated.programs[0], 0, what, f"{command} shows where")
+        yield Problem(simulated.programs[0], 0, what, f"{command} shows where", code="PRJ210")
 
 
 def _with_runs(project: Project, setup: SetupInput, results: Sequence[PostResult]) -> SetupInput:

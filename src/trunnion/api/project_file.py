@@ -129,7 +129,9 @@ def load_project(path: Path) -> Project:
 
 def _read(path: Path, elsewhere: Collection[str], *, is_posted: bool) -> Project:
     if path.suffix != ".toml":
-        raise InputError(Problem(str(path), 0, "is a project by its content", "let its name end in .toml"))
+        raise InputError(
+            Problem(str(path), 0, "is a project by its content", "let its name end in .toml", code="SIM112")
+        )
     if unusable := unusable_file(path, "a project"):
         raise InputError(unusable)
     return read_project_table(
@@ -141,7 +143,9 @@ def read_project_table(root: Table, path: Path, elsewhere: Collection[str] = (),
     """Read the table of a project that stands, or would stand, in the file ``path``; errors as ``load_project``."""
     if "simulation" not in root and not any(key in root for key in _KEYS_OF_PROJECTS):
         what = f"is no project: it has none of the keys {', '.join(_KEYS_OF_PROJECTS)}, and no table [simulation]"
-        raise InputError(Problem(str(path), 0, what, "give the path of a project, or name the files themselves"))
+        raise InputError(
+            Problem(str(path), 0, what, "give the path of a project, or name the files themselves", code="SIM112")
+        )
     found = _Reader(path, elsewhere, is_posted).project(root.table("simulation") if "simulation" in root else root)
     root.report_unread_keys()
     root.raise_problems()

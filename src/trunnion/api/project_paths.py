@@ -60,7 +60,7 @@ class ProjectPaths:
         self._count += 1
         if self._count > _MOST_NAMES:  # asking the system about each takes a while
             what = f"{table.key_path(key)} is beyond the {_MOST_NAMES} files that a project may name"
-            raise InputError(Problem(*table.location(key), what, "write several projects"))
+            raise InputError(Problem(*table.location(key), what, "write several projects", code="PRJ110"))
         pure = PurePosixPath(name)
         location = self._folder / pure
         outside = pure.is_absolute() or ".." in pure.parts or re.search(r"[\\:\x00-\x1f]", name) or len(name) > 1000

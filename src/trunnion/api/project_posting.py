@@ -127,10 +127,10 @@ def post_into(
 
     A set-up that is refused does not hide what is wrong with the next ones.
     """
-    _check_hooks(project)
     inputs = project_inputs(project)
     papers = [paper for each in project.setups for paper in each.papers.by_name().values()]
     check_outputs([*(each.output for each in project.setups), *papers], inputs)
+    observer.problems(_running_hooks(project))
     post = _SetupPost(group, project, inputs, dict(settings or {}), strict or project.strict, explain, observer)
     posted, errors = list[tuple[PostedSetup, tuple[PostResult, ...]]](), list[TrunnionError]()
     for setup in project.setups:
@@ -150,9 +150,15 @@ def post_into(
     warnings = [problem for problem in found if problem.severity is Severity.WARNING]
     observer.problems(warnings)
     if refused:
-        nothing = Problem(str(project.path), 0, "no program of the project is written")
+        nothing = Problem(str(project.path), 0, "no program of the project is written", code="CTL940")
         raise RefusedError([*refused, nothing])
     return ProjectResult(project, tuple(posted), simulation, tuple(warnings))
+
+
+def _running_hooks(project: Project) -> list[Problem]:
+    """Warnings of the code that a project has run: it may come from anyone."""
+    what, cure = f"runs as Python, because {project.path.name} names it", "read it before, if it is not yours"
+    return [Problem(file, 0, what, cure, Severity.WARNING, code="HOK150") for file in project.hooks]
 
 
 def check_within(files: Sequence[Path], project: Project) -> None:
@@ -160,14 +166,7 @@ def check_within(files: Sequence[Path], project: Project) -> None:
     folder = project.into or project.folder
     what, cure = "leads out of the folder of the project", "remove the link"
     if outside := [file for file in files if not is_within(file, folder)]:
-        raise InputError([Problem(str(file), 0, what, cure) for file in outside])
-
-
-def _check_hooks(project: Project) -> None:
-    """Raise ``InputError`` for hooks, which nothing takes yet."""
-    if project.hooks:
-        what, cure = "states hooks, and they are not known here", "leave the key hooks out"
-        raise InputError(Problem(str(project.path), 0, what, cure))
+        raise InputError([Problem(str(file), 0, what, cure, code="PRJ120") for file in outside])
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,7 +212,8 @@ class _SetupPost:
         return post_beside(
             cl, self.inputs, machine=machine, output=output, settings=settings, strict=self.strict, force=False,
             explain=self.explain, papers=papers, columns=self.project.checks.longest_s is not None,
-            subprograms=setup.subprograms, observer=self.observer, group=self.group, forcing="",
+            subprograms=setup.subprograms, hooks=self.project.hooks, observer=self.observer, group=self.group,
+            forcing="",
         )  # fmt: skip
 
 
@@ -223,7 +223,13 @@ def _check_unnamed(output: Path) -> None:
     if place.exists() and not EarlierJob(place).wrote(place):
         what = "would be replaced, although no post has written it as it is"
         raise InputError(
-            Problem(str(output), 0, what, "remove it, or take the new one over: trunnion test PROJECT --accept")
+            Problem(
+                str(output),
+                0,
+                what,
+                "remove it, or take the new one over with trunnion test",
+                code="FIL250",
+            )
         )
 
 
@@ -237,7 +243,11 @@ def _left_over(posted: Sequence[tuple[PostedSetup, tuple[PostResult, ...]]]) -> 
         for file in programs_of_operations(setup.output):
             if file.name not in written:
                 what = "is the program of an operation that the CL files no longer have"
-                found.append(Problem(str(file), 0, what, "remove it from here and from the control", Severity.WARNING))
+                found.append(
+                    Problem(
+                        str(file), 0, what, "remove it from here and from the control", Severity.WARNING, code="PRJ150"
+                    )
+                )
     return found
 
 

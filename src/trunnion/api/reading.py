@@ -171,7 +171,7 @@ def load_machine(machine: FilePath) -> Machine:
         if not (path.endswith(".toml") and is_control_file(Path(path))):
             raise
         cure = "give a machine whose [control] extends it"
-        raise InputError(Problem(path, 0, "defines a control, not a machine", cure)) from None
+        raise InputError(Problem(path, 0, "defines a control, not a machine", cure, code="DEF140")) from None
 
 
 def read_program(nc: FilePath, *, machine: MachineLike, subprograms: Sequence[FilePath] = ()) -> Run:
@@ -231,15 +231,19 @@ def as_run(
     if not isinstance(nc, Run):
         return read_program(check_path(names[0], nc), machine=machine, subprograms=others)
     if subprograms:
-        raise InputError(Problem(nc.files[0], 0, "has already been read", "give the subprograms to read_program"))
+        raise InputError(
+            Problem(nc.files[0], 0, "has already been read", "give the subprograms to read_program", code="ARG170")
+        )
     own = nc.machine
     if not _are_defined_alike(own, machine):
         what = f"was read for {own.key}, whose definition differs from that of {machine.key} here"
-        raise InputError(Problem(nc.files[0], 0, what, "give the path of the program, or the machine that ran it"))
+        raise InputError(
+            Problem(nc.files[0], 0, what, "give the path of the program, or the machine that ran it", code="ARG170")
+        )
     given = ((machine.workpiece_zero, own.workpiece_zero), (machine.tool_length, own.tool_length))
     if any(new is not None and new != old for new, old in given):
         what = "has already been read with another workpiece zero or tool length"
-        raise InputError(Problem(nc.files[0], 0, what, "give the path of the program"))
+        raise InputError(Problem(nc.files[0], 0, what, "give the path of the program", code="ARG170"))
     return nc
 
 

@@ -112,7 +112,9 @@ def machine_feed(
     if not SHORTEST_RATE <= _number("rate", rate) <= LONGEST_RATE:
         raise wrong_argument("rate", rate, "give milliseconds from 5 to 60000")
     if user and not secure:
-        raise InputError(argument_problem("user", "needs a channel that is encrypted", "add secure=True"))
+        raise InputError(
+            argument_problem("user", "needs a channel that is encrypted", "add secure=True", code="TWN210")
+        )
     listed = load_nodes(check_path("nodes", nodes))
     import_extra("asyncua", "twin")
     from trunnion.twin.recording.client import Access
@@ -140,7 +142,9 @@ def check_address(address: object) -> None:
         raise wrong_argument("address", address, cure)
     if "@" in parts.netloc:
         raise InputError(
-            argument_problem("address", "has a user in it", "give the user with argument user=NAME, and no password")
+            argument_problem(
+                "address", "has a user in it", "give the user with argument user=NAME, and no password", code="TWN210"
+            )
         )
 
 
@@ -170,7 +174,9 @@ def _folder() -> Path:
     folder = user_data()
     if folder is None:
         raise InputError(
-            Problem("trunnion", 0, "you have no folder for data", "set HOME, or record without secure=True")
+            Problem(
+                "trunnion", 0, "you have no folder for data", "set HOME, or record without secure=True", code="TWN120"
+            )
         )
     return folder / "trunnion" / "twin"
 

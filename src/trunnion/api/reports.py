@@ -84,7 +84,9 @@ def add_report(
         When the verification has no columns.
     """
     if len(verification.seconds) != len(verification.run):
-        raise InputError(Problem(name, 0, "the verification has no columns", "ask for it with columns=True"))
+        raise InputError(
+            Problem(name, 0, "the verification has no columns", "ask for it with columns=True", code="ARG130")
+        )
     from trunnion.reporting import render_report  # most runs write no report
 
     content = None

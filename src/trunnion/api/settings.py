@@ -49,9 +49,11 @@ def as_texts(settings: Settings | None) -> dict[str, str]:
         return {}
     if not isinstance(settings, Mapping):
         what, cure = f"is a {type(settings).__name__}", 'give a mapping, such as {"title": "BLADE", "tolerance": 0.01}'
-        raise InputError(argument_problem("settings", what, cure))
+        raise InputError(argument_problem("settings", what, cure, code="ARG140"))
     problems = [
-        argument_problem("settings", f"the key {key!r} is a {type(key).__name__}", "write the name of a setting")
+        argument_problem(
+            "settings", f"the key {key!r} is a {type(key).__name__}", "write the name of a setting", code="ARG140"
+        )
         for key in settings
         if not isinstance(key, str)
     ]
@@ -80,7 +82,7 @@ def _as_text(key: str, value: object) -> str | None:
 
 
 def _problem(key: str, value: object, cure: str) -> Problem:
-    return argument_problem("settings", f"{key} is {value!r}", cure)
+    return argument_problem("settings", f"{key} is {value!r}", cure, code="ARG220")
 
 
 def check_settings(settings: Mapping[str, str], control: Control, machine: Machine) -> None:
@@ -143,7 +145,7 @@ def _no_effect(key: str, control: Control) -> str:
 def _unknown_setting(key: str, control: Control) -> Problem:
     known = (*control.settings, *RUN_SETTINGS)
     cure = did_you_mean(key, known) or f"{control.name} has {', '.join(sorted(known))}"
-    return argument_problem("settings", f"{key} is not a setting of {control.name}", cure)
+    return argument_problem("settings", f"{key} is not a setting of {control.name}", cure, code="ARG210")
 
 
 def split_by_operation(
@@ -163,13 +165,15 @@ def split_by_operation(
         for name, value in control.values_by_operation(key, text):
             if name and key in own.get(name, ()):
                 what = f"{key} has two values for operation {name}: {text!r}"
-                problems.append(argument_problem("settings", what, f"write {key}={name}:VALUE once"))
+                problems.append(argument_problem("settings", what, f"write {key}={name}:VALUE once", code="ARG230"))
             elif name:
                 own.setdefault(name, {})[key] = value
             elif key in program:
                 cure = f"write {key}=VALUE,OPERATION:VALUE: a text can have no comma beside a colon"
                 problems.append(
-                    argument_problem("settings", f"{key} has two values for all operations: {text!r}", cure)
+                    argument_problem(
+                        "settings", f"{key} has two values for all operations: {text!r}", cure, code="ARG230"
+                    )
                 )
             else:
                 program[key] = value
@@ -187,13 +191,17 @@ def check_operation_names(
     known = list(dict.fromkeys(names))
     cure = f"write one of {', '.join(known)}; in a setting that can differ by operation, a colon follows its name"
     problems = [
-        argument_problem("settings", f"{key} is set for operation {name}, and the program has none of that name", cure)
+        argument_problem(
+            "settings", f"{key} is set for operation {name}, and the program has none of that name", cure, code="ARG230"
+        )
         for name, values in own.items()
         if name not in known
         for key in values
     ]
     problems += [
-        argument_problem("settings", f"{key} is {text!r}, and it cannot differ by operation", f"write {key}=VALUE")
+        argument_problem(
+            "settings", f"{key} is {text!r}, and it cannot differ by operation", f"write {key}=VALUE", code="ARG230"
+        )
         for key, text in settings.items()
         if key != "mode" and any(entry.rpartition(":")[0] in known for entry in text.split(",") if ":" in entry)
     ]
@@ -249,7 +257,7 @@ def with_limit_margin(machine: Machine, settings: Mapping[str, str]) -> Machine:
     lost = [axis.name for axis in axes if not axis.low < axis.high]
     if lost:
         what = f"limit_margin is {margin:g}, and axis {lost[0]} has no travel left"
-        raise InputError(argument_problem("settings", what, "write a smaller number"))
+        raise InputError(argument_problem("settings", what, "write a smaller number", code="ARG220"))
     return replace(machine, axes=tuple(axes))
 
 
@@ -284,7 +292,9 @@ def check_tolerance(argument: str, value: object, *, optional: bool = False) -> 
     else:
         is_tolerance = False
     if not is_tolerance:
-        raise InputError(argument_problem(argument, f"is {value!r}", "give a number above 0, such as 0.001"))
+        raise InputError(
+            argument_problem(argument, f"is {value!r}", "give a number above 0, such as 0.001", code="ARG140")
+        )
 
 
 def m_code(text: str) -> int | None:
@@ -307,7 +317,7 @@ def work_offset_setting(text: str, machine: Machine) -> int | None:
     offsets = readers.reader_of(machine).work_offsets
     value = offsets.value_of(" ".join(text.upper().split()))
     if value is None:
-        raise InputError(argument_problem("work_offset", f"is {text!r}", f"write {offsets.form}"))
+        raise InputError(argument_problem("work_offset", f"is {text!r}", f"write {offsets.form}", code="ARG220"))
     return value
 
 

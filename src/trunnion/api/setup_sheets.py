@@ -40,7 +40,7 @@ def setup_sheet(
     """The sheet of a program that was posted and proven; ``bodies`` are drawn with its path."""
     run, machine = verification.run, program.machine
     content = collect_content(replace(verification, program=Path(verification.program).name), program.control.name)
-    calls = TemplateValues(program).tool_calls()
+    calls = TemplateValues(program).tool_calls
     operations = tuple(_operations(program, verification, content.operations, [call for call, *_ in calls]))
     rotary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
     return SetupSheet(

@@ -122,12 +122,14 @@ def simulate(
     if project is not None:
         if len(programs) > 1:
             what, cure = f"{project} is a project, and stands beside other programs", "give it alone"
-            raise InputError(argument_problem("nc", what, cure))
+            raise InputError(argument_problem("nc", what, cure, code="SIM111"))
         given = [name for name, value in (whole | own).items() if not _is_left_out(value)]
         return simulate_setups(_overruled(read_project(project, given), whole, own, until), observer)
     for name in ("machine", "stock"):
         if (whole | own)[name] is None:
-            raise InputError(argument_problem(name, "is missing", "give it, or a project file that states it"))
+            raise InputError(
+                argument_problem(name, "is missing", "give it, or a project file that states it", code="SIM110")
+            )
     setup = SetupInput(programs=programs, until=until, **own)
     return simulate_setups(SimulationInput(setups=[setup], **whole), observer)
 
@@ -140,7 +142,7 @@ def _overruled(
     several = [name for name in _OF_ONE_SETUP if name in stated and len(project.setups) > 1]
     if several:
         what, cure = "would be that of all set-ups of the project", "state it in the project"
-        raise InputError([argument_problem(name, what, cure) for name in several])
+        raise InputError([argument_problem(name, what, cure, code="SIM111") for name in several])
     last: dict[str, Any] = {} if until is None else {"until": until}
     setups = [
         replace(each, **stated, **(last if each is project.setups[-1] else {}), places=_without(each.places, stated))

@@ -49,7 +49,7 @@ def _out_of_travel(machine: Machine, stock: StockShape) -> Iterator[Problem]:
                 f"reaches {beyond:.3f} mm beyond the travel of {axis.name}: its corners need {low:.3f} to {high:.3f},"
                 f" limits are {axis.low:g} and {axis.high:g}; rotary axes at zero"
             )
-            yield Problem("stock", 0, what, "check its place and the workpiece zero", Severity.WARNING)
+            yield Problem("stock", 0, what, "check its place and the workpiece zero", Severity.WARNING, code="SIM130")
 
 
 def _foreign_length(run: Run, row: int, number: int, names: Sequence[str]) -> list[Problem]:
@@ -59,9 +59,13 @@ def _foreign_length(run: Run, row: int, number: int, names: Sequence[str]) -> li
         return []
     file, line = file_of_row(run, row), int(run.line[row])
     if str(number) in names:
-        return [Problem(file, line, f"tool {name} cuts with the length of tool {number}", "select its own length")]
+        return [
+            Problem(
+                file, line, f"tool {name} cuts with the length of tool {number}", "select its own length", code="SIM160"
+            )
+        ]
     what = f"tool {name} cuts with length number {number}, which is taken for its own length"
-    return [Problem(file, line, what, severity=Severity.WARNING)]
+    return [Problem(file, line, what, severity=Severity.WARNING, code="SIM161")]
 
 
 def _defined_sizes(run: Run, shapes: Mapping[str, ToolShape]) -> Iterator[Problem]:
@@ -76,15 +80,19 @@ def _defined_sizes(run: Run, shapes: Mapping[str, ToolShape]) -> Iterator[Proble
         if kind == SIZES[0]:
             told = f"TOOL DEF gives tool {name} the length {value:g} mm"
             if shape is None or not shape.length:
-                yield Problem(file, event.line, f"{told}, which is taken for its own", severity=Severity.WARNING)
+                yield Problem(
+                    file, event.line, f"{told}, which is taken for its own", severity=Severity.WARNING, code="SIM161"
+                )
             elif abs(shape.length - value) > _SAME:
                 what = f"{told}, and from tip to gauge point it has {shape.length:g} mm: its tip is not on the path"
-                yield Problem(file, event.line, what, "let both be the same")
+                yield Problem(file, event.line, what, "let both be the same", code="SIM163")
         elif shape is not None and run.state.compensation.column()[rows].any():
             wide = cutting_width(shape)
             if abs(0.5 * wide - value) > _SAME:
                 what = f"TOOL DEF gives tool {name} the radius {value:g} mm for radius compensation"
-                yield Problem(file, event.line, f"{what}, and it has {0.5 * wide:g} mm", "let both be the same")
+                yield Problem(
+                    file, event.line, f"{what}, and it has {0.5 * wide:g} mm", "let both be the same", code="SIM163"
+                )
 
 
 def _edges(run: Run) -> Iterator[Problem]:
@@ -93,7 +101,7 @@ def _edges(run: Run) -> Iterator[Problem]:
         row = int(np.flatnonzero(run.edge == edge)[0])
         what = f"works with edge D{edge}, whose length is taken for that of the tool"
         cure = "check that its offsets are those of the tip"
-        yield Problem(file_of_row(run, row), int(run.line[row]), what, cure, Severity.WARNING)
+        yield Problem(file_of_row(run, row), int(run.line[row]), what, cure, Severity.WARNING, code="SIM161")
 
 
 def _lengths(runs: Sequence[Run], shapes: Mapping[str, ToolShape]) -> list[Problem]:
@@ -112,7 +120,7 @@ def _lengths(runs: Sequence[Run], shapes: Mapping[str, ToolShape]) -> list[Probl
         if without.any():
             row = int(rows[np.argmax(without)])
             what, cure = "cuts without a tool length: the spindle goes where the tip should", "select it before the cut"
-            found.append(Problem(file_of_row(run, row), int(run.line[row]), what, cure))
+            found.append(Problem(file_of_row(run, row), int(run.line[row]), what, cure, code="SIM160"))
         if run.uses_length_numbers:
             for number in np.unique(edge[edge > 0]).tolist():
                 own = np.flatnonzero(edge == number)
@@ -120,7 +128,9 @@ def _lengths(runs: Sequence[Run], shapes: Mapping[str, ToolShape]) -> list[Probl
                 if len(others):
                     row = int(rows[others[0]])
                     what = f"cuts with the length of tool {run.tools[int(tool[own[0]])]}, number {number}"
-                    found.append(Problem(file_of_row(run, row), int(run.line[row]), what, "select its own length"))
+                    found.append(
+                        Problem(file_of_row(run, row), int(run.line[row]), what, "select its own length", code="SIM160")
+                    )
                 else:
                     found += _foreign_length(run, int(rows[own[0]]), number, names)
     return found
@@ -140,20 +150,22 @@ def _unknown_ways(runs: Sequence[Run], stock: StockShape) -> list[Problem]:
             (sideways_exits(run, stock.low, stock.high), across, first),
             (unknown_swivels(run, stock.low, stock.high), swivel, known),
         ):
-            found += [Problem(file_of_row(run, row), int(run.line[row]), what, cure) for row in rows.tolist()]
+            found += [
+                Problem(file_of_row(run, row), int(run.line[row]), what, cure, code="SIM144") for row in rows.tolist()
+            ]
     return list(merge_repeated(found))
 
 
 def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]:
     """What was taken for granted, and what is not simulated."""
     found = [
-        Problem(f"tool {name}", 0, remark, severity=Severity.WARNING)
+        Problem(f"tool {name}", 0, remark, severity=Severity.WARNING, code="SIM155")
         for name, shape in shapes.items()
         for remark in shape.remarks
     ]
     for run in runs:
         found += merge_repeated(
-            Problem(each.file, each.line, each.text, severity=Severity.WARNING)
+            Problem(each.file, each.line, each.text, severity=Severity.WARNING, code=each.code)
             for each in run.diagnostics
             if each.severity is Severity.WARNING and not is_told_of_length(run, each.line, each.text)
         )
@@ -163,14 +175,16 @@ def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]
             row = int(rows.min())
             what = "radius compensation is on: the programmed path is taken for that of the tool's centre"
             cure = "compensation for wear is simulated as it should be; a programmed contour is not"
-            found.append(Problem(file_of_row(run, row), int(run.line[row]), what, cure, Severity.WARNING))
+            found.append(
+                Problem(file_of_row(run, row), int(run.line[row]), what, cure, Severity.WARNING, code="SIM147")
+            )
         found += _unjudged(run)
         missing = "workpiece zero" if run.machine.workpiece_zero is None else "tool length of the run"
         is_placed = run.machine.workpiece_zero is not None and run.machine.tool_length is not None
         if not is_placed and bool(run.state.machine_frame.values.any()):
             what = f"machine positions are taken as retracts along the tool axis: the {missing} is not known"
             cure = "give the workpiece zero and the tool length"
-            found.append(Problem(run.files[0], 0, what, cure, Severity.WARNING))
+            found.append(Problem(run.files[0], 0, what, cure, Severity.WARNING, code="SIM145"))
     return found
 
 
@@ -181,13 +195,15 @@ def _unjudged(run: Run) -> list[Problem]:
         what = f"{counted(len(tips.lost_feeds), 'block')} at feed, from here on, where nobody knows where the tool is"
         cure = "give the workpiece zero and the tool length, or state X, Y and Z in workpiece coordinates before"
         row = int(tips.lost_feeds[0])
-        found.append(Problem(file_of_row(run, row), int(run.line[row]), f"{what}: they are not cut", cure))
+        found.append(
+            Problem(file_of_row(run, row), int(run.line[row]), f"{what}: they are not cut", cure, code="SIM143")
+        )
     if len(tips.unjudged) > len(tips.lost_feeds):
         row = int(np.setdiff1d(tips.unjudged, tips.lost_feeds)[0])
         count = len(tips.unjudged) - len(tips.lost_feeds)
         what = f"{counted(count, 'motion')} before all coordinates of the tool are stated, from here on: not judged"
         cure = "give the workpiece zero and the tool length"
-        found.append(Problem(file_of_row(run, row), int(run.line[row]), what, cure, Severity.WARNING))
+        found.append(Problem(file_of_row(run, row), int(run.line[row]), what, cure, Severity.WARNING, code="SIM146"))
     return found
 
 
@@ -205,13 +221,15 @@ def part_remarks(setup: Setup, lacking: Excess | None, slack: float, *, is_later
     beyond = max(float((setup.stock.low - setup.part.low).max()), float((setup.part.high - setup.stock.high).max()))
     if beyond > setup.tolerance + slack:
         what = f"reaches {beyond:.3f} mm beyond the stock: it cannot come out, and what is outside is not compared"
-        return [Problem("part", 0, what, "check the pose, and the zero of the part" if is_later else cure)]
+        return [
+            Problem("part", 0, what, "check the pose, and the zero of the part" if is_later else cure, code="SIM131")
+        ]
     if lacking is not None and lacking.largest > setup.limit + slack:
         x, y, z = lacking.places[0].at
         what = f"is missing {lacking.largest:.3f} mm deep at X{x:.3f} Y{y:.3f} Z{z:.3f} before {before}"
         if is_later:
             cure = "check what the earlier set-ups took there, the pose, and the zero of the part"
-        return [Problem("part", 0, what, cure)]
+        return [Problem("part", 0, what, cure, code="SIM132")]
     return []
 
 

@@ -201,7 +201,7 @@ def _tools(
         called.append(NO_CALL)
         if not in_spindle:
             what, cure = "the program cuts before it calls a tool", "state the one that is in the spindle: 0=ball:10"
-            raise InputError(argument_problem("tools", what, cure))
+            raise InputError(argument_problem("tools", what, cure, code="SIM150"))
     found = choose_tools(called, stated, read, tools_of_toolpaths(toolpaths))
     return found | ({"": found[NO_CALL]} if NO_CALL in found else {})
 
@@ -219,7 +219,7 @@ def _check_programs(runs: Sequence[Run], machine: Machine) -> None:
         if len(wrong) > max(_FEW_ERRORS, len(run)):
             (file, line), first = wrong[0]
             what = f"{first.text}; {counted(len(wrong), 'line')} of it not understood"
-            raise InputError(Problem(file, line, what, f"is this a program of {machine.key}?"))
+            raise InputError(Problem(file, line, what, f"is this a program of {machine.key}?", code="SIM140"))
 
 
 def _other_offsets(runs: Sequence[Run], wanted: str, machine: Machine) -> list[Problem]:
@@ -233,5 +233,5 @@ def _other_offsets(runs: Sequence[Run], wanted: str, machine: Machine) -> list[P
             other = int(run.work_offset[row])
             name = run.work_offset_name(other) if other else "no work offset"
             what, cure = f"cuts in {name}, and the set-up is in {wanted}", "select the set-up's own work offset"
-            found.append(Problem(run.files[int(run.file[row])], int(run.line[row]), what, cure))
+            found.append(Problem(run.files[int(run.file[row])], int(run.line[row]), what, cure, code="SIM141"))
     return found

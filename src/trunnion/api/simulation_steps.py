@@ -81,7 +81,9 @@ def _simulate_setups(given: SimulationInput, observer: Observer) -> SimulationRe
     check_narrow_tools(widths, cell)
     if given.accuracy is not None and given.accuracy > _COARSEST * cell:
         what = f"{given.accuracy:g} mm is more than half of a cell of {cell:g} mm: gouges of a cell would not be told"
-        raise InputError(argument_problem("accuracy", what, f"give {_COARSEST * cell:g} mm at most, or a wider cell"))
+        raise InputError(
+            argument_problem("accuracy", what, f"give {_COARSEST * cell:g} mm at most, or a wider cell", code="SIM121")
+        )
     simulation.check_cell(shape, cell)
     steps = _Steps(cell, given.accuracy or _TOLERANCE * cell, given, threads, observer)
     results: list[SimulationResult] = []
@@ -125,7 +127,9 @@ class _Steps:
                 self._slack += self._cell
                 what = f"is turned through its surface: it may be {0.5 * self._cell:.4g} mm off, and what is thinner"
                 what += f" than a cell of {self._cell:g} mm may be lost"
-                remarks.append(Problem("stock", 0, what, "turn it by quarters to lose nothing", Severity.WARNING))
+                remarks.append(
+                    Problem("stock", 0, what, "turn it by quarters to lose nothing", Severity.WARNING, code="SIM134")
+                )
         self._part = own.part or self._part
         part = self._part
         design = None if part is None else StockShape(part.bounds[0], part.bounds[1], mesh=part)
@@ -141,7 +145,7 @@ class _Steps:
         remarks += simulation_remarks(setup, runs, own.tools)
         remarks += [problem for run in own.runs for problem in as_the_tool_goes(run)[1]]
         jobs = [_job(run, own.tools, own.given.until if run is runs[-1] else None) for run in runs]
-        remarks += [Problem(job.run.files[0], 0, job.broken_off) for job in jobs if job.broken_off]
+        remarks += [Problem(job.run.files[0], 0, job.broken_off, code="SIM142") for job in jobs if job.broken_off]
         self._observer.problems(of_setup(remarks, name))
         told = len(remarks)
         around, near = own.fixtures, given.near or 0.0
@@ -158,10 +162,10 @@ class _Steps:
         remarks += part_remarks(setup, found.lacking, self._slack, is_later=self._left is not None)
         if found.leaks:
             what = f"{found.leaks} of {found.stock.lattice.ray_count} rays pass a hole in it, and were left empty"
-            remarks.append(Problem("part", 0, what, "close the mesh", Severity.WARNING))
+            remarks.append(Problem("part", 0, what, "close the mesh", Severity.WARNING, code="SIM214"))
         if found.start_volume - found.stock.volume <= 0.0:
             what, cure = "takes nothing from the stock", "check the place of the stock, and the tools"
-            remarks.append(Problem(runs[0].files[0], 0, what, cure, Severity.WARNING))
+            remarks.append(Problem(runs[0].files[0], 0, what, cure, Severity.WARNING, code="SIM133"))
         self._observer.problems(of_setup(remarks[told:], name))
         if given.stop_at == "first":
             jobs = _until_stop(jobs, found)
@@ -223,7 +227,7 @@ def _bodies(
     elif number == 0 and machine.bodies:
         what = "the bodies of the machine are not checked: workpiece zero and tool lengths are not known"
         cure = "give the workpiece zero, and the tool length or a tool with its holder"
-        remarks.append(Problem(job.run.files[0], 0, what, cure, Severity.WARNING))
+        remarks.append(Problem(job.run.files[0], 0, what, cure, Severity.WARNING, code="SIM310"))
     return bodies
 
 
@@ -267,5 +271,5 @@ def _row_of_block(run: Run, until: str | int) -> int:
     rows = own[run.block_number[own] == run.block_number[own].min()] if len(own) else own
     if not len(rows):
         cure = "give the N number of a block of the last program"
-        raise InputError(argument_problem("until", f"{run.files[0]} has no block {until}", cure))
+        raise InputError(argument_problem("until", f"{run.files[0]} has no block {until}", cure, code="SIM114"))
     return int(rows[0])

@@ -49,7 +49,7 @@ def check_output_name(argument: str, file: object, endings: Sequence[str], what:
     """
     place = resolve_output(check_path(argument, file))
     if Path(place.name).suffix.lower() not in endings:
-        raise InputError(Problem(place.name, 0, what, f"let its name end in {' or '.join(endings)}"))
+        raise InputError(Problem(place.name, 0, what, f"let its name end in {' or '.join(endings)}", code="FIL260"))
     return place
 
 

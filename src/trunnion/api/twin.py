@@ -118,14 +118,20 @@ def serve_twin(
 
 
 def write_device_xml(
-    nc: FilePath | Run, *, machine: MachineLike, output: FilePath, subprograms: Sequence[FilePath] = ()
+    nc: FilePath | Run,
+    *,
+    machine: MachineLike,
+    output: FilePath,
+    subprograms: Sequence[FilePath] = (),
+    zero: str | Sequence[float] | None = None,
+    tool_length: str | float | None = None,
 ) -> None:
     """Write the device model of a twin for an MTConnect agent.
 
     Parameters
     ----------
-    nc, machine, subprograms
-        As for ``serve_twin``.
+    nc, machine, subprograms, zero, tool_length
+        As for ``serve_twin``: they say in which coordinates slides are told.
     output
         The file, ``.xml``. An older one is replaced when the new one is complete.
 
@@ -137,7 +143,7 @@ def write_device_xml(
         When the program has errors.
     """
     place = check_output_name("output", output, (".xml",), "a device model is XML")
-    program = twin_program(nc, machine=machine, subprograms=subprograms)
+    program = twin_program(nc, machine=machine, subprograms=subprograms, zero=zero, tool_length=tool_length)
     with atomic_file(place, inputs=[Path(file) for file in program.run.files]) as sink:
         sink.write(device_xml(program).encode())
 
@@ -162,14 +168,17 @@ def twin_program(
     placed = set_up_machine(as_machine(machine), zero, tool_length)
     if not isinstance(nc, Run) and is_cl_file(path := check_path("nc", nc)):
         what, cure = "is a CL file, and a control runs programs", "post it first with trunnion post"
-        raise InputError(Problem(str(path), 0, what, cure))
+        raise InputError(Problem(str(path), 0, what, cure, code="TWN110"))
     run = restore_rapids(as_run(nc, placed, check_paths("subprograms", subprograms)), rapid_feed_of(placed))
     if run.errors:
         raise RefusedError(
-            [Problem(each.file, each.line, each.text, "the twin runs no program with errors") for each in run.errors]
+            [
+                Problem(each.file, each.line, each.text, "the twin runs no program with errors", code=each.code)
+                for each in run.errors
+            ]
         )
     if not len(run):
-        raise InputError(Problem(run.files[0], 0, "moves nothing", "give a program with motions"))
+        raise InputError(Problem(run.files[0], 0, "moves nothing", "give a program with motions", code="TWN111"))
     return TwinProgram(time_run(run), [decode(Path(file).read_bytes(), run.encoding) for file in run.files])
 
 
@@ -212,7 +221,9 @@ def add_twin_user(name: str, password: str, *, operator: bool = True, users: Fil
 def _folder() -> Path:
     folder = user_data()
     if folder is None:
-        raise InputError(Problem("trunnion", 0, "you have no folder for data", "name a file with argument users=FILE"))
+        raise InputError(
+            Problem("trunnion", 0, "you have no folder for data", "name a file with argument users=FILE", code="TWN120")
+        )
     return folder / "trunnion" / "twin"
 
 
@@ -224,7 +235,7 @@ def _security(users: FilePath | None) -> "Security":
     found = read_users(path)
     if not len(found):
         cure = "add one with argument add_user=NAME"
-        raise InputError(Problem(str(path), 0, "has no user, and other computers need one", cure))
+        raise InputError(Problem(str(path), 0, "has no user, and other computers need one", cure, code="TWN132"))
     return Security(found, _folder())
 
 

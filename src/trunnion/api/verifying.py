@@ -1,6 +1,8 @@
 """Verification of any NC program, with or without the CL files that it was made from."""
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from typing import Final, Literal
 
 from trunnion import readers, verification
@@ -13,7 +15,7 @@ from trunnion.api.recording import as_recording
 from trunnion.api.settings import check_operation_names, check_tolerance, m_code, set_up_machine, work_offset_setting
 from trunnion.controls import Control, load_control
 from trunnion.controls.setting_rules import tool_number
-from trunnion.errors import InputError
+from trunnion.errors import InputError, argument_problem
 from trunnion.jit import compile_ahead
 from trunnion.machines import Machine
 from trunnion.model.axis_tolerance import AxisTolerance
@@ -59,6 +61,8 @@ def verify(
     tool_length: str | float | None = None,
     recorded: FilePath | Recording | None = None,
     recorded_tolerance: float = DEFAULT_RECORDED_TOLERANCE,
+    feed: Literal["programmed", "fastest"] = "programmed",
+    feed_limit: float | None = None,
     columns: bool = True,
     observer: Observer = SILENT,
 ) -> Verification:
@@ -106,6 +110,11 @@ def verify(
         needed.
     recorded_tolerance
         How far a recorded tip may be off the path, mm, and its tool axis, degrees.
+    feed
+        ``"fastest"`` for a program that was posted with that setting: its feeds are judged by what the axes reach
+        (check ``reach``), not by those of the CL files.
+    feed_limit
+        The setting ``feed_limit`` of that post, mm/min.
     columns
         Work out the columns of the result, (n,) each: ``seconds``, ``tip_feed`` (mm/min) and ``cl_line``. A report
         needs them; without them a program of any length takes little memory.
@@ -133,6 +142,11 @@ def verify(
     """
     check_observer(observer)
     check_choice("frame", frame, ("first", "absolute"))
+    check_choice("feed", feed, ("programmed", "fastest"))
+    limit = _feed_limit(feed_limit, feed)
+    if feed == "fastest" and (isinstance(cl, tuple | list) and not cl):
+        what = "is fastest, and only CL files say what feeds may be at most"
+        raise InputError(argument_problem("feed", what, "name them with cl", code="ARG130"))
     if units is not None:
         check_choice("units", units, ("mm", "inch"))
     tool = _tool(tool)
@@ -149,7 +163,7 @@ def verify(
     control = written_control(loaded)
     defaults = default_settings(loaded)
     toolpaths = as_toolpaths(cl, units, False, observer, dialect)
-    toolpaths = replace_unknown_statements(toolpaths, control.statements if control else {}, loaded)
+    toolpaths = replace_unknown_statements(toolpaths, control, loaded)
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     run = as_run(nc, loaded, subprograms)
@@ -163,7 +177,9 @@ def verify(
     found = verification.verify(
         run,
         toolpaths,
-        tolerances=_tolerances(run, tolerance, span_tip, control),
+        tolerances=_with_feed_digit(
+            _tolerances(run, tolerance, span_tip, control), control if feed == "fastest" else None
+        ),
         settings=ExpectedValues(
             tool=tool,
             work_offset=offset,
@@ -177,10 +193,40 @@ def verify(
             blocks_in_compensation=control.blocks_in_compensation if control else 1,
             stops_in_compensation=control.stops_in_compensation if control else False,
             axis_tolerance=control.axis_tolerance if control else AxisTolerance(),
+            fastest_feed=feed == "fastest",
+            feed_limit=limit,
+            feeds_as_programmed=True,
         ),
         columns=columns,
     )
     return found if recording is None else verification.with_recording(found, recording, recorded_tolerance)
+
+
+def _with_feed_digit(
+    tolerances: Tolerances | Callable[[Operation], Tolerances], control: Control | None
+) -> Tolerances | Callable[[Operation], Tolerances]:
+    """Tolerances that allow for the last digit of a feed that the control prints, if there is one."""
+    if control is None:
+        return tolerances
+    digit = 0.5 * control.formats["feed"].five_axis.digit
+    if isinstance(tolerances, Tolerances):
+        return replace(tolerances, feed=digit)
+    return lambda operation: replace(tolerances(operation), feed=digit)
+
+
+def _feed_limit(limit: float | None, feed: str) -> float | None:
+    """A feed limit, checked."""
+    if limit is None:
+        return None
+    if feed != "fastest":
+        raise InputError(
+            argument_problem("feed_limit", "is for feed=fastest only", "write feed=fastest too", code="ARG130")
+        )
+    if isinstance(limit, bool) or not isinstance(limit, int | float) or not 0.0 < limit < math.inf:
+        raise InputError(
+            argument_problem("feed_limit", f"is {limit!r}", "write a number above 0, mm/min", code="ARG220")
+        )
+    return float(limit)
 
 
 def _tolerances(

@@ -79,11 +79,15 @@ def prepare_view(
         given = of_project(files[0], setup, given)
         files = check_paths("nc", given.pop("nc"))
     elif setup is not None:
-        raise InputError(argument_problem("setup", "belongs to a project", "leave it out, or give the project"))
+        raise InputError(
+            argument_problem("setup", "belongs to a project", "leave it out, or give the project", code="PAG111")
+        )
     content, run = _prepared(files, settings, observer, **given)
     if against is None:
         if against_machine is not None:
-            raise InputError(argument_problem("against_machine", "belongs to a second program", "name that, too"))
+            raise InputError(
+                argument_problem("against_machine", "belongs to a second program", "name that, too", code="PAG111")
+            )
         return content
     alone = isinstance(against, str | os.PathLike)
     beside = [check_path("against", against)] if alone else check_paths("against", against)
@@ -99,9 +103,11 @@ def _prepared(
 ) -> tuple[ViewContent, Run]:
     """Put together what a page shows of one program, when no project states arguments any more; and its run."""
     if not files:
-        raise InputError(argument_problem("nc", "is empty", "name a program, CL files or a project"))
+        raise InputError(argument_problem("nc", "is empty", "name a program, CL files or a project", code="PAG110"))
     if given["machine"] is None:
-        raise InputError(argument_problem("machine", "is missing", "say on which machine the program runs"))
+        raise InputError(
+            argument_problem("machine", "is missing", "say on which machine the program runs", code="PAG110")
+        )
     placed = set_up_machine(as_machine(given["machine"]), given["zero"], given["tool_length"])
     of_stock = ("stock", "part", "fixtures", "tools", "libraries", "unit", "near", "cell", "accuracy")
     simulated = view_simulation(placed, **{name: given[name] for name in of_stock})

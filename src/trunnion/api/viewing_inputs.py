@@ -79,20 +79,22 @@ def view_program(
     if any(are_cl):
         if not all(are_cl):
             other = files[are_cl.index(False)]
-            raise InputError(Problem(str(other), 0, "is no CL file, as others here are", "view them one by one"))
+            raise InputError(
+                Problem(str(other), 0, "is no CL file, as others here are", "view them one by one", code="PAG112")
+            )
         return _posted(files, machine, settings, subprograms, observer)
     if settings:
         what, cure = (
             "is an NC program, to which settings of posting mean nothing",
             "leave them out, or give the CL file",
         )
-        raise InputError(Problem(str(files[0]), 0, what, cure))
+        raise InputError(Problem(str(files[0]), 0, what, cure, code="PAG111"))
     others = [*files[1:], *subprograms]
     run = restore_rapids(as_run(files[0], machine, others), rapid_feed_of(machine))
     unused = [file for file in files[1:] if str(file) not in run.files]
     if unused:
         what = f"is not called by {files[0].name}, and one program is shown"
-        raise InputError(Problem(str(unused[0]), 0, what, "view it alone"))
+        raise InputError(Problem(str(unused[0]), 0, what, "view it alone", code="PAG113"))
     toolpaths = as_toolpaths(cl, None, False, observer)
     verification = verify(run, machine=machine, cl=toolpaths, observer=observer)
     texts = tuple(decode(Path(file).read_bytes(), run.encoding) for file in run.files)
@@ -106,7 +108,7 @@ def _posted(
     text = result.text
     if result.verification is None or text is None:
         what, cure = "no reader knows the control, so that its motion is not known", "view it on another machine"
-        raise InputError(Problem(str(files[0]), 0, what, cure))
+        raise InputError(Problem(str(files[0]), 0, what, cure, code="PAG114"))
     name = f"{files[0].stem}{load_control(machine.control).extension}"
     run = result.verification.run
     verification = replace(result.verification, program=name, run=replace(run, files=(name, *run.files[1:])))
@@ -144,7 +146,9 @@ def of_project(path: Path, setup: str | None, given: Mapping[str, Any]) -> dict[
     programs = list(chosen.programs)
     if len(programs) != 1:
         what = f"has {len(programs)} programs in its set-up{f' {chosen.name}' if chosen.name else ''}"
-        raise InputError(Problem(str(path), 0, f"{what}, and a view shows one", "view the program itself"))
+        raise InputError(
+            Problem(str(path), 0, f"{what}, and a view shows one", "view the program itself", code="PAG112")
+        )
     found = {name: getattr(chosen, name) for name in _OF_SETUP} | {name: getattr(project, name) for name in _OF_PROJECT}
     if number:  # what an earlier set-up leaves is known to the simulation of all of them only
         found |= dict.fromkeys((*_OF_PROJECT, "stock"))
@@ -157,8 +161,10 @@ def _setup(path: Path, setups: Sequence[SetupInput], wanted: str | None) -> tupl
     names = [each.name or str(number) for number, each in enumerate(setups, 1)]
     if wanted is None and len(setups) > 1:
         cure = f"choose one of {', '.join(names)}"
-        raise InputError(Problem(str(path), 0, f"has {len(setups)} set-ups, and a view shows one", cure))
+        raise InputError(Problem(str(path), 0, f"has {len(setups)} set-ups, and a view shows one", cure, code="PAG112"))
     for number, (each, name) in enumerate(zip(setups, names, strict=True)):
         if wanted in (None, name, str(number + 1)):
             return each, number
-    raise InputError(Problem(str(path), 0, f'has no set-up "{wanted}"', f"choose one of {', '.join(names)}"))
+    raise InputError(
+        Problem(str(path), 0, f'has no set-up "{wanted}"', f"choose one of {', '.join(names)}", code="PAG112")
+    )

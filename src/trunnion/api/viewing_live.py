@@ -53,7 +53,7 @@ class LiveMachine:
             if missing:
                 what = f"does not show the axes {', '.join(missing)}"
                 cure = f"choose a list of nodes with argument nodes=FILE that has the axes of {self._machine.key}"
-                raise InputError(Problem("the machine", 0, what, cure))
+                raise InputError(Problem("the machine", 0, what, cure, code="TWN231"))
 
         asyncio.run(connect())
 

@@ -43,7 +43,9 @@ def view_simulation(machine: Machine, **given: Any) -> SimulationInput | None:
         return simulation_input(given, machine)
     alone = [name for name in _OF_STOCK if given[name] is not None]
     if alone:
-        raise InputError([argument_problem(name, "belongs to a simulation", "give stock as well") for name in alone])
+        raise InputError(
+            [argument_problem(name, "belongs to a simulation", "give stock as well", code="PAG111") for name in alone]
+        )
     return None
 
 

@@ -55,7 +55,7 @@ def chain_text(chain: str, name: str, control: str) -> str:
     """
     if chain not in CHAINS:
         cure = did_you_mean(chain, CHAINS) or "write one of " + ", ".join(CHAINS)
-        raise InputError(Problem("the builder", 0, f'there is no order of axes called "{chain}"', cure))
+        raise InputError(Problem("the builder", 0, f'there is no order of axes called "{chain}"', cure, code="PAG210"))
     part, _, tool = CHAINS[chain].order.partition("|")
     carried = [(axis, "part") for axis in part.split()] + [(axis, "tool") for axis in tool.split()]
     tables = [_axis_table(axis, side, dict(CHAINS[chain].lines)) for axis, side in carried]

@@ -66,7 +66,7 @@ def judge(text: str, path: Path) -> Draft:
     """
     if len(text) > MOST_LETTERS:
         what = f"has {len(text)} letters; more than {MOST_LETTERS} are not edited here"
-        return Draft(text, path, None, None, (Problem(str(path), 0, what, "edit the file itself"),))
+        return Draft(text, path, None, None, (Problem(str(path), 0, what, "edit the file itself", code="PAG213"),))
     try:
         table = load_draft(text, path, machine_library())
     except InputError as error:
@@ -123,6 +123,7 @@ def _problem(problem: Problem, draft: Draft) -> dict[str, Any]:
         "path": _steps(path),
         "what": problem.what,
         "cure": problem.cure,
+        "code": problem.code,
     }
 
 

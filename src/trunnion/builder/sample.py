@@ -111,5 +111,5 @@ def _problem(problem: Problem) -> dict[str, Any]:
     subject = f"{problem.file} " if isinstance(problem.file, ArgumentName) else ""
     return {
         "what": subject + problem.what, "cure": problem.cure, "line": problem.line,
-        "error": problem.severity is Severity.ERROR
+        "error": problem.severity is Severity.ERROR, "code": problem.code,
     }  # fmt: skip

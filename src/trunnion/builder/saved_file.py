@@ -39,7 +39,7 @@ def check_place(file: Path) -> None:
     """
     if not is_within(file, file.parent):
         cure = f"open {file.resolve()} itself, or choose another name"
-        raise InputError(Problem(str(file), 0, "is a link that leads out of its folder", cure))
+        raise InputError(Problem(str(file), 0, "is a link that leads out of its folder", cure, code="PAG211"))
     if file.exists() and (unusable := unusable_file(file, "the TOML file of a machine")):
         raise InputError(unusable)
 
@@ -59,9 +59,11 @@ def read_raw(file: Path) -> str:
             text = stream.read(MOST_LETTERS + 2)
     except (OSError, UnicodeDecodeError) as error:
         why = "is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else f"cannot be read: {error.strerror}"
-        raise InputError(Problem(str(file), 0, why, "choose the TOML file of a machine")) from None
+        raise InputError(Problem(str(file), 0, why, "choose the TOML file of a machine", code="PAG212")) from None
     if len(text) > MOST_LETTERS:
-        raise InputError(Problem(str(file), 0, f"has more than {MOST_LETTERS} letters", "edit the file itself"))
+        raise InputError(
+            Problem(str(file), 0, f"has more than {MOST_LETTERS} letters", "edit the file itself", code="PAG213")
+        )
     return text
 
 

@@ -7,6 +7,7 @@ from trunnion.cl.scan import fill_modal_axes, scan
 from trunnion.cl.sources import is_cl_file, not_one_file
 from trunnion.cl.systems import other_system
 from trunnion.cl.unknown import (
+    shop_statement,
     statement_words,
     unknown_statement_errors,
     unknown_statement_remarks,
@@ -28,6 +29,7 @@ __all__ = [
     "other_system",
     "read_cl",
     "read_cl_files",
+    "shop_statement",
     "statement_words",
     "unknown_statement_errors",
     "unknown_statement_remarks",

@@ -133,7 +133,7 @@ def _inverse_to_per_minute(
     cuts = inverse & ~in_hole & (kind != Kind.RAPID)
     for row in np.flatnonzero(cuts & ~(length > 0.0))[: MAX_LISTED + 1].tolist():
         what = "FEDRAT/INVERS for a move whose length is not known, or that only turns the tool"
-        diagnostics.error(int(line[row]), what, "write its feed in MMPM, or FROM/ before the first point")
+        diagnostics.error(int(line[row]), what, "write its feed in MMPM, or FROM/ before the first point", code="CL710")
 
 
 def _report_unknown_colours(builder: OperationBuilder, diagnostics: Diagnostics) -> None:
@@ -143,6 +143,7 @@ def _report_unknown_colours(builder: OperationBuilder, diagnostics: Diagnostics)
             builder.line,
             f"operation {builder.name} uses colour {colour}, which names no phase; the one before it goes on",
             "use the standard path colours of the CAM system",
+            code="CL810",
         )
 
 
@@ -152,10 +153,14 @@ def _report_far_points(
     """Refuse coordinates of a size that no machine has: ``tip`` (n, 3) in mm, and the origin of the frame."""
     if len(tip) and max(float(tip.max()), -float(tip.min())) > _MAX_COORDINATE:
         for row in np.flatnonzero((np.abs(tip) > _MAX_COORDINATE).any(axis=1))[: MAX_LISTED + 1].tolist():
-            diagnostics.error(int(line[row]), f"a coordinate of {np.abs(tip[row]).max():.10g} mm", _NO_SUCH_MACHINE)
+            diagnostics.error(
+                int(line[row]), f"a coordinate of {np.abs(tip[row]).max():.10g} mm", _NO_SUCH_MACHINE, code="CL360"
+            )
     farthest = max(map(abs, builder.frame.origin)) * unit
     if farthest > _MAX_COORDINATE:
-        diagnostics.error(builder.line, f"an MSYS with its origin {farthest:.10g} mm away", _NO_SUCH_MACHINE)
+        diagnostics.error(
+            builder.line, f"an MSYS with its origin {farthest:.10g} mm away", _NO_SUCH_MACHINE, code="CL360"
+        )
 
 
 def _event_in_mm(event: Event, unit: float, tool: Tool, diagnostics: Diagnostics) -> Event:
@@ -173,6 +178,7 @@ def _event_in_mm(event: Event, unit: float, tool: Tool, diagnostics: Diagnostics
                 event.line,
                 "the spindle speed is a surface speed, and the tool has no diameter",
                 "give the diameter in TLDATA, or the speed in RPM",
+                code="CL730",
             )
             return event
         return SpindleOn(event.row, event.line, event.speed / (math.pi * diameter), event.sense)
@@ -203,7 +209,7 @@ def _report_tool(builder: OperationBuilder, tool: Tool, diagnostics: Diagnostics
     line, _ = builder.stated.get("tool", (builder.line, None))
     for what, cure, severity in tool_faults(tool):
         report = diagnostics.error if severity is Severity.ERROR else diagnostics.remark
-        report(line, what, cure)
+        report(line, what, cure, code="CL770")
 
 
 def _frame_in_mm(frame: Frame, unit: float) -> Frame:

@@ -113,7 +113,7 @@ class ClInterpreter:
                 handler(self._state, statement)
                 self._known_statements += 1
         except StatementError as error:
-            self._diagnostics.error(line, error.what, error.cure)
+            self._diagnostics.error(line, error.what, error.cure, code=error.code)
 
     def finish(self, row: int, complete: bool, lines: int) -> None:
         """Close the last operation, and report a file that is cut off or has no motion.
@@ -139,7 +139,7 @@ class ClInterpreter:
             if not complete:
                 what += f", which ends in the middle of line {lines}"
             self._diagnostics.error(
-                builder.line if complete else lines, what, "the file is cut off: write it out again"
+                builder.line if complete else lines, what, "the file is cut off: write it out again", code="CL130"
             )
             state.close_operation()
         elif row > state.builder.first:
@@ -147,9 +147,11 @@ class ClInterpreter:
         if self._dialect.in_sections:
             self._report_lost_systems()
         if not self._known_statements and not row:
-            raise self._diagnostics.nothing_known(_NOT_CL, _GIVE_CL)
+            raise self._diagnostics.nothing_known(_NOT_CL, _GIVE_CL, code="CL110")
         if not row and not self._diagnostics.has_errors:
-            self._diagnostics.error(0, "there is no motion in the file", "write out an operation with a tool path")
+            self._diagnostics.error(
+                0, "there is no motion in the file", "write out an operation with a tool path", code="CL140"
+            )
         if state.builders and state.builder.events:
             # What follows the last operation is done after its last row.
             last = state.builders[-1]
@@ -165,7 +167,7 @@ class ClInterpreter:
             if COORDINATE_SYSTEM not in builder.stated:
                 what = f"operation {builder.name} has no MSYS, and {stating[0].name} has one off the absolute system"
                 cure = "write its MSYS; that of the absolute system is MSYS/0,0,0,1,0,0,0,1,0"
-                self._diagnostics.error(builder.line, what, cure)
+                self._diagnostics.error(builder.line, what, cure, code="CL430")
 
     def _report_cut_off(self, complete: bool, lines: int) -> None:
         where = "" if complete else f", and ends in the middle of line {lines}"
@@ -173,6 +175,7 @@ class ClInterpreter:
             lines,
             f"the file has no FINI behind its last motion{where}",
             "it is cut off: write it out again; if it is known to be whole, write FINI at its end",
+            code="CL130",
         )
 
     def knows_unit(self, given: str | None) -> bool:
@@ -186,7 +189,7 @@ class ClInterpreter:
             unit, stated = LENGTH_UNITS[given.upper()], self._state.length_unit
             if stated is not None and stated[0] != unit:
                 what = f"the file states another length unit than {given.lower()}, in which it is read"
-                self._diagnostics.remark(stated[1], what, "leave the unit out if the file is right")
+                self._diagnostics.remark(stated[1], what, "leave the unit out if the file is right", code="CL420")
             return unit
         if self._state.length_unit is not None:
             return self._state.length_unit[0]
@@ -196,12 +199,14 @@ class ClInterpreter:
                 max(mm, inch),
                 f"feeds in mm (line {mm}) and in inches (line {inch}), and no UNITS",
                 "write setting cl_units=mm or setting cl_units=inch (setting units=… is that of the program)",
+                code="CL410",
             )
         if inch and not mm:
             self._diagnostics.remark(
                 inch,
                 "all feeds are in inches, so lengths are taken as inches too",
                 "if they are not, write setting cl_units=mm",
+                code="CL420",
             )
             return MM_PER_INCH
         return 1.0
@@ -220,16 +225,18 @@ class ClInterpreter:
             return  # the end mark of a DOS file
         self._unknown_statements += 1
         if self._unknown_statements > _MAX_UNKNOWN_STATEMENTS and self._known_statements == 0 and self._state.row == 0:
-            raise self._diagnostics.nothing_known(_NOT_CL, _GIVE_CL)
+            raise self._diagnostics.nothing_known(_NOT_CL, _GIVE_CL, code="CL110")
         why = acts_on_machine(statement.major, self._words)
         if statement.major.startswith("->") and not why and not self._state.strict:
             what = f"$${statement.major[:40]} is a comment to all but the system that wrote it"
-            self._diagnostics.remark(self._state.line, what, "nothing becomes of it: check that nothing should")
+            self._diagnostics.remark(
+                self._state.line, what, "nothing becomes of it: check that nothing should", code="CL220"
+            )
             return
         _refuse_no_word(statement)
         if drives_tool(statement.major):
             self._state.direction = None
-            raise StatementError(f"{statement.major} is motion that cannot be read", _GIVE_POINTS)
+            raise StatementError(f"{statement.major} is motion that cannot be read", _GIVE_POINTS, code="CL250")
         if not why and self._dialect.alias is not None and _is_system(statement, 12) and not self._state.strict:
             self._dialect.alias(self._state, statement)
             return
@@ -248,15 +255,19 @@ def _refuse_no_word(statement: Statement) -> None:
     """Refuse a statement without a word: it may be a motion."""
     name = statement.major
     if _BLOCK_NUMBER.match(name):
-        raise StatementError(f"{name[:20]} begins with a block number, as in an NC program", "give the CL file")
+        raise StatementError(
+            f"{name[:20]} begins with a block number, as in an NC program", "give the CL file", code="CL110"
+        )
     if "=" in name:
         what = f"{name.partition('=')[0]} is defined here: this is an APT part program and not CL data"
-        raise StatementError(what, "run it through the APT system, and give its CL data")
+        raise StatementError(what, "run it through the APT system, and give its CL data", code="CL120")
     if name.startswith("IF("):
         what = "IF is a statement of an APT part program, and not of CL data"
-        raise StatementError(what, "run the part program through the APT system, and give its CL data")
+        raise StatementError(what, "run the part program through the APT system, and give its CL data", code="CL120")
     if name.isdigit() and "/" in statement.source:
         what = f"the word is the number {name}, and numbers of words differ from system to system"
-        raise StatementError(what, "output the CL data as text with words")
+        raise StatementError(what, "output the CL data as text with words", code="CL120")
     if not name or _NUMBER.match(name):
-        raise StatementError("numbers without a word", "write GOTO/ before each point, and $ where a line goes on")
+        raise StatementError(
+            "numbers without a word", "write GOTO/ before each point, and $ where a line goes on", code="CL160"
+        )

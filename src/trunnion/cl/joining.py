@@ -42,9 +42,11 @@ def join_cuts(
         else:
             if first := next((load for load in loads if load.row == 0 and load.adjust != register), None):
                 what = f"tool {first.number} is called with another register where operation {before.name} cuts on"
-                diagnostics.error(first.line, what, "retract by RAPID and GOTO/ before it")
+                diagnostics.error(first.line, what, "retract by RAPID and GOTO/ before it", code="CL780")
             what = f"operation {builder.name} begins with a cut from where {before.name} ends: they are one operation"
-            diagnostics.remark(builder.line, what, "begin it with RAPID if the tool should go home between them")
+            diagnostics.remark(
+                builder.line, what, "begin it with RAPID if the tool should go home between them", code="CL790"
+            )
             if builder.named:
                 before.joined.append(builder.name)
                 before.events.append(Message(builder.first - before.first, builder.line, builder.name))
@@ -69,7 +71,7 @@ def join_first_tool(builders: Iterable[OperationBuilder], diagnostics: Diagnosti
     if first is None or any(event.row == 0 and event.line < first.line for event in behind.events):
         return found
     what = f"the way before the first tool is done with tool {first.number}, at rapid"
-    diagnostics.remark(way.line, what, "check that it only leads to the point where the tool is changed")
+    diagnostics.remark(way.line, what, "check that it only leads to the point where the tool is changed", code="CL790")
     way.rapids = list(range(way.stop - way.first))
     _append(way, behind)
     way.events.append(first)
@@ -94,7 +96,9 @@ def _report_lost_coolant(builder: OperationBuilder, before: list[OperationBuilde
     own = any(isinstance(event, Coolant) and event.kind != "OFF" for event in builder.events)
     if coolants and coolants[-1].kind != "OFF" and not own:
         what = f"operation {builder.name} has no COOLNT: that of the one before ends with it, and its cuts are dry"
-        diagnostics.remark(builder.line, what, f"write COOLNT/{coolants[-1].kind} in each operation that needs it")
+        diagnostics.remark(
+            builder.line, what, f"write COOLNT/{coolants[-1].kind} in each operation that needs it", code="CL750"
+        )
 
 
 def _last_side(builder: OperationBuilder, side: CutterComp | None) -> CutterComp | None:
@@ -130,9 +134,9 @@ def _side_lost(
     what = f"operation {builder.name} cuts without CUTCOM, and that of line {side.line} ({side.side}) is still on"
     cure = f"write CUTCOM/OFF before the operation before ends, or CUTCOM/{side.side} before the first cut of this one"
     if changes:
-        diagnostics.remark(builder.line, f"{what}: with another tool it ends", cure)
+        diagnostics.remark(builder.line, f"{what}: with another tool it ends", cure, code="CL760")
     else:
-        diagnostics.error(builder.line, what, cure)
+        diagnostics.error(builder.line, what, cure, code="CL760")
     return None
 
 

@@ -15,7 +15,7 @@ def report_kept_states(builders: Sequence[OperationBuilder], diagnostics: Diagno
         loads = [event for event in builder.events if isinstance(event, LoadTool)]
         if loads and tool not in (0, loads[0].number) and _keeps_feed(builder, loads[0]):
             what = f"operation {builder.name} loads tool {loads[0].number}, and cuts with the feed of tool {tool}"
-            diagnostics.remark(loads[0].line, what, "put FEDRAT behind the tool")
+            diagnostics.remark(loads[0].line, what, "put FEDRAT behind the tool", code="CL720")
         tool = loads[-1].number if loads else tool
 
 
@@ -31,7 +31,7 @@ def _refuse_kept_cycle(builder: OperationBuilder, tool: int, diagnostics: Diagno
             rows = range(event.row, next(following, builder.stop - builder.first))
             if cycle and tool not in (0, event.number) and not rapids.issuperset(rows):
                 what = f"the cycle of line {cycle.line} is still on where tool {event.number} is loaded"
-                diagnostics.error(event.line, what, "write CYCLE/OFF behind its last hole")
+                diagnostics.error(event.line, what, "write CYCLE/OFF behind its last hole", code="CL840")
             tool = event.number
 
 

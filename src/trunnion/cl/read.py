@@ -139,9 +139,9 @@ def read_source(
     """Read one CL file, ``chunk`` bytes at a time; the result does not depend on ``chunk``."""
     diagnostics = Diagnostics(source.name)
     if units is not None and units.lower() not in ("mm", "inch"):
-        raise diagnostics.fatal(0, f"units are {units!r}", "units are mm or inch")
+        raise diagnostics.fatal(0, f"units are {units!r}", "units are mm or inch", code="ARG140")
     if dialect is not None and dialect not in DIALECTS:
-        raise diagnostics.fatal(0, f"dialect is {dialect!r}", f"dialects are {', '.join(DIALECTS)}")
+        raise diagnostics.fatal(0, f"dialect is {dialect!r}", f"dialects are {', '.join(DIALECTS)}", code="ARG140")
     try:
         survey = _survey(source, diagnostics)
         if dialect is None:
@@ -156,7 +156,7 @@ def read_source(
             scanner.read(file, chunk, survey.bom_bytes, progress)
     except OSError as error:
         what = f"cannot be read: {error.strerror or error}"
-        raise diagnostics.fatal(0, what, "give the name of a file that you may read") from error
+        raise diagnostics.fatal(0, what, "give the name of a file that you may read", code="FIL120") from error
     interpreter.finish(scanner.rows, survey.complete, scanner.line - 1)
     unit = interpreter.unit(units)
     if unit != 1.0:
@@ -177,7 +177,7 @@ def read_source(
         system=tuple(number * (unit if k % 4 == 3 else 1.0) for k, number in enumerate(interpreter.system)),
     )  # fmt: skip
     for problem in unknown_statement_remarks(toolpath):
-        diagnostics.remark(problem.line, problem.what, problem.cure)
+        diagnostics.remark(problem.line, problem.what, problem.cure, code=problem.code)
     return replace(toolpath, remarks=(*source.remarks, *diagnostics.remarks))
 
 
@@ -196,23 +196,25 @@ def _surveyed(file: BinaryIO, source: ClSource, diagnostics: Diagnostics) -> Sur
     while piece := file.read(_SURVEY_CHUNK):
         if size == 0:
             if piece.startswith((b"\xff\xfe", b"\xfe\xff")):
-                raise diagnostics.fatal(1, "unknown encoding: this is UTF-16", _PLAIN_TEXT)
+                raise diagnostics.fatal(1, "unknown encoding: this is UTF-16", _PLAIN_TEXT, code="CL150")
             bom_bytes = len(_BOM) if piece.startswith(_BOM) else 0
             per_byte = (piece.count(b"\n") + 1) / len(piece)
             head = piece[bom_bytes:_HEAD]
         if (nul := piece.find(0)) >= 0:
             line = _line_at(source, size + nul)
-            raise diagnostics.fatal(line, "unknown encoding: there is a NUL byte in the line", _PLAIN_TEXT)
+            raise diagnostics.fatal(
+                line, "unknown encoding: there is a NUL byte in the line", _PLAIN_TEXT, code="CL150"
+            )
         detector.add(piece)
         size += len(piece)
         complete = piece.endswith(b"\n")
         lines = lines or b"\n" in piece
         if not lines and b"\r" in piece.rstrip():
             raise diagnostics.fatal(
-                1, "the lines end with a lone carriage return", "save the file with LF or CRLF line ends"
+                1, "the lines end with a lone carriage return", "save the file with LF or CRLF line ends", code="CL150"
             )
     if size == bom_bytes:
-        raise diagnostics.fatal(0, "the file is empty", "write the tool path out of the CAM system again")
+        raise diagnostics.fatal(0, "the file is empty", "write the tool path out of the CAM system again", code="CL140")
     rows = min(1.02 * per_byte * size, size / _MIN_ROW_BYTES)
     return Survey(bom_bytes, int(rows) + 16, detector.encoding(), complete, head)
 
@@ -293,9 +295,11 @@ class _Scanner:
                 raise self._too_long(line)
             if mark & UNFINISHED:
                 cure = "write the rest of the statement"
-                self._diagnostics.error(line, "the file ends after a continuation sign $", cure)
+                self._diagnostics.error(line, "the file ends after a continuation sign $", cure, code="CL130")
             self._interpreter.interpret(bytes(data[begin : begin + length]), line, row, mark)
 
     def _too_long(self, line: int) -> Exception:
         what = f"a statement longer than {MAX_STATEMENT_BYTES} bytes"
-        return self._diagnostics.fatal(line, what, "no CL statement is that long: check whether line ends are missing")
+        return self._diagnostics.fatal(
+            line, what, "no CL statement is that long: check whether line ends are missing", code="CL160"
+        )

@@ -60,14 +60,18 @@ def read_back_problems(expected: Toolpath, path: Path, dialect: str) -> list[Pro
         found = read_cl(path)
     except InputError as error:
         what = f"as {title} it could not be read: line {error.problems[0].line} of the result: {error.problems[0].what}"
-        return [Problem(expected.file, 0, what, _CURE)]
+        return [Problem(expected.file, 0, what, _CURE, code="CL920")]
     if found.dialect != dialect:
-        return [Problem(expected.file, 0, f"as {title} it would be taken for {found.recognized}", _CURE)]
+        return [Problem(expected.file, 0, f"as {title} it would be taken for {found.recognized}", _CURE, code="CL920")]
     if expected.dialect == dialect and not _same_system(expected.system, found.system):
-        return [Problem(expected.file, 0, f"as {title} it would read back in another coordinate system", _CURE)]
+        return [
+            Problem(
+                expected.file, 0, f"as {title} it would read back in another coordinate system", _CURE, code="CL920"
+            )
+        ]
     names = {name for each in (expected, found) for operation in each.operations for name in operation.joined}
     return [
-        Problem(expected.file, line, f"as {title} it would read back with another {what}", _CURE)
+        Problem(expected.file, line, f"as {title} it would read back with another {what}", _CURE, code="CL920")
         for line, what in _differences(_Rows.of(expected, names), _Rows.of(found, names))
     ]
 

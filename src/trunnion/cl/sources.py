@@ -134,7 +134,9 @@ def cl_sources(file: Path | BinaryIO, name: str = "stdin") -> list[ClSource]:
                 head, size = packed.read(1024), packed.seek(0, io.SEEK_END)
         except OSError as error:
             what = f"cannot be read: {error.strerror or error}"
-            raise InputError(Problem(name, 0, what, "give the name of a file that you may read")) from error
+            raise InputError(
+                Problem(name, 0, what, "give the name of a file that you may read", code="FIL120")
+            ) from error
     else:
         spool = _spooled(file, name)
         size = spool.seek(0, io.SEEK_END)
@@ -163,7 +165,9 @@ def _unpacked(name: str, packed: BinaryIO, unpack: Callable[[BinaryIO], BinaryIO
 def not_one_file(first: str, count: int) -> InputError:
     """The error for an archive of several CL files where one is meant; ``first`` is its first file."""
     what = f"is one of {count} CL files in an archive, and a toolpath is one"
-    return InputError(Problem(first, 0, what, "give the archive to post, verify or describe_cl, or unpack it"))
+    return InputError(
+        Problem(first, 0, what, "give the archive to post, verify or describe_cl, or unpack it", code="FIL180")
+    )
 
 
 def _unpacker(head: bytes) -> Callable[[BinaryIO], BinaryIO] | None:
@@ -183,7 +187,9 @@ def _refuse_archive(name: str, head: bytes, nested: str) -> None:
     if nested and (head.startswith(_ZIP) or _unpacker(head)):
         kind = nested
     if kind:
-        raise InputError(Problem(name, 0, f"is {kind}, which is not read", "unpack it, or give a plain ZIP archive"))
+        raise InputError(
+            Problem(name, 0, f"is {kind}, which is not read", "unpack it, or give a plain ZIP archive", code="FIL150")
+        )
 
 
 def _zip_sources(name: str, open_packed: Callable[[], BinaryIO], size: int) -> list[ClSource]:
@@ -192,7 +198,7 @@ def _zip_sources(name: str, open_packed: Callable[[], BinaryIO], size: int) -> l
         with open_packed() as packed, zipfile.ZipFile(packed) as archive:
             infos = [info for info in archive.infolist() if not info.is_dir()]
     except _DAMAGE as error:
-        raise InputError(Problem(name, 0, f"cannot be unpacked: {error}", _CUT_OFF)) from error
+        raise InputError(Problem(name, 0, f"cannot be unpacked: {error}", _CUT_OFF, code="FIL140")) from error
     _check_infos(name, infos, size)
     sources, left_out = [], []
     for info in sorted(infos, key=lambda info: _by_numbers(_member_name(info))):
@@ -200,12 +206,12 @@ def _zip_sources(name: str, open_packed: Callable[[], BinaryIO], size: int) -> l
         opened = _member_opener(inside, open_packed, info.filename, size)
         why = _why_no_cl_file(inside, info, opened)
         if why:
-            left_out.append(Problem(inside, 0, why, "nothing becomes of it", Severity.WARNING))
+            left_out.append(Problem(inside, 0, why, "nothing becomes of it", Severity.WARNING, code="FIL170"))
         else:
             sources.append(ClSource(inside, opened))
     if not sources:
         what = "has no CL file in it" if infos else "is empty"
-        raise InputError([Problem(name, 0, what, "put the CL files into the archive"), *left_out])
+        raise InputError([Problem(name, 0, what, "put the CL files into the archive", code="FIL180"), *left_out])
     first = sources[0]
     return [ClSource(first.name, first.open, remarks=tuple(left_out)), *sources[1:]]
 
@@ -215,18 +221,20 @@ def _check_infos(name: str, infos: Iterable[zipfile.ZipInfo], size: int) -> None
     files = list(infos)
     if len(files) > MAX_FILES:
         raise InputError(
-            Problem(name, 0, f"has {len(files)} files, more than {MAX_FILES}", "post them in several jobs")
+            Problem(
+                name, 0, f"has {len(files)} files, more than {MAX_FILES}", "post them in several jobs", code="FIL160"
+            )
         )
     names = [_member_name(info) for info in files]
     if twice := next((each for each in names if names.count(each) > 1), ""):
-        raise InputError(Problem(name, 0, f"has two files named {twice}", "rename one of them"))
+        raise InputError(Problem(name, 0, f"has two files named {twice}", "rename one of them", code="FIL180"))
     for info in files:
         if info.flag_bits & 1:
             what, cure = f"{_member_name(info)} in it has a password", "pack it without a password"
-            raise InputError(Problem(name, 0, what, cure))
+            raise InputError(Problem(name, 0, what, cure, code="FIL150"))
         if info.compress_type not in _METHODS:
             what = f"{_member_name(info)} in it is packed in a way that is not read"
-            raise InputError(Problem(name, 0, what, "pack it as other ZIP archives (deflate)"))
+            raise InputError(Problem(name, 0, what, "pack it as other ZIP archives (deflate)", code="FIL150"))
     _check_size(name, sum(info.file_size for info in files), size)
 
 
@@ -238,7 +246,7 @@ def _check_size(name: str, unpacked: int, packed: int) -> None:
         what = f"becomes more than {MAX_RATIO} times as long when it is unpacked, which no CL file does"
     else:
         return
-    raise InputError(Problem(name, 0, what, "give the CL file itself"))
+    raise InputError(Problem(name, 0, what, "give the CL file itself", code="FIL160"))
 
 
 def _member_name(info: zipfile.ZipInfo) -> str:
@@ -265,7 +273,7 @@ def _member_opener(inside: str, open_packed: Callable[[], BinaryIO], member: str
             text = zipfile.ZipFile(packed).open(member)  # noqa: SIM115 - closed with what reads it
         except _DAMAGE as error:
             packed.close()
-            raise InputError(Problem(inside, 0, f"cannot be unpacked: {error}", _CUT_OFF)) from error
+            raise InputError(Problem(inside, 0, f"cannot be unpacked: {error}", _CUT_OFF, code="FIL140")) from error
         return cast("BinaryIO", _Unpacked(cast("BinaryIO", text), inside, size, packed))
 
     return opened
@@ -296,7 +304,7 @@ def _spooled(stream: BinaryIO, name: str) -> BinaryIO:
     try:
         while piece := stream.read(_PIECE):
             if not isinstance(piece, bytes):
-                raise InputError(Problem(name, 0, "is a stream of text", "give a binary stream"))
+                raise InputError(Problem(name, 0, "is a stream of text", "give a binary stream", code="FIL190"))
             done += len(piece)
             _check_size(name, done, done)
             if done > _IN_MEMORY and isinstance(spool, io.BytesIO):
@@ -304,7 +312,7 @@ def _spooled(stream: BinaryIO, name: str) -> BinaryIO:
                 spool.write(memory.getbuffer())
             spool.write(piece)
     except OSError as error:
-        raise InputError(Problem(name, 0, f"cannot be read: {error.strerror or error}", "")) from error
+        raise InputError(Problem(name, 0, f"cannot be read: {error.strerror or error}", "", code="FIL120")) from error
     return spool
 
 
@@ -387,7 +395,7 @@ class _Unpacked(io.RawIOBase):
                 count += len(piece)
                 _check_size(self._name, self._done + count, self._packed_bytes)
         except _DAMAGE as error:
-            raise InputError(Problem(self._name, 0, f"cannot be unpacked: {error}", _CUT_OFF)) from error
+            raise InputError(Problem(self._name, 0, f"cannot be unpacked: {error}", _CUT_OFF, code="FIL140")) from error
         self._done += count
         return count
 

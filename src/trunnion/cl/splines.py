@@ -74,12 +74,12 @@ def with_spline_points(
                 poles, total, line = poles + spline.points, total + len(block.points), line or spline.line
             if total > _MAX_POINTS:
                 what = f"splines that take more than {_MAX_POINTS} points within {within:g} mm"
-                raise diagnostics.fatal(spline.line, what, "give a coarser tolerance, or several files")
+                raise diagnostics.fatal(spline.line, what, "give a coarser tolerance, or several files", code="CL600")
     if not blocks or diagnostics.has_errors:
         return columns
     what = f"{counted(len(blocks), 'spline')} (NURBS) with {counted(poles, 'control point')}"
     what += f": {counted(total, 'point')} within {finest:g} mm stand for them"
-    diagnostics.remark(line, what, "setting spline_tolerance=MM makes more of them, or fewer")
+    diagnostics.remark(line, what, "setting spline_tolerance=MM makes more of them, or fewer", code="CL610")
     return _insert(builders, columns, rows, blocks)
 
 
@@ -121,7 +121,7 @@ def _block_of(
         if float(counts.sum()) <= _MAX_POINTS_OF_ONE:
             return _Block(builder, first, poles, knots, evaluate(poles, knots, counts.astype(np.int64)))
         fault = f"a spline that takes more than {_MAX_POINTS_OF_ONE} points within {tolerance:g} mm"
-    diagnostics.error(spline.line, fault, _CURE)
+    diagnostics.error(spline.line, fault, _CURE, code="CL600")
     return None
 
 

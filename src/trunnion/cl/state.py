@@ -44,7 +44,7 @@ class ArcDirection(NamedTuple):
     def report_lost_arc(self, diagnostics: Diagnostics) -> None:
         """Report that the motion behind it, if any, is no arc."""
         what = "INDIRV without its arc: the next motion is no GOFWD"
-        diagnostics.error(self.line, what, "look for a line that is missing, or remove the INDIRV")
+        diagnostics.error(self.line, what, "look for a line that is missing, or remove the INDIRV", code="CL560")
 
 
 @dataclass(slots=True, eq=False)
@@ -152,7 +152,7 @@ class ReaderState:
             return
         if self.cycle_line:
             what = f"the cycle of line {self.cycle_line} is still on where another operation begins"
-            self.diagnostics.error(self.line, what, "write CYCLE/OFF behind its last hole")
+            self.diagnostics.error(self.line, what, "write CYCLE/OFF behind its last hole", code="CL840")
             self.cycle_line = 0
         at = self.operation_row
         self.builder = OperationBuilder(
@@ -184,7 +184,7 @@ class ReaderState:
         line, before = self.builder.stated.setdefault(what, (self.line, value))
         if before != value:
             cure = "write the one that is meant, or begin another operation with the other one"
-            raise StatementError(f"another {what} than in line {line}: an operation has one", cure)
+            raise StatementError(f"another {what} than in line {line}: an operation has one", cure, code="CL320")
 
     def load_tool(self, number: int, adjust: int) -> None:
         """Load a tool, at the beginning of an operation; a tool that is loaded already is not loaded again."""
@@ -207,7 +207,7 @@ class ReaderState:
         line, number = builder.stated.get(TOOL_NUMBER, (0, 0))
         if line and self.tool is not None and self.tool.number != number and not self.dialect.in_sections:
             what = f"tool {number} is stated and not loaded: tool {self.tool.number} is in the spindle"
-            self.diagnostics.error(line, what, "write LOADTL/ with the number of the tool that is meant")
+            self.diagnostics.error(line, what, "write LOADTL/ with the number of the tool that is meant", code="CL780")
 
     def _leave_out_tools(self, number: int) -> None:
         """Leave out tool changes before this one that belong to no operation, or to one without motion."""
@@ -216,7 +216,7 @@ class ReaderState:
             events.remove(event)
             if event.number != number:
                 what = f"tool {event.number} is loaded and does nothing before tool {number}: it is left out"
-                self.diagnostics.remark(event.line, what, "leave out the tool change in the CAM system")
+                self.diagnostics.remark(event.line, what, "leave out the tool change in the CAM system", code="CL780")
 
     def set_axis(self, axis: tuple[float, float, float] | None, no_axis: NoAxis) -> None:
         """Set the tool axis of the rows that follow, and that of points that give none."""
@@ -233,6 +233,7 @@ class ReaderState:
             raise StatementError(
                 "the coordinate system of the points changes within the file",
                 "output one file for each coordinate system, and post them one at a time",
+                code="CL430",
             )
         self.system = numbers
 
@@ -250,7 +251,7 @@ class ReaderState:
         """
         events = self.builder.events
         if self.strict:
-            self.diagnostics.error(self.line, what, "remove the statement, or read without strict=True")
+            self.diagnostics.error(self.line, what, "remove the statement, or read without strict=True", code="CL210")
         found = UnknownStatement(self.operation_row, self.line, statement.source, words, what, acts)
         for k in range(len(events) - 1, -1, -1):
             before = events[k]
@@ -275,4 +276,5 @@ class ReaderState:
             int(self.columns.line[self.builder.first]),
             "motion outside any operation",
             "write TOOL PATH/name,TOOL,tool before it and END-OF-PATH behind it",
+            code="CL350",
         )

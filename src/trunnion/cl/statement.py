@@ -68,7 +68,7 @@ class Statement(NamedTuple):
             both = [word for word in given if word in choice]
             if len(both) > 1:
                 what = f"{self.major} has {both[0]} and {both[1]}, which contradict each other"
-                raise StatementError(what, "write the one that is meant")
+                raise StatementError(what, "write the one that is meant", code="CL320")
 
 
 def numbers(major: str, values: tuple[str | float, ...], *counts: int) -> tuple[float, ...]:
@@ -82,14 +82,14 @@ def numbers(major: str, values: tuple[str | float, ...], *counts: int) -> tuple[
     for value in values:
         if isinstance(value, str):
             what = f"{major} has {value or 'nothing'!r} where a number belongs"
-            raise StatementError(what, "write a decimal number")
+            raise StatementError(what, "write a decimal number", code="CL310")
         if value > _MAX_NUMBER or value < -_MAX_NUMBER:
             cure = "write finite numbers of a size that a machine can have"
-            raise StatementError(f"{major} has the number {value}", cure)
+            raise StatementError(f"{major} has the number {value}", cure, code="CL360")
     if counts and len(values) not in counts:
         expected = " or ".join(map(str, counts))
         what = f"{major} has {counted(len(values), 'number')}, expected {expected}"
-        raise StatementError(what, "look for a missing or an extra comma")
+        raise StatementError(what, "look for a missing or an extra comma", code="CL310")
     return values  # type: ignore[return-value]
 
 
@@ -103,7 +103,7 @@ def whole_number(major: str, values: tuple[str | float, ...]) -> int:
     """
     (number,) = numbers(major, values, 1)
     if not is_whole(number, 0) or number > _MAX_WHOLE_NUMBER:
-        raise StatementError(f"{major} has {number:g} where a whole number belongs", "write 0, 1, 2 ...")
+        raise StatementError(f"{major} has {number:g} where a whole number belongs", "write 0, 1, 2 ...", code="CL310")
     return int(number)
 
 
@@ -125,6 +125,7 @@ def parse(raw: bytes, encoding: str) -> Statement:
         raise StatementError(
             f"unknown encoding: byte 0x{control.group()[0]:02x} in a statement",
             "save the file as plain text (ASCII, UTF-8, GBK or Latin-1)",
+            code="CL150",
         )
     if raw[:1] and raw[0] in _TEXT_FIRST_BYTES and (text := _TEXT_STATEMENT.match(raw)):
         return _text_statement(text, raw, encoding)
@@ -133,12 +134,14 @@ def parse(raw: bytes, encoding: str) -> Statement:
         source = _without_comment(source)
     plain = joined_lines(source) if "$" in source else source
     if "\r" in plain:
-        raise StatementError("a carriage return without a line feed", "save the file with LF or CRLF line ends")
+        raise StatementError(
+            "a carriage return without a line feed", "save the file with LF or CRLF line ends", code="CL150"
+        )
     major, slash, rest = plain.partition("/")
     name = "".join(major.split()).upper()
     if "$" in name or "$" in rest:
         cure = "a dollar sign continues a line only at its end"
-        raise StatementError(f"{name} has a dollar sign within the line", cure)
+        raise StatementError(f"{name} has a dollar sign within the line", cure, code="CL160")
     return Statement(name, _values(rest) if slash else (), "", source)
 
 
@@ -160,7 +163,9 @@ def _without_comment(source: str) -> str:
 
 def _text_statement(match: re.Match[bytes], raw: bytes, encoding: str) -> Statement:
     if b"\r" in raw:
-        raise StatementError("a carriage return without a line feed", "save the file with LF or CRLF line ends")
+        raise StatementError(
+            "a carriage return without a line feed", "save the file with LF or CRLF line ends", code="CL150"
+        )
     major = "".join((match[1] or match[2]).decode("ascii").split()).upper()
     text = match[4].decode(encoding, "replace")
     # Only INSERT goes into the program letter by letter.

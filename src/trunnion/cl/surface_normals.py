@@ -54,7 +54,7 @@ def with_normals(toolpath: Toolpath) -> Toolpath:
             contact = contact_points(source, line) * toolpath.unit
     except OSError as error:
         what = f"cannot be read: {error.strerror or error}"
-        raise InputError(Problem(toolpath.file, 0, what, "leave the file where it is")) from error
+        raise InputError(Problem(toolpath.file, 0, what, "leave the file where it is", code="FIL120")) from error
     operations, remarks = [], list(toolpath.remarks)
     begin = 0
     for operation in toolpath.operations:
@@ -87,7 +87,7 @@ def _why_no_normals(tool: Tool, contact: Floats) -> str:
 
 def _remark(file: str, operation: Operation, why: str) -> Problem:
     cure = "output contact points (Centerline and Contact Point), with a ball or toroidal mill"
-    return Problem(file, operation.line, f"operation {operation.name} {why}", cure, Severity.WARNING)
+    return Problem(file, operation.line, f"operation {operation.name} {why}", cure, Severity.WARNING, code="CL940")
 
 
 def normals(moves: Moves, contact: Floats, tool: Tool) -> Floats:

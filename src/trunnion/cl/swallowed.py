@@ -57,7 +57,9 @@ class SwallowedStatements:
         """
         for comment in comments:
             if self._has_commands and comment.lstrip().startswith("->"):
-                raise StatementError(f"{statement.major[:40]} has $$-> behind it, which begins a line", _LOST_END)
+                raise StatementError(
+                    f"{statement.major[:40]} has $$-> behind it, which begins a line", _LOST_END, code="CL160"
+                )
             self.refuse_in_comment(comment)
         if not statement.text:
             found = self._in_values(statement)
@@ -66,19 +68,23 @@ class SwallowedStatements:
             found = point[1] if point else self._in_words(statement.text)
         if found:
             what = f"{statement.major[:40]} has {found} within it, a statement without a line of its own"
-            raise StatementError(what, _LOST_END)
+            raise StatementError(what, _LOST_END, code="CL160")
 
     def refuse_in_comment(self, comment: str) -> None:
         """Refuse a comment in which a statement stands without a line of its own."""
         comment = comment.rstrip(" \t\r\n\x1a")
         if control := _CONTROL.search(comment):
             if control[0] == "\r":
-                raise StatementError("a carriage return without a line feed", "save the file with LF or CRLF line ends")
+                raise StatementError(
+                    "a carriage return without a line feed", "save the file with LF or CRLF line ends", code="CL150"
+                )
             what = f"unknown encoding: byte 0x{ord(control[0]):02x} in a comment"
-            raise StatementError(what, "save the file as plain text, with a line end in its place if one belongs there")
+            raise StatementError(
+                what, "save the file as plain text, with a line end in its place if one belongs there", code="CL150"
+            )
         if found := self._in_words(comment):
             what = f"a $$ comment has {found} within it, a statement without a line of its own"
-            raise StatementError(what, _LOST_END)
+            raise StatementError(what, _LOST_END, code="CL160")
 
     def _in_words(self, text: str) -> str:
         """The statement that is glued to a text or a comment; empty if there is none."""

@@ -26,7 +26,11 @@ def other_system(toolpaths: Sequence[Toolpath]) -> Problem | None:
         if any(abs(a - b) > _SAME for a, b in pair):
             what = f"its points are in another coordinate system than those of {toolpaths[0].file}"
             return Problem(
-                toolpath.file, 0, what, "output all files in one coordinate system, or post them one at a time"
+                toolpath.file,
+                0,
+                what,
+                "output all files in one coordinate system, or post them one at a time",
+                code="CL430",
             )
     return None
 
@@ -40,4 +44,4 @@ def _unstated_system(toolpaths: Sequence[Toolpath]) -> Problem | None:
     other = next(toolpath for toolpath in toolpaths if not toolpath.states_system)
     what = f"it does not state where its points are, and {off.file} has an MSYS off the absolute system"
     cure = "write its MSYS, that of the absolute system is MSYS/0,0,0,1,0,0,0,1,0; or post the files one at a time"
-    return Problem(other.file, 0, what, cure)
+    return Problem(other.file, 0, what, cure, code="CL430")

@@ -54,7 +54,9 @@ def fill_tool_axes(
         _check_upright(columns, builder, diagnostics)
     for row, line, word in builder.upright:
         if row < builder.stop and not _is_upright(columns.axis[row]):
-            diagnostics.error(line, f"{word} with a tilted tool axis cannot be read", "write GOTO/ with the point")
+            diagnostics.error(
+                line, f"{word} with a tilted tool axis cannot be read", "write GOTO/ with the point", code="CL550"
+            )
     return events
 
 
@@ -68,7 +70,7 @@ def _check_vectors(
     others = np.flatnonzero(np.abs(axis - modal_axis).max(axis=1, initial=0.0) > _UPRIGHT)
     for row in others[:1].tolist():
         what = "three more numbers behind a point without MULTAX: a tool axis, or a vector of compensation"
-        diagnostics.error(int(columns.line[begin + row]), what, _GIVE_MULTAX)
+        diagnostics.error(int(columns.line[begin + row]), what, _GIVE_MULTAX, code="CL530")
 
 
 def _fill(
@@ -88,10 +90,10 @@ def _fill(
     for row in bare[: MAX_LISTED + 1].tolist():
         if no_axis is NoAxis.NEVER:
             what = "a point without a tool axis, in a coordinate system whose Z is tilted"
-            diagnostics.error(int(columns.line[row]), what, _GIVE_AXIS)
+            diagnostics.error(int(columns.line[row]), what, _GIVE_AXIS, code="CL530")
         elif not _is_upright(axis[row]):
             what = "a point without a tool axis after MULTAX/OFF, and the point before has a tilted one"
-            diagnostics.error(int(columns.line[row]), what, _GIVE_AXIS)
+            diagnostics.error(int(columns.line[row]), what, _GIVE_AXIS, code="CL530")
             return
 
 
@@ -100,7 +102,7 @@ def _check_upright(columns: MoveColumns, builder: OperationBuilder, diagnostics:
     tilted = np.flatnonzero(np.abs(columns.axis[builder.first : builder.stop] - _Z).max(axis=1, initial=0.0) > _UPRIGHT)
     for row in tilted[:1].tolist():
         what = "a tilted tool axis, at a point in the coordinates of a plane that the file does not give"
-        diagnostics.error(int(columns.line[builder.first + row]), what, builder.tilted)
+        diagnostics.error(int(columns.line[builder.first + row]), what, builder.tilted, code="CL550")
 
 
 def _is_upright(axis: Floats) -> bool:
@@ -117,4 +119,4 @@ def _set_axis(given: tuple[float, float, float], line: int, modal_axis: Floats, 
 def _report_bad_axis(vector: Floats, line: int, diagnostics: Diagnostics) -> None:
     length = float(np.sqrt(np.sum(vector * vector)))
     what = "the tool-axis vector is zero" if length == 0 else f"the tool-axis vector has the length {length:.6g}, not 1"
-    diagnostics.error(line, what, "write i, j, k as a unit vector from the tip to the holder")
+    diagnostics.error(line, what, "write i, j, k as a unit vector from the tip to the holder", code="CL540")

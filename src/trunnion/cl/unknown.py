@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.statement import parse
 from trunnion.errors import Problem, Severity, merge_repeated
-from trunnion.model.toolpath import Toolpath, UnknownStatement
+from trunnion.model.toolpath import ShopStatement, Toolpath, UnknownStatement
 
 _CURE = "a program is refused unless the control's definition says what becomes of it ([control.statements])"
 _NO_EFFECT = "nothing becomes of it: check that nothing should, or say under [control.statements] or [cl.words] what"
@@ -20,6 +20,18 @@ def statement_words(text: str) -> tuple[str, frozenset[str]]:
     return statement.major, frozenset(statement.listed().split(",")) - {""}
 
 
+def shop_statement(event: UnknownStatement) -> ShopStatement:
+    """A statement that is not known, with its values in order, for the template of a shop."""
+    try:
+        statement = parse(event.text.encode(), "utf-8")
+    except StatementError:
+        word, _, text = event.text.partition("/")
+        return ShopStatement(event.row, event.line, text.strip(), word.strip().upper())
+    text = event.text.partition("/")[2].strip()
+    numbers = statement.plain_numbers()
+    return ShopStatement(event.row, event.line, text, statement.major, tuple(statement.words()), numbers)
+
+
 def unknown_statements(toolpath: Toolpath) -> list[list[UnknownStatement]]:
     """The statements of a toolpath that are not known, those alike together, by their first lines."""
     alike: dict[str, list[UnknownStatement]] = {}
@@ -31,7 +43,9 @@ def unknown_statements(toolpath: Toolpath) -> list[list[UnknownStatement]]:
 def unknown_statement_remarks(toolpath: Toolpath) -> tuple[Problem, ...]:
     """What is not known in a toolpath, as warnings: one for all statements alike."""
     return merge_repeated(
-        Problem(toolpath.file, event.line, event.what, _CURE if event.acts else _NO_EFFECT, Severity.WARNING)
+        Problem(toolpath.file, event.line, event.what, _CURE, Severity.WARNING, code="CL210")
+        if event.acts
+        else Problem(toolpath.file, event.line, event.what, _NO_EFFECT, Severity.WARNING, code="CL220")
         for event in _unknown_events(toolpath)
     )
 
@@ -39,7 +53,9 @@ def unknown_statement_remarks(toolpath: Toolpath) -> tuple[Problem, ...]:
 def unknown_statement_errors(toolpath: Toolpath, cure: str) -> tuple[Problem, ...]:
     """Why no program is made of a toolpath: statements that are not known and may change the machine."""
     return merge_repeated(
-        Problem(toolpath.file, event.line, event.what, cure) for event in _unknown_events(toolpath) if event.acts
+        Problem(toolpath.file, event.line, event.what, cure, code="CL210")
+        for event in _unknown_events(toolpath)
+        if event.acts
     )
 
 

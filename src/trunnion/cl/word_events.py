@@ -31,11 +31,11 @@ def events_of(text: str) -> tuple[Event, ...]:
     statement = parse(text.encode(), "utf-8")
     handler = CLSF.handlers.get(statement.major)
     if handler is None:
-        raise StatementError(f"{text} is not a statement that is known", _CURE)
+        raise StatementError(f"{text} is not a statement that is known", _CURE, code="DEF550")
     handler(state, statement)
     events = state.builder.events
     if diagnostics.has_errors or not events or any(isinstance(event, _ABOUT_ROWS) for event in events):
-        raise StatementError(f"{text} is not an event by itself", _CURE)
+        raise StatementError(f"{text} is not an event by itself", _CURE, code="DEF550")
     return tuple(events)
 
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from typing import NoReturn
 
 from trunnion.cli.process import Ended, end_cleanly, let_messages_go
-from trunnion.errors import RefusedError, TrunnionError
+from trunnion.errors import Problem, RefusedError, TrunnionError
 
 
 def configure_process() -> None:
@@ -41,7 +41,7 @@ def run_and_exit() -> NoReturn:
         sys.stdout.flush()
     except OSError as error:
         if code == 0 and not isinstance(error, BrokenPipeError):
-            print(f"stdout: error: cannot be written: {error.strerror}", file=sys.stderr)
+            print(Problem("stdout", 0, f"cannot be written: {error.strerror}", code="FIL230"), file=sys.stderr)
         code = code or 2
     sys.stderr.flush()
     os._exit(code)

@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from importlib import import_module
-from typing import Any, Final, cast
+from typing import Any, Final, NoReturn, cast
 
 from trunnion import __version__
 from trunnion.cli.post_arguments import post_mistake
@@ -17,6 +17,13 @@ def _key_value(text: str) -> tuple[str, str]:
     if not equals or not key:
         raise argparse.ArgumentTypeError(f"{text!r} is not a setting; write KEY=VALUE")
     return key, value
+
+
+class _Parser(argparse.ArgumentParser):
+    """Ends with the code of its message; its subparsers are of its class."""
+
+    def error(self, message: str) -> NoReturn:
+        super().error(f"{message} [{_USAGE}]")
 
 
 class _Setting(argparse.Action):
@@ -38,6 +45,9 @@ class _Setting(argparse.Action):
             )
         setattr(namespace, self.dest, [*settings, (key, value)])
 
+
+#: The code of a command line that cannot be understood.
+_USAGE: Final = "ARG120"
 
 #: An option in a line of usage.
 _OPTION: Final = re.compile(r"--[a-z][a-z-]*")
@@ -155,9 +165,7 @@ def _unknown_option(words: Sequence[str], command: argparse.ArgumentParser) -> s
 @cache
 def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentParser]]:
     """The parser of the command line, and those of the commands."""
-    parser = argparse.ArgumentParser(
-        prog="trunnion", description="CL files to proven NC programs for five-axis machine tools."
-    )
+    parser = _Parser(prog="trunnion", description="CL files to proven NC programs for five-axis machine tools.")
     parser.add_argument("--version", action="version", version=f"trunnion {__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", required=True, dest="command")
     _add_post(commands.add_parser("post", help="write the NC program of one or more CL files"))
@@ -181,6 +189,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     _add_machines(commands.add_parser("machines", help="list the machines, or print one definition"))
     _add_controls(commands.add_parser("controls", help="list the controls, or explain one with all its settings"))
     _add_check(commands.add_parser("check", help="validate the definition of a machine or a control"))
+    _add_explain(commands.add_parser("explain", help="say what a code of a message, or a check, means"))
     _add_schema(commands.add_parser("schema", help="print the JSON Schema of definitions or projects, for editors"))
     return parser, commands.choices
 
@@ -198,6 +207,10 @@ def _add_post(parser: argparse.ArgumentParser) -> None:
         help="what templates print (title, part, date, method, …), or how to read, place and plan; may be repeated",
     )  # fmt: skip
     _add_subprograms(parser, "a template")
+    parser.add_argument(
+        "--hooks", action="append", default=[], metavar="FILE.py",
+        help="Python file whose functions change what the CL files ask for; it is run; may be repeated",
+    )  # fmt: skip
     parser.add_argument(
         "--dialect", choices=DIALECTS, help="what the CL files are written in; by default their content decides"
     )
@@ -270,6 +283,10 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
         help="whose coordinate system the program's is: the first operation's, or the CAM's absolute one",
     )  # fmt: skip
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
+    parser.add_argument("--feed", choices=FEEDS, help="fastest: it was posted so; feeds are what the axes reach")
+    parser.add_argument(
+        "--feed-limit", type=_tolerance, metavar="MM_MIN", help="the feed_limit of that post, in place of the CL file's"
+    )
     parser.add_argument(
         "--recorded", metavar="FILE", help="compare with what the machine did: a recording (.csv or .parquet)"
     )
@@ -511,3 +528,9 @@ def _add_check(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="NAME_OR_FILE", help="definition to validate: a TOML file, or a shipped one")
     parser.add_argument("--json", action="store_true", help="what it means as data in place of text")
     parser.set_defaults(run=_lazy_command("definitions", "check"))
+
+
+def _add_explain(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("codes", nargs="*", metavar="CODE", help="as messages end with it, such as CL110, or a check")
+    parser.add_argument("--json", action="store_true", help="print it as data")
+    parser.set_defaults(run=_lazy_command("explain", "explain"))

@@ -16,7 +16,7 @@ def run(arguments: argparse.Namespace) -> int:
     file = Path(arguments.file) if arguments.file else None
     if file is not None and file.suffix != ".toml":
         cure = "give none, and start from it in the builder" if str(file) in shipped_machines() else "name a .toml file"
-        raise InputError(Problem(str(file), 0, "is not the file of a definition", cure))
+        raise InputError(Problem(str(file), 0, "is not the file of a definition", cure, code="ARG130"))
     session = BuilderSession(file.parent, file.name) if file is not None else BuilderSession(Path())
     session.start()
     with listen(arguments.host, arguments.port) as listening:

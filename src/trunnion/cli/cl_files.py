@@ -28,7 +28,7 @@ def cl_inputs(files: Sequence[str]) -> list[str | BinaryIO]:
         If stdin is named twice: it can be read once.
     """
     if files.count(STDIN) > 1:
-        raise InputError(Problem("stdin", 0, "is named twice", f"write {STDIN} once"))
+        raise InputError(Problem("stdin", 0, "is named twice", f"write {STDIN} once", code="ARG130"))
     return [sys.stdin.buffer if file == STDIN else file for file in files]
 
 
@@ -46,7 +46,9 @@ def result_stem(file: str) -> str:
         For stdin, which has no name.
     """
     if file == STDIN:
-        raise InputError(Problem("stdin", 0, "has no name that the result could have", "name the output"))
+        raise InputError(
+            Problem("stdin", 0, "has no name that the result could have", "name the output", code="FIL270")
+        )
     path = Path(file)
     return Path(path.stem).stem if path.suffix.lower() in _PACKED else path.stem
 

@@ -91,5 +91,7 @@ def _data(one: CurveFit) -> dict[str, object]:
             }
             for span in one.spans
         ],
-        "remarks": [{"file": r.file, "line": r.line, "what": r.what, "cure": r.cure} for r in one.remarks],
+        "remarks": [
+            {"file": r.file, "line": r.line, "what": r.what, "cure": r.cure, "code": r.code} for r in one.remarks
+        ],
     }

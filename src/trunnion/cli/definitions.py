@@ -28,7 +28,7 @@ from trunnion.schemas import first_line
 def machines(arguments: argparse.Namespace) -> int:
     """List the shipped machines, or print one definition as its file has it, or with all that it extends."""
     if arguments.resolved and not arguments.name:
-        raise InputError(argument_problem("resolved", "wants a machine", "name one, or the file of one"))
+        raise InputError(argument_problem("resolved", "wants a machine", "name one, or the file of one", code="ARG130"))
     if arguments.resolved:
         load_machine(arguments.name)
         table = load_table(arguments.name, machine_library(), kind="machine")
@@ -91,4 +91,4 @@ def _check_is_known(name: str) -> None:
     near = did_you_mean(name, known)
     cure = f"{near} " if near else ""
     cure += f"write the path of a .toml file, or one of {', '.join(known)}"
-    raise InputError(Problem(name, 0, "there is no shipped machine or control of this name", cure))
+    raise InputError(Problem(name, 0, "there is no shipped machine or control of this name", cure, code="DEF110"))

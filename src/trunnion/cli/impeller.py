@@ -35,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
     wrong = [name for name in (_OF_CUT if is_model else _OF_MODEL) if getattr(arguments, name) not in (None, [])]
     if wrong:
         what = f"is not for {arguments.step}"
-        raise InputError([argument_problem(name, what, "leave it out") for name in wrong])
+        raise InputError([argument_problem(name, what, "leave it out", code="ARG130") for name in wrong])
     return model(arguments) if is_model else cut(arguments)
 
 
@@ -116,7 +116,7 @@ def cut(arguments: argparse.Namespace) -> int:
     missing = [name for name in ("machine", "output") if getattr(arguments, name) is None]
     if missing:
         cures = {"machine": "name the machine that runs the program", "output": "name a folder"}
-        raise InputError([argument_problem(name, "is missing", cures[name]) for name in missing])
+        raise InputError([argument_problem(name, "is missing", cures[name], code="ARG130") for name in missing])
     found = cut_impeller(
         arguments.file,
         machine=arguments.machine,
@@ -193,7 +193,9 @@ def _cut_data(found: ImpellerCut) -> dict[str, object]:
             }
             for step in found.steps
         ],
-        "remarks": [{"file": r.file, "line": r.line, "what": r.what, "cure": r.cure} for r in found.remarks],
+        "remarks": [
+            {"file": r.file, "line": r.line, "what": r.what, "cure": r.cure, "code": r.code} for r in found.remarks
+        ],
         "checks": {check.key: check.passed for check in found.result.checks},
         "simulation": None if found.simulation is None else simulation_data(found.simulation),
     }

@@ -50,7 +50,9 @@ def info_data(found: ClDescription) -> dict[str, object]:
     for field in fields(found):
         if field.name not in _NOT_DATA:
             data[field.name] = _plain(getattr(found, field.name))
-    data["remarks"] = [{"file": r.file, "line": r.line, "what": r.what, "cure": r.cure} for r in found.remarks]
+    data["remarks"] = [
+        {"file": r.file, "line": r.line, "what": r.what, "cure": r.cure, "code": r.code} for r in found.remarks
+    ]
     return data
 
 

@@ -6,6 +6,7 @@ from dataclasses import fields, is_dataclass
 from typing import Final
 
 from trunnion.api.describing_machine import MachineDescription
+from trunnion.cli.wording import in_command_words
 from trunnion.machines import Axis, Machine
 from trunnion.machines.jog_table import AxisJog, JogTable, RotaryPose, named_direction, number_text
 from trunnion.machines.machine import Vector
@@ -36,7 +37,7 @@ def machine_lines(found: MachineDescription) -> Iterator[str]:
     yield from _pose_lines(jogs)
     yield ""
     yield from _solution_lines(jogs)
-    yield from ("", "What is assumed", *(f"  {each}" for each in found.assumed))
+    yield from ("", "What is assumed", *(f"  {in_command_words(each)}" for each in found.assumed))
     yield from ("", f"Texts of {found.control}; {{field}} stands for a value")
     for text in found.texts:
         yield f"  {text.name}"
@@ -54,7 +55,7 @@ def machine_data(found: MachineDescription) -> dict[str, object]:
         "spindle_point_mm": list(machine.spindle_point),
         "workpiece_zero_mm": _plain(machine.workpiece_zero),
         "jogs": _plain(found.jogs),
-        "assumed": list(found.assumed),
+        "assumed": [in_command_words(each) for each in found.assumed],
         "control": found.control,
         "texts": _plain(found.texts),
     }

@@ -21,9 +21,13 @@ def new(arguments: argparse.Namespace) -> int:
     file = Path(arguments.name if arguments.name.endswith(".toml") else f"{arguments.name}.toml")
     if not is_file_name(file.name):
         what = "is no name for a file on every system"
-        raise InputError(Problem(arguments.name, 0, what, "write letters, digits and _, such as our_mill"))
+        raise InputError(
+            Problem(arguments.name, 0, what, "write letters, digits and _, such as our_mill", code="FIL340")
+        )
     if file.exists() or file.is_symlink():
-        raise InputError(Problem(str(file), 0, "is there already", "choose another name, or edit that file"))
+        raise InputError(
+            Problem(str(file), 0, "is there already", "choose another name, or edit that file", code="FIL250")
+        )
     text = definition_like(load_machine(arguments.like), file.stem)
     with atomic_file(file) as sink:
         sink.write(text.encode())

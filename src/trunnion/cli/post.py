@@ -38,8 +38,8 @@ def post(
     for name, file in papers.items():
         if len(targets) > 1:
             what = f"one {PAPERS[name]} for {len(targets)} programs"
-            raise InputError(Problem(file, 0, what, f"post them one at a time, or leave --{name} out"))
-    read = [*named_files(arguments.files), *definition_files(arguments.machine, machine)]
+            raise InputError(Problem(file, 0, what, f"post them one at a time, or leave --{name} out", code="ARG130"))
+    read = [*named_files(arguments.files), *definition_files(arguments.machine, machine), *arguments.hooks]
     check_outputs([*(target for target in targets if target != "-"), *papers.values()], read)
     if output_folder(arguments.output) is not None:
         for target in targets:
@@ -61,6 +61,7 @@ def post(
             columns=False,
             subprograms=arguments.subprograms,
             simulation=simulation_of(arguments),
+            hooks=arguments.hooks,
             observer=observer
             or Terminal(explain=arguments.explain, recorded=arguments.explain or bool(arguments.report)),
             group=group,
@@ -86,7 +87,7 @@ def simulation_of(arguments: argparse.Namespace) -> dict[str, object] | None:
         return stated
     if stated:
         what = "is only for a simulation, and none is asked for"
-        raise InputError(argument_problem(next(iter(stated)), what, "add --simulate, or leave it out"))
+        raise InputError(argument_problem(next(iter(stated)), what, "add --simulate, or leave it out", code="ARG130"))
     return None
 
 
@@ -121,7 +122,9 @@ def files_by_target(arguments: argparse.Namespace, machine: Machine) -> dict[str
     if place == "-":
         return {"-": files}
     if place is None and len(files) > 1:
-        raise InputError(Problem("post", 0, "several CL files, and no output named", "write --output FILE or FOLDER"))
+        raise InputError(
+            Problem("post", 0, "several CL files, and no output named", "write --output FILE or FOLDER", code="FIL270")
+        )
     into = output_folder(place)
     if into is None:
         _check_joined(place, files, machine)
@@ -132,7 +135,9 @@ def files_by_target(arguments: argparse.Namespace, machine: Machine) -> dict[str
         targets.setdefault(str(into / (result_stem(file) + extension)), []).append(file)
     twice = next((files for files in targets.values() if len(files) > 1), None)
     if twice:
-        raise InputError(Problem(twice[1], 0, f"would write over the program of {twice[0]}", "rename one of them"))
+        raise InputError(
+            Problem(twice[1], 0, f"would write over the program of {twice[0]}", "rename one of them", code="FIL240")
+        )
     return targets
 
 
@@ -143,4 +148,4 @@ def _check_joined(place: str, files: Sequence[str], machine: Machine) -> None:
     extension = load_control(machine.control).extension
     if extension:
         cure = f"make it first for one program a CL file, or name one program of all, such as {place}{extension}"
-        raise InputError(Problem(place, 0, "there is no such folder", cure))
+        raise InputError(Problem(place, 0, "there is no such folder", cure, code="FIL220"))

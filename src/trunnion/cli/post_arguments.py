@@ -7,7 +7,7 @@ from typing import Final
 #: Options that a project states itself, by the names of their arguments.
 _STATED: Final = {
     "machine": "machine", "output": "output", "subprograms": "subprograms", "report": "report",
-    "sheet": "sheet", "listing": "listing", "manifest": "manifest",
+    "hooks": "hooks", "sheet": "sheet", "listing": "listing", "manifest": "manifest",
     "simulate": "[checks] simulate", "project": "its own keys", "stock": "stock", "part": "part",
     "fixtures": "fixtures", "tools": "tools", "libraries": "tool_libraries", "unit": "unit", "near": "near_mm",
     "cell": "cell_mm", "accuracy": "accuracy_mm",

@@ -30,7 +30,7 @@ def print_result(*lines: str, end: str = "\n") -> None:
         raise
     except OSError as error:
         what = f"cannot be written: {error.strerror or error}"
-        raise InputError(Problem("stdout", 0, what, "let it go elsewhere")) from None
+        raise InputError(Problem("stdout", 0, what, "let it go elsewhere", code="FIL230")) from None
 
 
 def as_json(value: object) -> str:

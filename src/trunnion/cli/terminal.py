@@ -108,7 +108,7 @@ def check_unnamed(target: str, *, alone: bool = True) -> None:
         return
     what = "exists, and is not as a command has written it: it is replaced only where it is named"
     named = f"--output {target} replaces it, another name keeps it" if alone else "remove it, or choose another folder"
-    raise InputError(Problem(target, 0, what, named))
+    raise InputError(Problem(target, 0, what, named, code="FIL250"))
 
 
 def output_folder(output: str | None) -> Path | None:
@@ -124,7 +124,7 @@ def output_folder(output: str | None) -> Path | None:
     if output not in ("", "-") and Path(output).is_dir():
         return Path(output)
     if output.endswith(("/", os.sep)):
-        raise InputError(Problem(output, 0, "there is no such folder", "make it first, or name a file"))
+        raise InputError(Problem(output, 0, "there is no such folder", "make it first, or name a file", code="FIL220"))
     return None
 
 

@@ -24,12 +24,18 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     missing = [name for name, value in (("nc", arguments.file), ("machine", arguments.machine)) if value is None]
     if missing:
-        raise InputError([argument_problem(name, "is missing", "name the program and its machine") for name in missing])
+        raise InputError(
+            [
+                argument_problem(name, "is missing", "name the program and its machine", code="ARG130")
+                for name in missing
+            ]
+        )
     if arguments.device_xml is not None:
         check_outputs([arguments.device_xml], [arguments.file, *arguments.subprograms])
         write_device_xml(
-            arguments.file, machine=arguments.machine, output=arguments.device_xml, subprograms=arguments.subprograms
-        )
+            arguments.file, machine=arguments.machine, output=arguments.device_xml,
+            subprograms=arguments.subprograms, zero=arguments.zero or None, tool_length=arguments.tool_length or None,
+        )  # fmt: skip
         print_result(f"{arguments.device_xml}: written")
         return 0
     serve_twin(
@@ -62,5 +68,5 @@ def _password() -> str:
         return sys.stdin.readline().rstrip("\r\n")
     password = getpass.getpass("Password: ")
     if getpass.getpass("Once more: ") != password:
-        raise InputError(Problem("password", 0, "is not the same both times", "start again"))
+        raise InputError(Problem("password", 0, "is not the same both times", "start again", code="ARG180"))
     return password

@@ -25,7 +25,9 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.machine is None:
         if arguments.file.lower().endswith(".json"):
             return _run_manifest(arguments)
-        raise InputError(argument_problem("machine", "is missing", "name the machine that runs the program"))
+        raise InputError(
+            argument_problem("machine", "is missing", "name the machine that runs the program", code="ARG130")
+        )
     machine = load_machine(arguments.machine)
     if arguments.report is not None:
         read = [arguments.file, *named_files(arguments.cl), *arguments.subprograms]
@@ -49,6 +51,8 @@ def run(arguments: argparse.Namespace) -> int:
         tool_length=arguments.tool_length or None,
         recorded=arguments.recorded,
         recorded_tolerance=arguments.recorded_tolerance,
+        feed=arguments.feed or "programmed",
+        feed_limit=arguments.feed_limit,
         columns=arguments.report is not None,
         observer=Terminal(),
     )
@@ -63,11 +67,23 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _run_manifest(arguments: argparse.Namespace) -> int:
     """Compare the files of a post with its manifest; 0 if all are the same and proven, else 1."""
-    others = ("subprograms", "recorded", "report", "zero", "tool_length", "span", "span_tip", "tool", "offset", "edge")
-    for name in (*others, "units", "dialect"):
+    others = (
+        "subprograms",
+        "recorded",
+        "report",
+        "zero",
+        "tool_length",
+        "span",
+        "span_tip",
+        "tool",
+        "offset",
+        "edge",
+        "feed_limit",
+    )
+    for name in (*others, "feed_limit", "units", "dialect"):
         if getattr(arguments, name):
             what, cure = "says nothing about a manifest", "leave it out; --cl compares CL files, too"
-            raise InputError(argument_problem(name, what, cure))
+            raise InputError(argument_problem(name, what, cure, code="ARG130"))
     found = verify_manifest(arguments.file, cl=arguments.cl)
     print_result(*(one_line(str(file)) for file in found.files))
     if not found.proven:

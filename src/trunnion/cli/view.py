@@ -27,9 +27,9 @@ def run(arguments: argparse.Namespace) -> int:
     """Write the page, or serve it until the user ends it."""
     files = arguments.files
     if arguments.live is None and not files:
-        raise InputError(argument_problem("nc", "is missing", "name a program, CL files or a project"))
+        raise InputError(argument_problem("nc", "is missing", "name a program, CL files or a project", code="ARG130"))
     if arguments.live is not None and arguments.output is not None:
-        raise InputError(argument_problem("live", "is for a page that is served", "leave --output out"))
+        raise InputError(argument_problem("live", "is for a page that is served", "leave --output out", code="ARG130"))
     read = [*files, *project_files(files, ("machine", "stock")), *arguments.subprograms, *named_files(arguments.cl)]
     read += [*arguments.libraries, *arguments.fixtures]
     read += [file for file in (arguments.part, arguments.stock, arguments.against) if file is not None]
@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _live(arguments: argparse.Namespace, given: dict[str, Any]) -> tuple[ViewContent, LiveView]:
     """What is shown of a machine that moves, and the machine; its program is shown where one is named."""
     if arguments.machine is None:
-        raise InputError(argument_problem("machine", "is missing", "say which machine it is"))
+        raise InputError(argument_problem("machine", "is missing", "say which machine it is", code="ARG130"))
     password = machine_password(arguments.user)
     make = partial(
         machine_feed, arguments.live, nodes=arguments.nodes, rate=arguments.rate, secure=arguments.secure,

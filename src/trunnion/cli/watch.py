@@ -93,7 +93,7 @@ class _Told:
             with output_group() as group:
                 may_run, written = self._work.post(group)
                 if not is_unchanged():
-                    raise _ChangedError(Problem(self._work.name, 0, "has changed while it was posted"))
+                    raise _ChangedError(Problem(self._work.name, 0, "has changed while it was posted", code="PRJ160"))
         except (TrunnionError, OSError) as error:
             self._tell(_failure(error, is_unchanged()))
             self._warn_of_old_programs()
@@ -180,7 +180,7 @@ class _FilesWork:
     def files(self) -> set[str]:
         """CL files, definitions, and what the simulation reads."""
         given = self._arguments
-        named = {*map(file_on_disk, given.files), *given.subprograms, *_of_definition(given.machine)}
+        named = {*map(file_on_disk, given.files), *given.subprograms, *given.hooks, *_of_definition(given.machine)}
         try:
             found = definition_files(given.machine, load_machine(given.machine))
             self._definitions = {str(file) for file in found}

@@ -4,18 +4,25 @@ In:     tables of a definition, and the control that was read from them.
 Out:    problems, added to the tables.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from trunnion.controls.definition import Control
+from trunnion.controls.template import Template
 from trunnion.controls.vocabulary import (
     COMMON_TEMPLATE_FIELDS,
+    EVENT_PLACE,
+    EVENT_VALUES,
     FIELD_SETTINGS,
+    FILTERS,
+    LISTS,
     RUN_ONLY_SETTINGS,
+    STOP_PLACE,
     SUBPROGRAM_TEMPLATES,
     WRITER_FORMATS,
 )
 from trunnion.definitions import Table
 from trunnion.definitions.messages import did_you_mean
+from trunnion.errors import Problem
 
 
 def check_templates(table: Table, control: Control) -> None:
@@ -23,25 +30,50 @@ def check_templates(table: Table, control: Control) -> None:
     known = COMMON_TEMPLATE_FIELDS | control.family.TEMPLATE_FIELDS | control.settings.keys()
     call = control.templates.get(SUBPROGRAM_TEMPLATES[0])
     if call is not None and "subprogram" not in {name for name, _ in call.fields()}:
-        table.add_problem(call.name, "does not say which subprogram it calls", "write {subprogram} in it")
+        table.add_problem(
+            call.name, "does not say which subprogram it calls", "write {subprogram} in it", code="DEF510"
+        )
     for template in control.templates.values():
         for text in template.unread_fields():
             cure = "write {name} or {name:format}, and a part that may be left out in [[ ]]"
-            table.add_problem(template.name, f"has a brace that belongs to no field: {text.strip()!r}", cure)
-        for name, _ in sorted(template.fields()):
-            if name not in known:
-                table.add_problem(
-                    template.name,
-                    f"prints {{{name}}}, which is neither a template field nor a setting",
-                    f"write one of {', '.join(sorted(known))}, or add it to [control.settings]",
-                )
+            table.add_problem(
+                template.name, f"has a brace that belongs to no field: {text.strip()!r}", cure, code="DEF510"
+            )
+        here = known | (EVENT_VALUES if _is_about_event(template.name) else frozenset())
+        for line, fields in enumerate(template.fields_by_line()):
+            _check_names(table, template, line, fields, here)
         for name, number_format in sorted(template.fields() | template.numbers()):
             if number_format and number_format not in control.formats:
+                near = did_you_mean(number_format, {*control.formats, *(FILTERS if template.is_text else ())})
                 table.add_problem(
                     template.name,
                     f"prints {{{name}:{number_format}}}, but there is no format {number_format!r}",
-                    f"write one of {', '.join(sorted(control.formats))}",
+                    f"{near} write one of {', '.join(sorted(control.formats))}".strip(),
+                    code="DEF510",
                 )
+
+
+def _check_names(
+    table: Table, template: Template, line: int, fields: Iterable[tuple[str, str]], known: frozenset[str]
+) -> None:
+    """Report values that there are not, at the line where a template asks for them."""
+    known |= LISTS if template.is_text else frozenset()
+    for name in sorted({name for name, _ in fields} - known):
+        near = did_you_mean(name, known)
+        every = "" if near and template.is_text else f"write one of {', '.join(sorted(known))}, or "
+        what = f"prints {{{name}}}, which is neither a template field nor a setting"
+        cure = f"{near} {every}add it to [control.settings]".strip()
+        if template.is_text:
+            file, at = template.place_of(line)
+            key = table.key_path(template.name)
+            table.problems.append(Problem(file, at, f"{key} {what}", cure, key=key, code="DEF510"))
+        else:
+            table.add_problem(template.name, what, cure, code="DEF510")
+
+
+def _is_about_event(name: str) -> bool:
+    """Whether a template is written for an event of the CL file."""
+    return name.startswith(EVENT_PLACE) or name == STOP_PLACE
 
 
 def check_formats(entries: Sequence[Table], control: Control) -> None:
@@ -55,7 +87,7 @@ def check_formats(entries: Sequence[Table], control: Control) -> None:
             near = did_you_mean(name, control.formats.keys() - {name})
             cure = f"{near} " if near else ""
             cure += "write the name of the format to change, or print it in a word or a template"
-            entry.add_problem("name", f"is {name!r}, a format that nothing prints", cure)
+            entry.add_problem("name", f"is {name!r}, a format that nothing prints", cure, code="DEF515")
 
 
 def check_setting_names(table: Table, control: Control) -> None:
@@ -64,7 +96,7 @@ def check_setting_names(table: Table, control: Control) -> None:
     for name in list(table.keys()):
         if name in RUN_ONLY_SETTINGS:
             cure = f"leave it out, and give it to each run: setting {name}={table.to_dict()[name]}"
-            table.add_problem(name, "is a setting of a run, which a definition cannot set", cure)
+            table.add_problem(name, "is a setting of a run, which a definition cannot set", cure, code="DEF520")
         elif name in fields:
             what = "is a template field, whose value comes from the job, and no setting"
-            table.add_problem(name, what, "give the setting another name")
+            table.add_problem(name, what, "give the setting another name", code="DEF520")

@@ -35,11 +35,11 @@ MAX_CENTRE_ERROR_DIGITS: Final = 2.0
 
 
 class UnsupportedFeatureError(Exception):
-    """The family cannot express something: ``what`` it is, and the ``cure``."""
+    """The family cannot express something: ``what`` it is, the ``cure``, and the ``code`` of the message."""
 
-    def __init__(self, what: str, cure: str) -> None:
+    def __init__(self, what: str, cure: str, *, code: str) -> None:
         super().__init__(what)
-        self.what, self.cure = what, cure
+        self.what, self.cure, self.code = what, cure, code
 
 
 @dataclass(frozen=True, slots=True, eq=False)

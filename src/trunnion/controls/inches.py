@@ -5,12 +5,12 @@ formats that have inches, and write no length as it stands in the program: ``{50
 """
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from typing import Final
 
 from trunnion.controls.definition import Control
-from trunnion.controls.template import Template, without_fields
+from trunnion.controls.template import Template
 from trunnion.controls.vocabulary import INCH, LENGTH_WORDS, MM, PROGRAM_START_TEMPLATES
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.model.toolpath import Message
@@ -59,7 +59,7 @@ def in_units(control: Control, units: str) -> Control:
     if INCH not in control.unit_words:
         what = f"units is inch, and {control.name} has no words for programs in inches here"
         cure = "leave it out, or write the words under [control.units] and the formats for inches (inch = {…})"
-        raise InputError(argument_problem("settings", what, cure))
+        raise InputError(argument_problem("settings", what, cure, code="ARG250"))
     problems = [*_format_problems(control), *_template_problems(control)]
     if problems:
         raise InputError(problems)
@@ -73,7 +73,7 @@ def literal_length(control: Control, text: str) -> str:
     A number of which nobody knows whether it is a length counts as one. Comments and texts in quotation marks do not
     count, nor does zero.
     """
-    bare = _without_comments(control, re.sub(r'"[^"]*"', '""', text))
+    bare = without_comments(control, re.sub(r'"[^"]*"', '""', text))
     for pattern in (_ADDRESS, _TOLERANCE, _OLD_CYCLE, _ASSIGNMENT):
         for match in re.finditer(pattern, bare):
             if float(match[1]):
@@ -87,7 +87,7 @@ def literal_length(control: Control, text: str) -> str:
     return ""
 
 
-def _without_comments(control: Control, text: str) -> str:
+def without_comments(control: Control, text: str) -> str:
     """A line without its comments, by the signs with which the family's writer begins comments and messages."""
     family = control.family
     starts = {line[:1] for line in (*family.comment("x"), *family.message(Message(0, 0, "x", True)))}
@@ -113,7 +113,7 @@ def _format_problems(control: Control) -> Iterator[Problem]:
         else:
             what = f"word {word.name} is no length, and its format {word.format!r} would print it in inches"
             cure = "give it a format of its own"
-        yield Problem(control.name, 0, what, cure)
+        yield Problem(control.name, 0, what, cure, code="DEF540")
 
 
 def _template_problems(control: Control) -> Iterator[Problem]:
@@ -124,9 +124,8 @@ def _template_problems(control: Control) -> Iterator[Problem]:
         if template.name in PROGRAM_START_TEMPLATES and "unit_word" not in {name for name, _ in template.fields()}:
             what = f"{template.name} does not say in which unit the program counts"
             yield _problem(template, 0, what, f"write {{unit_word}} for {mm_word}")
-        for k, line in enumerate(template.lines):
-            bare = without_fields(line)
-            if word.search(_without_comments(control, bare)):
+        for k, (bare, fields) in enumerate(zip(template.plain_lines(), template.fields_by_line(), strict=True)):
+            if word.search(without_comments(control, bare)):
                 yield _problem(template, k, f"{template.name} says {mm_word}: millimetres", "write {unit_word} for it")
             literal = literal_length(control, bare)
             if literal:
@@ -134,13 +133,13 @@ def _template_problems(control: Control) -> Iterator[Problem]:
                 what = f"{template.name} has a number that may be a length in mm: {literal}"
                 cure = f"write a length as {{{number}:coordinate}}, and another number with a format without inches"
                 yield _problem(template, k, what, cure)
-            yield from _field_problems(control, template, k, line, lengths.__contains__)
+            yield from _field_problems(control, template, k, fields, lengths.__contains__)
 
 
 def _field_problems(
-    control: Control, template: Template, k: int, line: str, is_length: Callable[[str], bool]
+    control: Control, template: Template, k: int, fields: Iterable[tuple[str, str]], is_length: Callable[[str], bool]
 ) -> Iterator[Problem]:
-    for name, number_format in sorted(Template("", (line,)).fields()):
+    for name, number_format in sorted(fields):
         if number_format and is_length(name) != (control.formats[number_format].inch is not None):
             fault = "is a length, and its format is in mm" if is_length(name) else "is no length, and has one's format"
             what = f"{template.name} prints {{{name}:{number_format}}}, which {fault}"
@@ -149,4 +148,4 @@ def _field_problems(
 
 
 def _problem(template: Template, line: int, what: str, cure: str) -> Problem:
-    return Problem(template.file, template.line + line + 1 if template.line else 0, what, cure)
+    return Problem(*template.place_of(line), what, cure, code="DEF540")

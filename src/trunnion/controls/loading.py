@@ -17,6 +17,7 @@ from trunnion.controls.vocabulary import (
     AXIS_WORDS,
     COOLANTS,
     DRAW_BACK,
+    EVENT_PLACE,
     FEEDS_WITHOUT_TCP,
     FIVE_AXIS,
     HOLE_APPROACH_HEIGHTS,
@@ -25,6 +26,7 @@ from trunnion.controls.vocabulary import (
     NEW_SPEED_WITH_TCP,
     NO_LIMIT,
     PHASES,
+    PLACES,
     RADIUS_ARC_WORDS,
     REQUIRED_TEMPLATES,
     SPINDLE_ON,
@@ -35,9 +37,12 @@ from trunnion.controls.vocabulary import (
 from trunnion.controls.words import BlockNumbers, NumberFormat
 from trunnion.definitions import LocatedValue, Table, definition_names, resolve_extends
 from trunnion.definitions.twin_keys import report_twins, statement_form
-from trunnion.errors import InputError
+from trunnion.errors import InputError, Problem
 from trunnion.families import FAMILIES, load_writer
 from trunnion.model.axis_tolerance import AxisTolerance
+
+#: What only a template with statements or expressions has in it.
+_TEXT_SIGNS: Final = ("{%", "{{", "{#")
 
 #: What may stand for 0: nothing, which is as other numbers, or a text that a control reads as 0.
 _ZERO: Final = r"([+-]?(0{1,2}(\.0{0,4})?|\.0{1,4}))?"
@@ -117,7 +122,9 @@ def load_control(own: Table) -> Control:
     )
     defined = {word.name for word in control.words}
     for missing in dict.fromkeys(name for name in words if name not in defined):
-        table.add_problem("word", f"has no entry {missing!r}, which programs of this family need", "write it")
+        table.add_problem(
+            "word", f"has no entry {missing!r}, which programs of this family need", "write it", code="DEF530"
+        )
     check_templates(templates, control)
     check_formats(table.tables("format"), control)
     check_setting_names(settings, control)
@@ -182,7 +189,7 @@ def _read_word(entry: Table, formats: Mapping[str, FormatPair], words: Sequence[
     closing = entry.text("closing", "", pattern="[ -~]?", form="one character")
     most = 4 if rotary else 8
     if len(letter.encode()) > most:
-        entry.add_problem("letter", f"is {letter!r}", f"write at most {most} characters")
+        entry.add_problem("letter", f"is {letter!r}", f"write at most {most} characters", code="DEF530")
         letter = letter[:1]
     bare = entry.flag("bare", False)
     number_format = "" if bare else entry.text("format", one_of=tuple(formats))
@@ -194,7 +201,9 @@ def _read_word(entry: Table, formats: Mapping[str, FormatPair], words: Sequence[
 def _read_extension(table: Table) -> str:
     extension = table.text("extension")
     if not re.fullmatch(r"\.[\w.+-]*\w", extension):
-        table.add_problem("extension", f"is {extension!r}", 'write a point and what follows it, such as ".mpf"')
+        table.add_problem(
+            "extension", f"is {extension!r}", 'write a point and what follows it, such as ".mpf"', code="DEF330"
+        )
     return extension
 
 
@@ -217,7 +226,7 @@ def _read_block_numbers(table: Table, family: FamilyWriter) -> BlockNumbers:
         table.add_problem("numbered", "is true, and numbers without a letter are no block numbers here", "write letter")
     if numbers.highest < numbers.start:
         what = f"is {numbers.highest}, but the numbers start at {numbers.start}"
-        table.add_problem("highest", what, "write a greater one")
+        table.add_problem("highest", what, "write a greater one", code="DEF330")
     table.report_unread_keys()
     return numbers
 
@@ -256,7 +265,9 @@ def _read_statements(table: Table) -> dict[str, str]:
     found = {statement: table.text(statement) for statement in table.names()}
     for statement, line in found.items():
         if any(ord(character) < 32 for character in line):
-            table.add_problem(statement, "has a line break or a control character in it", "write one line of a program")
+            table.add_problem(
+                statement, "has a line break or a control character in it", "write one line of a program", code="DEF550"
+            )
     report_twins(table, statement_form)
     table.report_unread_keys()
     return found
@@ -275,7 +286,7 @@ def _read_setting_meanings(table: Table, settings: Table, family: FamilyWriter) 
     own = {name: table.text(name) for name in table.names()}
     for name in own:
         if name not in settings and name not in family.SETTING_CHOICES:
-            table.add_problem(name, "explains no setting", "add the setting to [control.settings]")
+            table.add_problem(name, "explains no setting", "add the setting to [control.settings]", code="DEF520")
     table.report_unread_keys()
     return {**family.SETTING_MEANINGS, **own}
 
@@ -284,17 +295,19 @@ def _check_settings(table: Table, by_method: Sequence[Table], control: Control) 
     """Report defaults that their own rules do not allow."""
     for name, value in control.settings.items():
         if name == "preselect" and value == "on" and not control.family.tool_preselection("1"):
-            table.add_problem(name, "is 'on', and it is not known how this control selects tools", "leave it out")
+            table.add_problem(
+                name, "is 'on', and it is not known how this control selects tools", "leave it out", code="DEF520"
+            )
         cure = control.setting_cure(name, value)
         if cure and name in table:
-            table.add_problem(name, f"is {value!r}", cure)
+            table.add_problem(name, f"is {value!r}", cure, code="DEF520")
     for name, cure in control.family.validate_settings(control.settings):
-        table.add_problem(name, f"is {control.settings[name]!r}", cure)
+        table.add_problem(name, f"is {control.settings[name]!r}", cure, code="DEF520")
     for entry in by_method:
         value = entry.text("value")
         cure = control.setting_cure(entry.text("setting"), value)
         if cure:
-            entry.add_problem("value", f"is {value!r}", cure)
+            entry.add_problem("value", f"is {value!r}", cure, code="DEF520")
 
 
 def _read_method_defaults(entries: Sequence[Table], settings: Table) -> dict[str, tuple[tuple[str, str], ...]]:
@@ -315,7 +328,9 @@ def _read_arc_rules(table: Table, words: Sequence[str]) -> ArcRules:
         multi_turn=table.flag("turns", True),
     )
     if rules.by_radius and not set(RADIUS_ARC_WORDS) <= set(words):
-        table.add_problem("by", "is 'radius', and the control's family has no words for that", "leave it out")
+        table.add_problem(
+            "by", "is 'radius', and the control's family has no words for that", "leave it out", code="DEF530"
+        )
     table.report_unread_keys()
     return rules
 
@@ -363,7 +378,8 @@ def _template_names(table: Table, family: FamilyWriter, plane_from_pose: bool, s
     for name in (name for group in groups for name in group):
         table.text(name, None)  # known, though no definition needs it
     used = [name for group in groups if any(name in table for name in group) for name in group]
-    return [*REQUIRED_TEMPLATES, *(SUBPROGRAM_TEMPLATES if subprograms else ()), *used]
+    places = [name for name in list(table.keys()) if name in PLACES or name.startswith(EVENT_PLACE)]
+    return [*REQUIRED_TEMPLATES, *(SUBPROGRAM_TEMPLATES if subprograms else ()), *used, *places]
 
 
 def _read_templates(table: Table, names: Sequence[str]) -> dict[str, Template]:
@@ -371,9 +387,25 @@ def _read_templates(table: Table, names: Sequence[str]) -> dict[str, Template]:
     for name in names:
         text = table.text(name)
         file, line = table.location(name)
-        found[name] = Template(name, tuple(text.strip("\n").split("\n")) if text.strip() else (), file, line)
+        if any(sign in text for sign in _TEXT_SIGNS):
+            found[name] = _read_text_template(table, name, text)
+        else:
+            found[name] = Template(name, tuple(text.strip("\n").split("\n")) if text.strip() else (), file, line)
+    table.mark_read(*PLACES)
     table.report_unread_keys()
     return found
+
+
+def _read_text_template(table: Table, name: str, text: str) -> Template:
+    """A template with statements or expressions; Jinja is imported for the first one."""
+    from trunnion.controls.texts.template import text_template
+
+    template, fault = text_template(name, text, *table.location(name))
+    if fault is not None:
+        file, line = template.place_of(max(fault.line, 1) - 1)
+        key = table.key_path(name)
+        table.problems.append(Problem(file, line, f"{key} {fault.what}", fault.cure, key=key, code="DEF510"))
+    return template
 
 
 def with_control(table: Table) -> LocatedValue:

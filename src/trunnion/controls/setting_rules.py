@@ -176,7 +176,7 @@ def read_setting_rules(table: Table, settings: Table) -> dict[str, SettingRule]:
     for name in table.names():
         entry = table.table(name)
         if name not in settings:
-            entry.add_problem("", "is the rule of no setting", "add the setting to [control.settings]")
+            entry.add_problem("", "is the rule of no setting", "add the setting to [control.settings]", code="DEF520")
         words = entry.texts("one_of", ())
         kinds = tuple(kind for kind in SettingKind if kind is not SettingKind.CHOICE)
         kind = SettingKind.CHOICE if words else SettingKind(entry.text("kind", "text", one_of=kinds) or "text")

@@ -4,17 +4,24 @@ A template prints values and nothing else: it computes nothing and reads nothing
 absent is left out, so that a program without a date has no line for one. A part in double brackets, such as
 ``TOOL CALL {tool}[[ S{speed}]]``, is left out alone. A number for a name, such as ``{50:coordinate}``, is that number:
 a format that has inches prints it as a length in mm.
+
+Templates with conditions and loops are ``trunnion.controls.text_template``, in which fields mean the same.
 """
 
 import re
 from collections.abc import Container, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
+from typing import Final
 
 from trunnion.controls.words import NumberFormat, WordRangeError
 from trunnion.errors import InputError, Problem
 
 Value = str | float | None
+
+#: Operations of a template language that the texts of one program may take, and characters that they may have.
+_MOST_STEPS: Final = 50_000_000
+_MOST_CHARACTERS: Final = 64_000_000
 
 _OPTIONAL_PART = re.compile(r"\[\[(.*?)\]\]")
 _FIELD = re.compile(r"\{([A-Za-z_][A-Za-z0-9_]*)(?::([A-Za-z_][A-Za-z0-9_]*))?\}")
@@ -22,18 +29,72 @@ _NUMBER_FIELD = re.compile(r"\{([-+]?(?:\d+\.?\d*|\.\d+)):([A-Za-z_][A-Za-z0-9_]
 _LEFT = re.compile(r"[{}]|\[\[|\]\]")
 
 
+@dataclass(slots=True, eq=False)
+class Budget:
+    """What the texts of one program may still take: operations of the template language, and characters."""
+
+    steps: int = _MOST_STEPS
+    characters: int = _MOST_CHARACTERS
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Printing:
+    """What a program prints its templates with.
+
+    formats  number formats by name
+    lengths  values in mm that a program of another unit prints in it, also without a format
+    unit     of the program, mm
+    numbers  settings that are numbers, for conditions
+    lists    lists of records, and records, by name: the program's tools and operations
+    budget   of the program
+    """
+
+    formats: Mapping[str, NumberFormat]
+    lengths: Container[str] = ()
+    unit: float = 1.0
+    numbers: Container[str] = ()
+    lists: Mapping[str, object] = field(default_factory=dict)
+    budget: Budget = field(default_factory=Budget)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Template:
-    """The lines of a template, with the file and line of its definition."""
+    """The lines of a template as they are written, with the file and line of its definition."""
 
     name: str
     lines: tuple[str, ...]
     file: str = ""
     line: int = 0
 
+    @property
+    def is_text(self) -> bool:
+        """Whether it has conditions or loops, so that its lines are not those of the program."""
+        return False
+
+    @property
+    def record_values(self) -> frozenset[str]:
+        """The values of tools and operations that it asks for."""
+        return frozenset()
+
     def fields(self) -> frozenset[tuple[str, str]]:
         """Return the (name, format) of every field; the format is empty where the field has none."""
         return _fields(self.lines)
+
+    def fields_by_line(self) -> list[frozenset[tuple[str, str]]]:
+        """Return the fields of each line."""
+        return [_fields((line,)) for line in self.lines]
+
+    def plain_lines(self) -> list[str]:
+        """Return the lines with a zero byte for each field."""
+        return [without_fields(line) for line in self.lines]
+
+    def pattern_lines(self) -> tuple[str, ...]:
+        """Return the lines from which a program may have been written: with fields, and without other expressions."""
+        return self.lines
+
+    def place_of(self, line: int) -> tuple[str, int]:
+        """Return file and line of the definition of one of the lines, counted from 0."""
+        return self.file, self.line + line + 1 if self.line else 0
 
     def fields_beside(self, name: str) -> list[set[str]]:
         """Return for each place of a field the other fields without which it is not printed."""
@@ -53,16 +114,8 @@ class Template:
         """Return the lines with braces or double brackets that are no field and no optional part."""
         return [text for text in self.lines if _LEFT.search(without_fields(_OPTIONAL_PART.sub(r"\1", text)))]
 
-    def expand(
-        self,
-        values: Mapping[str, Value],
-        formats: Mapping[str, NumberFormat],
-        lengths: Container[str] = (),
-        unit: float = 1.0,
-    ) -> list[str]:
+    def expand(self, values: Mapping[str, Value], printing: Printing) -> list[str]:
         """Return the lines with their values, without the lines and bracketed parts whose values are absent.
-
-        ``lengths`` are the values in mm that a program of another ``unit`` (mm) prints in it, also without a format.
 
         Raises
         ------
@@ -71,13 +124,14 @@ class Template:
         WordRangeError
             If it is beyond the limits of its format.
         """
+        formats = printing.formats
 
         def field_text(match: re.Match[str]) -> str:
             value = values[match[1]]
             if match[2]:
-                return self._number_text(match[1], value, formats[match[2]])
-            if unit != 1.0 and match[1] in lengths:
-                return f"{self._number(match[1], value) / unit:.6g}"
+                return number_text(match[1], self._number(match[1], value), formats[match[2]])
+            if printing.unit != 1.0 and match[1] in printing.lengths:
+                return f"{self._number(match[1], value) / printing.unit:.6g}"
             return f"{value:g}" if isinstance(value, float) else str(value)
 
         def is_complete(text: str) -> bool:
@@ -87,21 +141,34 @@ class Template:
         complete = [_FIELD.sub(field_text, text) for text in lines if is_complete(text)]
         return [_NUMBER_FIELD.sub(lambda field: formats[field[2]].text(float(field[1])), text) for text in complete]
 
-    def _number_text(self, name: str, value: Value, number_format: NumberFormat) -> str:
-        number = self._number(name, value)
-        if not number_format.least <= number <= number_format.greatest:
-            limit = number_format.least if number < number_format.least else number_format.greatest
-            raise WordRangeError(f"{name.replace('_', ' ')} {number:g} is beyond {limit:g}")
-        return number_format.text(number)
-
     def _number(self, name: str, value: Value) -> float:
         assert value is not None  # such lines are left out
         try:
             return float(value)
         except ValueError:
             raise InputError(
-                Problem(self.file, self.line, f"setting {name} is {value!r}", f"write a number: setting {name}=0.5")
+                Problem(
+                    self.file,
+                    self.line,
+                    f"setting {name} is {value!r}",
+                    f"write a number: setting {name}=0.5",
+                    code="ARG220",
+                )
             ) from None
+
+
+def number_text(name: str, number: float, number_format: NumberFormat) -> str:
+    """Return a number in a format.
+
+    Raises
+    ------
+    WordRangeError
+        If it is beyond the limits of the format.
+    """
+    if not number_format.least <= number <= number_format.greatest:
+        limit = number_format.least if number < number_format.least else number_format.greatest
+        raise WordRangeError(f"{name.replace('_', ' ')} {number:g} is beyond {limit:g}")
+    return number_format.text(number)
 
 
 @lru_cache(maxsize=1024)  # each setting of a control asks for those of all templates

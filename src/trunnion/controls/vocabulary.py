@@ -18,7 +18,8 @@ COMMON_TEMPLATE_FIELDS: Final = frozenset(
         "zero_x", "zero_y", "zero_z", "time", "total_time", "time_shown", "total_time_shown",
         "home_x", "home_y", "home_z", "primary_home", "secondary_home",
         "plane_x", "plane_y", "plane_z", "plane_side", "plane_sign",
-        "spindle_speed", "new_speed", "spindle_code", "subprogram", "unit_word", "entry_unit",
+        "spindle_speed", "new_speed", "spindle_code", "subprogram", "unit_word", "entry_unit", "operation_number",
+        "next_tool",
     }
 )  # fmt: skip
 
@@ -93,6 +94,41 @@ WRITER_FORMATS: Final = frozenset(
 #: How comments begin in the head of a program that was written although it was refused.
 FORCED_NOTICE: Final = "MUST NOT RUN AS IT IS"
 
+#: The same in a program whose motion a user's hooks have changed.
+HOOKS_NOTICE: Final = "MOTION CHANGED BY HOOKS"
+
+#: Values of the records of tools and of operations, for templates with expressions.
+TOOL_VALUES: Final = (
+    "call", "number", "name", "kind", "diameter", "corner_radius", "length", "flute_length", "taper_angle", "tip_angle",
+    "holder", "extension", "set_length", "operations",
+)  # fmt: skip
+OPERATION_VALUES: Final = (
+    "name", "number", "tool", "mode", "method", "time", "points", "spindle_speed", "spindle_sense", "coolant",
+    "least_feed", "greatest_feed", "x_min", "x_max", "y_min", "y_max", "z_min", "z_max", "work_offset", "planes",
+)  # fmt: skip
+RECORD_VALUES: Final = frozenset((*TOOL_VALUES, *OPERATION_VALUES))
+
+#: Lists that templates with expressions may go through, and records that they may ask.
+LISTS: Final = frozenset({"tools", "operations"})
+
+#: Places of a program where a shop may write a text of its own; shipped definitions have none there. Names that begin
+#: with `EVENT_PLACE` are places too: the word of a CL statement follows.
+PLACES: Final = (
+    "tool_list", "before_operation", "same_tool", "preselect", "after_approach", "first_cut", "rewind", "stop",
+    "between_planes", "retract", "after_operation",
+)  # fmt: skip
+EVENT_PLACE: Final = "event_"
+STOP_PLACE: Final = "stop"
+
+#: Filters of templates with expressions, besides the number formats; `controls.texts.filters` has them.
+FILTERS: Final = (
+    "upper", "lower", "trim", "ascii", "cut", "pad", "replace", "default", "number", "round", "abs", "count", "first",
+    "last", "join",
+)  # fmt: skip
+
+#: Values that only the templates of CL statements and of stops have.
+EVENT_VALUES: Final = frozenset({"text", "number", "words", "numbers"})
+
 #: Templates that every definition must have.
 REQUIRED_TEMPLATES: Final = (
     "program_start", "operation_start", "first_tool", "tool_change", "approach_three_axis", "operation_end_three_axis",
@@ -110,8 +146,10 @@ PROGRAM_TEMPLATES: Final = ("program_start", "program_end")
 
 #: Beginnings of template names in the order in which a program has them.
 TEMPLATE_ORDER: Final = (
-    "program_start", "operation_start", "first_tool", "tool_change", "spindle_on", "approach_", "plane_on_",
-    "next_axis_", "draw_back_", "next_plane_", "operation_end_", "program_end", "subprogram_",
+    "program_start", "tool_list", "before_operation", "operation_start", "first_tool", "tool_change", "same_tool",
+    "preselect", "spindle_on", "approach_", "plane_on_", "after_approach", "first_cut", "rewind", "stop", "event_",
+    "between_planes", "next_axis_", "draw_back_", "next_plane_", "retract", "operation_end_", "after_operation",
+    "program_end", "subprogram_",
 )  # fmt: skip
 
 #: Templates that say in which unit a file counts.

@@ -113,7 +113,7 @@ class WordRangeError(InputError):
 
     def __init__(self, what: str, row: int = 0, file: str = "program", line: int = 0) -> None:
         cure = "correct it in the CL file; the control's definition has the limits of the word's format"
-        super().__init__(Problem(file, line, what, cure))
+        super().__init__(Problem(file, line, what, cure, code="CTL110"))
         self.what, self.row, self.line = what, row, line
 
     def at(self, file: str, line: int) -> "WordRangeError":

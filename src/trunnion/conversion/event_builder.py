@@ -103,10 +103,14 @@ class EventBuilder:
         """M6. Of several changes before the first motion, the last one counts."""
         earlier = [other for other in found if isinstance(other, LoadTool) and other.row == row == 0]
         for other in earlier:
-            self._warn(other.line, f"no motion follows the change to tool {other.number}: not carried over")
+            self._warn(
+                other.line, f"no motion follows the change to tool {other.number}: not carried over", code="CNV174"
+            )
             found.remove(other)
         if row == row_count:
-            self._warn(event.line, f"no motion follows the change to tool {event.value}: not carried over")
+            self._warn(
+                event.line, f"no motion follows the change to tool {event.value}: not carried over", code="CNV174"
+            )
             return
         self.tool = str(event.value or "").strip()
         if self.tool.isdigit():
@@ -116,7 +120,9 @@ class EventBuilder:
         """M3, M4 or M5; returns whether the event starts the spindle."""
         if event.value in ("oriented", "axis"):
             cure = "a toolpath has no angle of the spindle"
-            self._warn.refuse(event.line, "the spindle stops at an angle (SPOS, M19, cycle 13)", cure, event.file)
+            self._warn.refuse(
+                event.line, "the spindle stops at an angle (SPOS, M19, cycle 13)", cure, event.file, code="CNV170"
+            )
         elif event.value == "off":
             if self._sense is not None:
                 found.append(SpindleOff(row, event.line))
@@ -137,14 +143,16 @@ class EventBuilder:
                 if str(value).isdigit() and int(str(value)):
                     yield SelectTool(row, line, int(str(value)))
                 else:
-                    self._warn(line, f"T={value} is not carried over", "preselect tools by their number")
+                    self._warn(line, f"T={value} is not carried over", "preselect tools by their number", code="CNV150")
             case "coolant":
                 yield Coolant(row, line, self._coolants.get(_COOLANT_CODE[str(value)], str(value).upper()))
             case "dwell":
                 assert isinstance(value, float)
                 yield Dwell(row, line, abs(value), value < 0)
             case "stop" if value == "pallet":
-                self._warn.refuse(line, "M60 changes the pallet", "a toolpath has no pallets", event.file)
+                self._warn.refuse(
+                    line, "M60 changes the pallet", "a toolpath has no pallets", event.file, code="CNV170"
+                )
             case "stop" | "optional_stop":
                 yield Stop(row, line, event.kind == "optional_stop")
             case "message":
@@ -165,14 +173,26 @@ class EventBuilder:
             case "known":
                 yield Insert(row, line, str(value))
             case "delta" if isinstance(value, tuple) and str(value[0]).startswith("TOOL DEF"):
-                self._warn(line, "length and radius of TOOL DEF are not carried over", "see the tool table", event.file)
+                self._warn(
+                    line,
+                    "length and radius of TOOL DEF are not carried over",
+                    "see the tool table",
+                    event.file,
+                    code="CNV173",
+                )
             case "delta":
                 cure = "take it out, and give it by the settings delta_length and delta_radius"
-                self._warn.refuse(line, "DL or DR of TOOL CALL, which a toolpath does not hold", cure, event.file)
+                self._warn.refuse(
+                    line, "DL or DR of TOOL CALL, which a toolpath does not hold", cure, event.file, code="CNV173"
+                )
             case "cycle32":
-                self._warn(line, "cycle 32 is not carried over", "see the setting tolerance=…", event.file)
+                self._warn(
+                    line, "cycle 32 is not carried over", "see the setting tolerance=…", event.file, code="CNV140"
+                )
             case "cycle832":
-                self._warn(line, "CYCLE832 is not carried over", "see setting cycle832=… and tolerance=…")
+                self._warn(
+                    line, "CYCLE832 is not carried over", "see setting cycle832=… and tolerance=…", code="CNV140"
+                )
 
 
 def _one_line(text: str) -> str:

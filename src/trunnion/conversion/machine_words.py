@@ -37,7 +37,9 @@ def carry_machine_words(
         texts = ", ".join(dict.fromkeys(event.text for event in inserts))
         what = f"{texts}: words of the builder of {source.key}, kept as INSERT"
         return toolpath, (
-            Problem(toolpath.file, inserts[0].line, what, "post them for no other machine", Severity.WARNING),
+            Problem(
+                toolpath.file, inserts[0].line, what, "post them for no other machine", Severity.WARNING, code="CNV152"
+            ),
         )
     if source.key == target.key and source.control.to_dict() == target.control.to_dict():
         return toolpath, ()
@@ -83,12 +85,12 @@ class _Words:
         if word is None:
             what = f"{event.text} is a word of the machine's builder; what it moves or clamps is not known"
             cure = f"declare it in [control.known] of both machines; force=True leaves it out for {self._target}"
-            self.problems.append(Problem(self._file, event.line, what, cure))
+            self.problems.append(Problem(self._file, event.line, what, cure, code="CNV151"))
             return
         means = f" ({word.means})" if word.means else ""
         what = f"{event.text}{means} is not carried over: {self._target} has no word with this meaning"
         self.problems.append(
-            Problem(self._file, event.line, what, "declare one in its [control.known]", Severity.WARNING)
+            Problem(self._file, event.line, what, "declare one in its [control.known]", Severity.WARNING, code="CNV150")
         )
 
 

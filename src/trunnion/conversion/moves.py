@@ -50,7 +50,7 @@ def _feeds(run: Run, rows: Ints, warn: Warnings) -> tuple[Floats, Flags]:
     without_feed = run.line[rows[rescaled[feed[rescaled] == 0.0]]]
     if len(without_feed):
         what = f"no feed in mm/min in {counted(len(without_feed), 'block')}: the tool only turns about its tip"
-        warn(int(without_feed[0]), what, "the feed becomes 0")
+        warn(int(without_feed[0]), what, "the feed becomes 0", code="CNV180")
     last_cut = np.maximum.accumulate(np.where(rapid, -1, np.arange(len(feed))))
     feed = np.where(last_cut >= 0, feed[last_cut], np.nan)
     return feed, np.asarray((mode[last_cut] == 95) & ~np.isnan(feed))

@@ -60,5 +60,5 @@ class PhaseComments:
             phase[(phase == Phase.CUT) & (run.kind[rows] == Kind.RAPID)] = Phase.RAPID
         without_motion += [comment_at[len(rows)]] if len(rows) in comment_at else []
         for event in without_motion:
-            warn(event.line, f"no motion follows {event.text!r}, which is not carried over")
+            warn(event.line, f"no motion follows {event.text!r}, which is not carried over", code="CNV174")
         return phase

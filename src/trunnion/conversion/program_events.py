@@ -64,7 +64,7 @@ def collect_events(run: Run, text: ProgramText, warn: Warnings) -> list[ProgramE
         own_lines = _compensation_lines(run, text)
     elif skips:
         what = "block skip signs in a program with jumps or subprograms: a toolpath cannot hold them"
-        warn.refuse(skips[0][0], what, "take the signs out, or flatten the program")
+        warn.refuse(skips[0][0], what, "take the signs out, or flatten the program", code="CNV170")
     found += _compensations(run, text, own_lines)
     return _without_tool_calls(sorted(found, key=lambda event: (event.row, event.line, event.order)))
 

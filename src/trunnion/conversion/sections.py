@@ -91,7 +91,7 @@ def divide_sections(
             sides = [event for event in events[section.first_event : end_event] if event.kind == "comp"]
             if not is_last and sides and not _is_off(sides[-1]):
                 what = "radius compensation stays on while the tool leaves the workpiece"
-                warn.refuse(sides[-1].line, what, "end it with G40 (R0) before", sides[-1].file)
+                warn.refuse(sides[-1].line, what, "end it with G40 (R0) before", sides[-1].file, code="CNV172")
             first_event = end_event
     return divided
 

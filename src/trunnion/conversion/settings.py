@@ -134,9 +134,9 @@ class _Header(NamedTuple):
 def _warn_of_one_value(warn: Warnings, line: int, what: str, name: str) -> None:
     """Refuse, or warn of, a setting that differs between operations where the new program can have only one."""
     if name in _MUST_NOT_BE_LOST:
-        warn.refuse(line, f"{what}; one program has one", "give each operation a name of its own")
+        warn.refuse(line, f"{what}; one program has one", "give each operation a name of its own", code="CNV142")
     else:
-        warn(line, f"{what}; one program has one", f"the first is taken; see setting {name}=…")
+        warn(line, f"{what}; one program has one", f"the first is taken; see setting {name}=…", code="CNV142")
 
 
 def _header_settings(control: Control, values: Mapping[str, str]) -> tuple[dict[str, str], dict[str, str]]:

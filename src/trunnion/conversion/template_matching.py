@@ -103,7 +103,9 @@ def line_patterns(
     """
     shapes = choices or {}
     return [
-        _line_pattern(line, known, settings, family_values, shapes) for template in templates for line in template.lines
+        _line_pattern(line, known, settings, family_values, shapes)
+        for template in templates
+        for line in template.pattern_lines()
     ]
 
 

@@ -185,7 +185,7 @@ class _ToolpathBuilder:
         run, rows = self._run, [section.rows for section in sections]
         if self._headers.forced_line:
             what = "the program says that it must not run as it is: it was written although checks had failed"
-            self._warn.refuse(self._headers.forced_line, what, "convert one that is proven")
+            self._warn.refuse(self._headers.forced_line, what, "convert one that is proven", code="CNV178")
         refuse_unsimulated_motions(run, self._warn)
         warn_of_park_positions(run, self._warn)
         warn_of_normals(run, self._warn)

@@ -46,13 +46,13 @@ class Warnings:
         self._files = files
         self._found: list[Problem] = []
 
-    def __call__(self, line: int, what: str, cure: str = "", file: int = 0) -> None:
+    def __call__(self, line: int, what: str, cure: str = "", file: int = 0, *, code: str) -> None:
         """Add a warning; ``file`` is an index as in ``Run.file``."""
-        self._found.append(Problem(self._files[file], line, what, cure, Severity.WARNING))
+        self._found.append(Problem(self._files[file], line, what, cure, Severity.WARNING, code=code))
 
-    def refuse(self, line: int, what: str, cure: str = "", file: int = 0) -> None:
+    def refuse(self, line: int, what: str, cure: str = "", file: int = 0, *, code: str) -> None:
         """Add an error: the program must not be converted without it."""
-        self._found.append(Problem(self._files[file], line, what, cure, Severity.ERROR))
+        self._found.append(Problem(self._files[file], line, what, cure, Severity.ERROR, code=code))
 
     @property
     def problems(self) -> tuple[Problem, ...]:
@@ -81,15 +81,21 @@ def warn_of_machine_words(
             plain = [_ZEROS.sub(r"\1", word) for word in words]
             if _SURFACE_SPEED.intersection(plain):
                 what = "constant surface speed: S is no rev/min, and a toolpath has only these"
-                warn.refuse(line, what, "write G97 and the speed", file)
+                warn.refuse(line, what, "write G97 and the speed", file, code="CNV170")
             lost = [word for word in words if _ZEROS.sub(r"\1", word) in lost_words]
             if not lost or (file == 0 and line in template_lines):
                 continue
             count += 1
             if count <= _MAX_WORD_WARNINGS:
-                warn(line, f"{' '.join(lost)} is not carried over", "write it in a template of the control", file)
+                warn(
+                    line,
+                    f"{' '.join(lost)} is not carried over",
+                    "write it in a template of the control",
+                    file,
+                    code="CNV150",
+                )
     if count > _MAX_WORD_WARNINGS:
-        warn(0, f"and {count - _MAX_WORD_WARNINGS} more lines with words that are not carried over")
+        warn(0, f"and {count - _MAX_WORD_WARNINGS} more lines with words that are not carried over", code="CNV150")
 
 
 def warn_of_poses(run: Run, operations: Iterable[tuple[Ints, Moves]], warn: Warnings) -> None:
@@ -107,7 +113,9 @@ def warn_of_poses(run: Run, operations: Iterable[tuple[Ints, Moves]], warn: Warn
         if len(differing):
             name = machine.axes[machine.rotary[int(columns[0])]].name
             what = f"other rotary positions than the tool axis gives at {counted(len(np.unique(differing)), 'point')}"
-            _warn_at_rows(run, rows[differing], f"{what}, the first in {name}", "only the tool axis is kept", warn)
+            _warn_at_rows(
+                run, rows[differing], f"{what}, the first in {name}", "only the tool axis is kept", warn, code="CNV160"
+            )
 
 
 def warn_of_interpolation(run: Run, operations: Iterable[Ints], by_vectors: bool, warn: Warnings) -> None:
@@ -130,7 +138,7 @@ def warn_of_interpolation(run: Run, operations: Iterable[Ints], by_vectors: bool
             if len(points):
                 what = f"the tool turns {how} to {counted(len(points), 'point')}, which is not carried over"
                 cure = "between points the tool turns as the control's templates have it"
-                _warn_at_rows(run, points, what, cure, warn)
+                _warn_at_rows(run, points, what, cure, warn, code="CNV160")
 
 
 def warn_of_register_changes(run: Run, operations: Iterable[Ints], offset: str, warn: Warnings) -> None:
@@ -148,7 +156,7 @@ def warn_of_register_changes(run: Run, operations: Iterable[Ints], offset: str, 
             if len(others):
                 what = f"{letter}{column[others[0]]} within an operation, which has {letter}{column[concerned[0]]}"
                 cure = "a toolpath has one of an operation; begin a new one there"
-                warn.refuse(int(run.line[others[0]]), what, cure, int(run.file[others[0]]))
+                warn.refuse(int(run.line[others[0]]), what, cure, int(run.file[others[0]]), code="CNV143")
 
 
 def warn_of_park_positions(run: Run, warn: Warnings) -> None:
@@ -163,30 +171,38 @@ def warn_of_park_positions(run: Run, warn: Warnings) -> None:
         if len(elsewhere):
             position = positions[elsewhere[0]]
             what = f"{axis.name} goes to the machine position {position:g}, which is not carried over"
-            _warn_at_rows(run, rows[elsewhere], what, "the control's templates define where to park", warn)
+            _warn_at_rows(
+                run, rows[elsewhere], what, "the control's templates define where to park", warn, code="CNV161"
+            )
 
 
 def refuse_unsimulated_motions(run: Run, warn: Warnings) -> None:
     """Refuse what the reader only approximates: paths without the tool's radius."""
     for found in run.diagnostics:
         if found.severity is Severity.WARNING and found.text.startswith(_WITHOUT_RADIUS):
-            warn.refuse(found.line, found.text, "a toolpath has no such motion", run.files.index(found.file))
+            warn.refuse(
+                found.line, found.text, "a toolpath has no such motion", run.files.index(found.file), code="CNV172"
+            )
 
 
 def warn_of_normals(run: Run, warn: Warnings) -> None:
     """Warn of surface normals."""
     if len(run.normals):
         what = f"{counted(len(run.normals), 'block')} with a surface normal, which is not carried over"
-        _warn_at_rows(run, run.normals.row, what, "a CL file has contact points of the CAM system instead", warn)
+        _warn_at_rows(
+            run, run.normals.row, what, "a CL file has contact points of the CAM system instead", warn, code="CNV163"
+        )
 
 
 def warn_of_splines(run: Run, warn: Warnings) -> None:
     """Warn of splines, of which only their points are carried over."""
     if len(run.splines):
         what = f"{counted(len(run.splines), 'spline')} of the program as the lines of their points, within 0.001 mm"
-        _warn_at_rows(run, run.splines.first, what, "convert the CL file where the splines come from instead", warn)
+        _warn_at_rows(
+            run, run.splines.first, what, "convert the CL file where the splines come from instead", warn, code="CNV163"
+        )
 
 
-def _warn_at_rows(run: Run, rows: Ints, what: str, cure: str, warn: Warnings) -> None:
+def _warn_at_rows(run: Run, rows: Ints, what: str, cure: str, warn: Warnings, *, code: str) -> None:
     """Warn of something in ``rows``, at the first of them."""
-    warn(int(run.line[rows[0]]), what, cure, int(run.file[rows[0]]))
+    warn(int(run.line[rows[0]]), what, cure, int(run.file[rows[0]]), code=code)

@@ -111,7 +111,7 @@ def _warn_of_division(run: Run, first: int, end: int, warn: Warnings) -> None:
     """Warn of the rows from ``first`` up to ``end`` that divide an operation."""
     what = "the tool leaves the workpiece within an operation, for positions of the machine or to turn without TCP"
     cure = f"the operation is divided; the new program goes home before line {run.line[end]}"
-    warn(int(run.line[first]), what, cure, int(run.file[first]))
+    warn(int(run.line[first]), what, cure, int(run.file[first]), code="CNV175")
 
 
 def _refuse_lost_cuts(run: Run, unknown: Ints, rows: Ints, warn: Warnings) -> None:
@@ -133,6 +133,7 @@ def _refuse_unknown(run: Run, row: int, warn: Warnings) -> None:
         what,
         "give the workpiece zero and the tool length of the program's machine",
         int(run.file[row]),
+        code="CNV171",
     )
 
 
@@ -144,7 +145,7 @@ def _refuse_machine_cuts(run: Run, rows: Ints, warn: Warnings) -> None:
         cuts_then = len(following) > 0 and run.kind[row + int(following[0])] != Kind.RAPID
         if int(run.programmed[row]) & int(_XYZ) != ProgrammedWord.Z or cuts_then:
             what, cure = "moves at feed to a position of the machine", "a toolpath cannot hold it; write it at rapid"
-            warn.refuse(int(run.line[row]), what, cure, int(run.file[row]))
+            warn.refuse(int(run.line[row]), what, cure, int(run.file[row]), code="CNV170")
             return
 
 

@@ -79,9 +79,11 @@ def _read(source: _DefinitionFile, kind: str = "machine") -> LocatedValue:
         with source.location.open("rb") as stream:
             data = stream.read(MAX_FILE_BYTES + 1)
     except OSError as error:
-        raise InputError(Problem(label, 0, f"cannot be read: {error.strerror or error}")) from None
+        raise InputError(Problem(label, 0, f"cannot be read: {error.strerror or error}", code="DEF120")) from None
     if len(data) > MAX_FILE_BYTES:
-        raise InputError(Problem(label, 0, f"has more than {MAX_FILE_BYTES} bytes", "a definition is a small file"))
+        raise InputError(
+            Problem(label, 0, f"has more than {MAX_FILE_BYTES} bytes", "a definition is a small file", code="DEF120")
+        )
     root = _parse(label, data)
     assert isinstance(root.value, dict)
     return LocatedValue(dict(root.value), root.file, root.line)  # its ``extends`` will be taken out
@@ -94,14 +96,16 @@ def _parse(label: str, data: bytes) -> LocatedValue:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        raise InputError(Problem(label, line, "is not UTF-8 text", "save the file as UTF-8")) from None
+        raise InputError(Problem(label, line, "is not UTF-8 text", "save the file as UTF-8", code="DEF120")) from None
     try:
         lines = key_lines(text)
         raw = tomllib.loads(text)
         _check_whole_numbers(raw, label, lines)
         return locate_values(raw, label, lines, (), 1)
     except RecursionError:
-        raise InputError(Problem(label, 0, "nests too deeply", "a definition needs three levels")) from None
+        raise InputError(
+            Problem(label, 0, "nests too deeply", "a definition needs three levels", code="DEF120")
+        ) from None
     except ValueError as error:  # TOMLDecodeError is one; so is a number with thousands of digits
         raise InputError(_syntax_problem(label, text, str(error))) from None
 
@@ -113,7 +117,9 @@ def _check_whole_numbers(value: object, label: str, lines: Mapping[KeyPath, int]
         _check_whole_numbers(item, label, lines, (*path, key))
     if isinstance(value, int) and value.bit_length() > _MAX_BITS:
         what = f"has a whole number of more than {_MAX_BITS} bits"
-        raise InputError(Problem(label, lines.get(path, 0), what, "write a number that a machine can have"))
+        raise InputError(
+            Problem(label, lines.get(path, 0), what, "write a number that a machine can have", code="DEF120")
+        )
 
 
 def _syntax_problem(label: str, text: str, message: str) -> Problem:
@@ -123,8 +129,16 @@ def _syntax_problem(label: str, text: str, message: str) -> Problem:
     line = int(number.group(1)) if number else at_end
     if number and what.startswith(_TWICE):
         key = text.split("\n")[line - 1].partition("=")[0].strip()
-        return Problem(label, line, f"is not TOML: {key} is there already", "write each key and each [table] once")
-    return Problem(label, line, f"is not TOML: {what[:1].lower()}{what[1:]}", "correct the line, or the one before it")
+        return Problem(
+            label, line, f"is not TOML: {key} is there already", "write each key and each [table] once", code="DEF130"
+        )
+    return Problem(
+        label,
+        line,
+        f"is not TOML: {what[:1].lower()}{what[1:]}",
+        "correct the line, or the one before it",
+        code="DEF130",
+    )
 
 
 def _parent(extends: LocatedValue, child: _DefinitionFile, library: Library) -> _DefinitionFile:
@@ -132,16 +146,18 @@ def _parent(extends: LocatedValue, child: _DefinitionFile, library: Library) -> 
     file, line, name = extends.file, extends.line, extends.value
     if not isinstance(name, str):
         cure = 'write one name, such as extends = "generic_head_table_bc"'
-        raise InputError(Problem(file, line, f"extends is {as_written(name)}", cure))
+        raise InputError(Problem(file, line, f"extends is {as_written(name)}", cure, code="DEF210"))
     if len(name) > _MAX_NAME:
-        raise InputError(Problem(file, line, f"extends is a text of {len(name)} letters", "write one name or path"))
+        raise InputError(
+            Problem(file, line, f"extends is a text of {len(name)} letters", "write one name or path", code="DEF210")
+        )
     if _NAME.fullmatch(name):
         found = _shipped(name, library)
         if not _is_file(found.location):
             names = definition_names(library)
             cure = did_you_mean(name, names) or "write one of " + ", ".join(names)
             cure = cure if names else "write the path of a .toml file in the same folder or below it"
-            raise InputError(Problem(file, line, f'extends: nothing shipped is called "{name}"', cure))
+            raise InputError(Problem(file, line, f'extends: nothing shipped is called "{name}"', cure, code="DEF210"))
         return found
     cure = "write the name of a shipped definition, or the path of a .toml file in the same folder or below it"
     if name.casefold().endswith(".toml") and not name.endswith(".toml"):
@@ -151,13 +167,19 @@ def _parent(extends: LocatedValue, child: _DefinitionFile, library: Library) -> 
     if "/" in name and pure.name and not pure.suffix:
         pure = pure.with_suffix(".toml")
     if outside or pure.suffix != ".toml" or child.folder is None:
-        raise InputError(Problem(file, line, f'extends: "{name}" is not a file that a definition may read', cure))
+        raise InputError(
+            Problem(file, line, f'extends: "{name}" is not a file that a definition may read', cure, code="DEF210")
+        )
     location = child.folder / pure
     # A link may lead out of the folder although its name does not.
     if not is_within(location, child.folder):
-        raise InputError(Problem(file, line, f'extends: "{name}" leads out of the folder of the definition', cure))
+        raise InputError(
+            Problem(file, line, f'extends: "{name}" leads out of the folder of the definition', cure, code="DEF210")
+        )
     if not _is_file(location):
-        raise InputError(Problem(file, line, f'extends: there is no file "{pure}" beside the definition', cure))
+        raise InputError(
+            Problem(file, line, f'extends: there is no file "{pure}" beside the definition', cure, code="DEF210")
+        )
     return _DefinitionFile(location, str(location), location.parent)
 
 
@@ -206,7 +228,7 @@ def _merge_ancestors(
         labels.append(_file_name(source.label))
         if _identity(source) in seen:
             what = "extends goes in a circle: " + " extends ".join(labels)
-            raise InputError(Problem(extends.file, extends.line, what, "remove one extends"))
+            raise InputError(Problem(extends.file, extends.line, what, "remove one extends", code="DEF220"))
         seen.append(_identity(source))
         tables.append(_read(source))
     merged = tables.pop()
@@ -257,11 +279,11 @@ def load_table(
             _check_is_name(text, kind, has_shipped=bool(names))
             if not names:
                 cure = f"give the path of {_with_article(kind)}, whose name ends in .toml"
-                raise InputError(Problem(text, 0, "file not found", cure))
+                raise InputError(Problem(text, 0, "file not found", cure, code="DEF110"))
             near = did_you_mean(text, names)
             cure = f"{near} " if near else ""
             cure += f"write the path of a .toml file, or one of {', '.join(names)}"
-            raise InputError(Problem(text, 0, f"there is no shipped {kind} of this name", cure))
+            raise InputError(Problem(text, 0, f"there is no shipped {kind} of this name", cure, code="DEF110"))
     problems: list[Problem] = []
     root = _merge_ancestors(_read(source, kind), source, library, problems)
     if overrides:
@@ -312,11 +334,11 @@ def _check_is_name(text: str, kind: str, *, has_shipped: bool) -> None:
         return
     cure = f"give the path of {_with_article(kind)}" + (f", or the name of a shipped {kind}" if has_shipped else "")
     if is_folder:
-        raise InputError(Problem(text, 0, f"is a folder, not {_with_article(kind)}", cure))
+        raise InputError(Problem(text, 0, f"is a folder, not {_with_article(kind)}", cure, code="DEF140"))
     if is_file:
         what = f"is not {_with_article(kind)}, whose name ends in .toml"
         what += ", in small letters" if text.casefold().endswith(".toml") else ""
-        raise InputError(Problem(text, 0, what, cure))
+        raise InputError(Problem(text, 0, what, cure, code="DEF140"))
 
 
 def resolve_extends(table: Table, library: Library) -> Table:

@@ -128,11 +128,11 @@ class Table:
 
     # Problems
 
-    def add_problem(self, key: str, what: str, cure: str = "") -> None:
+    def add_problem(self, key: str, what: str, cure: str = "", *, code: str = "DEF330") -> None:
         """Note a mistake in the value of a key; an empty key means the table itself."""
         file, line = self.location(key)
         path = self.key_path(key) if key else self.path
-        self.problems.append(Problem(file, line, f"{path or 'definition'} {what}", cure, key=path))
+        self.problems.append(Problem(file, line, f"{path or 'definition'} {what}", cure, key=path, code=code))
 
     def raise_problems(self) -> None:
         """Raise every problem noted so far.
@@ -155,10 +155,12 @@ class Table:
             same_stem = (known for known in self.read_keys if without_unit(known) == without_unit(key))
             similar = next((known for known in same_stem if unit_of(known)), "")
             if similar and unit_of(key) != unit_of(similar):
-                self.add_problem(key, "has a unit that does not fit here", f"write {similar}, in {unit_of(similar)}")
+                self.add_problem(
+                    key, "has a unit that does not fit here", f"write {similar}, in {unit_of(similar)}", code="DEF325"
+                )
             else:
                 cure = did_you_mean(key, self.read_keys) or "known here: " + ", ".join(sorted(self.read_keys))
-                self.add_problem(key, "is not a key that is known here", cure)
+                self.add_problem(key, "is not a key that is known here", cure, code="DEF320")
 
     def mark_read(self, *keys: str) -> None:
         """Count keys as read without looking at them."""
@@ -181,7 +183,7 @@ class Table:
         content = self._values.get(key)
         if content is None:
             if expected.required:
-                self.add_problem(key, "is missing", cure)
+                self.add_problem(key, "is missing", cure, code="DEF310")
             return None
         return content.value
 

@@ -11,7 +11,9 @@ def report_twins(table: Table, form: Callable[[str], Hashable]) -> None:
     for key in list(table.keys()):
         first = seen.setdefault(form(key), key)
         if first != key:
-            table.add_problem(key, f"says the same as {first!r}, and only one of them can count", "write one of them")
+            table.add_problem(
+                key, f"says the same as {first!r}, and only one of them can count", "write one of them", code="DEF340"
+            )
 
 
 def statement_form(key: str) -> Hashable:

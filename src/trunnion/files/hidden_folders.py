@@ -34,7 +34,9 @@ class HiddenFolders:
             return self._make(Path(tempfile.gettempdir()), "trunnion-")
         except OSError as error:
             what = f"no temporary file can be written: {error.strerror or error}"
-            raise InputError(Problem("output", 0, what, "let TMPDIR name a folder that can be written to")) from None
+            raise InputError(
+                Problem("output", 0, what, "let TMPDIR name a folder that can be written to", code="FIL230")
+            ) from None
 
     def _make(self, parent: Path, prefix: str) -> Path:
         if parent not in self._folders:

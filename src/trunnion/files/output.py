@@ -88,12 +88,14 @@ class OutputFiles:
         assert self._place is not None, "a stream is one file"
         place = resolve_output(Path(self._place.name).with_name(name))
         if place.is_stream:
-            raise InputError(Problem(place.name, 0, "a subprogram cannot be written to a device", "remove it"))
+            raise InputError(
+                Problem(place.name, 0, "a subprogram cannot be written to a device", "remove it", code="FIL210")
+            )
         self._claims.check(place)
         if self._earlier is not None and place.path.exists() and not self._earlier.wrote(place.path):
             what = f"would be replaced, although {Path(self._place.name).name} has not written it as it is"
             cure = f"choose a folder for this program alone{other_name and f', or {other_name}'}, or remove the file"
-            raise InputError(Problem(place.name, 0, what, cure))
+            raise InputError(Problem(place.name, 0, what, cure, code="FIL250"))
         return place
 
     def add_paper(self, place: OutputPlace) -> BinaryIO:
@@ -323,7 +325,11 @@ class OutputGroup:
         places = [place, *papers]
         for each in places:
             if each.is_stream:
-                raise InputError(Problem(each.name, 0, "is a device, and several files appear together", "name a file"))
+                raise InputError(
+                    Problem(
+                        each.name, 0, "is a device, and several files appear together", "name a file", code="FIL210"
+                    )
+                )
         self._claims.read(inputs)
         for each in places:
             self._claims.write(each)

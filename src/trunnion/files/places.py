@@ -55,13 +55,15 @@ def resolve_output(file: object) -> OutputPlace:
     except OSError as error:
         raise cannot_write(name, error) from None
     if stat.S_ISDIR(mode):
-        raise InputError(Problem(name, 0, "cannot be written: it is a folder", "name a file in it"))
+        raise InputError(Problem(name, 0, "cannot be written: it is a folder", "name a file in it", code="FIL210"))
     if not os.access(path, os.W_OK):
         raise cannot_write(name, PermissionError(13, "Permission denied"))
     if stat.S_ISCHR(mode) or stat.S_ISFIFO(mode):
         return OutputPlace(name, path, is_stream=True)
     if not stat.S_ISREG(mode):
-        raise InputError(Problem(name, 0, "cannot be written: it is no file, and no device or pipe", _OTHER))
+        raise InputError(
+            Problem(name, 0, "cannot be written: it is no file, and no device or pipe", _OTHER, code="FIL210")
+        )
     real = Path(os.path.realpath(path))
     # The descriptor of a file that has been removed has no name that could be replaced.
     if not real.exists():
@@ -77,11 +79,11 @@ def _file_name(file: object) -> str:
     name = os.fspath(file) if isinstance(file, str | os.PathLike) else None
     if not isinstance(name, str):
         cure = "give a path, as text or as a Path"
-        raise InputError(Problem(f"{file!r:.60}", 0, "is no name of a file", cure))
+        raise InputError(Problem(f"{file!r:.60}", 0, "is no name of a file", cure, code="FIL210"))
     if not name or "\0" in name or not _is_encodable(name):
-        raise InputError(Problem(repr(name), 0, "cannot be the name of a file", _OTHER))
+        raise InputError(Problem(repr(name), 0, "cannot be the name of a file", _OTHER, code="FIL210"))
     if name.endswith((os.sep, os.altsep or os.sep)):
-        raise InputError(Problem(name, 0, "cannot be written: it names a folder", "name a file in it"))
+        raise InputError(Problem(name, 0, "cannot be written: it names a folder", "name a file in it", code="FIL210"))
     return name
 
 
@@ -101,7 +103,7 @@ def _new_file(name: str) -> Path:
             raise NotADirectoryError(20, f"{real.parent} is no folder")
     except FileNotFoundError:
         what = f"cannot be written: there is no folder {real.parent}"
-        raise InputError(Problem(name, 0, what, "make it first, or name another file")) from None
+        raise InputError(Problem(name, 0, what, "make it first, or name another file", code="FIL220")) from None
     except OSError as error:
         raise cannot_write(name, error) from None
     return _in_writable_folder(name, real)
@@ -116,7 +118,7 @@ def _in_writable_folder(name: str, path: Path) -> Path:
 
 def cannot_write(name: str, error: OSError) -> InputError:
     """The error for a file that the system does not let us write."""
-    return InputError(Problem(name, 0, f"cannot be written: {error.strerror or error}", _OTHER))
+    return InputError(Problem(name, 0, f"cannot be written: {error.strerror or error}", _OTHER, code="FIL230"))
 
 
 def file_on_disk(name: str | os.PathLike[str]) -> str:
@@ -177,7 +179,7 @@ class Claims:
         self._check_input(place)
         if place.entry in self._written:
             what = f"would be written twice: {self._written[place.entry].name} is the same file"
-            raise InputError(Problem(place.name, 0, what, _OTHER))
+            raise InputError(Problem(place.name, 0, what, _OTHER, code="FIL240"))
 
     def release(self, place: OutputPlace) -> None:
         """A file that is not going to be written after all."""
@@ -186,7 +188,7 @@ class Claims:
     def _check_input(self, place: OutputPlace) -> None:
         if file_identity(place.path) in self._read:
             what = "would be written over, although it is read or has just been written"
-            raise InputError(Problem(place.name, 0, what, _OTHER))
+            raise InputError(Problem(place.name, 0, what, _OTHER, code="FIL240"))
 
 
 def check_outputs(outputs: Iterable[object], inputs: Iterable[str | os.PathLike[str]]) -> list[OutputPlace]:

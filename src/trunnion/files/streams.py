@@ -16,7 +16,7 @@ _PIECE: Final = 1 << 20
 def check_stream(stream: object, argument: str) -> None:
     """Raise ``InputError`` for an argument that takes no bytes: a text stream, a closed one, no stream at all."""
     name, what, cure = argument, "is no file and no stream", "give a path, or a stream that takes bytes"
-    write = getattr(stream, "write", None)
+    write, code = getattr(stream, "write", None), "FIL190"
     if callable(write):
         try:
             write(b"")
@@ -24,10 +24,10 @@ def check_stream(stream: object, argument: str) -> None:
             what, cure = "takes text, and a program is bytes", "give a binary stream, such as sys.stdout.buffer"
         except (OSError, ValueError) as error:
             name, reason = stream_name(stream), getattr(error, "strerror", None) or error
-            what = f"cannot be written: {reason}"
+            what, code = f"cannot be written: {reason}", "FIL230"
         else:
             return
-    raise InputError(Problem(name, 0, what, cure))
+    raise InputError(Problem(name, 0, what, cure, code=code))
 
 
 def stream_name(stream: object) -> str:

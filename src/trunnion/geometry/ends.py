@@ -73,8 +73,8 @@ def parse_end(argument: str, text: object) -> End:
     try:
         x, y, z = (float(number) for number in numbers.split(","))
     except ValueError:
-        raise InputError(argument_problem(argument, f"is {text!r}", _CURE)) from None
+        raise InputError(argument_problem(argument, f"is {text!r}", _CURE, code="IMP131")) from None
     length = math.hypot(x, y, z)
     if kind not in ("tangent", "derivative") or not _LEAST < length < 1.0 / _LEAST:
-        raise InputError(argument_problem(argument, f"is {text!r}", _CURE))
+        raise InputError(argument_problem(argument, f"is {text!r}", _CURE, code="IMP131"))
     return Tangent((x, y, z), is_derivative=kind == "derivative")

@@ -93,13 +93,19 @@ def fit(table: PointTable, wanted: Wanted, weights: Floats | None = None) -> Cur
 def _contradictions(wanted: Wanted, weights: Floats | None, count: int) -> Iterator[Problem]:
     if wanted.tolerance is not None and not wanted.ends.is_natural:
         what = "is for a curve through points, and a tolerance asks for one near them"
-        yield argument_problem("start" if wanted.ends.start != Ends().start else "end", what, "leave one of them out")
+        yield argument_problem(
+            "start" if wanted.ends.start != Ends().start else "end", what, "leave one of them out", code="IMP130"
+        )
     if wanted.tolerance is not None and weights is not None:
-        yield argument_problem("weights", "are for a curve through points", "leave the tolerance out")
+        yield argument_problem("weights", "are for a curve through points", "leave the tolerance out", code="IMP130")
     if wanted.fair is not None and count < LEAST_POINTS:
-        yield argument_problem("fair", f"needs {LEAST_POINTS} points, and there are {count}", "leave it out")
+        yield argument_problem(
+            "fair", f"needs {LEAST_POINTS} points, and there are {count}", "leave it out", code="IMP132"
+        )
     if weights is not None and not (weights.shape == (count,) and np.isfinite(weights).all() and (weights > 0.0).all()):
-        yield argument_problem("weights", "are not a number above 0 for each point", f"give {count} of them")
+        yield argument_problem(
+            "weights", "are not a number above 0 for each point", f"give {count} of them", code="IMP132"
+        )
 
 
 def _runs_back(table: PointTable, spans: tuple[Span, ...]) -> Iterator[Problem]:
@@ -111,4 +117,4 @@ def _runs_back(table: PointTable, spans: tuple[Span, ...]) -> Iterator[Problem]:
                 f" straight line, its smallest radius {span.radius:.3g} mm"
             )
             cure = "let its ends be natural, or give tangents along the path"
-            yield Problem(table.file, table.lines[k + 1], what, cure, Severity.WARNING)
+            yield Problem(table.file, table.lines[k + 1], what, cure, Severity.WARNING, code="IMP123")

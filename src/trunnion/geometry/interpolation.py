@@ -57,7 +57,7 @@ def interpolate(
     found = spline.c[:, 3]
     if not (found > 0.0).all():
         what = "vary so much from point to point that the curve would have none between them"
-        raise InputError(argument_problem("weights", what, "let them vary less"))
+        raise InputError(argument_problem("weights", what, "let them vary less", code="IMP132"))
     return BSplineCurve(spline.t, spline.c[:, :3] / found[:, None], found)
 
 

@@ -25,24 +25,24 @@ def point_faults(table: PointTable) -> Iterator[Problem]:
     file, points, lines = table.file, table.points, table.lines
     if len(points) < _LEAST_POINTS:
         what = f"{table.called} has {len(points)} points"
-        yield Problem(file, lines[0] if len(lines) else 0, what, f"give at least {_LEAST_POINTS}")
+        yield Problem(file, lines[0] if len(lines) else 0, what, f"give at least {_LEAST_POINTS}", code="IMP120")
         return
     if len(points) > MOST_POINTS:
-        yield Problem(file, lines[MOST_POINTS], *too_many(len(points)))
+        yield Problem(file, lines[MOST_POINTS], *too_many(len(points)), code="IMP120")
         return
     steps = np.diff(points, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
     same = np.flatnonzero(lengths <= SAME)
     for k in same.tolist():
         what = f"{table.called} has the same point here as in line {lines[k]}"
-        yield Problem(file, lines[k + 1], what, "leave one of them out")
+        yield Problem(file, lines[k + 1], what, "leave one of them out", code="IMP121")
     if len(same):
         return
     cosine = np.einsum("ij,ij->i", steps[:-1], steps[1:]) / (lengths[:-1] * lengths[1:])
     for k in np.flatnonzero(cosine < np.cos(np.radians(_BACK))).tolist():
         angle = np.degrees(np.arccos(max(cosine[k], -1.0)))
         what = f"{table.called} turns back here by {angle:.0f} degrees"
-        yield Problem(file, lines[k + 1], what, "are its points in their order?", Severity.WARNING)
+        yield Problem(file, lines[k + 1], what, "are its points in their order?", Severity.WARNING, code="IMP122")
     for k in np.flatnonzero(lengths > _JUMP * np.median(lengths)).tolist():
         what = f"{table.called} has a gap of {lengths[k]:.3f} mm before this point"
-        yield Problem(file, lines[k + 1], what, "are points missing?", Severity.WARNING)
+        yield Problem(file, lines[k + 1], what, "are points missing?", Severity.WARNING, code="IMP122")

@@ -76,11 +76,11 @@ class ImpellerDefinition:
     premachined: tuple[StepKind, ...] = ()
     places: Mapping[str, tuple[str, int]] = field(default_factory=dict)
 
-    def problem(self, key: str, what: str, cure: str) -> Problem:
+    def problem(self, key: str, what: str, cure: str, *, code: str) -> Problem:
         """A mistake that a key makes; it is told at the line of its table where the key is not written."""
         table = key.rpartition(".")[0]
         file, line = self.places.get(key) or self.places.get(table) or (self.file, 0)
-        return Problem(file, line, what, cure, key=key)
+        return Problem(file, line, what, cure, key=key, code=code)
 
 
 def read_impeller(path: Path) -> ImpellerDefinition:
@@ -147,7 +147,7 @@ def _stock(table: Table) -> StockSize:
     height = table.number("height_mm", above=0.0, at_most=_GREATEST)
     bore = table.number("bore_mm", 0.0, at_least=0.0, at_most=_GREATEST)
     if diameter and bore >= diameter:
-        table.add_problem("bore_mm", f"is {bore:g}, not less than the diameter", "make it smaller")
+        table.add_problem("bore_mm", f"is {bore:g}, not less than the diameter", "make it smaller", code="IMP216")
     return StockSize(diameter, height, table.number("bottom_mm", 0.0, at_least=-_GREATEST, at_most=_GREATEST), bore)
 
 
@@ -158,7 +158,7 @@ def _premachined(stock: Table) -> tuple[StepKind, ...]:
     for word in words:
         if word not in kinds:
             what = f"names {word!r}, which is no kind of operation"
-            stock.add_problem("premachined", what, f"name {', '.join(kinds)}")
+            stock.add_problem("premachined", what, f"name {', '.join(kinds)}", code="IMP216")
     return tuple(StepKind(word) for word in words if word in kinds)
 
 
@@ -169,15 +169,17 @@ def _sections(blade: Table, path: Path) -> tuple[PointTable, ...]:
     names = blade.texts("curves")
     if not file:
         if "points" in blade and not blade.problems:
-            blade.add_problem("points", "is empty", "name a table of points")
+            blade.add_problem("points", "is empty", "name a table of points", code="IMP216")
         return ()
     place = Path(file)
     cure = "name a file in the folder of the definition or below it"
     if place.is_absolute() or ".." in place.parts:
-        blade.add_problem("points", f"is {file!r}", cure)
+        blade.add_problem("points", f"is {file!r}", cure, code="IMP216")
         return ()
     if not is_within(path.parent / place, path.parent):
-        blade.add_problem("points", f"is {file!r}, which leads out of the folder of the definition", cure)
+        blade.add_problem(
+            "points", f"is {file!r}, which leads out of the folder of the definition", cure, code="IMP216"
+        )
         return ()
     try:
         tables = {table.name: table for table in read_point_table(path.parent / place)}
@@ -187,7 +189,9 @@ def _sections(blade: Table, path: Path) -> tuple[PointTable, ...]:
     for name in names:
         if name not in tables:
             known = ", ".join(map(repr, tables))
-            blade.add_problem("curves", f"names {name!r}, which {file} has not", f"it has {known}")
+            blade.add_problem("curves", f"names {name!r}, which {file} has not", f"it has {known}", code="IMP216")
     if len(names) < 2 or len(set(names)) < len(names):
-        blade.add_problem("curves", "are not at least two different curves", "name them from hub to shroud")
+        blade.add_problem(
+            "curves", "are not at least two different curves", "name them from hub to shroud", code="IMP216"
+        )
     return tuple(scaled(tables[name], scale) for name in names if name in tables)

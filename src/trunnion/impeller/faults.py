@@ -38,7 +38,7 @@ def direction_faults(definition: ImpellerDefinition) -> Iterator[Problem]:
                 *np.column_stack((across, up)).flat
             )
             what = f"{table.called} goes upward or inward: {way}"
-            yield Problem(table.file, table.lines[0], what, f"let its rows go {_ORDER}")
+            yield Problem(table.file, table.lines[0], what, f"let its rows go {_ORDER}", code="IMP210")
 
 
 def section_faults(definition: ImpellerDefinition, curves: Sequence[BSplineCurve]) -> Iterator[Problem]:
@@ -52,7 +52,7 @@ def section_faults(definition: ImpellerDefinition, curves: Sequence[BSplineCurve
             where = f"{-height[k]:.3f} mm below" if height[k] < -_APART else "the same here as"
             what = f"{above.called} is {where} {below.called}, which is named before it"
             cure = f"name the curves from hub to shroud, and let their rows go {_ORDER}"
-            yield Problem(above.file, above.lines[k], what, cure)
+            yield Problem(above.file, above.lines[k], what, cure, code="IMP210")
 
 
 def _crossings(table: PointTable, curve: BSplineCurve, thickness: float) -> Iterator[Problem]:
@@ -67,7 +67,7 @@ def _crossings(table: PointTable, curve: BSplineCurve, thickness: float) -> Iter
     if len(found):
         one, other = (_line(table, points[k]) for k in found[0])
         what = f"{table.called} crosses itself, or nearly: here and near line {other}"
-        yield Problem(table.file, one, what, "are its points in their order?")
+        yield Problem(table.file, one, what, "are its points in their order?", code="IMP211")
 
 
 def _line(table: PointTable, place: Floats) -> int:
@@ -91,7 +91,7 @@ def blade_faults(
         if gap[k] <= 0.0:
             table = definition.sections[0 if v[k] < 0.5 else -1]
             what = f"blades overlap by {-gap[k]:.3f} mm near this point"
-            yield Problem(table.file, _line(table, centre[k]), what, "let them be thinner, or fewer")
+            yield Problem(table.file, _line(table, centre[k]), what, "let them be thinner, or fewer", code="IMP212")
     edge = min(radius, max(float(np.hypot(*table.points[:, :2].T).max()) for table in definition.sections) + _BEYOND)
     w = np.linspace(0.0, 1.0, 201)
     foot, top = (first.frames(w, np.full(len(w), at))[0] for at in (first.low, first.high))
@@ -106,11 +106,11 @@ def blade_faults(
         if across > edge:
             what = f"the blade goes straight on from its points to the stock, and does not reach {body} at radius"
             cure = "let the points go on farther, or make the stock's diameter smaller"
-            yield definition.problem("stock.diameter_mm", f"{what} {across:.1f}", cure)
+            yield definition.problem("stock.diameter_mm", f"{what} {across:.1f}", cure, code="IMP213")
         else:
             what = f"the blade does not reach {body} near this point"
             cure = "does it lean too much here, or is it too thick? check the curves and the thicknesses"
-            yield Problem(table.file, _line(table, place[k]), what, cure)
+            yield Problem(table.file, _line(table, place[k]), what, cure, code="IMP213")
 
 
 def fillet_faults(
@@ -125,14 +125,16 @@ def fillet_faults(
         if gap[k] < radius:
             table = definition.sections[0]
             what = f"a fillet of {radius:g} mm has no room between two blades near this point; {gap[k]:.3f} mm has"
-            yield Problem(table.file, _line(table, inside[k]), what, "make it smaller")
+            yield Problem(table.file, _line(table, inside[k]), what, "make it smaller", code="IMP214")
             return
 
 
 def no_place(definition: ImpellerDefinition, error: FilletError) -> Problem:
     """A fillet that finds no place, at the row of the points that is nearest to where it finds none."""
     table, (problem,) = definition.sections[0], error.problems
-    return Problem(table.file, _line(table, error.place), f"{problem.what} near this point", problem.cure)
+    return Problem(
+        table.file, _line(table, error.place), f"{problem.what} near this point", problem.cure, code=problem.code
+    )
 
 
 def _turn(angle: float) -> Floats:

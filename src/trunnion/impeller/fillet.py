@@ -31,7 +31,7 @@ class FilletError(InputError):
     """A ball that does not touch blade and hub at ``place``, a point (3,) of the blade."""
 
     def __init__(self, what: str, cure: str, place: Floats) -> None:
-        super().__init__(Problem("fillet", 0, what, cure))
+        super().__init__(Problem("fillet", 0, what, cure, code="IMP214"))
         self.place = place
 
 

@@ -71,7 +71,9 @@ def build_impeller(definition: ImpellerDefinition) -> Impeller:
     """
     problems = [fault for table in definition.sections for fault in point_faults(table)]
     if problems:
-        raise InputError([Problem(one.file, one.line, one.what, one.cure, Severity.ERROR) for one in problems])
+        raise InputError(
+            [Problem(one.file, one.line, one.what, one.cure, Severity.ERROR, code=one.code) for one in problems]
+        )
     _raise_errors(direction_faults(definition))
     curves = tuple(
         interpolate(table.points, parameters_of(table.points, definition.parameterization))
@@ -132,7 +134,9 @@ def _beyond_stock(definition: ImpellerDefinition, curve: BSplineCurve, radius: f
     outward = float(point[:2] @ slope[:2]) / float(np.hypot(*point[:2]))
     if outward < 0.2 * float(np.linalg.norm(slope)):
         what = "the trailing edge does not lead outward, so that the stock cannot cut it"
-        raise InputError(definition.problem("blade.trailing_edge", what, 'write trailing_edge = "round"'))
+        raise InputError(
+            definition.problem("blade.trailing_edge", what, 'write trailing_edge = "round"', code="IMP213")
+        )
     missing = definition.stock.diameter / 2.0 - float(np.hypot(*point[:2])) + radius + _BEYOND
     return 1.0 + max(missing, radius + _BEYOND) / outward
 

@@ -109,7 +109,9 @@ def step_paths(
     """
     definition = impeller.definition
     if not definition.steps:
-        raise InputError(Problem(definition.file, 0, "has no [[operation]]", "describe the machining steps"))
+        raise InputError(
+            Problem(definition.file, 0, "has no [[operation]]", "describe the machining steps", code="IMP310")
+        )
     makers = _StepMaker(impeller, reachable, progress)
     for step in definition.steps:
         if names and step.name not in names:
@@ -119,7 +121,14 @@ def step_paths(
         except InputError as error:
             raise InputError(
                 [
-                    Problem(definition.file, step.line, f"{step.name}: {each.what}", each.cure, each.severity)
+                    Problem(
+                        definition.file,
+                        step.line,
+                        f"{step.name}: {each.what}",
+                        each.cure,
+                        each.severity,
+                        code=each.code,
+                    )
                     for each in error.problems
                 ]
             ) from None
@@ -331,7 +340,7 @@ def _kept(step: MachiningStep, tool: LibraryTool, clearance: Sequence[PartCleara
             f"{one.part} and {one.body} do not clear each other with the ball's centre at ({x:.2f}, {y:.2f}, {z:.2f}): "
             f"{one.distance:.3f} mm are between them, and {least[one.part]:g} are the least"
         )
-        problems.append(Problem(tool.name, 0, what, _FLANK_CURES[one.part]))
+        problems.append(Problem(tool.name, 0, what, _FLANK_CURES[one.part], code="IMP323"))
     raise InputError(problems)
 
 

@@ -102,7 +102,7 @@ def _one_turn(impeller: Impeller, step: MachiningStep, radius: float) -> Iterato
             f"{step.name}: step_down_mm = {step.step_down:g} cuts the whole {height:.1f} mm beside the form in one turn"
         )
         cure = "give a step_down_mm that the tool can cut"
-        yield Problem(definition.file, step.line, what, cure, Severity.WARNING)
+        yield Problem(definition.file, step.line, what, cure, Severity.WARNING, code="IMP331")
 
 
 def side_problems(
@@ -119,7 +119,7 @@ def side_problems(
                 f"before it leave up to {left:.2f} mm"
             )
             cure = f"let them leave less, or ask for more {one.part}_clearance_mm"
-            yield Problem(file, step.line, what, cure, Severity.WARNING)
+            yield Problem(file, step.line, what, cure, Severity.WARNING, code="IMP333")
 
 
 def _too_much(
@@ -135,12 +135,12 @@ def _too_much(
     before = [one for one in steps[:place] if one.kind is clears]
     behind = [one for one in steps[place + 1 :] if one.kind is clears]
     if before:
-        return Problem(file, step.line, what, f"let {before[-1].name} leave less", Severity.WARNING)
+        return Problem(file, step.line, what, f"let {before[-1].name} leave less", Severity.WARNING, code="IMP332")
     if behind:
         what, cure = f"{what}; {behind[0].name} comes after it", f"put {behind[0].name} before it"
     else:
         cure = f'make a "{clears}" before it, or, if that was done elsewhere, say stock.premachined = ["{clears}"]'
-    return Problem(file, step.line, what, cure, Severity.WARNING)
+    return Problem(file, step.line, what, cure, Severity.WARNING, code="IMP332")
 
 
 def _radius(impeller: Impeller, step: MachiningStep) -> float:

@@ -85,12 +85,18 @@ def impeller_model(impeller: Impeller, tolerance: float) -> ImpellerModel:
     mesh = TriangleMesh(*_joined(vertices, faces), definition.name)
     if not is_closed(mesh.faces):
         what = "its bodies make no closed solid"
-        raise InputError(Problem(definition.file, 0, what, "check curves, thicknesses, fillet and stock"))
+        raise InputError(
+            Problem(definition.file, 0, what, "check curves, thicknesses, fillet and stock", code="IMP220")
+        )
     points = np.vstack((mesh.vertices, mesh.vertices[mesh.faces].mean(axis=1)))
     deviation = float(off_surfaces(impeller, points[:: max(1, len(points) // _SAMPLES)], fillets).max())
     if deviation > tolerance:
         what = f"its facets would be {deviation:.4f} mm off the exact surfaces, and {tolerance:g} mm are asked for"
-        raise InputError(Problem(definition.file, 0, what, "check curves and thicknesses: does the blade meet itself?"))
+        raise InputError(
+            Problem(
+                definition.file, 0, what, "check curves and thicknesses: does the blade meet itself?", code="IMP220"
+            )
+        )
     return ImpellerModel(mesh, mesh.volume, deviation)
 
 

@@ -120,7 +120,7 @@ def read_steps(root: Table, tools: Sequence[LibraryTool]) -> tuple[MachiningStep
         if other != table.path:
             alike = step.name in {each.name for each in found}
             what = f"is that of {other} too" if alike else f"makes the same file name as that of {other}"
-            table.add_problem("name", what, "tell operations apart")
+            table.add_problem("name", what, "tell operations apart", code="IMP312")
         found.append(step)
     return tuple(found)
 
@@ -129,7 +129,9 @@ def read_name(table: Table, default: str) -> str:
     """The name of a table: one line that can be printed."""
     name = table.text("name", default)
     if not (name.strip() and name.isprintable() and len(name) <= _LONGEST_NAME):
-        table.add_problem("name", f"is {as_written(name)}", f"write one line of {_LONGEST_NAME} letters at most")
+        table.add_problem(
+            "name", f"is {as_written(name)}", f"write one line of {_LONGEST_NAME} letters at most", code="IMP312"
+        )
         return default
     return name
 
@@ -160,11 +162,14 @@ def _read_step(table: Table, tools: Mapping[int | None, LibraryTool], stated: Se
     tool = table.integer("tool", at_least=0)
     if tool in tools and tools[tool].sizes.kind not in _TOOLS[kind]:
         names = " or ".join(_TOOLS[kind])
-        table.add_problem("tool", f"{tool} is a {tools[tool].sizes.kind} mill", f"{kind} wants {names}")
+        table.add_problem("tool", f"{tool} is a {tools[tool].sizes.kind} mill", f"{kind} wants {names}", code="IMP312")
     elif tool not in tools and tool not in stated:
         known = ", ".join(str(number) for number in tools if number is not None)
         table.add_problem(
-            "tool", f"{tool} is not among the tools", f"give a [[tool]] of that number; there are {known}"
+            "tool",
+            f"{tool} is not among the tools",
+            f"give a [[tool]] of that number; there are {known}",
+            code="IMP312",
         )
     feed = table.number("feed_mm_min", above=0.0, at_most=100_000.0)
     ways = _WAYS[kind]
@@ -200,15 +205,15 @@ def _check_reach(table: Table, step: MachiningStep, sizes: ToolSizes) -> None:
     flutes = sizes.flute_length or sizes.length
     if 0.0 < flutes < step.step_down:
         what = f"is {step.step_down:g}, and the flutes of tool {step.tool} are {flutes:g} mm long"
-        table.add_problem("step_down_mm", what, "let it be less, or take longer flutes")
+        table.add_problem("step_down_mm", what, "let it be less, or take longer flutes", code="IMP312")
     if step.kind is StepKind.STOCK_ROUGHING and step.stepover.distance > sizes.diameter:
         what = f"is {step.stepover.distance:g}, and tool {step.tool} is {sizes.diameter:g} mm wide: a wall would stay"
-        table.add_problem("stepover_mm", what, "let it be the diameter at most")
+        table.add_problem("stepover_mm", what, "let it be the diameter at most", code="IMP312")
 
 
 def _read_stepover(table: Table) -> Stepover:
     if ("stepover_mm" in table) == ("scallop_mm" in table):
-        table.add_problem("", "needs either stepover_mm or scallop_mm", "give one of them")
+        table.add_problem("", "needs either stepover_mm or scallop_mm", "give one of them", code="IMP312")
         table.mark_read("stepover_mm", "scallop_mm")
         return Stepover(distance=1.0)
     if "stepover_mm" in table:

@@ -36,7 +36,8 @@ def stock_faults(definition: ImpellerDefinition, hub: Profile) -> Iterator[Probl
     across, up = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
     if across.max() < _LEAST_PART * radius:
         what = f"the blade reaches a radius of {across.max():.4g} mm only, and that of the stock is {radius:g}"
-        yield definition.problem("blade.scale", what, "check blade.scale, the unit of the points and stock.diameter_mm")
+        cure = "check blade.scale, the unit of the points and stock.diameter_mm"
+        yield definition.problem("blade.scale", what, cure, code="IMP215")
         return
     starts = np.cumsum([0, *(len(table.points) for table in tables[:-1])])
     yield from _across(definition, across, starts)
@@ -78,7 +79,9 @@ def _bore(definition: ImpellerDefinition, hub: Profile) -> Iterator[Problem]:
     k = int(place[:, 0].argmin())
     if definition.stock.bore / 2.0 >= place[k, 0]:
         what = f"is {definition.stock.bore:g}, and the hub is {2.0 * place[k, 0]:.3f} mm in diameter at height"
-        yield definition.problem("stock.bore_mm", f"stock.bore_mm {what} {place[k, 2]:.3f}", "make the bore smaller")
+        yield definition.problem(
+            "stock.bore_mm", f"stock.bore_mm {what} {place[k, 2]:.3f}", "make the bore smaller", code="IMP215"
+        )
 
 
 def _problem(
@@ -87,6 +90,6 @@ def _problem(
     """A problem with a point of all tables together."""
     for table in tables:
         if k < len(table.points):
-            return Problem(table.file, table.lines[k], f"{table.called} {what}", cure, severity)
+            return Problem(table.file, table.lines[k], f"{table.called} {what}", cure, severity, code="IMP215")
         k -= len(table.points)
     raise IndexError(k)

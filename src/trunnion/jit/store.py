@@ -15,7 +15,7 @@ from contextlib import ExitStack, contextmanager
 from functools import cache
 from pathlib import Path
 from shutil import rmtree
-from typing import IO, Any
+from typing import IO, Any, Final
 
 import numba
 
@@ -33,6 +33,9 @@ _LOCK = "lock"
 _log = logging.getLogger("trunnion.jit")
 
 _config: Any = numba.config
+
+#: The code of messages about folders for kernels.
+_CODE: Final = "FIL310"
 
 
 @cache
@@ -55,9 +58,9 @@ def cache_folder() -> Path | None:
         text = (
             "warning: %s is not used for compiled kernels: other users can write to it; let only its owner write to it"
         )
-        _log.warning(text, folder)
+        _log.warning(f"{text} [%s]", folder, _CODE)
     text = "warning: no folder can be written to: kernels are compiled in every run; NUMBA_CACHE_DIR can name a folder"
-    _log.warning(text)
+    _log.warning(f"{text} [%s]", _CODE)
     return None
 
 

@@ -33,7 +33,7 @@ def read_bodies(table: Table, axis_names: Sequence[str]) -> tuple[MachineBody, .
     """Return the bodies of a definition; mistakes become problems of the table."""
     entries = table.tables("body")
     if len(entries) > MAX_BODIES:
-        table.add_problem("body", f"has {len(entries)} tables", f"write at most {MAX_BODIES}")
+        table.add_problem("body", f"has {len(entries)} tables", f"write at most {MAX_BODIES}", code="DEF450")
         return ()
     bodies = [_body(entry, axis_names) for entry in entries]
     seen: dict[str, int] = {}
@@ -41,7 +41,7 @@ def read_bodies(table: Table, axis_names: Sequence[str]) -> tuple[MachineBody, .
         if body.name and body.name.casefold() in seen:
             file, line = entries[seen[body.name.casefold()]].location("name")
             what = f'is "{body.name}", the name of another body too ({file}:{line})'
-            entries[k].add_problem("name", what, "give every body its own name")
+            entries[k].add_problem("name", what, "give every body its own name", code="DEF430")
         seen.setdefault(body.name.casefold(), k)
     return tuple(bodies)
 
@@ -50,7 +50,10 @@ def _body(entry: Table, axis_names: Sequence[str]) -> MachineBody:
     name = entry.text("name")
     if name != name.strip() or any(not letter.isprintable() for letter in name):
         entry.add_problem(
-            "name", "begins or ends with blanks, or has letters that cannot be printed", "write it plainly"
+            "name",
+            "begins or ends with blanks, or has letters that cannot be printed",
+            "write it plainly",
+            code="DEF430",
         )
     link = entry.text("link", one_of=(*axis_names, *FIXED_LINKS))
     colour = entry.text("colour", PLAIN_COLOUR, pattern=_COLOUR, form='"#rrggbb", such as "#9aa0a6"')
@@ -69,7 +72,7 @@ def _solid(entry: Table, shape: str) -> BodyBox | BodyCylinder | BodyFile:
     for key in entry.keys():  # noqa: SIM118 -- a table is no dict
         if key in foreign:
             cure = "remove it; a body of another shape needs a name of its own"
-            entry.add_problem(key, f'is given for shape = "{shape}"', cure)
+            entry.add_problem(key, f'is given for shape = "{shape}"', cure, code="DEF450")
             entry.mark_read(key)
     if shape == "cylinder":
         diameter, length = entry.number("diameter_mm", above=0), entry.number("length_mm", above=0)
@@ -84,7 +87,9 @@ def _solid(entry: Table, shape: str) -> BodyBox | BodyCylinder | BodyFile:
     before = len(entry.problems)
     size, centre = entry.vector("size_mm", 3), entry.vector("centre_mm", 3)
     if min(size) <= 0.0 and len(entry.problems) == before:
-        entry.add_problem("size_mm", "has a side that is not above 0", "write [x, y, z], all above 0, in millimetres")
+        entry.add_problem(
+            "size_mm", "has a side that is not above 0", "write [x, y, z], all above 0, in millimetres", code="DEF450"
+        )
     return BodyBox(_vector(size), _vector(centre), _vector(entry.vector("turn_deg", 3, None)))
 
 
@@ -94,9 +99,9 @@ def _check_file(entry: Table, file: str) -> None:
     pure = PurePosixPath(file)
     cure = f"write the path of a mesh ({', '.join(MESH_ENDINGS)}) in the folder of the definition or below it"
     if pure.is_absolute() or ".." in pure.parts or re.search(r"[\\:\x00-\x1f]", file) or len(file) > 1000:
-        entry.add_problem("file", "leads out of the folder of the definition", cure)
+        entry.add_problem("file", "leads out of the folder of the definition", cure, code="DEF455")
     elif pure.suffix.lower() not in MESH_ENDINGS:
-        entry.add_problem("file", f'is "{file}"', cure)
+        entry.add_problem("file", f'is "{file}"', cure, code="DEF455")
 
 
 def _unit_vector(entry: Table, numbers: Sequence[float] | None) -> Vector:
@@ -105,7 +110,7 @@ def _unit_vector(entry: Table, numbers: Sequence[float] | None) -> Vector:
         return 0.0, 0.0, 1.0
     largest = max(map(abs, numbers))
     if largest == 0.0:
-        entry.add_problem("direction", "is [0, 0, 0]", "write a vector that has a direction")
+        entry.add_problem("direction", "is [0, 0, 0]", "write a vector that has a direction", code="DEF420")
         return 0.0, 0.0, 1.0
     x, y, z = (number / largest for number in numbers)
     length = math.sqrt(x * x + y * y + z * z)

@@ -30,14 +30,16 @@ def check_chain(
         len(rotary) != 2 or len(slides) != 3
     ):
         what = f"has {len(slides)} linear and {len(rotary)} rotary axes"
-        table.add_problem("axis", what, "write three linear and two rotary axes, from the workpiece to the tool")
+        table.add_problem(
+            "axis", what, "write three linear and two rotary axes, from the workpiece to the tool", code="DEF410"
+        )
         sound = False
     for k in range(1, len(axes)):
         stated = all("carries" in axis_tables[at] for at in (k - 1, k))
         if stated and axes[k].mount is Mount.PART and axes[k - 1].mount is Mount.TOOL:
             what = f'is "part", but {axes[k - 1].name} before it carries the tool'
             cure = "order the axes from the workpiece to the tool: all that carry the part come first"
-            axis_tables[k].add_problem("carries", what, cure)
+            axis_tables[k].add_problem("carries", what, cure, code="DEF410")
     if sound:
         _check_rotary_directions(axis_tables, axes, rotary, spindle)
         _check_slide_directions(axis_tables, axes, slides)
@@ -50,7 +52,7 @@ def _check_names(axis_tables: list[Table], axes: tuple[Axis, ...]) -> None:
         if letter and letter in seen:
             file, line = axis_tables[seen[letter]].location("name")
             what = f'is "{axis.name}", the name of {axis_tables[seen[letter]].path} too ({file}:{line})'
-            axis_tables[k].add_problem("name", what, "give every axis its own name")
+            axis_tables[k].add_problem("name", what, "give every axis its own name", code="DEF430")
         seen.setdefault(letter, k)
 
 
@@ -62,11 +64,11 @@ def _check_rotary_directions(
     if _sine(first, second) < PARALLEL_TOLERANCE:
         what = f"is parallel to that of {names[0]}: the machine could not orient a tool"
         cure = "write the directions of the two rotary axes as they are built"
-        axis_tables[rotary[1]].add_problem("direction", what, cure)
+        axis_tables[rotary[1]].add_problem("direction", what, cure, code="DEF420")
     elif _sine(second, np.array(spindle)) < PARALLEL_TOLERANCE:
         what = f"is parallel to the spindle: {names[1]} turns the tool about itself, and {names[0]} alone tilts it"
         cure = "the rotary axis further from the workpiece must tilt the tool: check the order of the axes"
-        axis_tables[rotary[1]].add_problem("direction", what, cure)
+        axis_tables[rotary[1]].add_problem("direction", what, cure, code="DEF420")
 
 
 def _check_slide_directions(axis_tables: list[Table], axes: tuple[Axis, ...], slides: list[int]) -> None:
@@ -74,7 +76,9 @@ def _check_slide_directions(axis_tables: list[Table], axes: tuple[Axis, ...], sl
     if abs(float(np.linalg.det(directions))) < PARALLEL_TOLERANCE:
         names = ", ".join(axes[k].name for k in slides)
         what = f"and those of the other linear axes ({names}) do not reach every point: the directions lie in one plane"
-        axis_tables[slides[2]].add_problem("direction", what, "write three directions that do not lie in one plane")
+        axis_tables[slides[2]].add_problem(
+            "direction", what, "write three directions that do not lie in one plane", code="DEF420"
+        )
     else:
         _check_slide_senses(axis_tables, axes, slides)
 
@@ -97,7 +101,7 @@ def _check_slide_senses(axis_tables: list[Table], axes: tuple[Axis, ...], slides
         else:
             wrong, cure = "direction", f"lay the frame of the whole file so that {name} grows to its +{name}"
         what = f"makes {name} count another way than the {name} of programs, whose holes and arcs would be mirrored"
-        axis_tables[k].add_problem(wrong, what, cure)
+        axis_tables[k].add_problem(wrong, what, cure, code="DEF420")
 
 
 def _sine(a: Floats, b: Floats) -> float:

@@ -54,7 +54,13 @@ def check_is_shipped(name: str) -> None:
         near = did_you_mean(name, names)
         cure = f"{near} " if near else ""
         raise InputError(
-            Problem(name, 0, "there is no shipped machine of this name", f"{cure}write one of {', '.join(names)}")
+            Problem(
+                name,
+                0,
+                "there is no shipped machine of this name",
+                f"{cure}write one of {', '.join(names)}",
+                code="DEF110",
+            )
         )
 
 
@@ -186,7 +192,9 @@ def _home(entry: Table, key: str, low: float, high: float) -> float:
     home = entry.number(key, 0.0)
     if not low <= home <= high:
         what = f"is {home:g}, outside of the limits {low:g} to {high:g}"
-        entry.add_problem(key, what if key in entry else f"{what} (it is 0 unless stated)", "write a home inside them")
+        entry.add_problem(
+            key, what if key in entry else f"{what} (it is 0 unless stated)", "write a home inside them", code="DEF440"
+        )
     return home
 
 
@@ -202,20 +210,24 @@ def _check_displayed(entry: Table, home: float, rotary: _RotaryKeys) -> None:
 
 def _check_winding(entry: Table, endless: bool, output: AngleOutput) -> None:
     if endless and "limits_deg" in entry:
-        entry.add_problem("limits_deg", "is given for an endless axis", "remove limits_deg, or write endless = false")
+        entry.add_problem(
+            "limits_deg", "is given for an endless axis", "remove limits_deg, or write endless = false", code="DEF440"
+        )
     if not endless and "limits_deg" not in entry:
         cure = "write [low, high] with low < high, in degrees, or endless = true"
-        entry.add_problem("limits_deg", "is missing", cure)
+        entry.add_problem("limits_deg", "is missing", cure, code="DEF440")
     if not endless and output is not AngleOutput.NONE:
         cure = "remove output, or write endless = true: values of a limited axis are written as they are"
-        entry.add_problem("output", f'is "{output}" for an axis with limits', cure)
+        entry.add_problem("output", f'is "{output}" for an axis with limits', cure, code="DEF440")
 
 
 def _gear(table: Table) -> tuple[float, float]:
     """The least and the greatest speed of a gear, rev/min."""
     least, greatest = table.number("min_rpm", at_least=0), table.number("max_rpm", above=0)
     if least > greatest:
-        table.add_problem("min_rpm", f"is {least:g}, above max_rpm {greatest:g}", "write the lower speed here")
+        table.add_problem(
+            "min_rpm", f"is {least:g}, above max_rpm {greatest:g}", "write the lower speed here", code="DEF440"
+        )
     table.report_unread_keys()
     return least, greatest
 
@@ -251,7 +263,7 @@ def _direction(table: Table, key: str, default: Vector | None) -> Vector:
     largest = max(map(abs, numbers))
     if largest == 0.0:
         if len(table.problems) == before:
-            table.add_problem(key, "is [0, 0, 0]", "write a vector that has a direction")
+            table.add_problem(key, "is [0, 0, 0]", "write a vector that has a direction", code="DEF420")
         return _VECTOR_FALLBACK
     # Scaled first, so that squares neither vanish nor overflow.
     x, y, z = (number / largest for number in numbers)

@@ -84,6 +84,7 @@ class DecisionTopic(StrEnum):
     POINTS = "points"
     HOLES = "holes"
     NEAREST = "nearest"
+    HOOKS = "hooks"
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,10 +58,12 @@ class Diagnostic:
     text: str
     severity: Severity = Severity.ERROR
     file: str = ""
+    code: str = ""
 
     def __str__(self) -> str:
-        """Return ``file:line: severity: text``."""
-        return f"{self.file}:{self.line}: {self.severity}: {self.text}"
+        """Return ``file:line: severity: text [code]``."""
+        code = f" [{self.code}]" if self.code else ""
+        return f"{self.file}:{self.line}: {self.severity}: {self.text}{code}"
 
 
 @dataclass(frozen=True, slots=True)

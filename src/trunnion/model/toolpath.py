@@ -198,9 +198,31 @@ class Message(Event):
 
 @dataclass(frozen=True, slots=True)
 class Insert(Event):
-    """Text for the NC program, letter by letter."""
+    """Text for the NC program, letter by letter; ``template`` is that of the shop it comes from, if it does."""
 
     text: str
+    template: str = field(default="", compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class RewindMessage(Message):
+    """The remark of a rewind, which the planner has put into the path."""
+
+
+@dataclass(frozen=True, slots=True)
+class ShopStatement(Event):
+    """A statement of which the definition of the machine has a template.
+
+    text     as it stands in the CL file, without its word
+    word     its word
+    words    its values that are words
+    numbers  its values that are numbers
+    """
+
+    text: str
+    word: str
+    words: tuple[str, ...] = ()
+    numbers: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,13 +4,16 @@ Events that are words join the next motion block; others are blocks of their own
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import takewhile
 from typing import Final
 
 from trunnion.controls.family_writer import FamilyWriter, WordEvent
-from trunnion.controls.vocabulary import NEW_SPEED_WITH_TCP, SPINDLE_ON
+from trunnion.controls.inches import without_comments
+from trunnion.controls.template import Value
+from trunnion.controls.vocabulary import NEW_SPEED_WITH_TCP, SPINDLE_ON, STOP_PLACE
+from trunnion.errors import InputError, Problem
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import (
     BlockSkip,
@@ -32,7 +35,7 @@ from trunnion.output.blocks.motion_blocks import MotionBlockWriter
 from trunnion.output.blocks.spline_blocks import write_rows_and_splines
 from trunnion.output.holes.hole_blocks import write_holes
 from trunnion.output.program import Program
-from trunnion.output.template_values import spindle_values
+from trunnion.output.template_values import plain_text, spindle_values
 from trunnion.output.template_writer import TemplateWriter
 from trunnion.transliteration import spelled
 
@@ -54,6 +57,7 @@ class EventWriter:
         self._state_before_skip: tuple[int, dict[str, int]] = 0, {}
         # In the present motion:
         self._motion = program.motions[0]
+        self._values: Mapping[str, Value] = {}
         self._next_row = 0
         self._phase = -1
         self._cycle: CycleOn | None = None
@@ -62,7 +66,15 @@ class EventWriter:
         self._spindle_turns = False
         self._resumes = False  # the spindle stands at a stop, and turns again before the row
 
-    def write(self, motion: Motion, first: int, end_lines: Sequence[str], *, restart_spindle: bool) -> None:
+    def write(
+        self,
+        motion: Motion,
+        first: int,
+        end_lines: Sequence[str],
+        values: Mapping[str, Value],
+        *,
+        restart_spindle: bool,
+    ) -> None:
         """Write the rows of a motion from ``first`` on, with its events.
 
         Parameters
@@ -71,11 +83,14 @@ class EventWriter:
             In the coordinates of its blocks.
         end_lines
             Lines of the template that comes next. What they switch at their beginning is not switched right before.
+        values
+            Of templates, for those of stops.
         restart_spindle
             The end of the last operation has stopped the spindle.
         """
         rows = len(motion.operation.moves)
         self._motion, self._next_row, self._phase, self._cycle = motion, first, -1, None
+        self._values = values
         self._joining_events = []
         if restart_spindle:
             self._spindle_turns = False
@@ -184,8 +199,12 @@ class EventWriter:
         elif isinstance(event, Message):
             blocks.write_lines(self._family.message(replace(event, text=spelled(event.text, self._encoding))))
         elif isinstance(event, Insert):
-            blocks.write_lines([event.text], as_they_are=True)
-            blocks.writer.forget()  # the text may have changed anything
+            lines = event.text.split("\n")
+            blocks.write_lines(lines, as_they_are=True)
+            if event.template:
+                self._templates.forget_words(lines)
+            else:
+                blocks.writer.forget()  # the text may have changed anything
         elif isinstance(event, SelectTool):
             if self._program.effective_setting("preselect") != "on":  # else the next tool is selected after a change
                 call = self._family.tool_call(event.number, "", by_name=False)
@@ -203,8 +222,7 @@ class EventWriter:
         if self._spindle_turns and not event.optional:
             self._blocks.write_event(SpindleOff(event.row, event.line))
             self._spindle_turns = False
-        said = replace(event, text=spelled(event.text, self._encoding))
-        self._blocks.write_lines(self._family.stop(said, self._control.codes))
+        self._blocks.write_lines(self._stop_lines(event))
         self._blocks.writer.forget("coolant", *(("spindle",) if event.optional else ()))
         if event.row == len(self._motion.operation.moves):
             return
@@ -216,6 +234,22 @@ class EventWriter:
             self._restart_spindle(event.row)
         if is_last and self._blocks.coolant != "OFF" and not comes_after(index, event, Coolant):
             self._write_word_event(Coolant(event.row, event.line, self._blocks.coolant), ())
+
+    def _stop_lines(self, event: Stop) -> list[str]:
+        """The lines of a stop: the family's, or those of the shop's template, which must stop as well."""
+        if STOP_PLACE not in self._control.templates:
+            return self._family.stop(event, self._control.codes)
+        code = self._control.codes["optional_stop" if event.optional else "stop"]
+        values = {**self._values, "text": plain_text(self._control, event.text), "number": code}
+        lines = self._templates.lines(STOP_PLACE, values, self._motion)
+        word = re.compile(rf"(?<![A-Za-z0-9.])M0*{code}(?![0-9.])")
+        if not any(word.search(without_comments(self._control, line)) for line in lines):
+            file, at = self._control.templates[STOP_PLACE].place_of(0)
+            what = f"template {STOP_PLACE} does not stop the program: it has no M{code} at line {event.line}"
+            raise InputError(
+                Problem(file, at, what, "write M{number} on a line of it, without a condition", code="DEF560")
+            )
+        return lines
 
     def _turn_again_after_thread(self, cycle: CycleOn, event: CycleOn | CycleOff) -> None:
         """Start the spindle after a thread at which the control stops it, unless no cut follows, or it is switched."""

@@ -24,6 +24,7 @@ from trunnion.output.event_writer import EventWriter
 from trunnion.output.operation_list import operation_texts
 from trunnion.output.program import Program
 from trunnion.output.subprograms import SubprogramFiles, SubprogramOutput
+from trunnion.output.template_printing import TemplatePrinting
 from trunnion.output.template_values import LoadedTool, TemplateValues, tool_text
 from trunnion.output.template_writer import TemplateWriter
 
@@ -82,13 +83,13 @@ class _ProgramWriter:
         self._program = program = _with_printed_planes(program)
         self._control = program.control
         self._blocks = MotionBlockWriter(program, sink, progress)
-        self._templates = TemplateWriter(self._blocks)
-        self._events = EventWriter(program, self._blocks, self._templates)
         self._template_values = TemplateValues(program)
+        self._templates = TemplateWriter(self._blocks, TemplatePrinting(program, self._template_values))
+        self._events = EventWriter(program, self._blocks, self._templates)
         self._notices = self._comments(program.notices)
         self._loaded_tool = LoadedTool()
         self._called_tool = ""  # in the present file
-        self._tool_calls = self._template_values.tool_calls()
+        self._tool_calls = self._template_values.tool_calls
         self._operation = 0
         self._calls_each = program.effective_setting("restart") == "on"
         self._previous_motion: Motion | None = None
@@ -104,8 +105,9 @@ class _ProgramWriter:
     def write(self) -> None:
         """Write the program."""
         motions = self._program.motions
-        head = [*self._notices, *self._tool_list(), *self._operation_list()]
-        self._templates.write("program_start", self._values(motions[0], 0), motions[0], head)
+        values = self._values(motions[0], 0)
+        head = [*self._notices, *self._tool_list(values), *self._operation_list()]
+        self._templates.write("program_start", values, motions[0], head)
         for k, motion in enumerate(motions):
             ends_program = k + 1 == len(motions)
             ends_operation = ends_program or motions[k + 1].starts_operation
@@ -116,7 +118,9 @@ class _ProgramWriter:
             except WordRangeError as error:
                 raise error.at(self._program.file_of(motion.operation), motion.operation.line) from None
             if ends_operation:
-                self._switch_coolant_off(motion, ends_program)
+                self._switch_coolant_off(motion, k, ends_program)
+                if "after_operation" in self._control.templates:
+                    self._templates.write_place("after_operation", self._values(motion, k), motion)
                 self._end_operation_file(motion, k)
         self._templates.write("program_end", self._values(motions[-1], -1), motions[-1])
 
@@ -169,10 +173,12 @@ class _ProgramWriter:
 
     # Tools
 
-    def _tool_list(self) -> list[str]:
+    def _tool_list(self, values: Mapping[str, Value]) -> list[str]:
         """Comment lines with the tools in the order of their calls, if they are asked for."""
         if self._program.effective_setting("tool_list") != "on":
             return []
+        if "tool_list" in self._control.templates:
+            return self._templates.lines("tool_list", values, self._program.motions[0])
         texts = dict.fromkeys(
             tool_text(call, operation.tool, self._control.unit) for call, _, operation in self._tool_calls
         )
@@ -189,13 +195,13 @@ class _ProgramWriter:
     def _comments(self, texts: Sequence[str]) -> list[str]:
         return [line for text in texts for line in self._control.family.comment(self._program.spelled(text))]
 
-    def _preselect_next(self, tool: str) -> None:
-        """Select the next other tool, if that is asked for, as soon as ``tool`` is in the spindle."""
-        if self._program.effective_setting("preselect") != "on":
+    def _preselect_next(self, motion: Motion, values: Mapping[str, Value]) -> None:
+        """Select the next other tool, if that is asked for, as soon as that of an operation is in the spindle."""
+        following = self._template_values.next_call(self._operation + 1)
+        if self._program.effective_setting("preselect") != "on" or following is None:
             return
-        later = (call for call, *_ in self._tool_calls[self._operation + 1 :] if call != tool)
-        following = next(later, "")
-        self._blocks.write_lines(self._control.family.tool_preselection(following) if following else [])
+        if not self._templates.write_place("preselect", values, motion):
+            self._blocks.write_lines(self._control.family.tool_preselection(following))
 
     # Operations
 
@@ -205,8 +211,11 @@ class _ProgramWriter:
         suffix, values = self._program.template_suffix(motion), self._values(motion, number)
         if motion.starts_operation:
             self._blocks.writer.begin_operation()
+            self._templates.write_place("before_operation", values, motion)
             self._templates.write("operation_start", values, motion)
             self._change_tool(motion, values)
+        else:
+            self._templates.write_place("between_planes", values, motion)
         from_plane = self._continues_from_plane(motion)
         must_retract = from_plane and not self._may_turn_here(motion)
         retracted = must_retract or not from_plane
@@ -214,16 +223,18 @@ class _ProgramWriter:
         if must_retract:
             self._templates.write(f"{DRAW_BACK}_{suffix}", values, motion)
         self._approach(motion, suffix, values)
+        self._templates.write_place("after_approach", values, motion)
         written = replace(motion, operation=motion.as_written())
         first = 1 if not must_retract and self._is_at_first_point(written) else 0
-        end_lines = self._control.templates[f"operation_end_{suffix}"].lines if ends_operation else ()
-        self._events.write(written, first, end_lines, restart_spindle=not from_plane)
+        end = f"operation_end_{suffix}"
+        end_lines = self._templates.switching_lines(end, values, motion) if ends_operation else ()
+        self._events.write(written, first, end_lines, values, restart_spindle=not from_plane)
         self._previous_motion = written
         if ends_operation:
             self._events.set_block_skip(False)  # the way home is for every run of the program
         self._blocks.restore_modal_state()
         if ends_operation:
-            self._templates.write(f"operation_end_{suffix}", values, motion)
+            self._templates.write(end, values, motion)
 
     def _change_tool(self, motion: Motion, values: Mapping[str, Value]) -> None:
         tool = str(values["tool"])
@@ -231,7 +242,9 @@ class _ProgramWriter:
             self._templates.forget_speed()
         if tool != self._called_tool or self._calls_each:
             self._templates.write("tool_change" if self._called_tool else "first_tool", values, motion)
-            self._preselect_next(tool)
+            self._preselect_next(motion, values)
+        else:
+            self._templates.write_place("same_tool", values, motion)
         self._called_tool = tool
         self._operation += 1
         register = self._template_values.length_register(motion.operation, self._loaded_tool)
@@ -245,7 +258,7 @@ class _ProgramWriter:
             self._templates.write(f"plane_on_{suffix}", values, motion)
         self._blocks.assume_rotary_position(motion)
 
-    def _switch_coolant_off(self, motion: Motion, ends_program: bool) -> None:
+    def _switch_coolant_off(self, motion: Motion, number: int, ends_program: bool) -> None:
         """Switch the coolant off after an operation, unless the end of the operation or of the program does it.
 
         The end of a program switches off what the control's own words have switched on; that it does so with a word of
@@ -256,7 +269,9 @@ class _ProgramWriter:
         ends_program = ends_program and self._files is None
         off, ends = f"M{self._control.coolant['OFF']}", [f"operation_end_{self._program.template_suffix(motion)}"]
         ends += ["program_end"] if ends_program else []
-        said = any(off in self._control.templates[end].lines for end in ends)
+        depends = any(self._control.templates[end].is_text for end in ends)
+        values = self._values(motion, number) if depends else {}
+        said = any(off in self._templates.switching_lines(end, values, motion) for end in ends)
         if not said and not (ends_program and self._blocks.coolant_codes <= _OWN_COOLANT):
             self._blocks.writer.write_lines([off])
         self._blocks.coolant, self._blocks.coolant_codes = "OFF", set()

@@ -76,7 +76,9 @@ class SubprogramNames:
         name = next(free, "")
         if not name:
             raise InputError(
-                argument_problem("settings", f"no program numbers are left from {first:04d} on", "write programs=one")
+                argument_problem(
+                    "settings", f"no program numbers are left from {first:04d} on", "write programs=one", code="ARG240"
+                )
             )
         self._taken.add(name)
         return name

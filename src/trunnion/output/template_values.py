@@ -5,10 +5,13 @@ A value is None where there is none: a template leaves out the line that names i
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import accumulate
 from typing import Final
 
 import numpy as np
 
+from trunnion.controls.definition import Control
 from trunnion.controls.family_writer import FamilyWriter
 from trunnion.controls.setting_rules import tool_number
 from trunnion.controls.template import Value
@@ -58,6 +61,8 @@ class TemplateValues:
         self._seconds: list[float] = []
         modes = {motion.mode for motion in program.motions}
         offsets = {program.effective_setting("work_offset", motion.operation) for motion in program.motions}
+        self._prints_times = prints_times(program)
+        self._operation_numbers = list(accumulate(int(motion.starts_operation) for motion in program.motions))
         self._used = {
             PLANES_USED: "on" if MachiningMode.TILTED in modes else None,
             TCP_USED: "on" if MachiningMode.TCP in modes else None,
@@ -84,10 +89,12 @@ class TemplateValues:
             If there is nothing to call the tool by.
         """
         operation, machine = motion.operation, self._program.machine
+        position = self._operation_numbers[number]
+        following = self.next_call(position)
         found: dict[str, Value] = {
             **self._setting_values(motion),
             **self._rotary_values(motion),
-            **self._time_values(number),
+            **self._time_values(position),
             **self._plane_values(motion),
             **spindle_values(self._program, spindle),
             **self._home_values(),
@@ -99,6 +106,8 @@ class TemplateValues:
             "entry_unit": unit_word if self._program.effective_setting("restart") == "on" else None,
             "gauge_length": machine.tool_length,
             "operation": operation.name,
+            "operation_number": position,
+            "next_tool": following,
             "intol": operation.intol,
             "outtol": operation.outtol,
             "tool": (tool := self.tool_call(operation, loaded)),
@@ -152,12 +161,29 @@ class TemplateValues:
             values[f"{key}_word"] = word.letter + word.format.text_of_count(count)
         return values
 
-    def _time_values(self, number: int) -> dict[str, Value]:
+    @cached_property
+    def _next_calls(self) -> list[str | None]:
+        """For each operation the next other tool after it, as the program calls it; None if there is none."""
+        found: list[str | None] = []
+        following: tuple[str, str | None] | None = None
+        for call, *_ in reversed(self.tool_calls):
+            found.append(None if following is None else following[1] if following[0] == call else following[0])
+            following = call, found[-1]
+        return found[::-1]
+
+    def next_call(self, operation: int) -> str | None:
+        """The next other tool after an operation, by its number, as the program calls it; None if there is none."""
+        return self._next_calls[operation - 1]
+
+    def time_of(self, operation: int) -> Value:
+        """The machining time of an operation, by its number; None where no template prints any."""
+        return self._time_values(operation)["time"]
+
+    def _time_values(self, operation: int) -> dict[str, Value]:
         """Machining times of the operation and of the program; computed only if a template prints them."""
         names = "time", "total_time", "time_shown", "total_time_shown"
-        if not prints_times(self._program):
+        if not self._prints_times:
             return dict.fromkeys(names)
-        operation = sum(motion.starts_operation for motion in self._program.motions[: number + 1 or None])
         own, total = self._time_text(operation), self._time_text(0)
         shown = (own, total) if self._program.effective_setting("times") == "on" else (None, None)
         return dict(zip(names, (own, total, *shown), strict=True))
@@ -257,8 +283,11 @@ class TemplateValues:
         if loads:
             return self._family.tool_call(loads[-1].number, "", by_name=False)
         what = f"operation {operation.name} has no LOAD/TOOL, and its tool has no name"
-        raise InputError(Problem(self._program.file_of(operation), operation.line, what, "write setting tool=NUMBER"))
+        raise InputError(
+            Problem(self._program.file_of(operation), operation.line, what, "write setting tool=NUMBER", code="CTL140")
+        )
 
+    @cached_property
     def tool_calls(self) -> list[tuple[str, int, Operation]]:
         """The tool of each operation as the program calls it, and the register of its length, 0 for that of the tool.
 
@@ -286,10 +315,17 @@ class TemplateValues:
         return text if tool_number(text) is not None else self._family.tool_call(0, text.strip('"'), by_name=True)
 
 
+def plain_text(control: Control, text: str) -> str:
+    """Return a text of a CL file that ends neither a comment of a template nor a text in quotation marks."""
+    return control.family.escape_comment(text).replace('"', "'")
+
+
 def prints_times(program: Program) -> bool:
     """Return whether a template of the control, or the list of operations, has machining times."""
     setting = program.effective_setting("times")
-    fields = {name for template in program.control.templates.values() for name, _ in template.fields()}
+    templates = program.control.templates.values()
+    fields = {name for template in templates for name, _ in template.fields()}
+    fields |= {name for template in templates for name in template.record_values}
     wanted = {"time", "total_time"} | ({"time_shown", "total_time_shown"} if setting == "on" else set())
     listed = program.effective_setting("operation_list") == "on"
     return setting != "off" and (listed or bool(fields & wanted))

@@ -5,15 +5,17 @@ from collections.abc import Mapping, Sequence
 from trunnion.controls.template import Value
 from trunnion.model.motion import Motion
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
+from trunnion.output.said_words import said_words
+from trunnion.output.template_printing import TemplatePrinting
 
 
 class TemplateWriter:
     """Writes the templates of a program."""
 
-    def __init__(self, blocks: MotionBlockWriter) -> None:
+    def __init__(self, blocks: MotionBlockWriter, printing: TemplatePrinting) -> None:
         self._blocks = blocks
         self._control = blocks.control
-        self._lengths = self._control.length_fields
+        self._printing = printing
         self._speed: Value = None
 
     def write(self, name: str, values: Mapping[str, Value], motion: Motion, notices: Sequence[str] = ()) -> None:
@@ -21,15 +23,45 @@ class TemplateWriter:
 
         ``notices`` are comment lines that come as near to the first line as the control allows.
         """
-        formats = self._control.number_formats(motion.three_axis)
-        template = self._control.templates[name]
-        speed = values["spindle_speed"]
-        values = {**values, "new_speed": None if speed == self._speed else speed}
-        lines = template.expand(values, formats, self._lengths, self._control.unit)
+        lines = self.lines(name, values, motion)
         first = self._control.first_lines if notices else 0
         self._blocks.write_lines([*lines[:first], *notices, *lines[first:]])
-        if any(field in ("spindle_speed", "new_speed") for field, _ in template.fields()):
-            self._speed = speed
+        if any(field in ("spindle_speed", "new_speed") for field, _ in self._control.templates[name].fields()):
+            self._speed = values["spindle_speed"]
+
+    def lines(self, name: str, values: Mapping[str, Value], motion: Motion) -> list[str]:
+        """Return the lines that a template prints."""
+        speed = values["spindle_speed"]
+        values = {**values, "new_speed": None if speed == self._speed else speed}
+        return self._control.templates[name].expand(values, self._printing.of(motion, values))
+
+    def switching_lines(self, name: str, values: Mapping[str, Value], motion: Motion) -> Sequence[str]:
+        """Return the lines of a template that switch something: as they are written, or will be where that depends."""
+        template = self._control.templates[name]
+        return self.lines(name, values, motion) if template.is_text else template.lines
+
+    def write_place(self, name: str, values: Mapping[str, Value], motion: Motion) -> bool:
+        """Write the text of a shop at a place, if the definition has one; returns whether it has.
+
+        What its words leave in force is not known afterwards, unless they are understood.
+        """
+        if name not in self._control.templates:
+            return False
+        lines = self.lines(name, values, motion)
+        self._blocks.write_lines(lines)
+        self.forget_words(lines)
+        return True
+
+    def forget_words(self, lines: Sequence[str]) -> None:
+        """Write again what a text has said, as far as it is understood, and else everything."""
+        words = said_words(lines, self._control, self._blocks.writer.words)
+        if words is None:
+            self._blocks.writer.forget()
+            self.forget_speed()
+        elif words:
+            self._blocks.writer.forget(*words)
+            if "speed" in words:
+                self.forget_speed()
 
     def write_unskipped(
         self, name: str, values: Mapping[str, Value], motion: Motion, notices: Sequence[str] = ()

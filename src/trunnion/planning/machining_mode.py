@@ -68,7 +68,7 @@ def supported_mode(
     if mode is MachiningMode.TILTED and mode not in capabilities.modes and replaceable:
         what = f"operation {operation.name} is in a {mode}, which the control does not support"
         how = f"it is made {'with TCP' if options.tcp else 'without TCP'}"
-        return options.simultaneous_mode, [Problem(file, operation.line, what, how, Severity.WARNING)]
+        return options.simultaneous_mode, [Problem(file, operation.line, what, how, Severity.WARNING, code="PLN320")]
     return options.simultaneous_mode if mode is MachiningMode.TCP else mode, []
 
 
@@ -80,7 +80,7 @@ def mode_conflicts(
     if mode not in capabilities.modes:
         what = f"operation {operation.name}: the control does not support the mode {mode}"
         cure = capabilities.mode_remedies.get(mode, f"it supports {', '.join(sorted(capabilities.modes))}")
-        return [Problem(file, operation.line, what, cure)]
+        return [Problem(file, operation.line, what, cure, code="PLN310")]
     if mode is MachiningMode.THREE_AXIS:
         expected, what = _UP, "the tool axis is not +Z of the program, and mode is three-axis"
     elif mode is MachiningMode.TILTED:
@@ -90,7 +90,11 @@ def mode_conflicts(
     tolerance = max(_SAME_AXIS, capabilities.negligible_tilt if mode is MachiningMode.THREE_AXIS else 0.0)
     wrong = np.flatnonzero(np.abs(axis - expected).max(axis=1) > tolerance)
     cure = "leave the setting mode out, or split the operation"
-    return [Problem(file, int(line[wrong[0]]), f"operation {operation.name}: {what}", cure)] if len(wrong) else []
+    return (
+        [Problem(file, int(line[wrong[0]]), f"operation {operation.name}: {what}", cure, code="PLN330")]
+        if len(wrong)
+        else []
+    )
 
 
 def tilted_plane(axis: Floats, own_frame: Frame, x_direction: Floats | None = None) -> Frame:

@@ -31,14 +31,14 @@ def unknown_speed_problems(file: str, request: PlanRequest) -> Iterable[Problem]
     names = [machine.axes[column].name for column in machine.rotary if machine.axes[column].rapid is None]
     if names and (options.pole_strategy is not PoleStrategy.OFF or options.lower_feed):
         what = f"the definition of {machine.key} has no rapid speed of {' and '.join(names)}: its speed is not limited"
-        yield Problem(file, 0, what, "write rapid_deg_min into the definition", Severity.WARNING)
+        yield Problem(file, 0, what, "write rapid_deg_min into the definition", Severity.WARNING, code="PLN420")
 
 
 def spindle_speed_problems(file: str, operation: Operation, machine: Machine) -> Iterable[Problem]:
     """Spindle speeds that the machine does not have."""
     for event in operation.events:
         if isinstance(event, SpindleOn) and (fault := spindle_speed_fault(machine, event.rpm)):
-            yield Problem(file, event.line, fault, "program a speed that the machine has")
+            yield Problem(file, event.line, fault, "program a speed that the machine has", code="PLN430")
 
 
 def rewind_problems(chosen: ChosenPoses, rewinds: Sequence[Rewind], request: PlanRequest) -> Iterable[Problem]:
@@ -52,19 +52,23 @@ def rewind_problems(chosen: ChosenPoses, rewinds: Sequence[Rewind], request: Pla
             continue
         if not math.isfinite(rewind.retract_distance):
             what = f"the tool must rewind here, and its axis does not lead to the clearance {options.clearance}"
-            yield Problem(chosen.file, line, what, "setting clearance=MM draws back by a distance")
+            yield Problem(chosen.file, line, what, "setting clearance=MM draws back by a distance", code="PLN230")
             continue
         made.append(rewind)
         if is_radius_compensated(chosen.operation, rewind.row):
             what = "a rewind within cutter radius compensation"
-            yield Problem(chosen.file, line, what, "output the path without CUTCOM, or split the operation")
+            yield Problem(
+                chosen.file, line, what, "output the path without CUTCOM, or split the operation", code="PLN230"
+            )
         joints = retract_positions(machine, moves, rewind)
         column = slide_beyond_limits(machine, joints) if chosen.keep_slide_limits else None
         if column is not None:
             values = joints[:, column]
             value = values.max() if values.max() > machine.axes[column].high else values.min()
             what = f"on the retract for a rewind {limit_violation_text(machine, column, float(value))}"
-            yield Problem(chosen.file, line, what, "setting clearance=MM draws back less; or move the workpiece")
+            yield Problem(
+                chosen.file, line, what, "setting clearance=MM draws back less; or move the workpiece", code="PLN230"
+            )
     if made:
         yield _made_rewinds(chosen, made, options.reengage_feed_share)
 
@@ -81,7 +85,9 @@ def _made_rewinds(chosen: ChosenPoses, rewinds: Sequence[Rewind], feed_share: fl
         takes = f", some {format_duration(seconds)} in all" if all(per_min) else ""
         what += f" {len(rewinds)} times, in lines {named}{takes}, each of which may leave a mark"
     cure = "setting rewind=none refuses it"
-    return Problem(chosen.file, int(moves.line[first.row]), f"{what}, {first.reason}", cure, Severity.WARNING)
+    return Problem(
+        chosen.file, int(moves.line[first.row]), f"{what}, {first.reason}", cure, Severity.WARNING, code="PLN220"
+    )
 
 
 def winding_problems(chosen: ChosenPoses, request: PlanRequest) -> Iterable[Problem]:
@@ -96,7 +102,7 @@ def winding_problems(chosen: ChosenPoses, request: PlanRequest) -> Iterable[Prob
         cure = "change the path so that it does not wind the axis in one direction"
         if axis.endless:
             cure += '; or, if the control takes the shorter way home, write output = "0..360" for the axis'
-        yield Problem(chosen.file, int(chosen.operation.moves.line[-1]), what, cure, Severity.WARNING)
+        yield Problem(chosen.file, int(chosen.operation.moves.line[-1]), what, cure, Severity.WARNING, code="PLN240")
 
 
 def _forbidden_rewind(chosen: ChosenPoses, rewind: Rewind) -> Problem:
@@ -105,7 +111,7 @@ def _forbidden_rewind(chosen: ChosenPoses, rewind: Rewind) -> Problem:
         row, hit = rewind.limit_hit.row, rewind.limit_hit
         what = f"{limit_violation_text(chosen.machine, hit.column, hit.value)} in the cut"
     cure = "allow rewinds (setting rewind=insert), split the operation, or turn the workpiece"
-    return Problem(chosen.file, int(chosen.operation.moves.line[row]), what, cure)
+    return Problem(chosen.file, int(chosen.operation.moves.line[row]), what, cure, code="PLN210")
 
 
 def pose_problems(file: str, operation: Operation, poses: PlannedPoses, request: PlanRequest) -> Iterable[Problem]:
@@ -119,7 +125,7 @@ def pose_problems(file: str, operation: Operation, poses: PlannedPoses, request:
             yield _pose_problem(file, operation, poses, request, row)
         if len(rows) > _NAMED:
             more = f"the same at {len(rows) - _NAMED} further points, the last in line {moves.line[rows[-1]]}"
-            yield Problem(file, int(moves.line[rows[_NAMED]]), more)
+            yield Problem(file, int(moves.line[rows[_NAMED]]), more, code="PLN160")
 
 
 def _pose_problem(file: str, operation: Operation, poses: PlannedPoses, request: PlanRequest, row: int) -> Problem:
@@ -130,16 +136,23 @@ def _pose_problem(file: str, operation: Operation, poses: PlannedPoses, request:
         what = f"no rotary position of {machine.key} gives the tool axis {i:.6f}, {j:.6f}, {k:.6f}"
         lacking = f"{degrees_out_of_reach(machine, moves.axis[row]):.3f} degrees"
         cure = f"tilt the workpiece by {lacking}, or post for a machine that reaches it{remedy}"
-        return Problem(file, line, what, cure)
+        return Problem(file, line, what, cure, code="PLN110")
     if code == BLOCKED:
         turn = f"{describe_pose(machine, poses.rotary[row - 1])} to {describe_pose(machine, poses.rotary[row])}"
         what = f"the rotary axes flip between these two points, {turn}; no solution is valid at both"
-        return Problem(file, line, what, "output the toolpath with points nearer to each other, or tilt the workpiece")
+        return Problem(
+            file,
+            line,
+            what,
+            "output the toolpath with points nearer to each other, or tilt the workpiece",
+            code="PLN130",
+        )
     column, value = code - 1, float(poses.beyond_value[row])
     cure = limit_remedy(machine, column, value, _other_pose_remark(machine, moves, poses, row))
     is_hole = any(event.row <= row < end for event, end in cycle_row_ranges(operation))
     where = "in this hole " if is_hole else "on this arc " if moves.kind[row] == Kind.ARC else ""
-    return Problem(file, line, where + limit_violation_text(machine, column, value), cure + remedy)
+    what = where + limit_violation_text(machine, column, value)
+    return Problem(file, line, what, cure + remedy, code="PLN120")
 
 
 def _other_pose_remark(machine: Machine, moves: Moves, poses: PlannedPoses, row: int) -> str:
@@ -172,4 +185,4 @@ def travel_problems(operations: Sequence[tuple[str, Moves, PlannedPoses]], machi
             f" its travel from {axis.low:g} to {axis.high:g} has room for {axis.high - axis.low:g} mm"
         )
         cure = "move or turn the workpiece, or post for another machine"
-        yield Problem(file, int(moves.line[poses.extreme_rows[column, end]]), what, cure)
+        yield Problem(file, int(moves.line[poses.extreme_rows[column, end]]), what, cure, code="PLN125")

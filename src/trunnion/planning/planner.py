@@ -55,7 +55,9 @@ def plan(
     options, capabilities = options or PlanOptions(), capabilities or ControlCapabilities()
     sources = [(path.file, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
     if not sources:
-        raise InputError(Problem(toolpaths[0].file, 0, "there is no motion in it", "output the toolpath again"))
+        raise InputError(
+            Problem(toolpaths[0].file, 0, "there is no motion in it", "output the toolpath again", code="CL140")
+        )
     _check_names(options, sources)
     remedy = _frame_remedy(sources[0][1].frame, options)
     request = PlanRequest(machine, chord_tolerance, options, capabilities, remedy)
@@ -77,7 +79,7 @@ def _check_names(options: PlanOptions, sources: Sequence[tuple[str, Operation]])
     if unknown:
         what = "mode is set for operation {}, and the program has none of that name"
         cure = f"write one of {', '.join(dict.fromkeys(names))}"
-        raise InputError([argument_problem("settings", what.format(name), cure) for name in unknown])
+        raise InputError([argument_problem("settings", what.format(name), cure, code="ARG230") for name in unknown])
 
 
 def _check_reach_and_travel(planned: Sequence[PlannedOperation], request: PlanRequest) -> list[Problem]:

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from trunnion.arrays import Flags
 from trunnion.errors import Problem, RefusedError, Severity
 from trunnion.model.frames import into_frame, into_plane, relative_frame
 from trunnion.model.motion import Decision, DecisionTopic, MachiningMode
@@ -17,6 +18,7 @@ from trunnion.model.toolpath import CycleOn, Frame, Kind, Operation, Phase
 from trunnion.planning.holes.cycles import HoleCycleError, SpindleState, SpindleStates
 from trunnion.planning.holes.operations import axis_change_rows, normalize_cycles, row_ranges, split_by_axis
 from trunnion.planning.linearization.arc_chords import (
+    arc_sweeps,
     arcs_a_control_takes,
     arcs_about_tool,
     flat_arcs,
@@ -32,6 +34,9 @@ from trunnion.planning.machining_mode import (
     with_exact_upright_axis,
 )
 from trunnion.planning.request import OperationPart, PlanRequest, PreparedOperation
+
+#: A move at 45 degrees is no plunge, whatever the noise of its coordinates.
+_ACROSS = 1e-6
 
 #: Modes in which the tool axis may change.
 _SIMULTANEOUS = (MachiningMode.TCP, MachiningMode.WITHOUT_TCP)
@@ -60,7 +65,7 @@ def prepare_operations(sources: Sequence[tuple[str, Operation]], request: PlanRe
             errors += conflicts
             prepared.append(_with_holes(_with_lines_for_arcs(_with_lines_for_splines(operation)), spindle))
         except HoleCycleError as error:
-            errors.append(Problem(file, error.line, error.what, error.cure))
+            errors.append(Problem(file, error.line, error.what, error.cure, code=error.code))
         spindle = SpindleStates(original.events, spindle).at(len(original.moves))
     if errors:
         raise RefusedError(errors)
@@ -75,12 +80,36 @@ def _in_frame(request: PlanRequest, file: str, original: Operation, frame: Frame
 
 
 def _with_feed_limit(operation: Operation, limit: float | None) -> Operation:
-    """The operation with the feed limit as the feed of its cuts; holes, which are rapids here, keep theirs."""
+    """The operation with the feed limit as the feed of its cuts; holes, which are rapids here, keep theirs.
+
+    So do plunges, unless theirs is higher.
+    """
     if limit is None:
         return operation
     moves = operation.moves
     cuts = (moves.kind != Kind.RAPID) & (moves.phase == Phase.CUT) & ~moves.per_rev
-    return replace(operation, moves=replace(moves, feed=np.where(cuts, limit, moves.feed)))
+    feed = np.where(_plunges(operation), np.minimum(moves.feed, limit), limit)
+    return replace(operation, moves=replace(moves, feed=np.where(cuts, feed, moves.feed)))
+
+
+def _plunges(operation: Operation) -> Flags:
+    """Moves that go down along the tool by more than they go across, (n,), a spline as a whole.
+
+    So does the first, of which nobody knows where it begins.
+    """
+    moves, splines = operation.moves, operation.splines
+    before = np.roll(moves.tip, 1, axis=0)
+    end = moves.tip.copy()
+    for k in range(len(splines)):
+        first, last, _ = splines[k]
+        before[first : last + 1], end[first : last + 1] = before[first].copy(), moves.tip[last]
+    steps = end - before
+    down = -np.einsum("ij,ij->i", steps, moves.axis)
+    across = np.linalg.norm(steps + down[:, None] * moves.axis, axis=1)
+    across[operation.arcs.row] = operation.arcs.radius * arc_sweeps(operation)
+    plunges = down > across * (1.0 + _ACROSS)
+    plunges[:1] = True
+    return np.asarray(plunges)
 
 
 def _in_mode(prepared: PreparedOperation) -> tuple[PreparedOperation, list[Problem]]:
@@ -157,7 +186,9 @@ def _with_holes(prepared: PreparedOperation, spindle: SpindleState | None) -> Pr
         text = f"{cycles.description}: {cycles.reason}"
         log.append(Decision(prepared.file, operation.name, cycles.line, -1, DecisionTopic.HOLES, text))
         if cycles.reason != REQUESTED:
-            warnings.append(Problem(prepared.file, cycles.line, cycles.reason, cycles.description, Severity.WARNING))
+            warnings.append(
+                Problem(prepared.file, cycles.line, cycles.reason, cycles.description, Severity.WARNING, code="PLN640")
+            )
     return replace(
         prepared,
         operation=holes.operation,

@@ -88,7 +88,13 @@ def reader_of(machine: Machine, family: str | None = None) -> FamilyReader:
     if not _has_reader(name):
         what = f"its control is a {name}, whose programs cannot be read yet"
         raise InputError(
-            Problem(machine.key, 0, what, f"name a machine with one of {', '.join(filter(_has_reader, FAMILIES))}")
+            Problem(
+                machine.key,
+                0,
+                what,
+                f"name a machine with one of {', '.join(filter(_has_reader, FAMILIES))}",
+                code="NC120",
+            )
         )
     reader: FamilyReader = load_reader(name)
     if reader.offsets_of is not None:

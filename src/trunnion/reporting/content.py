@@ -25,7 +25,7 @@ from trunnion.reporting.recorded_content import RecordedContent, recorded_conten
 from trunnion.reporting.simulation_content import SimulationContent
 from trunnion.reporting.text import clean
 from trunnion.reporting.usage import OperationUsage, ToolUsage, operation_usage, tool_usages
-from trunnion.verification.results import Check, Place, Verification, durations
+from trunnion.verification.results import Check, Place, Verification, durations, moving_seconds
 
 #: Units of a program by whether they are inches.
 _UNITS: Final = {False: "mm", True: "inch"}
@@ -50,6 +50,7 @@ class ReportContent:
     seconds: float
     cutting_seconds: float
     rapid_seconds: float
+    waiting_seconds: float
     untimed: int
     tools: tuple[ToolUsage, ...]
     operations: tuple[OperationUsage, ...]
@@ -71,7 +72,7 @@ def collect_content(
     """Collect the content of a report; the arguments are those of ``trunnion.reporting.write_report``."""
     run, machine = verification.run, verification.machine
     seconds, known = durations(verification)
-    arcs = RunArcs.of(run)
+    arcs, moving = RunArcs.of(run), moving_seconds(verification)
     cutting = run.kind != Kind.RAPID
     return ReportContent(
         program=clean(verification.program),
@@ -83,11 +84,12 @@ def collect_content(
         checks=tuple(map(_clean_check, verification.checks)),
         motions=len(run),
         seconds=math.fsum(seconds),
-        cutting_seconds=math.fsum(seconds[cutting]),
-        rapid_seconds=math.fsum(seconds[~cutting]),
+        cutting_seconds=math.fsum(moving[cutting]),
+        rapid_seconds=math.fsum(moving[~cutting]),
+        waiting_seconds=math.fsum(seconds - moving),
         untimed=int(np.count_nonzero(~known)),
-        tools=tuple(tool_usages(run, seconds, cutting)),
-        operations=tuple(operation_usage(run, each, seconds, cutting) for each in verification.operations),
+        tools=tuple(tool_usages(run, seconds, moving, cutting)),
+        operations=tuple(operation_usage(run, each, seconds, moving, cutting) for each in verification.operations),
         decisions=tuple(map(_clean_decision, decisions)),
         tip=tuple(tip_extent(run, k, cutting, arcs) for k in range(3)),
         axes=tuple(axis_extent(run, k, axis, arcs) for k, axis in enumerate(machine.axes)),
@@ -97,11 +99,16 @@ def collect_content(
     )
 
 
+def _told(problem: Problem) -> str:
+    """A problem without its place."""
+    return f"{problem.what}; {problem.cure}".removesuffix("; ")
+
+
 def refused_content(machine: Machine, program: str, problems: Sequence[Problem]) -> ReportContent:
     """The content for a program that was refused before it was run: one check, with the problems as places."""
     errors = [problem for problem in problems if problem.severity is Severity.ERROR]
     places = tuple(
-        Place(0, -1, math.nan, f"{problem.what}; {problem.cure}".removesuffix("; "), problem.file, problem.line)
+        Place(0, -1, math.nan, _told(problem), problem.file, problem.line, code=problem.code)
         for problem in sorted(problems, key=lambda problem: problem.severity is not Severity.ERROR)
     )
     summary = f"refused before it was run: {errors[0].what}" if errors else "refused before it was run"
@@ -118,6 +125,7 @@ def refused_content(machine: Machine, program: str, problems: Sequence[Problem])
         seconds=0.0,
         cutting_seconds=0.0,
         rapid_seconds=0.0,
+        waiting_seconds=0.0,
         untimed=0,
         tools=(),
         operations=(),

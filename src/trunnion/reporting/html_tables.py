@@ -53,6 +53,7 @@ def _title(content: ReportContent) -> str:
         ("Time", format_duration(content.seconds)),
         ("in cuts", format_duration(content.cutting_seconds)),
         ("in rapids", format_duration(content.rapid_seconds)),
+        ("waiting", format_duration(content.waiting_seconds) if content.waiting_seconds > 0.0 else ""),
         ("Made", content.made),
         ("Lengths", _units_text(content.units)),
     ]
@@ -99,7 +100,7 @@ def _check_places(check: Check) -> str:
         f"<tr><td class=n>{format_number(place.value)}</td>"
         f"<td class=n>{_number(place.number)}</td><td class=n>{_nc_line(place)}</td>"
         f"<td class=n>{_cl_line(place)}</td>"
-        f"<td>{escape(place.text)}</td>"
+        f"<td>{escape(place.told)}</td>"
         f"<td class=go>{_plot_button(place)}</td></tr>"
         for place in check.places[:MAX_PLACES]
     ]

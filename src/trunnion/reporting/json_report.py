@@ -59,6 +59,7 @@ def _head(content: ReportContent) -> dict[str, object]:
             "seconds": content.seconds,
             "cutting_seconds": content.cutting_seconds,
             "rapid_seconds": content.rapid_seconds,
+            "waiting_seconds": content.waiting_seconds,
             "motions_without_time": content.untimed,
         },
         "tools": [_tool(tool) for tool in content.tools],
@@ -107,6 +108,7 @@ def _place(place: Place) -> dict[str, object]:
         "cl_line": place.cl_line or None,
         "value": finite_or_none(place.value),
         "text": place.text,
+        "code": place.code or None,
     }
 
 

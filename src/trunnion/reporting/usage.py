@@ -44,8 +44,11 @@ class OperationUsage:
     first: BlockReference | None
 
 
-def tool_usages(run: Run, seconds: Floats, cutting: Flags) -> Iterator[ToolUsage]:
-    """Yield the tools in the order of their first motion; ``seconds`` and ``cutting`` (n,) are those of the rows."""
+def tool_usages(run: Run, seconds: Floats, moving: Floats, cutting: Flags) -> Iterator[ToolUsage]:
+    """Yield the tools in the order of their first motion.
+
+    ``seconds``, those of them in which the axes are ``moving``, and ``cutting``, (n,) each, are those of the rows.
+    """
     indices, first = np.unique(run.tool, return_index=True)
     for k in np.argsort(first):
         used = run.tool == indices[k]
@@ -55,16 +58,18 @@ def tool_usages(run: Run, seconds: Floats, cutting: Flags) -> Iterator[ToolUsage
             name=clean(run.tools[indices[k]]),
             motions=int(np.count_nonzero(used)),
             seconds=math.fsum(seconds[used]),
-            cutting_seconds=math.fsum(seconds[cuts]),
-            rapid_seconds=math.fsum(seconds[used & ~cutting]),
+            cutting_seconds=math.fsum(moving[cuts]),
+            rapid_seconds=math.fsum(moving[used & ~cutting]),
             rpm=_range(run.rpm[cuts & (run.spindle != 0)]),
             feed=_range(run.feed[per_minute]),
             first=block_reference(run, int(first[k])),
         )
 
 
-def operation_usage(run: Run, operation: OperationRows, seconds: Floats, cutting: Flags) -> OperationUsage:
-    """The usage of one operation; ``seconds`` and ``cutting`` (n,) are those of all rows."""
+def operation_usage(
+    run: Run, operation: OperationRows, seconds: Floats, moving: Floats, cutting: Flags
+) -> OperationUsage:
+    """The usage of one operation; the columns, (n,) each, are those of all rows as ``tool_usages`` has them."""
     rows = slice(operation.first, operation.end)
     return OperationUsage(
         name=clean(operation.name),
@@ -72,8 +77,8 @@ def operation_usage(run: Run, operation: OperationRows, seconds: Floats, cutting
         cl_file=clean(operation.cl_file),
         motions=operation.end - operation.first,
         seconds=math.fsum(seconds[rows]),
-        cutting_seconds=math.fsum(seconds[rows][cutting[rows]]),
-        rapid_seconds=math.fsum(seconds[rows][~cutting[rows]]),
+        cutting_seconds=math.fsum(moving[rows][cutting[rows]]),
+        rapid_seconds=math.fsum(moving[rows][~cutting[rows]]),
         first=block_reference(run, _first_row(run, operation)) if operation.end > operation.first else None,
     )
 

@@ -91,7 +91,9 @@ def _renderer(path: Path) -> Callable[[ReportContent, PlotSeries], Iterator[byte
     """What makes a report of the form that a name asks for."""
     render = RENDERERS.get(path.suffix.lower())
     if render is None:
-        raise InputError(Problem(str(path), 0, "a report is HTML or JSON", "let the name end in .html or .json"))
+        raise InputError(
+            Problem(str(path), 0, "a report is HTML or JSON", "let the name end in .html or .json", code="PAG310")
+        )
     return render
 
 

@@ -86,10 +86,10 @@ def _refused(run: Run, deltas: list[_Delta]) -> Iterator[Problem]:
         file = run.files[each.event.file]
         if each.name not in _LENGTHS | _RADII:
             what = f"{each.name} moves the tool by {each.value:g} mm, and where to is not simulated"
-            yield Problem(file, each.event.line, what, "put it into the tool table")
+            yield Problem(file, each.event.line, what, "put it into the tool table", code="SIM162")
         elif each.name in _RADII and _radius_counts(run, each):
             what = f"{each.name} adds {each.value:g} mm to the radius, and the control compensates it: not simulated"
-            yield Problem(file, each.event.line, what, "put it into the tool table")
+            yield Problem(file, each.event.line, what, "put it into the tool table", code="SIM162")
 
 
 def _radius_counts(run: Run, each: _Delta) -> bool:

@@ -3,21 +3,23 @@
 from trunnion.timing.axis_pieces import MOST_PIECES, AxisPieces, axis_pieces
 from trunnion.timing.dynamics import AxisDynamics
 from trunnion.timing.fastest import AxisMotion, FastestRun, SmoothPath, fastest_run
-from trunnion.timing.path import Path
+from trunnion.timing.path import Path, steady
 from trunnion.timing.path_modes import CORNER_TOLERANCE
 from trunnion.timing.planner import piece_seconds, timed_pieces
-from trunnion.timing.reached_feeds import ReachedFeeds, reached_feeds
+from trunnion.timing.reached_feeds import HARDLY_MOVES, ReachedFeeds, reached_feeds
 from trunnion.timing.row_feeds import RowFeeds, fill_feeds
 from trunnion.timing.row_interpolation import SAG
-from trunnion.timing.run_timer import RunTimer
+from trunnion.timing.run_timer import RowTimes, RunTimer
+from trunnion.timing.schedule import TimedEvent
 from trunnion.timing.speed_kernel import plan_speeds
-from trunnion.timing.timed_run import MachineState, TimedEvent, TimedRun, time_run
+from trunnion.timing.timed_run import MachineState, TimedRun, time_run
 
 #: Kernels that time most programs.
 KERNELS = (fill_feeds, plan_speeds)
 
 __all__ = [
     "CORNER_TOLERANCE",
+    "HARDLY_MOVES",
     "KERNELS",
     "MOST_PIECES",
     "SAG",
@@ -29,6 +31,7 @@ __all__ = [
     "Path",
     "ReachedFeeds",
     "RowFeeds",
+    "RowTimes",
     "RunTimer",
     "SmoothPath",
     "TimedEvent",
@@ -37,6 +40,7 @@ __all__ = [
     "fastest_run",
     "piece_seconds",
     "reached_feeds",
+    "steady",
     "time_run",
     "timed_pieces",
 ]

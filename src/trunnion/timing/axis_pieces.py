@@ -124,7 +124,7 @@ class _Motion:
             file = self.run.files[int(self.run.state.file[row])]
             what = f"is where the program makes more than {self._most} pieces of motion, which are too many to keep"
             cure = "take a part of the program, or fewer turns of circles and rotary axes"
-            raise InputError(Problem(file, int(self.run.lines[row]), what, cure))
+            raise InputError(Problem(file, int(self.run.lines[row]), what, cure, code="TWN112"))
 
     def _row_joints(self, first: int, end: int, xyz_is_tip: Flags, length: Floats, machine: Flags) -> Floats:
         """Axis values at the end of rows, with the real lengths of tools."""

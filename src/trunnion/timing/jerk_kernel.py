@@ -20,9 +20,10 @@ part of an axis' jerk is
 each at most a third of the limit; acceleration is shared by halves.
 
 Points that lie so close that such triangles, as wide as the pieces, are within the tolerance are those of a smooth
-curve: it bends by k = 2 d / (l1 + l2), evenly from point to point, and needs the acceleration k v^2 and the jerk v^3
-times the change of k over the way between two points. A step of k is spread over the way s over which the path departs
-by no more than the tolerance, k s^2 / 24, as at the begin of any transition curve.
+curve, and so are those within a row: it bends by k = 2 d / (l1 + l2), evenly from point to point, and needs the
+acceleration k v^2 and the jerk v^3 times the change of k over the way between two points. A step of k is spread over
+the way s over which the path departs by no more than the tolerance, k s^2 / 24, as at the begin of any transition
+curve.
 
 Units: mm and degrees, seconds.
 """
@@ -44,6 +45,7 @@ def fill_stretches(
     rate: Floats,
     tolerance: Floats,
     stops_after: Flags,
+    bends_after: Flags,
     limits: Floats2,
     reached: Floats,
     stretch: Floats2,
@@ -72,7 +74,8 @@ def fill_stretches(
             bounds[0, 0] = 0.0
             if not stopped:
                 speed = reached[last] if reached.shape[0] > 0 else np.inf
-                half = _corner(steps, length, last, at, tolerance[last], limits, rate, speed, bounds[0], bends[1])
+                allowed = np.inf if bends_after[last] else tolerance[last]
+                half = _corner(steps, length, last, at, allowed, limits, rate, speed, bounds[0], bends[1])
                 half = half if reached.shape[0] > 0 else 0.0
             _bend(steps, length, last, tolerance[last], limits, bends, bounds[1])
             count = _close(stretch, piece, caps, count, last, length[last] - before - half, half, bounds)

@@ -26,6 +26,7 @@ class Path:
     rate         (m,)    programmed speed along it, per minute; infinite for rapids
     tolerance    (m,)    how far the control may depart from the corner after a piece, mm or degrees
     stops_after  (m,)    the axes stop after it
+    bends_after  (m,)    its row goes on after it: no corner of the program is there
     counts       (n,)    pieces of each row; empty: one
     """
 
@@ -34,6 +35,7 @@ class Path:
     rate: Floats
     tolerance: Floats
     stops_after: Flags
+    bends_after: Flags
     counts: Ints
 
     def of_rows(self, column: Floats, combine: np.ufunc = np.add) -> Floats:
@@ -41,6 +43,15 @@ class Path:
         if not len(self.counts):
             return column
         return np.asarray(combine.reduceat(column, np.cumsum(self.counts) - self.counts))
+
+
+def steady(speeds: Floats) -> float:
+    """The highest of some speeds one after the other, (k,), at which nothing between the first and last is slower.
+
+    Ramps at both ends do not count, since they lead up to it.
+    """
+    before, after = np.maximum.accumulate(speeds), np.maximum.accumulate(speeds[::-1])[::-1]
+    return float(speeds.min(initial=before[-1], where=speeds < np.minimum(before, after)))
 
 
 class PathBuilder:
@@ -98,11 +109,13 @@ class PathBuilder:
         stop[[row for row in rows if row >= 0]] = True
         stop[self._more_stops] = True
         tolerance = corner_tolerances(run).part(0, n) if n else np.zeros(0)
-        counts = np.zeros(0, np.int64)
+        counts, bends = np.zeros(0, np.int64), np.zeros(m, np.bool_)
         if m != n:
             counts = np.concatenate(self._counts).astype(np.int64)
             last = np.cumsum(counts) - 1
             stops, stop = stop, np.zeros(m, np.bool_)
             stop[last[stops]] = True
+            bends[:] = True
+            bends[last] = False
             tolerance = np.repeat(tolerance, counts)
-        return Path(self._steps[:m], self._length[:m], self._rate[:m], tolerance, stop, counts)
+        return Path(self._steps[:m], self._length[:m], self._rate[:m], tolerance, stop, bends, counts)

@@ -78,7 +78,10 @@ def _planned(path: Path, dynamics: AxisDynamics) -> tuple[Floats, Floats]:
     m = len(path.length)
     columns, seconds = np.zeros((m, 5)), np.zeros(m)
     limits = np.stack((dynamics.speed, dynamics.acceleration))
-    plan_speeds(path.steps, path.length, path.rate / 60.0, path.tolerance, path.stops_after, limits, columns, seconds)
+    plan_speeds(
+        path.steps, path.length, path.rate / 60.0, path.tolerance, path.stops_after, path.bends_after, limits, columns,
+        seconds,
+    )  # fmt: skip
     return columns, seconds
 
 
@@ -105,8 +108,8 @@ def _stretches(path: Path, limits: Floats, reached: Floats) -> tuple[Floats, Int
     m = len(path.length)
     stretch, piece, caps = np.empty((3 * m, 4)), np.empty(3 * m, np.int64), np.full(3 * m + 1, np.inf)
     count = fill_stretches(
-        path.steps, path.length, path.rate / 60.0, path.tolerance, path.stops_after, limits, reached, stretch, piece,
-        caps,
+        path.steps, path.length, path.rate / 60.0, path.tolerance, path.stops_after, path.bends_after, limits, reached,
+        stretch, piece, caps,
     )  # fmt: skip
     stretch, allowed = stretch[:count], caps[: count + 1]
     passed, must = np.zeros(count + 1, np.bool_), np.zeros(count + 1, np.bool_)

@@ -21,7 +21,7 @@ _RESTS: Final = 1e-4
 
 #: In a row in which rotary axes turn and the tip moves by less than this, mm, a feed says little: controls differ in
 #: what they count there, and a digit of a coordinate makes another feed of it.
-_HARDLY_MOVES: Final = 0.01
+HARDLY_MOVES: Final = 0.01
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,13 +30,15 @@ class ReachedFeeds:
 
     seconds  (n,)  of the motion of the axes; what they wait for is not in it
     feed     (n,)  highest feed of the tip; NaN where no axis moves, or the tip hardly does while rotary axes turn
+    asked    (n,)  feed of the tip that the program asks for; NaN there as well, and in rapids
     """
 
     seconds: Floats
     feed: Floats
+    asked: Floats
 
 
-def reached_feeds(run: Run, most: Floats) -> ReachedFeeds:
+def reached_feeds(run: Run, most: Floats, resting: Floats | None = None) -> ReachedFeeds:
     """Time a run with other feeds.
 
     Parameters
@@ -45,22 +47,31 @@ def reached_feeds(run: Run, most: Floats) -> ReachedFeeds:
         The program as its control ran it.
     most : (n,) float64
         Feeds of the tip that rows have in place of the programmed ones; NaN: they have these.
+    resting : (n,) float64
+        What stands for these in rows in which rotary axes turn and the tip hardly moves; None: the same.
     """
     feeds, timer = RowFeeds(run), RunTimer(run)
-    share, known = np.empty(len(run)), np.empty(len(run), np.bool_)
+    share, known, programmed = np.empty(len(run)), np.empty(len(run), np.bool_), np.empty(len(run))
     for first, end, positions in run.chunks():
         of_rows = feeds.part(first, end, positions)
         turned = np.abs(np.diff(positions.joints[:, list(run.machine.rotary)], axis=0)).max(axis=1, initial=0.0)
         share[first:end] = _tip_share(run, first, end, turned, of_rows)
-        known[first:end] = (turned <= NO_ROTATION) | (of_rows[FeedRow.TRAVEL] >= _HARDLY_MOVES)
+        known[first:end] = (turned <= NO_ROTATION) | (of_rows[FeedRow.TRAVEL] >= HARDLY_MOVES)
+        programmed[first:end] = of_rows[FeedRow.RATE]
         given = most[first:end]
+        if resting is not None:
+            given = np.where(known[first:end], given, resting[first:end])
         with np.errstate(divide="ignore", invalid="ignore"):
             rate = np.where(share[first:end] > 0.0, given / share[first:end], np.inf)
         of_rows[FeedRow.RATE] = np.where(np.isnan(given), of_rows[FeedRow.RATE], rate)
         timer.add(first, positions, of_rows)
     seconds, speed = timer.reached()
     known &= np.isfinite(speed) & (speed > 0.0)
-    return ReachedFeeds(seconds, np.where(known, speed * share, np.nan))
+    asked = known & np.isfinite(programmed)
+    with np.errstate(invalid="ignore"):
+        return ReachedFeeds(
+            seconds, np.where(known, speed * share, np.nan), np.where(asked, programmed * share, np.nan)
+        )
 
 
 def _tip_share(run: Run, first: int, end: int, turned: Floats, feeds: Floats) -> Floats:

@@ -1,26 +1,44 @@
 """How long the rows of a run take: what they ask for, within what the axes can do.
 
 A row at feed takes its length at its feed, and a rapid what its slowest axis needs; accelerations add ramps, with a
-look ahead over corners. A dwell and a tool change add their seconds to the row at whose end the axes wait.
+look ahead over corners. Dwells, tool changes and waits for the spindle belong to the row at whose end the axes wait.
 """
+
+from dataclasses import dataclass
 
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.model.run import PositionChunk, Run
 from trunnion.timing.dynamics import AxisDynamics
-from trunnion.timing.path import PathBuilder
-from trunnion.timing.pauses import pauses
+from trunnion.timing.path import PathBuilder, steady
 from trunnion.timing.planner import piece_seconds, timed_pieces
 from trunnion.timing.row_feeds import FeedRow
 from trunnion.timing.row_interpolation import RowInterpolation
+from trunnion.timing.schedule import Schedule
 
 #: Rows in which rotary axes turn by no more than this, degrees, count as straight: 2 m from the axis they are, to
 #: 0.02 mm.
 _STRAIGHT_TURN = 0.5
 
-#: On average no row of a chunk is cut into more pieces than this; where many would be, all are cut into fewer.
+#: Pieces into which the rows of a run are cut: so many for each row, and so many besides for the whole run. Where more
+#: would be needed, all rows of a chunk are cut into fewer.
 _MOST_PIECES = 16
+_SPARE_PIECES = 4_000_000
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RowTimes:
+    """The times of n rows.
+
+    moving    (n,)  seconds of motion
+    waiting   (n,)  seconds that the axes wait at the end of each; before the first row, that of the first
+    tip_feed  (n,)  mean speed of the tip while it moves, mm/min
+    """
+
+    moving: Floats
+    waiting: Floats
+    tip_feed: Floats
 
 
 class RunTimer:
@@ -30,9 +48,11 @@ class RunTimer:
         self._run = run
         self._dynamics = AxisDynamics.of(run.machine)
         self._inside = RowInterpolation(run)
-        self._path = PathBuilder(run)
+        self._schedule = Schedule(run, self._dynamics)
+        self._path = PathBuilder(run, self._schedule.stops)
         self._travel = np.empty(len(run))
         self._read_with = run.machine.tool_length or 0.0
+        self._spare = _SPARE_PIECES
 
     def add(self, first: int, positions: PositionChunk, feeds: Floats) -> None:
         """Add rows, in order; ``positions`` is the ``Run.chunk`` of them, ``feeds`` what ``RowFeeds`` has."""
@@ -45,25 +65,38 @@ class RunTimer:
         if pieces == n:
             self._path.add(first, feeds, np.diff(joints, axis=0), counts)
             return
-        if pieces > n * _MOST_PIECES:
-            counts = np.maximum(counts * (n * _MOST_PIECES) // pieces, 1)
+        most = n * _MOST_PIECES + self._spare
+        if pieces > most:
+            counts = np.maximum(counts * most // pieces, 1)
+            pieces = int(counts.sum())
+        self._spare -= max(pieces - n * _MOST_PIECES, 0)
         _, begin, done, along = self._inside.pieces(first, joints, length, counts)
         steps = np.diff(along, axis=0, prepend=joints[:1])
         self._path.add(first, feeds, steps, counts, done - begin)
 
     def reached(self) -> tuple[Floats, Floats]:
-        """Seconds of the axes' motion, and highest speed along what the feed counts, per minute, of all rows, (n,)."""
+        """Seconds of the axes' motion, and highest speed along what the feed counts, per minute, of all rows, (n,).
+
+        Of a circle it is the highest ``steady`` one.
+        """
         path = self._path.result()
         times = timed_pieces(path, self._dynamics)
-        return path.of_rows(times.seconds), 60.0 * path.of_rows(times.reached, np.maximum)
+        speed = path.of_rows(times.reached, np.maximum).copy()
+        if len(path.counts):
+            ends = np.cumsum(path.counts)
+            for row in self._run.arcs.row.tolist():
+                speed[row] = steady(times.reached[ends[row] - path.counts[row] : ends[row]])
+        return path.of_rows(times.seconds), 60.0 * speed
 
-    def result(self) -> tuple[Floats, Floats]:
-        """Seconds, and mean speed of the tip in mm/min, of all rows, (n,) each."""
+    def result(self) -> RowTimes:
+        """The times of all rows."""
         path = self._path.result()
-        seconds = path.of_rows(piece_seconds(path, self._dynamics))
+        moving = path.of_rows(piece_seconds(path, self._dynamics))
         with np.errstate(divide="ignore", invalid="ignore"):
-            tip_feed = np.where(seconds > 0.0, 60.0 * self._travel / seconds, 0.0)
-        if len(seconds):
-            for event, takes in pauses(self._run, self._dynamics):
-                seconds[max(min(event.before_row, len(seconds)) - 1, 0)] += takes
-        return seconds, tip_feed
+            tip_feed = np.where(moving > 0.0, 60.0 * self._travel / moving, 0.0)
+        waiting = np.zeros(len(moving))
+        if len(moving):
+            waits = self._schedule.timed(np.cumsum(np.where(np.isfinite(moving), moving, 0.0))).waits
+            waiting += waits[1:]
+            waiting[0] += waits[0]
+        return RowTimes(moving, waiting, tip_feed)

@@ -3,7 +3,8 @@
 Each piece of the path is straight in the space of the axes; its way s counts what the feed counts. A corner between
 two pieces is a parabola that departs from it by no more than a tolerance: over its length l the direction (axis values
 per s) changes evenly by d, so it departs by d l / 8 and needs the acceleration d v^2 / l at the speed v. Its halves lie
-in the two pieces, and take no more than half of the shorter one.
+in the two pieces, and take no more than half of the shorter one. Between two pieces of one row there is no corner: the
+path bends evenly from the middle of one to the middle of the other, whatever the tolerance.
 
 With b = v^2, whose change over a way is twice the acceleration along it, a limit A of an axis is
 
@@ -65,6 +66,7 @@ def plan_speeds(
     rate: Floats,
     tolerance: Floats,
     stops_after: Flags,
+    bends_after: Flags,
     limits: Floats2,
     plan: Floats2,
     seconds: Floats,
@@ -76,11 +78,12 @@ def plan_speeds(
     rate         (m,)      programmed speed along it, per second
     tolerance    (m,)      how far the path may depart from the corner after a piece
     stops_after  (m,)      the axes stop there
+    bends_after  (m,)      its row goes on there
     limits       (2, 5)    speeds and accelerations of the axes
     """
     acceleration = limits[1]
     _fill_straights(steps, length, rate, limits, plan)
-    last = _fill_corners(steps, length, tolerance, stops_after, acceleration, plan)
+    last = _fill_corners(steps, length, tolerance, stops_after, bends_after, acceleration, plan)
     if last < 0:
         return
     _lower(steps, length, acceleration, last, False, plan)
@@ -200,7 +203,13 @@ def _fill_straights(steps: Floats2, length: Floats, rate: Floats, limits: Floats
 
 @inner
 def _fill_corners(
-    steps: Floats2, length: Floats, tolerance: Floats, stops_after: Flags, acceleration: Floats, plan: Floats2
+    steps: Floats2,
+    length: Floats,
+    tolerance: Floats,
+    stops_after: Flags,
+    bends_after: Flags,
+    acceleration: Floats,
+    plan: Floats2,
 ) -> int:
     """Fill the corners and what they allow; returns the last piece that moves, -1 for none."""
     last, stopped = -1, False
@@ -211,7 +220,8 @@ def _fill_corners(
         if last >= 0:
             greatest = 0.0
             if not stopped:
-                corner, greatest = _corner(steps, length, last, at, tolerance[last], acceleration, plan)
+                allowed = np.inf if bends_after[last] else tolerance[last]
+                corner, greatest = _corner(steps, length, last, at, allowed, acceleration, plan)
                 plan[last, 0] = corner
             plan[last, 2] = min(plan[last, 2], greatest)
             plan[at, 1] = min(plan[at, 1], greatest)

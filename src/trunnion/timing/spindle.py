@@ -1,18 +1,15 @@
 """The spindle in time: it speeds up and slows down evenly, as fast as the machine's definition states.
 
-A change begins when the row before it has ended. Rapids go on meanwhile; the first motion at feed waits until a spindle
-that stood, or turned the other way, has its speed. Without a stated acceleration the spindle takes no time.
+``schedule`` says when it is told to. Without a stated acceleration the spindle takes no time.
 Units: seconds, rev/min; negative speeds are counter-clockwise (M4).
 """
 
-from collections.abc import Iterator
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from trunnion.arrays import Floats, Ints
-from trunnion.model.run import Run
-from trunnion.model.toolpath import Kind
+from trunnion.arrays import Flags, Floats
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,15 +27,20 @@ class SpindleSpeeds:
     target: Floats
     rate: float
 
-    def at(self, seconds: Floats) -> Floats:
-        """Return the speeds at some times, (k,)."""
+    def at(self, seconds: Floats, after: Flags | None = None) -> tuple[Floats, Floats]:
+        """The speed and the speed that it leads to at some times, (k,) each.
+
+        ``after`` (k,): where a change begins at that very time, it has begun.
+        """
         if not len(self.seconds):
-            return np.zeros(len(seconds))
+            return np.zeros(len(seconds)), np.zeros(len(seconds))
         k = np.searchsorted(self.seconds, seconds, "left") - 1
+        if after is not None:
+            k = np.where(after, np.searchsorted(self.seconds, seconds, "right") - 1, k)
         known = np.maximum(k, 0)
         change = self.target[known] - self.before[known]
         done = _moved(change, seconds - self.seconds[known], self.rate)
-        return np.where(k < 0, 0.0, self.before[known] + done)
+        return np.where(k < 0, 0.0, self.before[known] + done), np.where(k < 0, 0.0, self.target[known])
 
     def end(self) -> float:
         """Second at which the last change has come to its end."""
@@ -54,24 +56,39 @@ def _moved(change: Floats, seconds: Floats, rate: float) -> Floats:
     return np.asarray(np.sign(change) * np.minimum(np.abs(change), rate * np.maximum(seconds, 0.0)))
 
 
-def spindle_targets(run: Run) -> tuple[Ints, Floats]:
-    """The rows before which the speed changes, ascending, and the speeds from there on; n: the end of the program."""
-    state, n = run.state, len(run)
-    columns = [(np.minimum(column.rows, n), column.values) for column in (state.rpm, state.spindle)]
-    rows = np.unique(np.concatenate([each for each, _ in columns]))
-    rpm, sense = (values[np.searchsorted(each, rows, "right") - 1] for each, values in columns)
-    speed = np.asarray(rpm * sense, np.float64)
-    changes = np.flatnonzero(np.diff(speed, prepend=0.0) != 0.0)
-    return rows[changes], speed[changes]
+class SpindleRamps:
+    """Collects what the spindle is told, in the order of time."""
 
+    def __init__(self, rate: float) -> None:
+        self._rate = rate
+        self._seconds: list[float] = []
+        self._before: list[float] = []
+        self._target: list[float] = []
 
-def waiting_rows(run: Run) -> Iterator[tuple[int, int]]:
-    """Yield the changes for which a motion at feed waits, by their places in ``spindle_targets``, and that row."""
-    rows, speed = spindle_targets(run)
-    feeds = np.flatnonzero(run.kind != Kind.RAPID)
-    before = np.concatenate((np.zeros(1), speed[:-1]))
-    for k in np.flatnonzero((speed != 0.0) & (speed * before <= 0.0)).tolist():
-        at = int(np.searchsorted(feeds, rows[k]))
-        until = rows[k + 1] if k + 1 < len(rows) else len(run)
-        if at < len(feeds) and feeds[at] < until:
-            yield k, int(feeds[at])
+    def tell(self, seconds: float, target: float) -> None:
+        """Have the spindle go to a speed from some time on; nothing changes if it is told what it was told before."""
+        if target == self.told:
+            return
+        before = 0.0
+        if self._target:
+            gone, change = seconds - self._seconds[-1], self._target[-1] - self._before[-1]
+            step = min(self._rate * gone, abs(change)) if math.isfinite(self._rate) else abs(change)
+            before = self._before[-1] + math.copysign(step, change)
+        self._seconds.append(seconds)
+        self._before.append(before)
+        self._target.append(target)
+
+    @property
+    def told(self) -> float:
+        """What it was told last."""
+        return self._target[-1] if self._target else 0.0
+
+    def ready(self) -> float:
+        """When it has reached what it was told last."""
+        if not self._target or not math.isfinite(self._rate):
+            return -math.inf
+        return self._seconds[-1] + abs(self._target[-1] - self._before[-1]) / self._rate
+
+    def speeds(self) -> SpindleSpeeds:
+        """All that it was told."""
+        return SpindleSpeeds(np.array(self._seconds), np.array(self._before), np.array(self._target), self._rate)

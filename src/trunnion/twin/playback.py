@@ -25,11 +25,12 @@ _LONGEST_STEP: Final = 10.0
 
 
 class PlayState(StrEnum):
-    """What the program does."""
+    """What the program does; it is held by a client, and stopped by itself (M0, M1)."""
 
     READY = "ready"
     RUNNING = "running"
     HELD = "held"
+    STOPPED = "stopped"
     ENDED = "ended"
 
 
@@ -67,8 +68,7 @@ class Playback:
         self._ends = np.maximum.accumulate(timed.ends) if len(timed.ends) else timed.ends
         self.duration = float(timed.duration)
         self.speed, self.loop = speed, loop
-        waits = [(event.seconds, event.seconds + event.takes) for event in timed.events if event.takes > 0.0]
-        self._waits = np.array(sorted(waits)).reshape(-1, 2)
+        self._waits = timed.waits
         self._stops = np.array(sorted(event.seconds for event in timed.events if event.event.kind == "stop"))
         self._stopped = -1.0
         self.state = PlayState.READY
@@ -102,9 +102,9 @@ class Playback:
         self._wall = wall
 
     @property
-    def stands(self) -> bool:
-        """Whether no axis moves, wherever the program is."""
-        return self.state is not PlayState.RUNNING or self.override == 0.0
+    def share(self) -> float:
+        """Share of its programmed speed at which the program moves now, as a control shows it; 0 while it stands."""
+        return self.override / 100.0 if self.state is PlayState.RUNNING else 0.0
 
     def remaining(self) -> float:
         """Wall seconds until the end of the program at the present speed; infinite where it stands."""
@@ -173,7 +173,7 @@ class Playback:
         stretch = Stretch(self.seconds, seconds, self._wall, wall)
         self.seconds, self._wall = seconds, wall
         if seconds in self._stops and seconds > self._stopped:
-            self._stopped, self.state = seconds, PlayState.HELD
+            self._stopped, self.state = seconds, PlayState.STOPPED
         elif seconds >= self.duration:
             self.completed += 1
             self.seconds, self._stopped = (0.0, -1.0) if self.loop else (self.duration, self._stopped)

@@ -43,6 +43,9 @@ class Outlet(Protocol):
     async def alarm(self, identifier: str, text: str, stamp: datetime) -> None:
         """Tell an alarm of the machine."""
 
+    async def alarm_over(self, identifier: str, text: str, stamp: datetime) -> None:
+        """Tell that an alarm is over."""
+
     def lagging(self) -> dict[object, int]:
         """Clients that do not follow, and how much each has fetched so far."""
 
@@ -91,11 +94,13 @@ class Twin:
     async def start(self) -> bool:
         """Start the program, or go on with it; whether it did not run."""
         async with self._turn:
-            anew = self.playback.state in (PlayState.READY, PlayState.ENDED)
+            before = self.playback.state
             if not self.playback.start(self.clock()):
                 return False
-            if anew:
+            if before is PlayState.ENDED:
                 await self._show_start()
+            elif before is not PlayState.READY:
+                await self._show_now()
             await self._tell_state()
             return True
 
@@ -105,7 +110,7 @@ class Twin:
             await self._advance()
             if not self.playback.hold():
                 return False
-            await self._show_standing()
+            await self._show_now()
             await self._tell_state()
             return True
 
@@ -124,8 +129,8 @@ class Twin:
         async with self._turn:
             await self._advance()  # what has passed until now went as it was before
             self.playback.override = percent
-            if self.playback.stands:
-                await self._show_standing()
+            if self.playback.state is PlayState.RUNNING:
+                await self._show_now()
             await self._tell_state()
             return True
 
@@ -145,15 +150,32 @@ class Twin:
 
     async def _advance(self) -> None:
         """Tell what has run since the last time."""
-        state = self.playback.state
+        state, completed = self.playback.state, self.playback.completed
         if await self._wait_for_clients():
             self.playback.skip(self.clock())  # the program has waited as well
+        wall = None
         for stretch in self.playback.advance(self.clock()):
             await self._tell(stretch)
-        if self.playback.state is not state:
-            await self._show_standing()
-        if self.playback.state is not state or self.clock() - self._told >= 1.0:
+            wall = stretch.wall_end
+        if self.playback.state is PlayState.RUNNING and self.playback.completed != completed:
+            await self._begin_again(wall)
+        elif self.playback.state is not state:
+            await self._wait_for_clients()
+            await self._show_now(wall)
+            await self._tell_state(wall)
+        elif self.clock() - self._told >= 1.0:
             await self._tell_state()
+
+    async def _begin_again(self, wall: float | None) -> None:
+        """Tell the end of a program that runs in a loop, and its start."""
+        self.playback.state, self.playback.seconds = PlayState.ENDED, self.playback.duration
+        await self._wait_for_clients()
+        await self._show_now(wall)
+        await self._tell_state(wall)
+        self.playback.state, self.playback.seconds = PlayState.RUNNING, 0.0
+        await self._wait_for_clients()
+        await self._show_start(wall)
+        await self._tell_state(wall)
 
     async def _sleep(self) -> None:
         runs_free = self.playback.speed is None and self.playback.state is PlayState.RUNNING
@@ -189,7 +211,7 @@ class Twin:
         for first in range(0, len(seconds), _AT_A_TIME):
             part = slice(first, first + _AT_A_TIME)
             await self._wait_for_clients()
-            await self._show(seconds[part], ended[part], wall[part], standing=stretch.end <= stretch.begin)
+            await self._show(seconds[part], ended[part], wall[part], self.playback.override / 100.0)
             await asyncio.sleep(0.0)
         await self._tell_events(stretch)
 
@@ -203,8 +225,15 @@ class Twin:
             grid = stretch.program(np.arange(first, last + 1, dtype=np.float64) * period)
         return np.asarray(grid, np.float64)
 
-    async def _show(self, seconds: Floats, ended: Ints, wall: Floats, *, standing: bool = False) -> None:
-        snapshots = self.program.at(seconds, ended, standing=standing)
+    async def _show(self, seconds: Floats, ended: Ints, wall: Floats, share: float) -> None:
+        await self._publish(self.program.at(seconds, ended, share), wall)
+
+    async def _show_now(self, wall: float | None = None) -> None:
+        """Tell what the machine shows as the program goes on, or where it stands: at its end, at a stop, held."""
+        now, wall = np.full(1, self.playback.seconds), self.clock() if wall is None else wall
+        await self._show(now, np.full(1, -1), np.array([wall]), self.playback.share)
+
+    async def _publish(self, snapshots: Snapshots, wall: Floats) -> None:
         microseconds = []
         for each in np.rint(wall * 1e6).astype(np.int64).tolist():
             # Each time has a stamp of its own, so that what is told twice can be told apart from what changed.
@@ -216,34 +245,35 @@ class Twin:
         await self._watch_travel(snapshots, stamps)
 
     async def _watch_travel(self, snapshots: Snapshots, stamps: list[datetime]) -> None:
-        """Tell when an axis leaves its travel."""
+        """Tell when an axis leaves its travel, and when it is back."""
         machine = self.program.machine
         since, self._watched = self._watched, float(snapshots.seconds[-1])
         for k, beyond in enumerate(self.program.beyond_travel(snapshots, since)):
-            for column in np.flatnonzero(beyond & ~self._beyond).tolist():
+            for column in np.flatnonzero(beyond != self._beyond).tolist():
                 axis, block = machine.axes[column], snapshots.blocks[k]
                 place = block.number or f"line {block.line}"
-                text = f"axis {axis.name} is beyond its travel of {axis.low:g} to {axis.high:g} in {place}"
+                range_text = f"its travel of {axis.low:g} to {axis.high:g} in {place}"
                 for outlet in self.outlets:
-                    await outlet.alarm(f"travel {axis.name}", text, stamps[k])
+                    if beyond[column]:
+                        text = f"axis {axis.name} is beyond {range_text}"
+                        await outlet.alarm(f"travel {axis.name}", text, stamps[k])
+                    else:
+                        text = f"axis {axis.name} is back within {range_text}"
+                        await outlet.alarm_over(f"travel {axis.name}", text, stamps[k])
             self._beyond = beyond
 
     async def _tell_events(self, stretch: Stretch) -> None:
         for timed in self.program.events_within(stretch.begin, stretch.end):
-            if timed.event.kind == "message" and timed.event.value:
+            if timed.event.kind == "message":
                 wall = float(stretch.wall(np.array([timed.seconds]))[0])
                 for outlet in self.outlets:
-                    await outlet.message(str(timed.event.value), _EPOCH + timedelta(seconds=wall))
+                    await outlet.message(str(timed.event.value or ""), _EPOCH + timedelta(seconds=wall))
 
-    async def _show_start(self) -> None:
-        self._beyond[:], self._watched = False, 0.0
-        await self._show(np.zeros(1), np.full(1, -1), np.array([self.clock()]), standing=True)
+    async def _show_start(self, wall: float | None = None) -> None:
+        self._watched = 0.0
+        await self._publish(self.program.before_start(), np.array([self.clock() if wall is None else wall]))
 
-    async def _show_standing(self) -> None:
-        """Tell that all axes stand where they are: at the end, at a stop, held, and at an override of 0."""
-        await self._show(np.array([self.playback.seconds]), np.full(1, -1), np.array([self.clock()]), standing=True)
-
-    async def _tell_state(self) -> None:
+    async def _tell_state(self, wall: float | None = None) -> None:
         self._told = self.clock()
         for outlet in self.outlets:
-            await outlet.changed(self.playback, self._told)
+            await outlet.changed(self.playback, self._told if wall is None else wall)

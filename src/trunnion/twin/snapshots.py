@@ -5,8 +5,10 @@ Out:    ``Snapshots``.
 Units:  mm and degrees, mm/min, rev/min, seconds of the program.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import PurePath
 
 import numpy as np
@@ -19,6 +21,9 @@ from trunnion.twin.modal import Blocks, BlockState
 
 #: How far beyond its travel an axis may stand before it is an alarm, mm or degrees.
 _TRAVEL_TOLERANCE = 1e-6
+
+#: Further than any axis goes, mm or degrees.
+_FAR = 1e5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,8 +38,9 @@ class Snapshots:
     moving     (k, 5)  the axis moves
     tip        (k, 3)  tool tip in the workpiece frame
     to_go      (k, 3)  from there to the tip at the end of the row
-    tip_feed   (k,)    speed of the tip
+    feed       (k,)    speed along the path as F counts it
     rpm        (k,)    speed of the spindle, negative for M4
+    told_rpm   (k,)    speed that it has been told
     blocks             what is in force at each time
     """
 
@@ -46,8 +52,9 @@ class Snapshots:
     moving: Flags
     tip: Floats
     to_go: Floats
-    tip_feed: Floats
+    feed: Floats
     rpm: Floats
+    told_rpm: Floats
     blocks: tuple[BlockState, ...]
 
     def __len__(self) -> int:
@@ -59,7 +66,7 @@ class TwinProgram:
 
     def __init__(self, timed: TimedRun, texts: Sequence[str], lengths: Mapping[int, float] | None = None) -> None:
         self.timed = timed
-        self._blocks = Blocks(timed.run, texts)
+        self._blocks = Blocks(timed, texts)
         self.lengths = dict(lengths or {})
 
     @property
@@ -77,7 +84,7 @@ class TwinProgram:
         """Name of the main program, without its folder."""
         return PurePath(self.run.files[0]).name if self.run.files else "program"
 
-    @property
+    @cached_property
     def tools(self) -> tuple[str, ...]:
         """Tools that the program calls, in the order of the first calls."""
         return tuple(name for name in self.run.tools if name)
@@ -86,14 +93,18 @@ class TwinProgram:
         """Events after ``begin`` (from it on, at the start of the program) up to ``end``."""
         return [e for e in self.timed.events if (begin < e.seconds <= end) or (e.seconds == begin == 0.0)]
 
-    def at(self, seconds: Floats, ended: Ints, *, standing: bool = False) -> Snapshots:
+    def at(self, seconds: Floats, ended: Ints, share: float = 1.0) -> Snapshots:
         """The machine at times (k,), ascending; ``ended`` (k,) are the rows that end at them, -1 where none does.
 
-        ``standing``: the program does not go on there, and no axis moves.
+        ``share``: of the speed, as the feed override has it; 0: the axes stand.
         """
-        run, state = self.run, self.timed.at(seconds)
-        is_end = ended >= 0
+        run, is_end = self.run, ended >= 0
+        state = self.timed.at(seconds, ~is_end)
         row = np.where(is_end, ended, state.row)
+        moving = state.velocity != 0.0
+        if is_end.any():  # an axis that goes on moves, one that has arrived does not
+            moving[is_end] &= self.timed.at(seconds[is_end], np.ones(int(is_end.sum()), np.bool_)).velocity != 0.0
+        blocks = self._blocks.at(seconds, row, is_end, state.told_rpm)
         joints = state.joints.copy()
         joints[is_end] = run.positions(ended[is_end]).joints
         of_row = run.positions(row)
@@ -102,10 +113,25 @@ class TwinProgram:
         remaining, to_go = of_row.joints - joints, of_row.tip - tip
         before = row < 0
         remaining[before], to_go[before] = 0.0, 0.0
-        moving = (state.velocity != 0.0) & ~is_end[:, None] & (not standing)
-        tip_feed = np.zeros(len(seconds)) if standing else state.tip_feed
-        blocks = tuple(self._blocks.at(k) for k in row.tolist())
-        return Snapshots(seconds, row, is_end, joints, remaining, moving, tip, to_go, tip_feed, state.rpm, blocks)
+        return Snapshots(
+            seconds, row, is_end, joints, remaining, moving & (share > 0.0), tip, to_go, state.feed * share, state.rpm,
+            state.told_rpm, blocks,
+        )  # fmt: skip
+
+    def before_start(self) -> Snapshots:
+        """The machine before the program has been started."""
+        joints = np.asarray(self.run.start)[None]
+        none, still = np.zeros((1, 5)), np.zeros(1)
+        return Snapshots(
+            still, np.full(1, -1), np.zeros(1, np.bool_), joints, none, np.zeros((1, 5), np.bool_),
+            forward(self.machine, joints)[0], np.zeros((1, 3)), still, still, still, (self._blocks.before_start(),),
+        )  # fmt: skip
+
+    def tool_number(self, name: str) -> int:
+        """The number by which a tool is called; of a name, its place among the tools; 0 for none."""
+        if name.isascii() and name.isdigit() and int(name) < 2**31:
+            return int(name)
+        return self.tools.index(name) + 1 if name in self.tools else 0
 
     def beyond_travel(self, snapshots: Snapshots, since: float) -> Flags:
         """Which axes are beyond their travel, (k, 5), where it is known where they stand.
@@ -120,3 +146,26 @@ class TwinProgram:
             beyond = np.minimum(least, snapshots.joints) < low - _TRAVEL_TOLERANCE
             beyond |= np.maximum(most, snapshots.joints) > high + _TRAVEL_TOLERANCE
         return np.asarray(beyond & placed)
+
+
+def displayed(machine: Machine, column: int, values: Floats) -> Floats:
+    """What a control shows of an axis: of one that turns without end, the turn in which the machine shows it."""
+    axis = machine.axes[column]
+    if not axis.endless or math.isnan(axis.display_low):
+        return values
+    shown = np.mod(values - axis.display_low, 360.0)
+    return np.where(shown >= 360.0, 0.0, shown) + axis.display_low
+
+
+def display_range(machine: Machine, column: int) -> tuple[float, float]:
+    """The range of what a control shows of an axis, finite.
+
+    It is that of the travel where it is known where slides stand; without a workpiece zero nobody knows what of it
+    their values use.
+    """
+    axis = machine.axes[column]
+    if axis.endless and not math.isnan(axis.display_low):
+        return axis.display_low, axis.display_low + 360.0
+    if axis.endless or not machine.is_placed(column):
+        return -_FAR, _FAR
+    return max(axis.low, -_FAR), min(axis.high, _FAR)

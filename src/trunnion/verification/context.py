@@ -41,6 +41,7 @@ class ExpectedValues:
     stops_in_compensation  whether a stop may stand within it
     fastest_feed           feeds are those that the axes reach under the feeds of the CL files, or under ``feed_limit``
     feed_limit             greatest feed of cuts then, in place of those of the CL files, mm/min; None: theirs
+    feeds_as_programmed    those of the program stand for the declaration of a post, which is not known
     by_operation           tool, work offset and edge of single operations, by their names
     """
 
@@ -61,6 +62,7 @@ class ExpectedValues:
     stops_in_compensation: bool = False
     fastest_feed: bool = False
     feed_limit: float | None = None
+    feeds_as_programmed: bool = False
     by_operation: Mapping[str, OperationSettings] = field(default_factory=dict)
 
     def for_operation(self, name: str) -> OperationSettings:
@@ -167,4 +169,4 @@ def check_from_places(key: str, title: str, places: Sequence[Place], good: str, 
         return Check(key, title, True, good)
     first = places[0]
     more = f", and {count - 1} more" if count > 1 else ""
-    return Check(key, title, False, f"{first.block_name}: {first.text}{more}", places=tuple(places[:MAX_PLACES]))
+    return Check(key, title, False, f"{first.block_name}: {first.told}{more}", places=tuple(places[:MAX_PLACES]))

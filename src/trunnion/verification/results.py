@@ -1,6 +1,6 @@
 """The results of a verification, as values; text, HTML and JSON are made from them elsewhere."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -27,6 +27,7 @@ class Place:
     value            what was found there, in the unit of the check
     text             the same in words
     cl_file, cl_line place in a CL file; line 0 for none
+    code             that of the message which ``text`` is, see ``trunnion.explanations``; empty: a finding of the check
     """
 
     nc_line: int
@@ -37,6 +38,12 @@ class Place:
     cl_line: int = 0
     nc_file: str = ""
     row: int = -1
+    code: str = ""
+
+    @property
+    def told(self) -> str:
+        """``text`` as it is printed: with its code, if it has one."""
+        return f"{self.text} [{self.code}]" if self.code else self.text
 
     @property
     def block_name(self) -> str:
@@ -92,6 +99,7 @@ class Verification:
     Columns have one row for each motion of ``run``, or no rows if they were not asked for.
 
     seconds   (n,)   float64   time that the row takes (``trunnion.verification.kinematics.run_time``)
+    waiting   (n,)   float64   those of these seconds in which the axes wait: dwells, tool changes, the spindle
     tip_feed  (n,)   float64   speed of the tip relative to the workpiece, mm/min
     cl_line   (n,)   int32     line of the CL file that the row belongs to, 0 for none
 
@@ -108,6 +116,7 @@ class Verification:
     cl_line: Lines
     operations: tuple[OperationRows, ...] = ()
     recorded: "RecordedComparison | None" = None
+    waiting: Floats = field(default_factory=lambda: np.zeros(0))
 
     @property
     def passed(self) -> bool:
@@ -127,7 +136,13 @@ def durations(verification: Verification) -> tuple[Floats, Flags]:
     return np.where(known, verification.seconds, 0.0), known
 
 
+def moving_seconds(verification: Verification) -> Floats:
+    """Seconds of each row in which the axes move, (n,); 0 where not known."""
+    seconds, _ = durations(verification)
+    return np.maximum(seconds - verification.waiting, 0.0) if len(verification.waiting) else seconds
+
+
 def without_columns(verification: Verification) -> Verification:
     """Return a verification as if its columns had not been asked for."""
     no_rows = np.zeros(0)
-    return replace(verification, seconds=no_rows, tip_feed=no_rows, cl_line=np.zeros(0, np.int32))
+    return replace(verification, seconds=no_rows, waiting=no_rows, tip_feed=no_rows, cl_line=np.zeros(0, np.int32))

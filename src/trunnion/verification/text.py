@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from trunnion.model.toolpath import Kind
-from trunnion.verification.results import Check, Place, Verification
+from trunnion.verification.results import Check, Place, Verification, moving_seconds
 from trunnion.wording import format_duration
 
 
@@ -34,15 +34,15 @@ def place_line(program: str, place: Place) -> str:
     """One place, in the form that editors can jump to."""
     number = f" (N{place.number})" if place.number >= 0 else ""
     cl = f", {place.cl_file}:{place.cl_line}" if place.cl_line else ""
-    return f"{place.nc_file or program}:{place.nc_line}{number}{cl}: {place.text}"
+    return f"{place.nc_file or program}:{place.nc_line}{number}{cl}: {place.told}"
 
 
 def time_lines(verification: Verification) -> Iterator[str]:
     """The time of the program and of each operation, if times were asked for."""
     seconds = np.where(np.isfinite(verification.seconds), verification.seconds, 0.0)
     if len(seconds):
-        at_feed = verification.run.kind != Kind.RAPID
-        whole, cutting = (format_duration(float(rows.sum())) for rows in (seconds, seconds[at_feed]))
+        cuts = moving_seconds(verification)[verification.run.kind != Kind.RAPID]
+        whole, cutting = (format_duration(float(rows.sum())) for rows in (seconds, cuts))
         yield f"time: {whole}, {cutting} of it in cuts"
         for operation in verification.operations:
             own = seconds[operation.first : operation.end]

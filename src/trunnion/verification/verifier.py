@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from trunnion.arrays import Floats, Lines
+from trunnion.arrays import Flags, Floats, Lines
 from trunnion.model.recording import Recording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Operation, Toolpath
@@ -34,7 +34,7 @@ from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, 
 from trunnion.verification.deviations.declared_deviations import AcceptedDeviations, accept_deviations
 from trunnion.verification.deviations.linearization import DefaultLimits, LinearizationErrors
 from trunnion.verification.deviations.point_deviations import PointDeviations
-from trunnion.verification.deviations.reached_rows import reached_rows
+from trunnion.verification.deviations.reached_rows import with_feeds_of_program, worthwhile_feeds
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.expected.tolerances import Tolerances
 from trunnion.verification.kinematics.axis_motion import AxisMotionAnalyzer
@@ -95,27 +95,31 @@ def verify(
     )
     cl_line = _cl_lines(context) if columns else np.zeros(0, np.int32)
     operations = tuple(_operation_rows(context))
-    return Verification(run.files[0], run.machine, run, checks, motion.seconds, motion.tip_feed, cl_line, operations)
+    return Verification(
+        run.files[0], run.machine, run, checks, motion.seconds, motion.tip_feed, cl_line, operations,
+        waiting=motion.waiting,
+    )  # fmt: skip
 
 
 def reachable_feeds(
     run: Run, toolpaths: Sequence[Toolpath], tolerances: Sequence[Tolerances], settings: ExpectedValues
-) -> list[Floats]:
-    """The feeds that the axes reach on the way to the points of each operation that moves, (n,) mm/min each.
+) -> list[tuple[Floats, Flags]]:
+    """The feeds that the axes reach on the way to the points of each operation that moves, (n,) mm/min, (n,) bool each.
 
-    NaN where that is no question (rapids, holes, feeds per revolution) or not known. Parameters as for ``verify``; the
-    program has the greatest feeds.
+    NaN where that is no question (rapids, holes, feeds per revolution) or not known. True where the feed of the CL file
+    is kept, as lower ones would take far longer. Parameters as for ``verify``; the program has the greatest feeds.
     """
     run = restore_rapids(run, settings.rapid_feed)
     original = _expected_path(run, toolpaths, tolerances, settings)
     compared, _, _ = _compare(accept_deviations(original, run.machine).expected, run, settings)
-    found = reached_rows(run, original, compared.matching, settings.feed_limit)
+    found, keeps = worthwhile_feeds(run, original, compared.matching, settings.feed_limit)
     feeds = []
     operations = (operation for path in toolpaths for operation in path.operations if len(operation.moves))
     for section, operation in zip(original.sections, operations, strict=True):
-        feed = np.full(len(operation.moves), np.nan)
-        feed[slice(None) if section.kept is None else section.kept] = found.feed[section.first : section.end]
-        feeds.append(feed)
+        feed, kept = np.full(len(operation.moves), np.nan), np.zeros(len(operation.moves), np.bool_)
+        rows = slice(None) if section.kept is None else section.kept
+        feed[rows], kept[rows] = found.feed[section.first : section.end], keeps[section.first : section.end]
+        feeds.append((feed, kept))
     return feeds
 
 
@@ -178,9 +182,12 @@ def _check_against(
     expected: ExpectedPath, run: Run, settings: ExpectedValues, analyzer: AxisMotionAnalyzer
 ) -> _Checked:
     """Checks of a program against its expected path, which has the feeds and tool axes of the CL files."""
+    if settings.fastest_feed and settings.feeds_as_programmed:
+        compared, _, _ = _compare(expected, run, settings)
+        expected = with_feeds_of_program(run, expected, compared.matching, settings.feed_limit)
     accepted = accept_deviations(expected, run.machine)
     context, errors, deviations = _compare(accepted.expected, run, settings, analyzer)
-    order, others, general = _checks_without_positions(context, accepted)
+    order, others, general = _checks_without_positions(context, accepted, expected)
     others += check_reach(context, expected)
     tip, axis = deviations.result()
     checks = [order, check_tip(context, tip), check_axis(context, axis, accepted), *others]
@@ -213,12 +220,12 @@ def _match_by_position(expected: ExpectedPath, run: Run, settings: ExpectedValue
 
 
 def _checks_without_positions(
-    context: ComparedContext, accepted: AcceptedDeviations
+    context: ComparedContext, accepted: AcceptedDeviations, original: ExpectedPath
 ) -> tuple[Check, list[Check], list[Check]]:
     """Checks that do not need the positions of all rows: that of the order, the others, and those of any program."""
     others = [
         check_kind(context),
-        check_feed(context, accepted),
+        check_feed(context, accepted, original),
         check_spindle(context),
         check_tool(context),
         check_coolant(context),

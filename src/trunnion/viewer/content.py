@@ -286,7 +286,7 @@ def _findings(checks: Sequence[Check], run: Run) -> list[dict[str, Any]]:
         for place in () if check.passed else check.places[:_MOST_PLACES]:
             file = numbers.get(place.nc_file, 0)
             row = place.row if place.row >= 0 else _row_of(run, file, place.nc_line)
-            found.append({"kind": check.key, "row": row, "line": place.nc_line, "file": file, "text": place.text})
+            found.append({"kind": check.key, "row": row, "line": place.nc_line, "file": file, "text": place.told})
     return found
 
 
@@ -310,5 +310,7 @@ def _diagnostics(run: Run) -> list[dict[str, Any]]:
     for each in run.errors:
         file = numbers.get(each.file, 0)
         row = _row_of(run, file, each.line)
-        found.append({"kind": "word", "row": row, "line": each.line, "file": file, "text": each.text})
+        found.append(
+            {"kind": "word", "row": row, "line": each.line, "file": file, "text": f"{each.text} [{each.code}]"}
+        )
     return found

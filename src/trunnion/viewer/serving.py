@@ -119,7 +119,7 @@ def listen(host: str, port: int) -> socket.socket:
     except OSError as error:
         why = _REASONS.get(error.errno or 0, str(error))
         what, cure = f"cannot be served on {host}, port {port}: {why}", "choose another port, or none"
-    raise InputError(Problem("the page", 0, what, cure))
+    raise InputError(Problem("the page", 0, what, cure, code="PAG120"))
 
 
 def serve(make: Callable[[Access], Any], listening: socket.socket, ready: Callable[[str], None]) -> None:

@@ -197,7 +197,9 @@ def _picture_cell(shape: StockShape, narrowest: float) -> float:
     finest = math.sqrt(2.0 * float(x * y + y * z + z * x) / _MOST_CUBES)
     if 0.5 * narrowest < finest:
         what = f"is too large to be shown as it is cut with a tool of {narrowest:g} mm: cells of {finest:.2g} mm are"
-        raise InputError(argument_problem("stock", f"{what} the finest", "leave it out, or show a smaller one"))
+        raise InputError(
+            argument_problem("stock", f"{what} the finest", "leave it out, or show a smaller one", code="PAG121")
+        )
     return finest
 
 

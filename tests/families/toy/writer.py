@@ -37,13 +37,15 @@ def escape_comment(text: str) -> str:
 
 def tool_call(number: int, name: str, by_name: bool) -> str:
     if by_name:
-        raise UnsupportedFeatureError(f"tools are called by number, and not as {name}", "write --set tool=NUMBER")
+        raise UnsupportedFeatureError(
+            f"tools are called by number, and not as {name}", "write --set tool=NUMBER", code="CTL130"
+        )
     return str(number)
 
 
 def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
     if event.revolutions:
-        raise UnsupportedFeatureError("a dwell in spindle revolutions", "write seconds")
+        raise UnsupportedFeatureError("a dwell in spindle revolutions", "write seconds", code="CTL420")
     return [f"WAIT {formats['dwell'].text(event.amount)}"]
 
 
@@ -71,7 +73,7 @@ def first_block_words(motion: Motion, tool: str, register: int, settings: Mappin
 def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsupportedFeatureError]]:
     moves = operation.moves
     per_rev = np.flatnonzero(moves.per_rev & (moves.kind != Kind.RAPID))
-    why = UnsupportedFeatureError("a feed per revolution", "output it in mm/min (FEDRAT/MMPM)")
+    why = UnsupportedFeatureError("a feed per revolution", "output it in mm/min (FEDRAT/MMPM)", code="CTL330")
     return [(int(moves.line[row]), why) for row in per_rev[:1]]
 
 
@@ -82,7 +84,7 @@ def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
 def cycle_call(
     cycle: Cycle, top: float, spindle: SpindleState | None, settings: Mapping[str, str], formats: Formats
 ) -> list[str]:
-    raise UnsupportedCycleError(f"{cycle.method}: the toy has no cycles", "output the holes as motion")
+    raise UnsupportedCycleError(f"{cycle.method}: the toy has no cycles", "output the holes as motion", code="CTL350")
 
 
 def cycle_cancel() -> list[str]:

@@ -5,7 +5,7 @@ import pytest
 from tests.support.flanks import PUBLISHED, mill
 
 #: Greatest overcut and undercut, mm; benchmarks/flank.py has the other surfaces.
-BOUNDS = {"mixed flow": (1.0, 0.202), "default": (1.0, 0.122)}
+BOUNDS = {"default": (1.0, 0.122)}
 
 
 @pytest.mark.parametrize("name", BOUNDS)

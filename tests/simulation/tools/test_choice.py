@@ -37,12 +37,12 @@ def test_all_that_nothing_describes_is_told_at_once() -> None:
         choose_tools(["4", "5", "6", "7"], [], [table, ToolLibrary("shop.tools", (), (broken,))], [])
     assert [str(problem) for problem in raised.value.problems] == [
         "tools: error: nothing says the form of tool 4, which the program calls; "
-        "state it, such as 4=ball:10,length=60,flutes=20, or give a tool library that has it",
+        "state it, such as 4=ball:10,length=60,flutes=20, or give a tool library that has it [SIM150]",
         "tool.tbl: error: tool 5 has a diameter of 12 mm, and nothing says its form; "
-        "state its kind: 5=ball takes the diameter from the table",
+        "state its kind: 5=ball takes the diameter from the table [SIM150]",
         "shop.tools: error: tool 6: odd; state it",
         "tools: error: nothing says the form of tool 7, which the program calls; "
-        "state it, such as 7=ball:10,length=60,flutes=20, or give a tool library that has it",
+        "state it, such as 7=ball:10,length=60,flutes=20, or give a tool library that has it [SIM150]",
     ]
     shape = parse_tool("5=ball", table.diameters)
     assert choose_tools(["5"], [shape], [table]) == {"5": shape}

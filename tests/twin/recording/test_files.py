@@ -122,3 +122,82 @@ def test_mistakes_in_a_list_of_nodes_are_told_at_once(tmp_path: Path) -> None:
     text = str(caught.value)
     for message in ("has no namespace", "cannot be the name of a column", "does not say which variable", "colour"):
         assert message in text
+
+
+def parquet(file: Path, **columns: object) -> Path:
+    arrow = pytest.importorskip("pyarrow")
+    stamps = arrow.array(
+        [1_780_000_000_123_456_000 + k * 50_000_000 for k in range(3)], arrow.timestamp("ns", tz="UTC")
+    )
+    given = {"source": stamps, "X": arrow.array([1.0, 2.0, 3.0]), **columns}
+    pytest.importorskip("pyarrow.parquet").write_table(arrow.table(given), file)
+    return file
+
+
+def test_times_of_any_unit_are_read(tmp_path: Path) -> None:
+    arrow = pytest.importorskip("pyarrow")
+    found = read_recording(parquet(tmp_path / "ns.parquet"))
+    assert found.source.tolist() == [BEGIN, BEGIN + 50_000, BEGIN + 100_000]
+    for unit, factor in (("s", 1), ("ms", 1000), ("us", 1_000_000)):
+        stamps = arrow.array([1_780_000_000 * factor] * 3, arrow.timestamp(unit))
+        found = read_recording(parquet(tmp_path / f"{unit}.parquet", source=stamps))
+        assert found.source.tolist() == [1_780_000_000_000_000] * 3
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "kind", "problem"),
+    [
+        ("source", [1, 2, 3], "int64", "column source holds no times but int64"),
+        ("source", [1.0, 2.0, 3.0], "float64", "column source holds no times but double"),
+        ("source", [1, 2, 3], "date32", "column source holds no times but date32"),
+        ("X", [True, False, True], "bool_", "column X holds no numbers but bool"),
+        ("block", [1, 2, 3], "int64", "column block holds no texts but int64"),
+        ("x", [1.0, 2.0, 3.0], "float64", "columns of the same name"),
+    ],
+)
+def test_columns_of_another_kind_are_refused(
+    tmp_path: Path, name: str, values: list[object], kind: str, problem: str
+) -> None:
+    arrow = pytest.importorskip("pyarrow")
+    column = arrow.array(values, getattr(arrow, kind)())
+    with pytest.raises(InputError, match=problem):
+        read_recording(parquet(tmp_path / "a.parquet", **{name: column}))
+
+
+def test_a_long_text_that_comes_again_and_again_is_refused_at_once(tmp_path: Path) -> None:
+    arrow = pytest.importorskip("pyarrow")
+    block = arrow.DictionaryArray.from_arrays(arrow.array([0, 0, 0], arrow.int32()), arrow.array(["x" * 100_000]))
+    table = arrow.table({"source": arrow.array([None] * 3, arrow.timestamp("us")), "block": block})
+    pytest.importorskip("pyarrow.parquet").write_table(table, tmp_path / "a.parquet", store_schema=False)
+    with pytest.raises(InputError, match="more than 32000 characters in block"):
+        read_recording(tmp_path / "a.parquet")
+
+
+@pytest.mark.parametrize("text", ["nan", "inf", "-inf", "1e400", "1e308", "NaN"])
+def test_what_is_no_number_of_a_machine_is_a_mistake(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "a.csv"
+    file.write_text(f"source,X\n2026-05-04T08:30:00Z,{text}\n", encoding="utf-8")
+    with pytest.raises(InputError, match="X is no number"):
+        read_recording(file)
+
+
+@pytest.mark.parametrize("name", ["a.csv", "a.parquet"])
+def test_texts_are_guarded_from_spreadsheets_and_numbers_that_are_none_are_empty(tmp_path: Path, name: str) -> None:
+    texts = ["=cmd|'/C calc'!A0", "@SUM(A1)", "+1", "-2", "'quoted", "N10", "y" * 200_000]
+    file = tmp_path / name
+    writer = RecordingWriter(resolve_output(file), NAMES, frozenset({"block"}))
+    writer.add([Row([np.nan, np.inf, text], BEGIN, BEGIN, BEGIN) for text in texts])
+    if name.endswith(".csv"):
+        cells = [line.split(",", 6)[6] for line in file.read_text(encoding="utf-8").splitlines()[1:5]]
+        assert all(cell.lstrip('"').startswith("'") for cell in cells)
+    writer.close()
+    found = read_recording(file)
+    assert [found.texts["block"][k] for k in range(6)] == texts[:6]
+    assert len(found.texts["block"][6]) == 32_000
+    assert np.isnan(found.values["X"]).all()
+
+
+def test_empty_lines_are_no_rows(tmp_path: Path) -> None:
+    file = tmp_path / "a.csv"
+    file.write_text("source,X\n2026-05-04T08:30:00Z,1\n\n2026-05-04T08:30:01Z,2\n\n", encoding="utf-8")
+    assert read_recording(file).values["X"].tolist() == [1.0, 2.0]

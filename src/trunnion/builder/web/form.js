@@ -6,7 +6,7 @@ import { fieldTexts, say } from "./texts.js";
  * @typedef {(string | string[])[]} Path
  * @typedef {{path: Path, key: string, kind: string, unit: string, choices: string[], size: number, optional: boolean, note: string,
  *   allowed: string, value: any, inherited: any, own: boolean, from: string}} FieldData
- * @typedef {{line: number, place: string, path: Path, what: string, cure: string}} ProblemData
+ * @typedef {{line: number, place: string, path: Path, what: string, cure: string, code: string}} ProblemData
  */
 
 /** @param {Path} path */
@@ -212,7 +212,7 @@ export class Form {
     reset.setAttribute("aria-label", reset.title);
     /** @type {HTMLElement} */ (row.querySelector(".from")).textContent = field.from ? (field.own ? say("own") : field.from) : say("notStated");
     /** @type {HTMLElement} */ (row.querySelector(".mark")).textContent = marks.map((each) => each.what).join("\n");
-    /** @type {HTMLElement} */ (row.querySelector(".error")).textContent = problems.map((each) => `${each.what}; ${each.cure}`).join("\n");
+    /** @type {HTMLElement} */ (row.querySelector(".error")).textContent = problems.map((each) => `${each.what}; ${each.cure} [${each.code}]`).join("\n");
   }
 
   /**

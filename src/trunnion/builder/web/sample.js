@@ -17,7 +17,7 @@ export class Sample {
   }
 
   /** @param {{lines: string[], all: number, changed: number[], removed: number, checks: {key: string, passed: boolean, summary: string}[],
-   *   problems: {what: string, cure: string, line: number, error: boolean}[], passed: boolean}} found
+   *   problems: {what: string, cure: string, line: number, error: boolean, code: string}[], passed: boolean}} found
    * @param {number} marks values that are still to be entered */
   show(found, marks) {
     if (found.lines.length) this.lines = found.lines;
@@ -30,7 +30,7 @@ export class Sample {
     this.list.replaceChildren(...rows);
     this.list.querySelector(".new")?.scrollIntoView({ block: "center" });
     const lines = (/** @type {string[]} */ texts, /** @type {string} */ kind) => texts.filter(Boolean).map((text) => Object.assign(document.createElement("div"), { textContent: text, className: kind }));
-    const told = (/** @type {boolean} */ isError) => found.problems.filter((each) => each.error === isError).map((each) => `${each.what}${each.cure ? "; " + each.cure : ""}`);
+    const told = (/** @type {boolean} */ isError) => found.problems.filter((each) => each.error === isError).map((each) => `${each.what}${each.cure ? "; " + each.cure : ""} [${each.code}]`);
     const checked = (/** @type {boolean} */ isPassed) => found.checks.filter((each) => each.passed === isPassed).map((each) => `${each.key}: ${each.summary}`);
     const open = [...told(false), marks ? say("toEnter", marks) : ""];
     const head = found.passed ? say("passed", found.checks.length) : found.checks.length ? say("failed") : say("refused");

@@ -34,7 +34,9 @@ def _begin(state: ReaderState, statement: Statement) -> None:
 def _end(state: ReaderState, statement: Statement) -> None:
     """Refuse an operation whose setup is not known: its points may belong to another one."""
     if len(state.turned) < len(_AXES):
-        raise StatementError("OPFEATEND of an operation without ROTABL for three axes", "output the file again")
+        raise StatementError(
+            "OPFEATEND of an operation without ROTABL for three axes", "output the file again", code="CL430"
+        )
 
 
 def _tlaxis(state: ReaderState, statement: Statement) -> None:
@@ -48,12 +50,16 @@ def _rotabl(state: ReaderState, statement: Statement) -> None:
     values = statement.values
     if len(values) != 4 or values[1] not in _AXES or values[2:] != ("TABLE", "CCLW"):
         what = f"ROTABL/{statement.listed()} is not known"
-        raise StatementError(what, "write ROTABL/radians,AAXIS,TABLE,CCLW, with BAXIS and CAXIS behind it")
+        raise StatementError(
+            what, "write ROTABL/radians,AAXIS,TABLE,CCLW, with BAXIS and CAXIS behind it", code="CL430"
+        )
     angles = numbers("ROTABL", values[:1], 1)
     if len(state.turned) == len(_AXES):
         return  # the setup is turned back
     if values[1] != _AXES[len(state.turned)]:
-        raise StatementError("ROTABL turns other axes than A, B and C, in this order", "output the file again")
+        raise StatementError(
+            "ROTABL turns other axes than A, B and C, in this order", "output the file again", code="CL430"
+        )
     state.turned += angles
     if len(state.turned) == len(_AXES):
         state.set_system(_setup(state.turned, state.setup_axis))
@@ -67,7 +73,9 @@ def _setup(angles: tuple[float, ...], axis: tuple[float, ...]) -> tuple[float, .
     """
     turning = [k for k, angle in enumerate(angles) if abs(angle) > _ALIKE]
     if len(turning) > 1:
-        raise StatementError("ROTABL turns the setup about several axes, whose order is not settled", _ONE_SETUP)
+        raise StatementError(
+            "ROTABL turns the setup about several axes, whose order is not settled", _ONE_SETUP, code="CL430"
+        )
     about = turning[0] if turning else 0
     c, s = (round(part, 6) + 0.0 for part in (math.cos(angles[about]), math.sin(angles[about])))
     one, two = (about + 1) % 3, (about + 2) % 3
@@ -76,7 +84,9 @@ def _setup(angles: tuple[float, ...], axis: tuple[float, ...]) -> tuple[float, .
     rows[one][two], rows[two][one] = -s, s
     z = tuple(row[2] for row in rows)
     if not axis or math.dist(z, axis) > _ALIKE:
-        raise StatementError("ROTABL does not turn Z into the tool axis of TLAXIS", "output the file again")
+        raise StatementError(
+            "ROTABL does not turn Z into the tool axis of TLAXIS", "output the file again", code="CL440"
+        )
     return (*rows[0], 0.0, *rows[1], 0.0, *rows[2], 0.0)
 
 
@@ -84,7 +94,9 @@ def _circle(state: ReaderState, statement: Statement) -> None:
     """An arc by centre, axis and radius; a word gives its sense."""
     given, sense = statement.values[:-1], statement.values[-1:]
     if sense not in (("CLOCKWISE",), ("COUNTERCLOCKWISE",)):
-        raise StatementError(f"CIRCLE/{statement.listed()} is not known", "write CLOCKWISE or COUNTERCLOCKWISE")
+        raise StatementError(
+            f"CIRCLE/{statement.listed()} is not known", "write CLOCKWISE or COUNTERCLOCKWISE", code="CL330"
+        )
     x, y, z, i, j, k, r = numbers("CIRCLE", given, 7)
     turn = -1.0 if sense == ("CLOCKWISE",) else 1.0
     motion.begin_circle(state, (x, y, z, turn * i, turn * j, turn * k, r), 1)
@@ -97,13 +109,19 @@ def _cycle(state: ReaderState, statement: Statement) -> None:
     if statement.values != ("OFF",):
         found = _CYCLE.fullmatch(" ".join(statement.source.split()).upper())
         if not found:
-            raise StatementError(f"CYCLE/{statement.listed()} is not known", "output the points of the holes")
+            raise StatementError(
+                f"CYCLE/{statement.listed()} is not known", "output the points of the holes", code="CL820"
+            )
         try:
             depth, first, others, feed, clearance, height, again, dwell = map(float, found.groups())
         except ValueError:
-            raise StatementError("CYCLE has no number where one belongs", "output the file again") from None
+            raise StatementError(
+                "CYCLE has no number where one belongs", "output the file again", code="CL820"
+            ) from None
         if height != again:
-            raise StatementError("CYCLE has two heights for the retract", "output the points of the holes")
+            raise StatementError(
+                "CYCLE has two heights for the retract", "output the points of the holes", code="CL320"
+            )
         statement = statement._replace(
             values=(
                 "DEEP2", "FEDTO", depth, "1STPECK", first, "SUBPECK", others, "MMPM", feed, "RAPTO", clearance,

@@ -43,7 +43,7 @@ def _comment(state: ReaderState, text: str) -> None:
         _end_matrix(state)
         if matrix[1] != "0":
             what = f"$${text}: only $$*CATIA0 is known to announce a machining axis system"
-            raise StatementError(what, "output the file with NC_MACHINING_AXIS as $$*CATIA0")
+            raise StatementError(what, "output the file with NC_MACHINING_AXIS as $$*CATIA0", code="CL430")
         state.matrix, state.matrix_line = [], state.line
     elif state.matrix is not None:
         state.matrix.append(text)
@@ -69,7 +69,7 @@ def _numbers_of(lines: Sequence[str]) -> tuple[float, ...]:
 
 def _damaged_matrix() -> StatementError:
     what = "$$*CATIA0 is not followed by an identifier and three lines of four numbers"
-    return StatementError(what, "output the file again")
+    return StatementError(what, "output the file again", code="CL430")
 
 
 def _end_matrix(state: ReaderState) -> None:
@@ -82,7 +82,7 @@ def _end_matrix(state: ReaderState) -> None:
             raise _damaged_matrix()
         _miss_system(state)
     except StatementError as error:
-        state.diagnostics.error(state.matrix_line, error.what, error.cure)
+        state.diagnostics.error(state.matrix_line, error.what, error.cure, code=error.code)
 
 
 def _miss_system(state: ReaderState) -> None:
@@ -90,7 +90,7 @@ def _miss_system(state: ReaderState) -> None:
     state.matrix = None
     if state.system or state.row:
         what = "$$*CATIA0 without its matrix: the machining axis system may be another one than before"
-        raise StatementError(what, _WITH_MATRIX)
+        raise StatementError(what, _WITH_MATRIX, code="CL430")
 
 
 def _set_system(state: ReaderState, numbers: tuple[float, ...]) -> None:
@@ -101,7 +101,7 @@ def _set_system(state: ReaderState, numbers: tuple[float, ...]) -> None:
     """
     if not state.system and state.row:
         what = "$$*CATIA0 behind points whose machining axis system nothing states"
-        raise StatementError(what, _WITH_MATRIX)
+        raise StatementError(what, _WITH_MATRIX, code="CL430")
     frame = _frame(numbers)
     own = Frame() if not state.system or numbers == state.system else relative_frame(frame, _frame(state.system))
     if not state.system:
@@ -109,13 +109,17 @@ def _set_system(state: ReaderState, numbers: tuple[float, ...]) -> None:
     if own == state.builder.frame:
         return
     if state.cycle_line or state.direction is not None:
-        raise StatementError("$$*CATIA0 within a cycle or an arc", "change the machining axis between operations")
+        raise StatementError(
+            "$$*CATIA0 within a cycle or an arc", "change the machining axis between operations", code="CL430"
+        )
     state.split_operation()
     state.builder.frame, state.builder.continues = own, False
     state.clearance = None
     state.set_axis(None, NoAxis.NEVER)
     what = "the machining axis system changes: these points are put where they are in the first one of the file"
-    state.diagnostics.remark(state.line, what, "post the operations alone if the part is clamped anew for them")
+    state.diagnostics.remark(
+        state.line, what, "post the operations alone if the part is clamped anew for them", code="CL450"
+    )
 
 
 def _frame(numbers: tuple[float, ...]) -> Frame:
@@ -125,7 +129,7 @@ def _frame(numbers: tuple[float, ...]) -> Frame:
     is_near = np.abs(matrix).max() <= _FARTHEST
     if not is_near or np.abs(matrix[:, :3].T @ matrix[:, :3] - np.eye(3)).max() > _SQUARE or np.cross(x, y) @ z < 0:
         what = "the machining axis system of $$*CATIA0 is not square, is left-handed or nowhere near the part"
-        raise StatementError(what, "output the file again")
+        raise StatementError(what, "output the file again", code="CL440")
     x = x / np.linalg.norm(x)
     y = y - (x @ y) * x
     return frame_from_vectors(matrix[:, 3], x, y / np.linalg.norm(y))
@@ -135,7 +139,7 @@ def _goto(state: ReaderState, statement: Statement) -> None:
     """A point: tip, and tool axis. More numbers are a vector of compensation, or a contact point with its normal."""
     if len(statement.values) in (9, 12):
         what = f"GOTO has {len(statement.values)} numbers: a compensation vector, or a contact point with its normal"
-        raise StatementError(what, _TIP)
+        raise StatementError(what, _TIP, code="CL470")
     motion.goto(state, statement)
 
 
@@ -148,7 +152,9 @@ def _tlaxis(state: ReaderState, statement: Statement) -> None:
 def _toolno(state: ReaderState, statement: Statement) -> None:
     """The number of the tool, which LOADTL must have as well, and its kind: turning points are not those of a mill."""
     if "TURN" in statement.words():
-        raise StatementError(f"TOOLNO/{statement.listed()} belongs to turning, which is not read", _MILLING)
+        raise StatementError(
+            f"TOOLNO/{statement.listed()} belongs to turning, which is not read", _MILLING, code="CL260"
+        )
     number = whole_number("TOOLNO", statement.values[:1])
     if state.tool is not None and state.tool.number != number:
         state.split_operation()
@@ -161,7 +167,7 @@ def _syn(state: ReaderState, statement: Statement) -> None:
         apt_refused.refuse(state, statement)
         return
     what = "SYN makes TLAXIS a comment for the post-processor of ICAM; here it is the tool axis of the points behind it"
-    state.diagnostics.remark(state.line, what)
+    state.diagnostics.remark(state.line, what, code="CL230")
 
 
 def _ppfun(state: ReaderState, statement: Statement) -> None:
@@ -177,7 +183,7 @@ def _mode(state: ReaderState, statement: Statement) -> None:
         events.set_mode(state, statement)
         return
     what = f"MODE/{statement.values[0]} tells ICAM's post-processor whether to fit arcs; the points stay as they are"
-    state.diagnostics.remark(state.line, what)
+    state.diagnostics.remark(state.line, what, code="CL230")
 
 
 CATIA: Final = Dialect(

@@ -21,7 +21,7 @@ def _comment(state: ReaderState, text: str) -> None:
     if _CONTOUR.fullmatch(text):
         what = f"$${text}: the points are those of the contour, and not those of the tool"
         cure = "output the centre line: turn contact points off in the cutter compensation of the operation"
-        raise StatementError(what, cure)
+        raise StatementError(what, cure, code="CL470")
 
 
 CLSF: Final = Dialect(

@@ -42,7 +42,7 @@ def _trntyp(state: ReaderState, statement: Statement) -> None:
     """Points are those of the world's coordinate system; anything else cannot be read."""
     if statement.values != ("WORLD", 0.0, 0.0, 0.0):
         what = f"TRNTYP/{statement.listed()}: the coordinate system of the points is not known"
-        raise StatementError(what, "output the points in world coordinates (TRNTYP/WORLD,0,0,0)")
+        raise StatementError(what, "output the points in world coordinates (TRNTYP/WORLD,0,0,0)", code="CL430")
     state.split_operation()
 
 
@@ -51,7 +51,9 @@ def _csys(state: ReaderState, statement: Statement) -> None:
     numbers = statement.numbers(12)
     columns = np.array(numbers).reshape(3, 4)[:, :3]
     if np.abs(columns.T @ columns - np.eye(3)).max() > _SQUARE:
-        raise StatementError("the columns of CSYS are not X, Y and Z of a coordinate system", "output the file again")
+        raise StatementError(
+            "the columns of CSYS are not X, Y and Z of a coordinate system", "output the file again", code="CL440"
+        )
     state.split_operation()
     state.state_once(COORDINATE_SYSTEM, numbers)
     z = (numbers[2], numbers[6], numbers[10])
@@ -83,7 +85,9 @@ def pecking_cycle(state: ReaderState, statement: Statement) -> None:
     first, others = pecks.get("1STPECK", 0.0), pecks.get("SUBPECK", 0.0)
     if isinstance(first, float) and isinstance(others, float) and others > first > 0.0:
         what = f"pecks of {others:g} behind a first one of {first:g}: all are made as long as the first"
-        state.diagnostics.remark(state.line, what, "write a first peck that is the longest if that takes too long")
+        state.diagnostics.remark(
+            state.line, what, "write a first peck that is the longest if that takes too long", code="CL860"
+        )
 
 
 def _flute_length(state: ReaderState, statement: Statement) -> None:
@@ -102,11 +106,13 @@ def _settle_cycle(found: CycleParts) -> None:
     first, others = found.take("1STPECK"), found.take("SUBPECK")
     if first is not None and others is not None:
         if not others[0] > 0.0:
-            raise StatementError("CYCLE with a SUBPECK that is not above 0", "write the length of the pecks")
+            raise StatementError(
+                "CYCLE with a SUBPECK that is not above 0", "write the length of the pecks", code="CL830"
+            )
         alike = others[0] >= first[0]
         found.couplets.append(("STEP", first if alike else (first[0], first[0] - others[0], others[0])))
     elif first is not None or others is not None:
-        raise StatementError("CYCLE has one of 1STPECK and SUBPECK", "write both")
+        raise StatementError("CYCLE has one of 1STPECK and SUBPECK", "write both", code="CL820")
 
 
 SOLIDWORKS: Final = Dialect(

@@ -56,15 +56,15 @@ def fedrat(state: ReaderState, statement: Statement) -> None:
             continue
         if word not in FEED_UNITS:
             cure = "write the feed in MMPM, MMPR, IPM or IPR, or INVERS,f with f as one over the minutes of each move"
-            raise StatementError(f"FEDRAT/{statement.listed()} is not a known feed", cure)
+            raise StatementError(f"FEDRAT/{statement.listed()} is not a known feed", cure, code="CL710")
         state.feed_factor, state.feed_per_rev = FEED_UNITS[word]
         state.feed_inverse = state.bare_feeds = False
         state.note_feed_unit(word)
     (value,) = numbers("FEDRAT", statement.plain_numbers(), 1)
     if value < 0:
-        raise StatementError(f"FEDRAT is negative: {value:g}", "write a feed above 0")
+        raise StatementError(f"FEDRAT is negative: {value:g}", "write a feed above 0", code="CL710")
     if value == 0:
-        state.diagnostics.remark(state.line, "FEDRAT is 0", "write a feed above 0, or RAPID")
+        state.diagnostics.remark(state.line, "FEDRAT is 0", "write a feed above 0, or RAPID", code="CL715")
     value *= state.feed_factor
     feed = FeedChange(state.operation_row, value, state.feed_per_rev, state.bare_feeds, state.feed_inverse)
     state.builder.feeds.append(feed)
@@ -75,7 +75,9 @@ def spindl(state: ReaderState, statement: Statement) -> None:
     statement.refuse_contradictions(("OFF", "ON"), ("OFF", "CLW", "CCLW"), ("OFF", "RPM", *_SURFACE_SPEEDS))
     words = set(statement.words())
     if not statement.values:
-        raise StatementError("SPINDL without a speed or a word", "write SPINDL/RPM,n,CLW, SPINDL/ON or SPINDL/OFF")
+        raise StatementError(
+            "SPINDL without a speed or a word", "write SPINDL/RPM,n,CLW, SPINDL/ON or SPINDL/OFF", code="CL730"
+        )
     if "OFF" in words:
         if statement.values != ("OFF",):
             rest = [word for word in statement.words() if word != "OFF"]
@@ -94,12 +96,16 @@ def spindl(state: ReaderState, statement: Statement) -> None:
     row, line = state.operation_row, state.line
     if speed is None:
         if state.spindle is None:
-            raise StatementError("SPINDL turns the spindle on before any speed was given", "write SPINDL/RPM,n,CLW")
+            raise StatementError(
+                "SPINDL turns the spindle on before any speed was given", "write SPINDL/RPM,n,CLW", code="CL730"
+            )
         state.spindle = replace(state.spindle, row=row, line=line, sense=sense)
     elif speed < 0:
-        raise StatementError(f"SPINDL has a negative speed: {speed:g}", "write CLW or CCLW for the sense")
+        raise StatementError(f"SPINDL has a negative speed: {speed:g}", "write CLW or CCLW for the sense", code="CL730")
     elif speed == 0:
-        raise StatementError("SPINDL has the speed 0: the tool would cut standing", "write the speed, or SPINDL/OFF")
+        raise StatementError(
+            "SPINDL has the speed 0: the tool would cut standing", "write the speed, or SPINDL/OFF", code="CL730"
+        )
     elif surface:
         state.spindle = SurfaceSpeed(row, line, speed * _SURFACE_SPEEDS[surface.pop()], sense, diameter)
     else:
@@ -124,7 +130,7 @@ def _speed_and_diameter(statement: Statement) -> tuple[float | None, float | Non
                 continue
             elif speed is not None:
                 what = f"SPINDL has two speeds, {speed:g} and {value:g}"
-                raise StatementError(what, "write the one that is meant")
+                raise StatementError(what, "write the one that is meant", code="CL320")
             else:
                 speed = value
         last = value
@@ -168,7 +174,7 @@ def loadtl(state: ReaderState, statement: Statement) -> None:
 def coolnt(state: ReaderState, statement: Statement) -> None:
     """Switch the coolant; COOLNT alone is ON."""
     if not statement.values and "/" in statement.source:
-        raise StatementError("COOLNT/ without a word", "write COOLNT/FLOOD, MIST, THRU, AIR, ON or OFF")
+        raise StatementError("COOLNT/ without a word", "write COOLNT/FLOOD, MIST, THRU, AIR, ON or OFF", code="CL330")
     kind, *rest = statement.values or ("ON",)
     known = isinstance(kind, str) and kind in _COOLANTS
     if rest or not known:
@@ -207,7 +213,7 @@ def delay(state: ReaderState, statement: Statement) -> None:
         return
     (amount,) = numbers("DELAY", statement.plain_numbers(), 1)
     if amount < 0:
-        raise StatementError("DELAY is negative", "write the time in seconds, or the revolutions and REV")
+        raise StatementError("DELAY is negative", "write the time in seconds, or the revolutions and REV", code="CL340")
     state.add(Dwell(state.operation_row, state.line, amount, bool(words)))
 
 
@@ -247,9 +253,9 @@ def set_mode(state: ReaderState, statement: Statement) -> None:
     words = (statement.major, *statement.words())
     if "INCR" in words and "OFF" not in words:
         what = f"{statement.source.strip()}: the points that follow would count from each other"
-        raise StatementError(what, "output absolute coordinates, or GODLTA/ for each distance")
+        raise StatementError(what, "output absolute coordinates, or GODLTA/ for each distance", code="CL480")
     if words == ("MODE", "TURN"):
-        raise StatementError("MODE/TURN: turning is not read", "output the milling operations alone")
+        raise StatementError("MODE/TURN: turning is not read", "output the milling operations alone", code="CL260")
     if words in _FULFILLED_MODES and not statement.plain_numbers():
         state.add(SetMode(state.operation_row, state.line, words))
     else:

@@ -32,7 +32,7 @@ def godlta(state: ReaderState, statement: Statement) -> None:
     x, y, z = statement.numbers(3)
     start = current_tip(state)
     if start is None:
-        raise StatementError("GODLTA without a point to go from", "write FROM/ or GOTO/ before it")
+        raise StatementError("GODLTA without a point to go from", "write FROM/ or GOTO/ before it", code="CL510")
     refuse_in_circle(state, "GODLTA")
     write_row(state, (start[0] + x, start[1] + y, start[2] + z))
     keep_axis(state)
@@ -57,20 +57,22 @@ def from_(state: ReaderState, statement: Statement) -> None:
     vector = (axis[0], axis[1], axis[2]) if axis else None
     for start in state.builder.starts:
         if start.row == state.operation_row and start.tip != (x, y, z):
-            raise StatementError(f"FROM is another point than in line {start.line}", "write the one that is meant")
+            raise StatementError(
+                f"FROM is another point than in line {start.line}", "write the one that is meant", code="CL520"
+            )
     row = state.operation_row
     if row and not any(isinstance(event, GoHome) and event.row == row for event in state.builder.events):
         last = state.columns.tip[state.row - 1].tolist()
         if max(abs(a - b) for a, b in zip(last, (x, y, z), strict=True)) > _SAME_POINT:
             what = "FROM is another point than the one to which the tool has gone before it"
-            raise StatementError(what, "write GOTO/ for a motion, or begin another operation")
+            raise StatementError(what, "write GOTO/ for a motion, or begin another operation", code="CL520")
     state.builder.starts.append(FromStatement(state.operation_row, state.line, (x, y, z), vector))
 
 
 def circle(state: ReaderState, statement: Statement) -> None:
     """Make the next row an arc."""
     if not state.in_operation:
-        raise StatementError("CIRCLE outside any operation", "write TOOL PATH/name,TOOL,tool before it")
+        raise StatementError("CIRCLE outside any operation", "write TOOL PATH/name,TOOL,tool before it", code="CL350")
     values = statement.values
     turns = 1.0
     if "TIMES" in values:
@@ -81,7 +83,7 @@ def circle(state: ReaderState, statement: Statement) -> None:
     if len(given) in (8, 12):
         turns = given[-1]
     if not is_whole(turns, 1) or turns > MAX_TURNS:
-        raise StatementError(f"CIRCLE has {turns:g} turns", "write TIMES,n with n = 1, 2, 3 ...")
+        raise StatementError(f"CIRCLE has {turns:g} turns", "write TIMES,n with n = 1, 2, 3 ...", code="CL570")
     begin_circle(state, given[:7], int(turns))
 
 
@@ -107,7 +109,7 @@ def begin_circle(
     refuse_in_circle(state, "another CIRCLE")
     if state.cycle_line:
         what = f"CIRCLE within the cycle of line {state.cycle_line}, where each point is a hole"
-        raise StatementError(what, "write CYCLE/OFF before it")
+        raise StatementError(what, "write CYCLE/OFF before it", code="CL620")
     if state.operation_row == 0 and state.builder.continues:
         start = current_tip(state)
         if start is not None and not state.builder.starts:
@@ -123,13 +125,14 @@ def unsupported(state: ReaderState, statement: Statement) -> None:
     raise StatementError(
         f"{statement.major} is motion that cannot be read",
         "turn off spline output in the CAM system, and write lines and circles in the machining coordinates",
+        code="CL250",
     )
 
 
 def write_row(state: ReaderState, values: tuple[float, ...]) -> None:
     """Write the row that the scan has reserved; the scan has set its axis to NaN, that is "not given"."""
     if not state.has_row:
-        raise StatementError("a motion without coordinates", "write GOTO/x,y,z or GOTO/x,y,z,i,j,k")
+        raise StatementError("a motion without coordinates", "write GOTO/x,y,z or GOTO/x,y,z,i,j,k", code="CL310")
     state.columns.tip[state.row] = values[:3]
     if len(values) == 6:
         state.columns.axis[state.row] = values[3:]
@@ -160,4 +163,5 @@ def refuse_in_circle(state: ReaderState, what: str) -> None:
         raise StatementError(
             f"{what} where the GOTO of the CIRCLE in line {begun.line} must stand",
             "write GOTO/ with the end point of the arc after each CIRCLE",
+            code="CL560",
         )

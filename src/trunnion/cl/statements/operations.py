@@ -44,6 +44,7 @@ def tool_path(state: ReaderState, statement: Statement) -> None:
             state.builder.line,
             f"operation {state.builder.name} has no END-OF-PATH before the next TOOL PATH in line {state.line}",
             "end each operation with END-OF-PATH",
+            code="CL350",
         )
         state.close_operation()
     elif state.operation_row:
@@ -68,7 +69,9 @@ def tool_path(state: ReaderState, statement: Statement) -> None:
 def end_of_path(state: ReaderState, statement: Statement) -> None:
     """End an operation."""
     if not state.in_operation:
-        raise StatementError("END-OF-PATH without TOOL PATH", "begin each operation with TOOL PATH/name,TOOL,tool")
+        raise StatementError(
+            "END-OF-PATH without TOOL PATH", "begin each operation with TOOL PATH/name,TOOL,tool", code="CL350"
+        )
     state.close_operation()
 
 
@@ -82,7 +85,7 @@ def tldata(state: ReaderState, statement: Statement) -> None:
         *others, last = map(str, layouts)
         expected = f"{', '.join(others)} or {last}" if others else last
         what = f"TLDATA/{form} has {counted(len(given), 'number')}, expected {expected}"
-        raise StatementError(what, "write TLDATA as NX does")
+        raise StatementError(what, "write TLDATA as NX does", code="CL770")
     sizes = zip(layouts.get(len(given), ()), given, strict=False)
     fields: dict[str, Any] = {field: number for field, number in sizes if field}
     if len(given) in (7, 10):
@@ -95,13 +98,17 @@ def tldata(state: ReaderState, statement: Statement) -> None:
     state.builder.tool = Tool(kind=kind, name=state.builder.tool.name, **fields)
     if form not in _TLDATA_FIELDS:
         what = f"TLDATA/{form} is not a known form of tool"
-        state.diagnostics.remark(state.line, what, "the program has the tool's name and number, and no sizes")
+        state.diagnostics.remark(
+            state.line, what, "the program has the tool's name and number, and no sizes", code="CL770"
+        )
 
 
 def msys(state: ReaderState, statement: Statement) -> None:
     """Set the coordinate system of the operation: origin, X and Y, made exactly unit and square."""
     if state.operation_row:
-        raise StatementError("MSYS after motion", "one operation has one frame: write MSYS before its first GOTO")
+        raise StatementError(
+            "MSYS after motion", "one operation has one frame: write MSYS before its first GOTO", code="CL430"
+        )
     state.state_once(COORDINATE_SYSTEM, statement.numbers(9))
     ox, oy, oz, *vectors = statement.numbers(9)
     x, y = vectors[:3], vectors[3:]
@@ -110,11 +117,14 @@ def msys(state: ReaderState, statement: Statement) -> None:
             raise StatementError(
                 f"the {name} vector of MSYS has the length {math.hypot(*vector):.6g}, not 1",
                 "write origin, X and Y of the coordinate system",
+                code="CL440",
             )
     x = _unit(x)
     along = _dot(x, y)
     if abs(along) > _FRAME_TOLERANCE:
-        raise StatementError("X and Y of MSYS are not square to each other", "write origin, X and Y of the frame")
+        raise StatementError(
+            "X and Y of MSYS are not square to each other", "write origin, X and Y of the frame", code="CL440"
+        )
     y = _unit([b - along * a for a, b in zip(x, y, strict=True)])
     state.builder.frame = Frame((ox, oy, oz), (x[0], x[1], x[2]), (y[0], y[1], y[2]))
 
@@ -137,10 +147,12 @@ def units(state: ReaderState, statement: Statement) -> None:
     """Set the length unit of the file."""
     word = statement.values[0] if statement.values else ""
     if not isinstance(word, str) or word not in LENGTH_UNITS or len(statement.values) > 1:
-        raise StatementError(f"UNITS/{statement.listed()} is not a known unit", "write UNITS/MM or UNITS/INCHES")
+        raise StatementError(
+            f"UNITS/{statement.listed()} is not a known unit", "write UNITS/MM or UNITS/INCHES", code="CL410"
+        )
     if state.length_unit is not None and state.length_unit[0] != LENGTH_UNITS[word]:
         what = f"UNITS/{word} after another unit in line {state.length_unit[1]}"
-        raise StatementError(what, "keep to one unit in a file")
+        raise StatementError(what, "keep to one unit in a file", code="CL410")
     state.length_unit = state.length_unit or (LENGTH_UNITS[word], state.line)
 
 
@@ -166,10 +178,12 @@ def _tolerance(state: ReaderState, statement: Statement) -> float:
     """A tolerance in units of the file, 0 or more."""
     (tolerance,) = statement.numbers(1)
     if tolerance < 0.0:
-        raise StatementError(f"{statement.major} is negative: {tolerance:g}", "write the tolerance of the operation")
+        raise StatementError(
+            f"{statement.major} is negative: {tolerance:g}", "write the tolerance of the operation", code="CL340"
+        )
     if tolerance > _WIDEST_TOLERANCE:
         what = f"{statement.major} is {tolerance:g}: the control may leave the path by that much"
-        state.diagnostics.remark(state.line, what, "check the tolerance, or the unit of the file")
+        state.diagnostics.remark(state.line, what, "check the tolerance, or the unit of the file", code="CL800")
     return tolerance
 
 
@@ -183,7 +197,7 @@ def end_of_file(state: ReaderState, statement: Statement) -> None:
     """Note that no motion is missing: it is the last statement of a file whose operations have no end of their own."""
     if 0 <= state.end_row < state.row:
         what = "motion stands behind an end of the file, with an end of its own: two files, or a line too many"
-        state.diagnostics.remark(state.line, what, "make sure that the motion belongs to this job")
+        state.diagnostics.remark(state.line, what, "make sure that the motion belongs to this job", code="CL170")
     state.end_row = state.row
 
 

@@ -20,18 +20,18 @@ def nurbs(state: ReaderState, statement: Statement) -> None:
     state.spline = None
     state.spline_reported = True  # until it is certain that this one can be read
     if not state.in_operation:
-        raise StatementError("NURBS outside any operation", "write TOOL PATH/name,TOOL,tool before it")
+        raise StatementError("NURBS outside any operation", "write TOOL PATH/name,TOOL,tool before it", code="CL350")
     if statement.values:
         what = f"NURBS/{statement.listed()}: the spline has a degree, weights or a form whose meaning is not known"
-        raise StatementError(what, _CURE)
+        raise StatementError(what, _CURE, code="CL600")
     motion.refuse_in_circle(state, "NURBS")
     if state.cycle_line:
         what = f"NURBS within the cycle of line {state.cycle_line}, where each point is a hole"
-        raise StatementError(what, "write CYCLE/OFF before it")
+        raise StatementError(what, "write CYCLE/OFF before it", code="CL620")
     if state.operation_row in state.builder.rapids:
-        raise StatementError("RAPID before a NURBS", "remove the RAPID")
+        raise StatementError("RAPID before a NURBS", "remove the RAPID", code="CL580")
     if motion.current_tip(state) is None:
-        raise StatementError("NURBS without a point to begin in", "write FROM/ or GOTO/ before it")
+        raise StatementError("NURBS without a point to begin in", "write FROM/ or GOTO/ before it", code="CL510")
     state.spline_reported = False
     state.spline = SplineStatement(state.operation_row, state.line)
     state.builder.splines.append(state.spline)
@@ -42,7 +42,7 @@ def knot(state: ReaderState, statement: Statement) -> None:
     if state.spline_reported:
         return
     if state.spline is None or state.spline.points:
-        raise StatementError("KNOT without a NURBS before it", _CURE)
+        raise StatementError("KNOT without a NURBS before it", _CURE, code="CL600")
     state.spline.knots += _numbers(state, statement)
 
 
@@ -52,13 +52,13 @@ def cntrl(state: ReaderState, statement: Statement) -> None:
         return
     if len(statement.values) == 6:
         _give_up(state)
-        raise StatementError("CNTRL with a tool axis: what it means along a spline is not known", _CURE)
+        raise StatementError("CNTRL with a tool axis: what it means along a spline is not known", _CURE, code="CL600")
     values = _numbers(state, statement, 3)
     motion.write_row(state, values)
     spline = state.spline
     if spline is None or state.operation_row != spline.row + spline.points:
         _give_up(state)
-        raise StatementError("CNTRL that follows neither KNOT nor another CNTRL", _CURE)
+        raise StatementError("CNTRL that follows neither KNOT nor another CNTRL", _CURE, code="CL600")
     spline.points += 1
 
 

@@ -202,7 +202,7 @@ class AptWriter(ClWriter):
             yield self._lost(int(operation.moves.line[bare.argmax()]), what, "write FEDRAT/ before it")
 
     def _lost(self, line: int, what: str, cure: str) -> Problem:
-        return Problem(self.source.file, line, what, cure)
+        return Problem(self.source.file, line, what, cure, code="CL910")
 
     def begin(self, number: int, operation: Operation) -> list[str]:
         """The name, the tool and the tolerances."""

@@ -72,7 +72,7 @@ class CatiaWriter(AptWriter):
         start = _axis_before(operation, row)
         if start is not None and float(np.abs(operation.moves.axis[row] - start).max()) > _SAME_AXIS:
             what = "the tool axis turns along an arc, for which CATIA APTSOURCE has no words"
-            yield Problem(self.source.file, int(operation.moves.line[row]), what, "output it as lines")
+            yield Problem(self.source.file, int(operation.moves.line[row]), what, "output it as lines", code="CL910")
 
     def arc(self, operation: Operation, index: int) -> tuple[list[str], bool]:
         """The direction at the start, the circle, and where it ends."""

@@ -56,7 +56,9 @@ def problems_of(toolpath: Toolpath, comments: Iterable[str]) -> list[Problem]:
     texts = {"part name": toolpath.part, **{f"comment {text!r}": text for text in comments}}
     found += [_bad_text(toolpath.file, 0, what) for what, text in texts.items() if not _is_one_line(text)]
     if not toolpath.operations:
-        found.append(Problem(toolpath.file, 0, "there is no operation in it", "give a toolpath with motion"))
+        found.append(
+            Problem(toolpath.file, 0, "there is no operation in it", "give a toolpath with motion", code="CL140")
+        )
     return found
 
 
@@ -81,14 +83,14 @@ def _arc_problems(file: str, operation: Operation) -> Iterator[Problem]:
         start = starts.get(row) or (tuple(moves.tip[row - 1].tolist()) if row else None)
         if start is None:
             what = f"operation {operation.name} begins with an arc, which has no start"
-            yield Problem(file, int(moves.line[row]), what, "put a point before it")
+            yield Problem(file, int(moves.line[row]), what, "put a point before it", code="CL910")
             continue
         offsets = np.array([start, moves.tip[row]]) - arcs.centre[index]
         across = np.linalg.norm(np.cross(offsets, arcs.normal[index]), axis=1)
         off = float(np.max(np.abs(across - arcs.radius[index])))
         if off > ARC_POINT_TOLERANCE:
             what = f"an end of the arc lies {off:.3f} mm off its radius; a CL file allows {ARC_POINT_TOLERANCE} mm"
-            yield Problem(file, int(moves.line[row]), what, "make it a line, or correct its centre")
+            yield Problem(file, int(moves.line[row]), what, "make it a line, or correct its centre", code="CL910")
 
 
 def _texts(operation: Operation) -> Iterator[tuple[int, str, str]]:
@@ -109,4 +111,6 @@ def _is_one_line(text: str) -> bool:
 
 
 def _bad_text(file: str, line: int, what: str) -> Problem:
-    return Problem(file, line, f"{what} has a line break or a control character in it", "write it in one line")
+    return Problem(
+        file, line, f"{what} has a line break or a control character in it", "write it in one line", code="CL910"
+    )

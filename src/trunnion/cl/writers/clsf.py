@@ -45,7 +45,7 @@ class ClsfWriter(ClWriter):
         """A name that cannot be told from that of the tool."""
         if ",TOOL," in operation.name:
             what = f"operation name {operation.name!r} has ',TOOL,' in it, which ends the name in a CL file"
-            yield Problem(self.source.file, operation.line, what, "rename the operation")
+            yield Problem(self.source.file, operation.line, what, "rename the operation", code="CL910")
 
     def head(self, comments: Sequence[str]) -> list[str]:
         """Comments, unit and part."""

@@ -288,7 +288,7 @@ class ClWriter(ABC):
 
     def remark(self, line: int, what: str, cure: str) -> None:
         """Note what is lost."""
-        self.remarks.append(Problem(self.source.file, line, what, cure, Severity.WARNING))
+        self.remarks.append(Problem(self.source.file, line, what, cure, Severity.WARNING, code="CL930"))
 
 
 def _written_events(operation: Operation) -> tuple[Event, ...]:

@@ -68,7 +68,9 @@ class BladeFlank:
         """
         if self.neighbour < 0.0:
             what = f"the cutter does not pass between two blades: it cuts {-self.neighbour:.3f} mm into the other one"
-            raise InputError(Problem("flank milling", 0, what, "take a thinner or shorter cutter, or point milling"))
+            raise InputError(
+                Problem("flank milling", 0, what, "take a thinner or shorter cutter, or point milling", code="IMP326")
+            )
         at = np.linspace(0.0, 1.0, count)
         centre, axis = self.cut.path.poses(at)
         way = np.gradient(centre, axis=0)
@@ -139,7 +141,9 @@ def _until(impeller: Impeller, blade: Blade, side: float, ball: float) -> float:
     low = _begins(impeller, blade, side, ball, w) > _LOW
     if low[:40].any():
         what = f"a ball of radius {ball:g} mm finds no place between hub and tip at the leading edge"
-        raise InputError(Problem(impeller.definition.file, 0, what, "take a thinner cutter or a smaller fillet"))
+        raise InputError(
+            Problem(impeller.definition.file, 0, what, "take a thinner cutter or a smaller fillet", code="IMP326")
+        )
     return float(w[low.argmax() - 1]) if low.any() else 1.0
 
 

@@ -34,7 +34,9 @@ class FlankCutter:
         ends = self.radius, self.radius + self.slope * self.length
         if not (self.length > 0.0 and min(ends) > 0.0 and abs(self.slope) < 1.0):
             what = f"a cutter of radius {ends[0]:g} to {ends[1]:g} over a length of {self.length:g} mm is none"
-            raise InputError(Problem("flank milling", 0, what, "give radius and length above 0, and a flatter cone"))
+            raise InputError(
+                Problem("flank milling", 0, what, "give radius and length above 0, and a flatter cone", code="IMP326")
+            )
 
     @property
     def half_angle(self) -> float:

@@ -78,7 +78,7 @@ def side_end(impeller: Impeller, blade: Blade, reach: float) -> float:
             return end
         end += 0.01
     what = "the ball does not come out of the stock at the trailing edge"
-    raise InputError(Problem(impeller.definition.file, 0, what, 'write trailing_edge = "round"'))
+    raise InputError(Problem(impeller.definition.file, 0, what, 'write trailing_edge = "round"', code="IMP327"))
 
 
 def dense_stations(build: Callable[[Floats], Sheet], last: float, tolerance: float) -> Floats:
@@ -143,7 +143,7 @@ def lay_passes(sheet: Sheet, s: Floats, rows: Floats, radius: float, way: Way) -
     """
     if way is Way.SPIRAL and s[-1] < 4.0:
         what = "is a spiral, and the trailing edge is cut, so that there is no way round it"
-        raise InputError(argument_problem("way", what, f"choose {Way.ONE_WAY} or {Way.BOTH_WAYS}"))
+        raise InputError(argument_problem("way", what, f"choose {Way.ONE_WAY} or {Way.BOTH_WAYS}", code="IMP327"))
     centres = np.stack([sheet.balls(np.full(len(s), depth))[0] for depth in rows])
     lengths = np.linalg.norm(np.diff(centres, axis=1), axis=2).mean(axis=0)
     along = _shares(lengths)

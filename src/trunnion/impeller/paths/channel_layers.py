@@ -84,7 +84,7 @@ def layers_of(channel: Channel, ball: Ball, step_down: float | None, progress: P
     fillet = impeller.definition.fillet
     if ball.radius + min(ball.blade_allowance, ball.hub_allowance) < fillet:
         what = f"a ball of {2.0 * ball.radius:g} mm is smaller than the fillet of {fillet:g} mm, and would cut into it"
-        raise InputError(problem(impeller, what, "take a larger ball, or leave more on blades and hub"))
+        raise InputError(problem(impeller, what, "take a larger ball, or leave more on blades and hub", code="IMP320"))
     sheets = sheets_of(impeller, ball, step_down)
     laid = []
     # Kernels run beside each other.
@@ -164,8 +164,10 @@ def _too_narrow(channel: Channel, ball: Ball, step_down: float | None, throat: _
         radius = min(radius, float(channel.extent(places, radius + allowance).room.min()) - allowance)
     largest = math.floor(200.0 * radius) / 100.0
     if largest <= 0.0:
-        return problem(channel.impeller, f"{what}, nor does any other", "leave less on the blades")
-    return problem(channel.impeller, f"{what}; the largest that fits has {largest:.2f} mm", "take a smaller ball")
+        return problem(channel.impeller, f"{what}, nor does any other", "leave less on the blades", code="IMP320")
+    return problem(
+        channel.impeller, f"{what}; the largest that fits has {largest:.2f} mm", "take a smaller ball", code="IMP320"
+    )
 
 
 def _named(impeller: Impeller, throat: _Throat) -> str:

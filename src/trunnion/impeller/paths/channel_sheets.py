@@ -126,12 +126,14 @@ def sheets_of(impeller: Impeller, ball: Ball, step_down: float | None) -> list[S
         if not len(before) or not len(behind):
             end = "inlet" if not len(before) else "outlet"
             what = f"a ball of {2.0 * ball.radius:g} mm between two blades does not get out of the stock at the {end}"
-            raise InputError(problem(impeller, what, "let the blade's curves lead out of the stock"))
+            raise InputError(problem(impeller, what, "let the blade's curves lead out of the stock", code="IMP327"))
         first, last = float(every[before[-1]]), float(every[cut[-1] + behind[0]])
         found.append(Sheet(impeller, sheet.height, sheet.to_hub, first, last))
         v = _raised(impeller, inside, v, step_down or 0.0)
     if not found:
-        raise InputError(problem(impeller, "there is no stock between its blades", "check stock, hub and shroud"))
+        raise InputError(
+            problem(impeller, "there is no stock between its blades", "check stock, hub and shroud", code="IMP327")
+        )
     return found
 
 
@@ -176,6 +178,6 @@ def _speed(impeller: Impeller, u: Floats, v: Floats) -> Floats:
     return np.asarray(np.maximum(np.hypot(outward, slope[:, 2]), 0.1 * np.linalg.norm(slope, axis=1)))
 
 
-def problem(impeller: Impeller, what: str, cure: str) -> Problem:
+def problem(impeller: Impeller, what: str, cure: str, *, code: str) -> Problem:
     """Something wrong with an impeller."""
-    return Problem(impeller.definition.file, 0, what, cure)
+    return Problem(impeller.definition.file, 0, what, cure, code=code)

@@ -220,7 +220,9 @@ def tool_body(shape: ToolShape, radius: float, margins: Margins) -> ToolBody:
     centre = getattr(element, "centre", (math.nan, math.nan))
     if not (abs(centre[0]) < 1e-6 and abs(centre[1] - radius) < 1e-6 and element.start[1] < 1e-6):
         raise InputError(
-            argument_problem("tool", f"has no ball of radius {radius:g} mm at its end", "choose a ball mill")
+            argument_problem(
+                "tool", f"has no ball of radius {radius:g} mm at its end", "choose a ball mill", code="IMP321"
+            )
         )
     pieces, _ = revolved_pieces(shape, _TOOL)
     real, wide, roles, wide_roles, wanted = [], [], [], [], []

@@ -263,7 +263,9 @@ def _clear_way(centre: Floats, axis: Floats, space: FreeSpace, is_clear: IsClear
             return way
     x, y, z = centre
     fault = f"the tool cannot {what} the pass at ({x:.2f}, {y:.2f}, {z:.2f}) along its axis without touching something"
-    raise InputError(Problem(name, 0, fault, "let the tool be thinner above its ball, or lead in and out by an arc"))
+    raise InputError(
+        Problem(name, 0, fault, "let the tool be thinner above its ball, or lead in and out by an arc", code="IMP325")
+    )
 
 
 def _between(first: Floats, first_axis: Floats, last: Floats, last_axis: Floats) -> tuple[Floats, Floats]:

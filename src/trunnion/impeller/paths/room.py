@@ -93,4 +93,4 @@ def prove_room(around: Surroundings, family: PassFamily, allowance: float, toler
     cure = f"there is room for a ball of radius {largest:.2f} mm"
     if reach < wanted:
         cure += ", so make the fillet no larger"
-    raise InputError(Problem(definition.file, 0, what, cure))
+    raise InputError(Problem(definition.file, 0, what, cure, code="IMP320"))

@@ -118,7 +118,7 @@ def root_blend(impeller: Impeller, blade: Blade, step: RootBlend) -> PassFamily:
     if step.radius > fillet + _SAME:
         what = f"a ball of radius {step.radius:g} mm is larger than the fillet of {fillet:g} mm"
         cure = f"the largest that fits has a radius of {fillet:g} mm"
-        raise InputError(Problem(impeller.definition.file, 0, what, cure))
+        raise InputError(Problem(impeller.definition.file, 0, what, cure, code="IMP320"))
     around = surroundings_of(impeller, blade)
     end = side_end(impeller, blade, fillet)
 

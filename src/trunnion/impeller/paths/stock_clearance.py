@@ -80,7 +80,7 @@ def stock_clearances(
             if role not in nearest or off[k] < nearest[role][0]:
                 nearest[role] = float(off[k]), one.centre[rows[k]], axes[rows[k]]
     problems = [
-        Problem(tool.name, 0, _into(role, off, centre - radius * axis), _CURES[role])
+        Problem(tool.name, 0, _into(role, off, centre - radius * axis), _CURES[role], code="IMP323")
         for role, (off, centre, axis) in nearest.items()
         if off <= 0.0
     ]

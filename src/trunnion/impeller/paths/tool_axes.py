@@ -270,19 +270,19 @@ class _Search:
             place = _place_words(self.places[asked[k]], self.centres[asked[k]])
             if value[k] == -np.inf:
                 what = f"no tool axis within {self._tilt:g} degrees of Z is in the machine's reach {place}"
-                return Problem(name, 0, what, "let it tilt more, or choose another machine")
+                return Problem(name, 0, what, "let it tilt more, or choose another machine", code="IMP322")
             if value[k] < 0.0:
                 start = directions[[int(margins[k].argmax())]]
                 missing, other = self._missing(pieces, asked[[k]], start)
                 what = f"{role} and {other} do not clear each other {place}: {missing:.3f} mm are missing at best"
-                return Problem(name, 0, what, _CURES[role])
+                return Problem(name, 0, what, _CURES[role], code="IMP323")
             clear = margins >= 0.0
             clear[~clear.any(axis=1)] = True
         if not self._has_end:
             what = "no smooth field of tool axes was found within the limit of iterations"
-            return Problem(name, 0, what, "want other clearances or another tilt, or divide the step")
+            return Problem(name, 0, what, "want other clearances or another tilt, or divide the step", code="IMP324")
         what = f"tool axes that are clear {place} do not join with those beside it"
-        return Problem(name, 0, what, "choose a longer or thinner tool, or divide the step")
+        return Problem(name, 0, what, "choose a longer or thinner tool, or divide the step", code="IMP324")
 
     def _missing(self, pieces: ToolData, point: Ints, axis: Floats) -> tuple[float, str]:
         """How much pieces of a tool miss at a point with an axis, and the body that is in their way."""

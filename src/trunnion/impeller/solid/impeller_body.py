@@ -164,7 +164,9 @@ def _above(shroud: Profile, points: Floats) -> Flags:
 
 
 def _refused(impeller: Impeller, what: str) -> InputError:
-    return InputError(Problem(impeller.definition.file, 0, f"{what}, so that no solid of it is made", "write a mesh"))
+    return InputError(
+        Problem(impeller.definition.file, 0, f"{what}, so that no solid of it is made", "write a mesh", code="IMP420")
+    )
 
 
 def _add_blade(body: Body, loop: RootLoop, angle: float, shroud: Meridian) -> _Foot:
@@ -255,7 +257,7 @@ def _add_channel(
     end = max(float(other.hub(part, more)[:, 0].max()) for part in range(PARTS))
     if end - start > 2.0 * np.pi - _BEFORE:
         what = "a channel goes round the axis, so that no solid of it is made"
-        raise InputError(Problem("blade", 0, what, "write a mesh"))
+        raise InputError(Problem("blade", 0, what, "write a mesh", code="IMP420"))
 
     def passed(foot: _Foot, parts: tuple[int, ...], turned: float) -> list[EdgeUse]:
         return [

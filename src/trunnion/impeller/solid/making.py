@@ -113,7 +113,7 @@ def impeller_solid(impeller: Impeller, tolerance: float) -> ImpellerSolid:
         mesh = waiting.result().mesh
     if abs(made.volume - mesh.volume) > _VOLUME * mesh.volume:
         what = f"its solid has {made.volume:.1f} mm³, its mesh {mesh.volume:.1f} mm³"
-        raise InputError(Problem(file, 0, what, "write a mesh"))
+        raise InputError(Problem(file, 0, what, "write a mesh", code="IMP420"))
     return ImpellerSolid(made.step, made.volume, made.faces, deviation, mesh)
 
 
@@ -132,7 +132,9 @@ def _within(impeller: Impeller, tolerance: float) -> tuple[Made, float]:
             return made, deviation
         why = f"its faces are {deviation:.4f} mm off the exact surfaces, more than {tolerance:g} mm"
     what = f"makes no solid of exact surfaces: {why}"
-    raise InputError(Problem(impeller.definition.file, 0, what, "write a mesh, or let the tolerance be wider"))
+    raise InputError(
+        Problem(impeller.definition.file, 0, what, "write a mesh, or let the tolerance be wider", code="IMP420")
+    )
 
 
 def _fine_fillets(impeller: Impeller) -> Iterator[tuple[Blade, Fillet]]:
@@ -164,12 +166,12 @@ def _asked(order: Order) -> Made | Refusal:
         done = subprocess.run(command, input=pickle.dumps(order), capture_output=True, check=False, timeout=_LONGEST)
     except subprocess.TimeoutExpired:
         what = f"Open CASCADE makes no solid of {order.name} within {_LONGEST:g} s"
-        raise InputError(Problem("trunnion", 0, what, "write a mesh")) from None
+        raise InputError(Problem("trunnion", 0, what, "write a mesh", code="IMP421")) from None
     said = done.stderr.decode("utf-8", "replace").strip().splitlines()
     last = said[-1][:200] if said else f"it ends with {done.returncode}"
     if done.returncode == _NOT_LOADED:
         cure = 'pip install "trunnion[cad]"; on Linux, Open CASCADE also needs libGL and libX11'
-        raise InputError(Problem("trunnion", 0, f"cannot load Open CASCADE: {last}", cure))
+        raise InputError(Problem("trunnion", 0, f"cannot load Open CASCADE: {last}", cure, code="IMP421"))
     if done.returncode or not done.stdout:
         return Refusal(f"Open CASCADE fails: {last}")
     answer = pickle.loads(done.stdout)

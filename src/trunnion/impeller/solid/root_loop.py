@@ -182,7 +182,9 @@ def _heights(impeller: Impeller, blade: Blade, stations: Stations, fillet: Fille
     if over[k] >= 0.0:
         x, y, z = fillet.centre[k] + impeller.definition.fillet * fillet.to_blade[k]
         what = f"the fillet reaches the shroud near X{x:.3f} Y{y:.3f} Z{z:.3f}, so that no solid of it is made"
-        raise InputError(Problem(impeller.definition.file, 0, what, "make the fillet smaller, or write a mesh"))
+        raise InputError(
+            Problem(impeller.definition.file, 0, what, "make the fillet smaller, or write a mesh", code="IMP420")
+        )
     return crossings(gap, fillet.v, np.full(len(over), blade.high))
 
 

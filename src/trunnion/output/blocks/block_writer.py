@@ -107,6 +107,11 @@ class BlockWriter:
             row[: len(word.letter)] = np.frombuffer(word.letter.encode(), np.uint8)
             row[LETTERS : LETTERS + len(word.format.zero)] = np.frombuffer(word.format.zero.encode(), np.uint8)
 
+    @property
+    def words(self) -> tuple[Word, ...]:
+        """The words of motion blocks."""
+        return tuple(self._words.values())
+
     def word(self, key: str) -> Word:
         """Return the word with this key."""
         return self._words[key]

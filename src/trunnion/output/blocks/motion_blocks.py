@@ -181,7 +181,7 @@ class MotionBlockWriter:
         for line in lines:
             if len(line.encode()) > room:
                 what = f"a line has more than the {self.control.longest_line} bytes that {self.control.name} reads"
-                raise InputError(Problem(self._file, 0, f"{what}: {line[:60]}…", _SHORTEN))
+                raise InputError(Problem(self._file, 0, f"{what}: {line[:60]}…", _SHORTEN, code="CTL120"))
         sign, blocks, continues = self.control.continued, list[str](), False
         for line in lines:
             blocks[len(blocks) - continues :] = [f"{blocks[-1]}\n{line}" if continues else line]
@@ -193,7 +193,9 @@ class MotionBlockWriter:
         for line in lines:
             if letter := lacking(line, self._encoding):
                 what = f"the definition of {self.control.name} writes {line!r}: {self._encoding} has no {letter!r}"
-                raise InputError(Problem(self._file, 0, what, "change it there, or write setting encoding=utf-8"))
+                raise InputError(
+                    Problem(self._file, 0, what, "change it there, or write setting encoding=utf-8", code="CTL810")
+                )
         return [self.family.COMMENTS.sub(self._in_capitals, line) for line in lines] if self._capitals else list(lines)
 
     def _in_capitals(self, comment: re.Match[str]) -> str:

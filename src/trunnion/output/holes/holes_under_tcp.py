@@ -114,7 +114,9 @@ def check_holes_under_tcp(operation: Operation) -> Iterator[HoleCycleError]:
     for row, cycle in cycles.items():
         line = int(moves.line[row])
         if moves.kind[row] != Kind.RAPID:
-            yield HoleCycleError("a rewind of the rotary axes among holes", "leave the setting holes out", line)
+            yield HoleCycleError(
+                "a rewind of the rotary axes among holes", "leave the setting holes out", line, code="CTL380"
+            )
         if row == 0:
             continue
         before = cycles.get(row - 1)
@@ -130,7 +132,7 @@ def check_holes_under_tcp(operation: Operation) -> Iterator[HoleCycleError]:
             continue
         if lowest < -_SAME_HEIGHT:
             what = f"on the straight way to this hole the tool would be {-lowest:.3f} mm below the height of RAPTO"
-            yield HoleCycleError(what, "put RAPID points between the holes, or raise RTRCTO", line)
+            yield HoleCycleError(what, "put RAPID points between the holes, or raise RTRCTO", line, code="CTL380")
 
 
 def _cycle_by_row(operation: Operation) -> dict[int, Cycle]:

@@ -50,7 +50,9 @@ def feed_per_rev_before_spindle(operation: Operation, spindle_known: bool) -> li
     early = np.flatnonzero(moves.per_rev[:first] & (moves.kind[:first] != Kind.RAPID))
     if not len(early):
         return []
-    why = UnsupportedFeatureError("a feed per revolution before the spindle has a speed", "put SPINDL before it")
+    why = UnsupportedFeatureError(
+        "a feed per revolution before the spindle has a speed", "put SPINDL before it", code="CTL330"
+    )
     return [(int(moves.line[early[0]]), why)]
 
 

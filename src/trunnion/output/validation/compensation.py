@@ -33,7 +33,13 @@ def compensation_problems(program: Program, motion: Motion) -> list[Problem]:
         if holes := [cycle for cycle, stop in cycle_row_ranges(operation) if cycle.row < end and event.row < stop]:
             what = f"CUTCOM/{event.side} where the cycle of line {holes[0].line} makes holes: they have no side"
             problems.append(
-                Problem(program.file, event.line, what, "write CUTCOM/OFF before the cycle, and LEFT behind it")
+                Problem(
+                    program.file,
+                    event.line,
+                    what,
+                    "write CUTCOM/OFF before the cycle, and LEFT behind it",
+                    code="CTL220",
+                )
             )
             continue
         in_plane = np.delete(axes, _NORMALS.get(event.plane, 2), axis=1)
@@ -50,5 +56,5 @@ def compensation_problems(program: Program, motion: Motion) -> list[Problem]:
         in_tilted_plane = "setting mode=tilted makes the operation in a tilted plane, or "
         has_planes = MachiningMode.TILTED in program.control.modes({})
         cure = (in_tilted_plane if has_planes else "") + "output the path without CUTCOM"
-        problems.append(Problem(program.file_of(operation), event.line, f"{what}: {why}", cure))
+        problems.append(Problem(program.file_of(operation), event.line, f"{what}: {why}", cure, code="CTL220"))
     return problems

@@ -78,7 +78,7 @@ def corner_problems(program: Program, motion: Motion) -> list[Problem]:
 
 def _problem(program: Program, motion: Motion, line: int, what: str) -> Problem:
     why = f"{program.control.name} would not see the next corner, and cut into an inside one"
-    return Problem(program.file_of(motion.operation), line, f"{what}: {why}", _CURE)
+    return Problem(program.file_of(motion.operation), line, f"{what}: {why}", _CURE, code="CTL240")
 
 
 def _moves_across(operation: Operation) -> Ints:
@@ -113,5 +113,5 @@ def _blocks(program: Program, event: Event) -> int:
     if isinstance(event, Message):
         return sum(not line.startswith(_COMMENT_SIGNS) for line in control.family.message(event))
     if isinstance(event, Insert):
-        return int(not event.text.lstrip().startswith(_COMMENT_SIGNS))
+        return sum(not line.lstrip().startswith(_COMMENT_SIGNS) for line in event.text.split("\n"))
     return int(isinstance(event, Dwell | SelectTool | Stop))

@@ -63,10 +63,11 @@ def cycle_problems(program: Program, motion: Motion, spindle: SpindleState) -> l
             warning = _check_cycle(program, motion, operation, event, states, along_tool)
             warnings += [warning] if warning else []
         except HoleCycleError as error:
-            problems.append(Problem(program.file_of(operation), event.line, error.what, error.cure))
+            problems.append(Problem(program.file_of(operation), event.line, error.what, error.cure, code=error.code))
     if along_tool and not problems:
         problems = [
-            Problem(program.file_of(operation), e.line, e.what, e.cure) for e in check_holes_under_tcp(operation)
+            Problem(program.file_of(operation), e.line, e.what, e.cure, code=e.code)
+            for e in check_holes_under_tcp(operation)
         ]
     return [*problems, *warnings]
 
@@ -100,15 +101,19 @@ def _check_cycle(
         program.control.family.cycle_call(cycle, 0.0, state, settings, formats)
     feed, per_rev = cycle_feed(cycle, spindle_here, float(moves.feed[row]), bool(moves.per_rev[row]))
     if not feed > 0.0:
-        raise HoleCycleError("CYCLE without a feed", "write MMPM,feed, or FEDRAT before it")
+        raise HoleCycleError("CYCLE without a feed", "write MMPM,feed, or FEDRAT before it", code="CTL310")
     below = row > 0 and moves.tip[row - 1, 2] < moves.tip[row, 2] + cycle.rapid_height - 1e-6
     if below and not along_tool and moves.kind[row - 1] != Kind.RAPID:
-        raise HoleCycleError("CYCLE while the tool is below the height of RAPTO", "retract the tool before the cycle")
+        raise HoleCycleError(
+            "CYCLE while the tool is below the height of RAPTO", "retract the tool before the cycle", code="PLN650"
+        )
     if cycle.method.startswith("TAP"):
         return None
     words = program.control.family.WORDS
     if per_rev and "feed_per_rev" not in words:
-        raise HoleCycleError("a feed per revolution, which this control does not have", "output it in mm/min (MMPM)")
+        raise HoleCycleError(
+            "a feed per revolution, which this control does not have", "output it in mm/min (MMPM)", code="CTL330"
+        )
     if per_rev and spindle_here is not None and CYCLE_CALL_WORD in words:
         feed, per_rev = feed * spindle_here.rpm, False  # a cycle that is called hole by hole has mm/min
     return rounding_problem(program.file_of(operation), event.line, formats, feed, per_rev)
@@ -130,4 +135,4 @@ def _no_tilted_cycle(program: Program, motion: Motion, cycle: Cycle) -> HoleCycl
         cure = "clamp the part so that these holes stand along +Z, or post for a control with tilted planes"
     if HOLES_SETTING in settings and under_tcp:
         cure += f", or turn the tool from hole to hole (setting {HOLES_SETTING}=…)"
-    return HoleCycleError(what, cure)
+    return HoleCycleError(what, cure, code="CTL370")

@@ -28,35 +28,47 @@ def event_problems(
     if isinstance(event, Dwell):
         if event.revolutions and not rpm:
             what = "a dwell in spindle revolutions while the spindle stands: it would never end"
-            return [Problem(*location, what, "put SPINDL before it, or write DELAY in seconds")]
+            return [Problem(*location, what, "put SPINDL before it, or write DELAY in seconds", code="CTL420")]
         try:
             control.family.dwell(event, rpm, control.number_formats(motion.three_axis))
         except UnsupportedFeatureError as why:
-            return [Problem(*location, why.what, why.cure)]
+            return [Problem(*location, why.what, why.cure, code=why.code)]
     if isinstance(event, LoadTool) and (event.row > 0 or not motion.starts_operation):
-        return [Problem(*location, "tool change within an operation", "begin a new operation with the new tool")]
+        return [
+            Problem(
+                *location, "tool change within an operation", "begin a new operation with the new tool", code="CTL430"
+            )
+        ]
     if isinstance(event, CutterComp) and event.side == "ON":
-        return [Problem(*location, "CUTCOM/ON does not say on which side", "write CUTCOM/LEFT or CUTCOM/RIGHT")]
+        return [
+            Problem(
+                *location, "CUTCOM/ON does not say on which side", "write CUTCOM/LEFT or CUTCOM/RIGHT", code="CTL230"
+            )
+        ]
     takes_tool_radius = RADIUS_NUMBER_WORD not in control.family.WORDS
     if takes_tool_radius and _compensates_by_register(event) and event.register not in registers:
         what = f"CUTCOM names the register {event.register}, and {control.name} takes the radius of the tool"
-        return [Problem(*location, what, "write CUTCOM without a register, or with the number of the tool")]
+        return [
+            Problem(*location, what, "write CUTCOM without a register, or with the number of the tool", code="CTL230")
+        ]
     if isinstance(event, GoHome) and event.row < len(motion.operation.moves):
-        return [Problem(*location, "GOHOME before the operation's end", "begin a new operation after it")]
+        return [
+            Problem(*location, "GOHOME before the operation's end", "begin a new operation after it", code="CTL430")
+        ]
     if isinstance(event, SelectTool) and not control.family.tool_preselection("1"):
         what = f"SELECT/TOOL,{event.number} is not written: how {control.name} preselects a tool is not known"
-        return [Problem(*location, what, "preselect the tool by INSERT/", Severity.WARNING)]
-    if isinstance(event, Insert) and control.unit != 1.0:
+        return [Problem(*location, what, "preselect the tool by INSERT/", Severity.WARNING, code="CTL440")]
+    if isinstance(event, Insert) and control.unit != 1.0 and not event.template:
         literal = literal_length(control, event.text)
         if literal:
             what = f"INSERT/{event.text.strip()}: {literal} may be a length, and nobody says whether in mm or inches"
-            return [Problem(*location, what, "leave it out, or write setting units=mm")]
+            return [Problem(*location, what, "leave it out, or write setting units=mm", code="CTL450")]
     if isinstance(event, Coolant) and event.kind not in control.coolant:
         cure = (
             f"use one of {', '.join(control.coolant)}, or write its M code into the machine's definition:"
             f" {event.kind} = … under [control.coolant]"
         )
-        return [Problem(*location, f"{control.name} has no coolant {event.kind}", cure)]
+        return [Problem(*location, f"{control.name} has no coolant {event.kind}", cure, code="CTL410")]
     return []
 
 
@@ -83,7 +95,14 @@ def block_skip_problems(program: Program) -> list[Problem]:
         if k + 1 == len(motions) or motions[k + 1].starts_operation:
             what = f"OPSKIP/ON ends with operation {motion.operation.name}: the way home cannot be skipped"
             problems.append(
-                Problem(program.file_of(motion.operation), skip.line, what, "write OPSKIP/OFF", Severity.WARNING)
+                Problem(
+                    program.file_of(motion.operation),
+                    skip.line,
+                    what,
+                    "write OPSKIP/OFF",
+                    Severity.WARNING,
+                    code="CTL460",
+                )
             )
             skip = None
         else:
@@ -91,7 +110,11 @@ def block_skip_problems(program: Program) -> list[Problem]:
             what = "the tool axis turns to another plane between blocks that may be skipped"
             problems.append(
                 Problem(
-                    program.file_of(motion.operation), line, what, "write OPSKIP/OFF before it, and OPSKIP/ON after it"
+                    program.file_of(motion.operation),
+                    line,
+                    what,
+                    "write OPSKIP/OFF before it, and OPSKIP/ON after it",
+                    code="CTL460",
                 )
             )
     return problems

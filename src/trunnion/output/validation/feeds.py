@@ -25,14 +25,10 @@ def missing_feed_problems(program: Program, motion: Motion) -> list[Problem]:
     rows = np.flatnonzero((moves.kind != Kind.RAPID) & ~(moves.feed > 0))
     if not len(rows):
         return []
-    return [
-        Problem(
-            program.file_of(motion.operation),
-            int(moves.line[rows[0]]),
-            "cutting motion without a feed",
-            "put FEDRAT before it",
-        )
-    ]
+    what, cure = "cutting motion without a feed", "put FEDRAT before it"
+    if motion.cl_rows is not None:  # feed=fastest
+        cure += "; feed_limit is for cuts that do not plunge"
+    return [Problem(program.file_of(motion.operation), int(moves.line[rows[0]]), what, cure, code="CTL310")]
 
 
 def rounded_feed_problems(program: Program, motion: Motion) -> list[Problem]:
@@ -76,14 +72,14 @@ def rounding_problem(
     number_format = feed_format(formats, per_rev)
     if per_rev and number_format.unit == 1.0 and formats["feed"].unit != 1.0:
         what = "a feed per revolution in a program in inches: what the control counts there is not known"
-        return Problem(file, line, what, "write it in mm/min (MMPM), or setting units=mm")
+        return Problem(file, line, what, "write it in mm/min (MMPM), or setting units=mm", code="CTL330")
     printed = number_format.rounded(feed)
     cure = "write it in mm/min (MMPM)" if per_rev else "write a feed that the control can print"
     if printed < number_format.least:
-        return Problem(file, line, f"a feed of {feed:g} is below the least that the control reads", cure)
+        return Problem(file, line, f"a feed of {feed:g} is below the least that the control reads", cure, code="CTL320")
     error = abs(printed - feed) / feed
     if error <= TOLD_ERROR:
         return None
     what = f"a feed of {feed:g} prints as {printed:g}, which is {100.0 * error:.2g} % off"
     refused = per_rev or error > REFUSED_ERROR
-    return Problem(file, line, what, cure, Severity.ERROR if refused else Severity.WARNING)
+    return Problem(file, line, what, cure, Severity.ERROR if refused else Severity.WARNING, code="CTL320")

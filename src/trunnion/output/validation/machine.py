@@ -22,4 +22,4 @@ def machine_problems(program: Program) -> list[Problem]:
 
 
 def _warning(program: Program, what: str, cure: str) -> Problem:
-    return Problem(program.machine.key, 0, what, cure, Severity.WARNING)
+    return Problem(program.machine.key, 0, what, cure, Severity.WARNING, code="CTL720")

@@ -30,11 +30,20 @@ def spindle_problems(program: Program, operation: Operation, turns: bool | None)
             what = f"operation {operation.name} cuts while the spindle stands: {why}"
             cure = "put SPINDL before it, or write setting standing_spindle=allowed for a tool that does not turn"
             line = int(operation.moves.line[start + int(np.argmax(cuts))])
-            return [Problem(program.file_of(operation), line, what, cure)]
+            return [Problem(program.file_of(operation), line, what, cure, code="CTL510")]
         break
     if turns is None and not any(isinstance(event, SpindleOn) for event in switches):
         what = f"operation {operation.name} has no spindle speed"
-        return [Problem(program.file_of(operation), operation.line, what, "put SPINDL before it", Severity.WARNING)]
+        return [
+            Problem(
+                program.file_of(operation),
+                operation.line,
+                what,
+                "put SPINDL before it",
+                Severity.WARNING,
+                code="CTL520",
+            )
+        ]
     return []
 
 
@@ -49,7 +58,16 @@ def other_speed_problems(program: Program, operation: Operation, before: str, nu
     if not (before and loads and number not in (0, loads[0].number) and len(cuts)) or (speeds and speeds[0] <= cuts[0]):
         return []
     what = f"operation {operation.name} loads tool {loads[0].number}, and cuts with the spindle speed of {before}"
-    return [Problem(program.file_of(operation), loads[0].line, what, "put SPINDL behind the tool", Severity.WARNING)]
+    return [
+        Problem(
+            program.file_of(operation),
+            loads[0].line,
+            what,
+            "put SPINDL behind the tool",
+            Severity.WARNING,
+            code="CTL520",
+        )
+    ]
 
 
 def tool_problems(program: Program, operation: Operation, in_spindle: str) -> list[Problem]:
@@ -63,13 +81,15 @@ def tool_problems(program: Program, operation: Operation, in_spindle: str) -> li
     if not loaded and name and not stays:
         what = f"operation {operation.name} has no LOAD/TOOL; its tool is called by its name"
         cure = "setting tool=NUMBER calls it by number"
-        problems.append(Problem(program.file_of(operation), operation.line, what, cure, Severity.WARNING))
+        problems.append(
+            Problem(program.file_of(operation), operation.line, what, cure, Severity.WARNING, code="CTL140")
+        )
     if name and (not (loaded or stays) or program.effective_setting("tool_call", operation) == "name"):
         try:
             program.control.family.tool_call(0, name, by_name=True)
         except UnsupportedFeatureError as why:
             what = f"{program.control.name}: {why.what}"
-            problems.append(Problem(program.file_of(operation), operation.line, what, why.cure))
+            problems.append(Problem(program.file_of(operation), operation.line, what, why.cure, code=why.code))
     return problems
 
 
@@ -79,7 +99,9 @@ def machining_mode_problems(program: Program, motion: Motion) -> list[Problem]:
         return []
     operation = motion.operation
     what = f"operation {operation.name}: {program.control.name} has no words for {motion.mode}"
-    return [Problem(program.file_of(operation), operation.line, what, "setting mode=… sets another mode")]
+    return [
+        Problem(program.file_of(operation), operation.line, what, "setting mode=… sets another mode", code="CTL210")
+    ]
 
 
 def tolerance_problems(program: Program, motion: Motion) -> list[Problem]:
@@ -92,7 +114,12 @@ def tolerance_problems(program: Program, motion: Motion) -> list[Problem]:
     what = f"operation {operation.name} has no INTOL and OUTTOL; the tolerance becomes {fallback}"
     return [
         Problem(
-            program.file_of(operation), operation.line, what, "write setting fallback_tolerance=VALUE", Severity.WARNING
+            program.file_of(operation),
+            operation.line,
+            what,
+            "write setting fallback_tolerance=VALUE",
+            Severity.WARNING,
+            code="CTL530",
         )
     ]
 
@@ -114,7 +141,7 @@ def plane_entry_problems(program: Program, motion: Motion) -> list[Problem]:
         return []
     what = f"a cut is the first motion in a tilted plane, and {program.control.name} wants X, Y and Z at rapid there"
     cure = "put RAPID before the first GOTO with this tool axis, clear of the part"
-    return [Problem(program.file_of(motion.operation), int(moves.line[0]), what, cure)]
+    return [Problem(program.file_of(motion.operation), int(moves.line[0]), what, cure, code="CTL540")]
 
 
 def next_axis_problems(program: Program, motion: Motion) -> list[Problem]:
@@ -125,4 +152,4 @@ def next_axis_problems(program: Program, motion: Motion) -> list[Problem]:
     moves, name = motion.operation.moves, program.control.name
     what = f"holes along another tool axis than those before, {motion.mode}: {name} has no template to go on from home"
     cure = f"write the template next_axis_{suffix} into the control's definition, or split the operation"
-    return [Problem(program.file_of(motion.operation), int(moves.line[0]), what, cure)]
+    return [Problem(program.file_of(motion.operation), int(moves.line[0]), what, cure, code="CTL550")]

@@ -21,7 +21,14 @@ def tool_vector_problems(program: Program, motion: Motion) -> list[Problem]:
     what = f"{what} {motion.operation.name} is written with rotary positions"
     cure = "no change is needed; orientation=angles writes all operations so"
     return [
-        Problem(program.file_of(motion.operation), int(motion.operation.moves.line[row]), what, cure, Severity.WARNING)
+        Problem(
+            program.file_of(motion.operation),
+            int(motion.operation.moves.line[row]),
+            what,
+            cure,
+            Severity.WARNING,
+            code="CTL560",
+        )
     ]
 
 
@@ -34,23 +41,33 @@ def normal_problems(program: Program, motion: Motion) -> list[Problem]:
     location, name = (program.file_of(operation), operation.line), operation.name
     if motion.mode is MachiningMode.WITHOUT_TCP:
         what = f"operation {name}: surface normals without TCP, where X, Y and Z are axis positions"
-        problems.append(Problem(*location, what, "leave the setting normals out"))
+        problems.append(Problem(*location, what, "leave the setting normals out", code="CTL610"))
     if motion.mode is MachiningMode.TCP and program.effective_setting("orientation") != "vector":
         what = f"operation {name}: with TCP the control would align the tool with the surface normal"
-        problems.append(Problem(*location, what, "setting orientation=vector writes the tool axis as well"))
+        problems.append(
+            Problem(*location, what, "setting orientation=vector writes the tool axis as well", code="CTL610")
+        )
     if len(operation.arcs.row):
         what = "a circle, which can have no surface normal: the control would not compensate the tool there"
         problems.append(
-            Problem(program.file_of(operation), int(moves.line[operation.arcs.row[0]]), what, "output lines only")
+            Problem(
+                program.file_of(operation),
+                int(moves.line[operation.arcs.row[0]]),
+                what,
+                "output lines only",
+                code="CTL610",
+            )
         )
     missing = (moves.kind == Kind.LINEAR) & ~np.isfinite(moves.normal[:, 0])
     inserted = missing[:-1] & (moves.line[:-1] == moves.line[1:]) & np.isfinite(moves.normal[1:, 0])
     if inserted.any():
         what = "a point between CL points, where the surface normal is not known"
         line = int(moves.line[int(np.argmax(inserted))])
-        problems.append(Problem(program.file_of(operation), line, what, "leave the setting axis_tolerance out"))
+        problems.append(
+            Problem(program.file_of(operation), line, what, "leave the setting axis_tolerance out", code="CTL610")
+        )
     elif missing.any():
         what = f"operation {name}: no contact point at {int(missing.sum())} of {counted(len(moves), 'point')}"
         effect = "the control does not compensate the tool there"
-        problems.append(Problem(*location, what, effect, Severity.WARNING))
+        problems.append(Problem(*location, what, effect, Severity.WARNING, code="CTL620"))
     return problems

@@ -18,7 +18,7 @@ def text_problems(program: Program) -> list[Problem]:
         written = spelled(text, encoding)
         if written != text and text not in found:
             why = f"is written {written!r}: {_missing(program, text)}"
-            found[text] = Problem(file, line, f"{what} {text!r} {why}", _cure(program), Severity.WARNING)
+            found[text] = Problem(file, line, f"{what} {text!r} {why}", _cure(program), Severity.WARNING, code="CTL810")
     return [*found.values(), *_called(program), *_inserted(program)]
 
 
@@ -69,12 +69,12 @@ def _called(program: Program) -> Iterator[Problem]:
     """Tools that are called by a name which would be another one."""
     calls: dict[str, Operation] = {}
     with suppress(InputError, UnsupportedFeatureError):  # what a tool is called by is another check
-        calls = {call: operation for call, _, operation in reversed(TemplateValues(program).tool_calls())}
+        calls = {call: operation for call, _, operation in reversed(TemplateValues(program).tool_calls)}
     for call, operation in calls.items():
         if program.spelled(call) != call:
             what = f"the tool {call} is called by a name that the program cannot have: {_missing(program, call)}"
             cure = "write setting tool_call=number or tool=NUMBER, or rename the tool"
-            yield Problem(program.file_of(operation), operation.line, what, cure)
+            yield Problem(program.file_of(operation), operation.line, what, cure, code="CTL820")
 
 
 def _inserted(program: Program) -> Iterator[Problem]:
@@ -84,4 +84,6 @@ def _inserted(program: Program) -> Iterator[Problem]:
         for event in motion.operation.events:
             if isinstance(event, Insert) and (letter := lacking(event.text, encoding)):
                 what = f"INSERT/{event.text.strip()} goes into the program as it is, and {encoding} has no {letter!r}"
-                yield Problem(program.file_of(motion.operation), event.line, what, "write it in other letters")
+                yield Problem(
+                    program.file_of(motion.operation), event.line, what, "write it in other letters", code="CTL820"
+                )

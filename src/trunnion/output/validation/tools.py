@@ -49,14 +49,14 @@ def tool_conflicts(program: Program, *, uses_length_numbers: bool) -> list[Probl
     problems: list[Problem] = []
     known: dict[str, list[Operation]] = {}
     registers: dict[int, str] = {}
-    for call, register, operation in TemplateValues(program).tool_calls():
+    for call, register, operation in TemplateValues(program).tool_calls:
         file = program.file_of(operation)
         other = registers.setdefault(register or tool_number(call) or 0, call)
         if uses_length_numbers and other != call:
             what = (
                 f"tool {call} of operation {operation.name} has length register {register or call}, as tool {other} has"
             )
-            problems.append(Problem(file, operation.line, what, _OWN_REGISTER))
+            problems.append(Problem(file, operation.line, what, _OWN_REGISTER, code="CTL710"))
         before = known.setdefault(call, [])
         if operation.tool in (other.tool for other in before):
             continue
@@ -71,13 +71,13 @@ def _conflict(call: str, before: Sequence[Operation], operation: Operation, file
         differing = list(_differences(other.tool, operation.tool))
         if differing:
             what = f"operations {other.name} and {operation.name} both call tool {call}, and their CL data differ"
-            yield Problem(file, operation.line, f"{what}: {', '.join(differing)}", _CURE)
+            yield Problem(file, operation.line, f"{what}: {', '.join(differing)}", _CURE, code="CTL710")
             return
     name = operation.tool.name
     named = next((other for other in before if other.tool.name and other.tool.name != name), None)
     if name and named is not None and all(other.tool.name != name for other in before):
         what = f"tool {call} is {named.tool.name} in operation {named.name}, and {name} in {operation.name}"
-        yield Problem(file, operation.line, what, _CURE, Severity.WARNING)
+        yield Problem(file, operation.line, what, _CURE, Severity.WARNING, code="CTL710")
 
 
 def _differences(one: Tool, two: Tool) -> Iterator[str]:

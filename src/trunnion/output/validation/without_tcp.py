@@ -32,7 +32,9 @@ def problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
     moves, control = operation.moves, program.control
     if any(isinstance(event, CutterComp) and event.side != "OFF" for event in operation.events):
         what = "cutter radius compensation without TCP would be that of the axes"
-        problems.append(Problem(program.file_of(operation), operation.line, what, "output the path without CUTCOM"))
+        problems.append(
+            Problem(program.file_of(operation), operation.line, what, "output the path without CUTCOM", code="CTL220")
+        )
     decimals = control.number_formats(motion.three_axis)["angle"].decimals
     coordinates = to_axis_coordinates(program.machine, motion, decimals)
     cuts = np.flatnonzero(coordinates.rotary_moves & (moves.kind != Kind.RAPID) & (moves.feed > 0))
@@ -41,7 +43,7 @@ def problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
     if len(wraps) and "primary_shortest" not in control.family.WORDS and not control.shorter_way:
         what = "a rotary axis goes past the end of the turn that it displays, and would go the longer way"
         cure = 'write output = "none" for the axis in the machine\'s definition'
-        problems.append(Problem(program.file_of(operation), int(moves.line[wraps[0]]), what, cure))
+        problems.append(Problem(program.file_of(operation), int(moves.line[wraps[0]]), what, cure, code="CTL630"))
     return problems
 
 
@@ -53,12 +55,20 @@ def _feed_problems(program: Program, motion: Motion, coordinates: AxisCoordinate
     if len(per_rev):
         what = "a feed per revolution without TCP while rotary axes turn"
         problems.append(
-            Problem(program.file_of(operation), int(moves.line[per_rev[0]]), what, "output it in mm/min (FEDRAT/MMPM)")
+            Problem(
+                program.file_of(operation),
+                int(moves.line[per_rev[0]]),
+                what,
+                "output it in mm/min (FEDRAT/MMPM)",
+                code="CTL330",
+            )
         )
     rule = feed_rule(program.control, settings)
     if len(cuts) and program.control.unit != 1.0 and rule in ("all_axes", "slides"):
         what = "rotary axes turn in a cut without TCP, and how F counts degrees beside inches is not known"
-        problems.append(Problem(program.file_of(operation), int(moves.line[cuts[0]]), what, "write setting units=mm"))
+        problems.append(
+            Problem(program.file_of(operation), int(moves.line[cuts[0]]), what, "write setting units=mm", code="CTL340")
+        )
     number_format = program.control.number_formats(motion.three_axis)[feed_format(rule)]
     value, below, above = feed_words(coordinates.select(cuts), moves.feed[cuts], rule, number_format)
     if below.any():
@@ -68,17 +78,23 @@ def _feed_problems(program: Program, motion: Motion, coordinates: AxisCoordinate
             minutes, most = coordinates.tip_length[row] / moves.feed[row], 1.0 / number_format.least
             what = f"a block takes {minutes:.0f} minutes; with inverse time it can take {most:g} at most"
             cure = "output the toolpath with points nearer to each other, or a higher feed"
-        problems.append(Problem(program.file_of(operation), int(moves.line[row]), what, cure))
+        problems.append(Problem(program.file_of(operation), int(moves.line[row]), what, cure, code="CTL340"))
     if above.any():
         blocks = counted(int(above.sum()), "block")
         what = f"{blocks} so short that F would be above {number_format.greatest:g}: slower than programmed"
         location = program.file_of(operation), int(moves.line[cuts[np.argmax(above)]])
-        problems.append(Problem(*location, what, "a wider tolerance inserts fewer points", Severity.WARNING))
+        problems.append(
+            Problem(*location, what, "a wider tolerance inserts fewer points", Severity.WARNING, code="CTL340")
+        )
     problems += _rounding_problems(program, motion, cuts, value, rule, number_format)
     heads = [axis.name for axis in program.machine.axes if axis.is_rotary and axis.mount is Mount.TOOL]
     if rule == FEED_AT_TIP and heads:
         what = f"rotary_feed is tip, and {' and '.join(heads)} turns in the head, which the control leaves out"
-        problems.append(Problem(program.file_of(operation), operation.line, what, "leave the setting rotary_feed out"))
+        problems.append(
+            Problem(
+                program.file_of(operation), operation.line, what, "leave the setting rotary_feed out", code="CTL340"
+            )
+        )
     return problems
 
 
@@ -97,5 +113,12 @@ def _rounding_problems(
     cure = "output the toolpath with points nearer to each other, or a higher feed"
     severity = Severity.ERROR if inverse_time else Severity.WARNING
     return [
-        Problem(program.file_of(motion.operation), int(motion.operation.moves.line[cuts[worst]]), what, cure, severity)
+        Problem(
+            program.file_of(motion.operation),
+            int(motion.operation.moves.line[cuts[worst]]),
+            what,
+            cure,
+            severity,
+            code="CTL340",
+        )
     ]

@@ -70,11 +70,11 @@ _SAME_DEPTH: Final = 0.01
 
 
 class HoleCycleError(Exception):
-    """A cycle cannot be made: ``what`` is wrong, its ``cure``, and the CL ``line`` if it is known (else 0)."""
+    """A cycle cannot be made: ``what`` is wrong, its ``cure``, its ``code``, and the CL ``line`` if known (else 0)."""
 
-    def __init__(self, what: str, cure: str, line: int = 0) -> None:
+    def __init__(self, what: str, cure: str, line: int = 0, *, code: str) -> None:
         super().__init__(what)
-        self.what, self.cure, self.line = what, cure, line
+        self.what, self.cure, self.line, self.code = what, cure, line, code
 
 
 class UnsupportedCycleError(HoleCycleError):
@@ -147,17 +147,21 @@ def cycle_from_event(event: CycleOn) -> Cycle:
     values, words = dict(event.values), dict(event.words)
     if any(not abs(number) < _FARTHEST for given in values.values() for number in given):
         raise HoleCycleError(
-            "CYCLE with a number that no machine has", "write lengths in mm or inches, feeds per minute"
+            "CYCLE with a number that no machine has", "write lengths in mm or inches, feeds per minute", code="PLN620"
         )
     method = _method(event.mode, words)
     rapid_height = _first(values, "RAPTO", _first(values, "CLEAR", math.nan))
     if not rapid_height >= 0.0:
-        raise HoleCycleError("CYCLE without RAPTO, or with one below the hole", "write RAPTO,distance above the point")
+        raise HoleCycleError(
+            "CYCLE without RAPTO, or with one below the hole", "write RAPTO,distance above the point", code="PLN610"
+        )
     pecks = (*values.get("STEP", ()), 0.0, 0.0, 0.0)[:3]
     if method in _IN_PECKS and not pecks[0] > 0.0:
-        raise HoleCycleError(f"CYCLE/{method} without STEP", "write STEP,first peck")
+        raise HoleCycleError(f"CYCLE/{method} without STEP", "write STEP,first peck", code="PLN610")
     if words.get("RTRCTO") == "MANUAL":
-        raise HoleCycleError("RTRCTO,MANUAL does not say how far", "write RTRCTO,distance or RTRCTO,AUTO")
+        raise HoleCycleError(
+            "RTRCTO,MANUAL does not say how far", "write RTRCTO,distance or RTRCTO,AUTO", code="PLN610"
+        )
     is_auto = words.get("RTRCTO") == "AUTO"
     per_rev = "MMPR" in values
     return Cycle(
@@ -190,14 +194,16 @@ def _method(mode: tuple[str, ...], words: Mapping[str, str]) -> HoleMethod:
     method = _METHODS.get(mode)
     if mode == ("BORE", "BACK"):
         what = "CYCLE/BORE,BACK does not say how far the tool must move off its axis to pass the hole, nor where to"
-        raise HoleCycleError(what, "output the holes as motion")
+        raise HoleCycleError(what, "output the holes as motion", code="PLN630")
     if method is None:
-        raise HoleCycleError(f"CYCLE/{','.join(mode)} is a cycle that cannot be written", "output the holes as motion")
+        raise HoleCycleError(
+            f"CYCLE/{','.join(mode)} is a cycle that cannot be written", "output the holes as motion", code="PLN630"
+        )
     if "OPTION" not in words:
         return method
     if method in (HoleMethod.DEEP_TAP, HoleMethod.CHIP_BREAKING_TAP):
         what = f"CYCLE/{method} with OPTION, a compensating chuck"
-        raise HoleCycleError(what, "leave OPTION out, or tap in one pass")
+        raise HoleCycleError(what, "leave OPTION out, or tap in one pass", code="PLN630")
     return HoleMethod.FLOATING_TAP if method is HoleMethod.TAP else method
 
 
@@ -213,17 +219,17 @@ def _depth(mode: Sequence[str], values: Mapping[str, tuple[float, ...]]) -> floa
     if "CSINK" in mode and "CSKDIA" in values:
         angle = _first(values, "TLANGL", 0.0)
         if not 0.0 < angle < 180.0:
-            raise HoleCycleError("CYCLE/DRILL,CSINK without the angle of the tool", "write TLANGL,angle")
+            raise HoleCycleError("CYCLE/DRILL,CSINK without the angle of the tool", "write TLANGL,angle", code="PLN610")
         countersunk = 0.5 * values["CSKDIA"][0] / math.tan(math.radians(0.5 * angle))
         if depth and abs(depth - countersunk) > _SAME_DEPTH:
             what = f"CYCLE/DRILL,CSINK asks for {depth:g} mm by FEDTO and for {countersunk:.4f} mm by CSKDIA and TLANGL"
-            raise HoleCycleError(what, "leave one of them out")
+            raise HoleCycleError(what, "leave one of them out", code="PLN620")
         depth = countersunk
     if depth > 0.0:
         return depth
     if "FEDTO" not in values:
-        raise HoleCycleError("CYCLE without a depth", "write FEDTO,depth")
+        raise HoleCycleError("CYCLE without a depth", "write FEDTO,depth", code="PLN610")
     if not _first(values, "RAPTO", _first(values, "CLEAR", 0.0)) > 0.0 or not _NO_DEPTH.issuperset(mode):
         what = f"CYCLE/{','.join(mode)} with FEDTO,0, which leaves nothing to make"
-        raise HoleCycleError(what, "write FEDTO,depth")
+        raise HoleCycleError(what, "write FEDTO,depth", code="PLN620")
     return 0.0  # from RAPTO down to the point itself

@@ -147,7 +147,9 @@ def convert_holes_to_motion(operation: Operation, conditions: HoleConditions) ->
     for holes, new in zip(converted, rows, strict=True):
         copies[holes.rows] = new.keep.sum(axis=1)
     if copies.sum() > _MOST_ROWS:
-        raise HoleCycleError(f"holes of {copies.sum()} motions", "output longer pecks", converted[0].event.line)
+        raise HoleCycleError(
+            f"holes of {copies.sum()} motions", "output longer pecks", converted[0].event.line, code="PLN620"
+        )
     first_rows = np.concatenate(([0], np.cumsum(copies)))
     return HolesAsMotion(
         _with_rows(operation, converted, rows, copies, first_rows), first_rows, tuple(_summary(converted))
@@ -211,7 +213,7 @@ def _rows_of(operation: Operation, holes: _Holes, before: Floats, from_home: Fla
     is_low = height < cycle.rapid_height - SAME_HEIGHT
     if is_low[0] and moves.kind[holes.first - 1] != Kind.RAPID:
         what, cure = "CYCLE while the tool is below the height of RAPTO", "draw the tool back before the cycle"
-        raise HoleCycleError(what, cure, holes.event.line)
+        raise HoleCycleError(what, cure, holes.event.line, code="PLN650")
     travel_height = np.maximum(height, cycle.rapid_height)
     above = point + travel_height[:, None] * axis
     up = before[rows] + (cycle.rapid_height - height)[:, None] * axis
@@ -232,13 +234,17 @@ def _checked_motions(holes: _Holes, feed: float) -> HoleMotions:
     try:
         motions = hole_motions(holes.cycle)
         if not feed > 0.0:
-            raise HoleCycleError("CYCLE without a feed", "write MMPM,feed, or FEDRAT before it")
+            raise HoleCycleError("CYCLE without a feed", "write MMPM,feed, or FEDRAT before it", code="CTL310")
         if holes.cycle.dwell_in_revolutions and holes.spindle is None:
-            raise HoleCycleError("DWELL,REV while the spindle stands still", "put SPINDL before the cycle")
+            raise HoleCycleError(
+                "DWELL,REV while the spindle stands still", "put SPINDL before the cycle", code="PLN660"
+            )
         if holes.cycle.method is HoleMethod.BORE and holes.spindle is None:
-            raise HoleCycleError("CYCLE/BORE,DRAG while the spindle stands still", "put SPINDL before the cycle")
+            raise HoleCycleError(
+                "CYCLE/BORE,DRAG while the spindle stands still", "put SPINDL before the cycle", code="PLN660"
+            )
     except HoleCycleError as error:
-        raise HoleCycleError(error.what, error.cure, holes.event.line) from None
+        raise HoleCycleError(error.what, error.cure, holes.event.line, code=error.code) from None
     return motions
 
 

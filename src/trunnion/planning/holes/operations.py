@@ -85,7 +85,7 @@ def _with_retract_distance(operation: Operation, event: CycleOn) -> CycleOn:
     moves = operation.moves
     if event.row == 0:
         cure = "put a point before the cycle, or write RTRCTO,distance"
-        raise HoleCycleError("RTRCTO,AUTO before any point", cure, event.line)
+        raise HoleCycleError("RTRCTO,AUTO before any point", cure, event.line, code="PLN650")
     height = float((moves.tip[event.row - 1] - moves.tip[event.row]) @ moves.axis[event.row])
     words.pop("RTRCTO")
     return replace(event, values=(*event.values, ("RTRCTO", (height,))), words=tuple(words.items()))

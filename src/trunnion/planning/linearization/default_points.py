@@ -193,4 +193,4 @@ def _problems(file: str, lines: list[int], tolerance: float) -> Iterable[Problem
     for line in lines[:_NAMED]:
         what = f"in this step of the cut the tool axis leaves its path by more than {tolerance:g} degrees"
         cure = "setting axis_tolerance=DEGREES allows more; or output the toolpath with points nearer to each other"
-        yield Problem(file, line, f"{what}: the rotary axes change their side", cure)
+        yield Problem(file, line, f"{what}: the rotary axes change their side", cure, code="PLN140")

@@ -177,7 +177,9 @@ def _bend_problems(file: str, operation: Operation, rows: Ints, options: PlanOpt
         tolerance = f"{options.axis_tolerance_between_points:g} degrees"
         what = f"in this step of the cut the tool axis leaves its path by more than {tolerance}"
         cure = "setting axis_tolerance=DEGREES allows more; or output the toolpath with points nearer to each other"
-        yield Problem(file, int(operation.moves.line[row]), f"{what}: the rotary axes change their side", cure)
+        yield Problem(
+            file, int(operation.moves.line[row]), f"{what}: the rotary axes change their side", cure, code="PLN140"
+        )
 
 
 def _limit_problems(file: str, operation: Operation, machine: Machine, path: DividedPath) -> Iterable[Problem]:
@@ -198,4 +200,4 @@ def _limit_problems(file: str, operation: Operation, machine: Machine, path: Div
         column = int(np.argmax(outside[k]))
         value = float(joints[k, column])
         what = f"on the way to this point {limit_violation_text(machine, column, value)}"
-        yield Problem(file, int(operation.moves.line[row]), what, limit_remedy(machine, column, value))
+        yield Problem(file, int(operation.moves.line[row]), what, limit_remedy(machine, column, value), code="PLN120")

@@ -65,11 +65,16 @@ def handle_pole(prepared: PreparedOperation, poses: PlannedPoses) -> PoleResult:
 
 
 def sufficient_setting(prepared: PreparedOperation, poses: PlannedPoses, angle: float) -> str:
-    """What to set if a lean of ``angle`` degrees is not enough, as the cure of a message."""
+    """What to set if a lean of ``angle`` degrees is not enough, as the cure of a message.
+
+    Without the lower feeds of ``lower_feed`` where all feeds are lowered anyway; then empty if nothing else helps.
+    """
+    fastest = prepared.request.options.fastest_feed
     for more in angle * 2.0 ** np.arange(1, _TRIED):
         if all(region.is_solved for region in _lean(prepared, poses, PoleStrategy.LEAN, float(more)).regions):
-            return f"setting pole=lean setting pole_angle={more:.4g} would do, or setting lower_feed=yes"
-    return "setting lower_feed=yes lowers the feed there"
+            lean = f"setting pole=lean setting pole_angle={more:.4g} would do"
+            return lean if fastest else f"{lean}, or setting lower_feed=yes"
+    return "" if fastest else "setting lower_feed=yes lowers the feed there"
 
 
 def _lean(prepared: PreparedOperation, poses: PlannedPoses, strategy: PoleStrategy, angle: float) -> LeanedMoves:
@@ -108,5 +113,5 @@ def _problems(prepared: PreparedOperation, poses: PlannedPoses, leaned: LeanedMo
             f"no lean of the tool axis by up to {angle:g} degrees keeps axis {name} within its speed"
             f" up to line {line[region.end - 1]}"
         )
-        problems.append(Problem(prepared.file, int(line[region.first]), what, cure, Severity.WARNING))
+        problems.append(Problem(prepared.file, int(line[region.first]), what, cure, Severity.WARNING, code="PLN410"))
     return problems

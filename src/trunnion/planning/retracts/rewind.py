@@ -16,7 +16,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.machines import Machine, slide_positions
 from trunnion.model.splines import Splines
-from trunnion.model.toolpath import CutterComp, Event, Kind, Message, Moves, Operation, Phase
+from trunnion.model.toolpath import CutterComp, Event, Kind, Moves, Operation, Phase, RewindMessage
 from trunnion.planning.axis_limits import limits_of, outside_limits
 from trunnion.planning.poses.decision_log import ChosenPoses
 from trunnion.planning.poses.limit_lookahead import LimitHit, continue_in_branch
@@ -216,7 +216,7 @@ def _new_row(rewinds: Sequence[Rewind], row: int | Ints) -> Ints:
 
 
 def _message(operation: Operation, rewind: Rewind, row: int) -> Event:
-    return Message(row, int(operation.moves.line[rewind.row - 1]), f"Rewind: {rewind.reason}")
+    return RewindMessage(row, int(operation.moves.line[rewind.row - 1]), f"Rewind: {rewind.reason}")
 
 
 def _with_rows(moves: Moves, rewinds: Sequence[Rewind], added: Sequence[Sequence[_Row]]) -> Moves:

@@ -95,9 +95,12 @@ def _speed_decisions(prepared: PreparedOperation, poses: PlannedPoses, off_part:
         return
     axis = machine.axes[machine.rotary[worst.axis]]
     off = float(degrees_off_pole(kinematic_parameters(machine), operation.moves.axis[worst.row : worst.row + 1])[0])
-    cure = "setting lower_feed=yes"
+    effect = "feed=fastest lowers the feed there" if options.fastest_feed else "the control slows down there"
+    cure = "" if options.fastest_feed else "setting lower_feed=yes"
     if options.pole_strategy is PoleStrategy.OFF:
-        cure = "setting pole=lean, or setting lower_feed=yes, helps"
+        cure = (
+            "setting pole=lean helps" if options.fastest_feed else "setting pole=lean, or setting lower_feed=yes, helps"
+        )
         if options.explain and not options.lower_feed:
             cure = sufficient_setting(prepared, poses, _LEAST_LEAN)
     rows = f"{worst.count} rows are" if worst.count > 1 else "1 row is"
@@ -105,5 +108,5 @@ def _speed_decisions(prepared: PreparedOperation, poses: PlannedPoses, off_part:
         worst.row,
         DecisionTopic.SPEED,
         f"axis {axis.name} would need {100.0 * worst.share:.0f} % of its rapid speed, {axis.rapid:g} degrees/min,"
-        f" {off:.3f} degrees off the pole; {rows} too fast, and the control slows down there: {cure}",
+        f" {off:.3f} degrees off the pole; {rows} too fast, and {': '.join(filter(None, (effect, cure)))}",
     )

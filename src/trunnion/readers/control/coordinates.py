@@ -125,10 +125,10 @@ class CoordinateControl(RowRecorder):
         total = self._plane.compose(frame)
         x, y, z = total.linear
         if not abs(float(np.cross(x, y) @ z)) >= 1e-9:
-            self.note("the frame would flatten space: it is not used", Severity.ERROR)
+            self.note("the frame would flatten space: it is not used", Severity.ERROR, "NC330")
             return
         if float(np.abs(total.linear).max()) > 1e6 or float(np.abs(total.shift).max()) > MAX_POSITION:
-            self.note("the frame is larger than any machine: it is not used", Severity.ERROR)
+            self.note("the frame is larger than any machine: it is not used", Severity.ERROR, "NC330")
             return
         with self.frame_change(keep_base=keep_base):
             self._program = frame
@@ -161,7 +161,9 @@ class CoordinateControl(RowRecorder):
         if code != self.no_offset:
             self._offsets.add(code)
             if len(self._offsets) > 1:
-                self.note(f"{name}: work offsets are not known here, all count as the same one", Severity.WARNING)
+                self.note(
+                    f"{name}: work offsets are not known here, all count as the same one", Severity.WARNING, "NC331"
+                )
         if self.no_offset in (code, offset.current):
             with self.frame_change():
                 offset.set(self.row, code)

@@ -14,6 +14,10 @@ MAX_PECKS: Final = 1000
 class CycleExecutionError(Exception):
     """The reason why a cycle cannot be executed; the message continues "the cycle"."""
 
+    def __init__(self, text: str, *, code: str = "NC380") -> None:
+        super().__init__(text)
+        self.code = code
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HoleMotion:

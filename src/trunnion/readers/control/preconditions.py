@@ -9,16 +9,16 @@ class Preconditions:
 
     def __init__(self, note: Note) -> None:
         self._note = note
-        self._unmet: dict[str, str] = {}
+        self._unmet: dict[str, tuple[str, str]] = {}
         self._reported: set[str] = set()
 
     def __bool__(self) -> bool:
         return bool(self._unmet)
 
-    def require(self, key: str, fault: str) -> None:
+    def require(self, key: str, fault: str, code: str) -> None:
         """From now on the tool must not move; ``fault`` is what a motion does wrong. It is reported once until met."""
         if key not in self._reported:
-            self._unmet[key] = fault
+            self._unmet[key] = fault, code
 
     def meet(self, key: str) -> None:
         """The program has said what was required."""
@@ -27,7 +27,7 @@ class Preconditions:
 
     def report_motion(self) -> None:
         """The tool moves at the part: report everything that is not met."""
-        for fault in self._unmet.values():
-            self._note(fault, Severity.ERROR)
+        for fault, code in self._unmet.values():
+            self._note(fault, Severity.ERROR, code)
         self._reported.update(self._unmet)
         self._unmet.clear()

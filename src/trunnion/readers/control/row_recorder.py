@@ -54,7 +54,7 @@ SPINDLE_SENSES: Final = {"clockwise": 1, "counter-clockwise": -1, "off": 0, "ori
 _ROTARY_WORDS: Final = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWord.VECTOR)
 
 #: Reports a diagnostic at the block that is being executed.
-Note = Callable[[str, Severity], None]
+Note = Callable[[str, Severity, str], None]
 
 
 class ScannedRows(NamedTuple):
@@ -201,7 +201,7 @@ class RowRecorder:
         self.add_event("delta", (name, value))
         if not value:
             return
-        self.note(f"{name} adds {value:g} mm to the tool: the path is that without it", Severity.WARNING)
+        self.note(f"{name} adds {value:g} mm to the tool: the path is that without it", Severity.WARNING, "NC360")
 
     @property
     def tool_in_spindle(self) -> str:
@@ -220,7 +220,11 @@ class RowRecorder:
         vector   (3,) programmed tool axis, of any length
         """
         if not within_limits(end) or any(abs(value) > MAX_POSITION for value in rotary.values):
-            self.note("a position is farther away than any machine reaches: the block is not executed", Severity.ERROR)
+            self.note(
+                "a position is farther away than any machine reaches: the block is not executed",
+                Severity.ERROR,
+                "NC310",
+            )
             return False
         bits |= rotary.bits if vector is None else int(ProgrammedWord.VECTOR)
         c = self.columns
@@ -244,7 +248,11 @@ class RowRecorder:
     def add_lines(self, ends: Floats, bits: int) -> bool:
         """Add lines of one block to programmed positions (k, 3); the rest is as ``add_row`` has it."""
         if not within_limits(ends):
-            self.note("a position is farther away than any machine reaches: the block is not executed", Severity.ERROR)
+            self.note(
+                "a position is farther away than any machine reaches: the block is not executed",
+                Severity.ERROR,
+                "NC310",
+            )
             return False
         c, begin = self.columns, 0
         tips = ends @ self.position_map[:, :3].T + self.position_map[:, 3]
@@ -373,18 +381,18 @@ class RowRecorder:
 
     def _report(self, status: Codes, first: int) -> None:
         texts = (
-            (OUT_OF_TRAVEL, "no rotary position inside the travel gives this tool axis"),
-            (NO_ROTARY_SOLUTION, "no rotary position gives this tool axis: the axes stay"),
-            (NO_SLIDE_SOLUTION, "the slides cannot reach this position"),
+            (OUT_OF_TRAVEL, "no rotary position inside the travel gives this tool axis", "NC350"),
+            (NO_ROTARY_SOLUTION, "no rotary position gives this tool axis: the axes stay", "NC350"),
+            (NO_SLIDE_SOLUTION, "the slides cannot reach this position", "NC310"),
         )
         if not status.any():
             return
         here = self.line
         for row in np.flatnonzero(status):
             self.line = int(self.columns.line[first + row])
-            for bit, text in texts:
+            for bit, text, code in texts:
                 if status[row] & bit:
-                    self.note(text, Severity.WARNING if bit == OUT_OF_TRAVEL else Severity.ERROR)
+                    self.note(text, Severity.WARNING if bit == OUT_OF_TRAVEL else Severity.ERROR, code)
         self.line = here
 
     # The end

@@ -119,7 +119,7 @@ class VirtualControl(CoordinateControl, ABC):
         axis = self.machine.axes[self.machine.rotary[which]]
         if mode in (PositionMode.SHORTEST, PositionMode.POSITIVE, PositionMode.NEGATIVE):
             if not axis.endless:
-                self.note(f"{mode}() for {axis.name}, which has ends", Severity.WARNING)
+                self.note(f"{mode}() for {axis.name}, which has ends", Severity.WARNING, "NC213")
                 return axis_positions.PLAIN
             return {
                 PositionMode.SHORTEST: axis_positions.SHORTEST,
@@ -193,10 +193,10 @@ class VirtualControl(CoordinateControl, ABC):
                 arc = circle(self.programmed_position.copy(), end)
                 end = arc.end
             except arcs.ArcError as error:
-                self.note(f"{error}: taken as a straight line", Severity.ERROR)
+                self.note(f"{error}: taken as a straight line", Severity.ERROR, "NC320")
         rotary = self.rotary_target(axes)
         if vector is not None and rotary.bits:
-            self.note("rotary words and a vector in one block: the vector counts", Severity.ERROR)
+            self.note("rotary words and a vector in one block: the vector counts", Severity.ERROR, "NC216")
             rotary = NO_ROTARY
         turns = vector is not None or rotary.bits != 0
         placed = None if arc is None else self._arc_in_workpiece(arc, turns and not self.tip_programmed)
@@ -228,9 +228,11 @@ class VirtualControl(CoordinateControl, ABC):
     def _machine_move(self, axes: Mapping[str, AxisWord], bits: int, circle: bool) -> None:
         """Move to positions of the machine axes, regardless of frames and TCP."""
         if self.tcp:
-            self.note("machine positions while TCP is on are taken as positions of the slides", Severity.WARNING)
+            self.note(
+                "machine positions while TCP is on are taken as positions of the slides", Severity.WARNING, "NC341"
+            )
         if circle:
-            self.note("a circle in machine positions is taken as a straight line", Severity.ERROR)
+            self.note("a circle in machine positions is taken as a straight line", Severity.ERROR, "NC320")
         self.resolve_rows()
         slides = self.current_joints[self._slides].copy()
         for axis, name in enumerate("XYZ"):
@@ -289,7 +291,9 @@ class VirtualControl(CoordinateControl, ABC):
         """Return centre, normal and radius in the workpiece frame; None, with a diagnostic, if it is no circle."""
         if axes_turn:
             self.note(
-                "rotary axes turn during a circle of the slides: the tip does not make a circle", Severity.WARNING
+                "rotary axes turn during a circle of the slides: the tip does not make a circle",
+                Severity.WARNING,
+                "NC321",
             )
         slide_map = None if self.tip_programmed else self._slides_to_tip()
         if self._arc_map is None:
@@ -299,7 +303,7 @@ class VirtualControl(CoordinateControl, ABC):
             self._arc_map = arcs.ArcMap.of(linear, shift), self.frame.keeps_circles
         arc_map, keeps_circles = self._arc_map
         if not keeps_circles:
-            self.note("a circle under unequal scales is an ellipse: taken as a straight line", Severity.ERROR)
+            self.note("a circle under unequal scales is an ellipse: taken as a straight line", Severity.ERROR, "NC320")
             return None
         return arc_map.map_arc(arc)
 
@@ -362,4 +366,6 @@ class VirtualControl(CoordinateControl, ABC):
             return
         axis = forward(self.machine, self.current_joints[None])[1][0]
         if rows and float(np.linalg.norm(axis - along)) > MAX_DRILLING_AXIS_ERROR:
-            self.note("the cycle drills along the axis of the frame, which is not the tool axis", Severity.WARNING)
+            self.note(
+                "the cycle drills along the axis of the frame, which is not the tool axis", Severity.WARNING, "NC382"
+            )

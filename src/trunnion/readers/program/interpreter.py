@@ -78,7 +78,7 @@ class Interpreter(ABC, Generic[A]):
         slides = {machine.axes[column].name for column in machine.linear}
         if slides != {"X", "Y", "Z"}:
             what = f"has slides {', '.join(sorted(slides))}"
-            raise InputError(Problem(machine.key, 0, what, "this reader needs X, Y and Z"))
+            raise InputError(Problem(machine.key, 0, what, "this reader needs X, Y and Z", code="NC121"))
         self._path = path
         self._machine = machine
         self._options = options
@@ -138,7 +138,8 @@ class Interpreter(ABC, Generic[A]):
         self.control.resolve_rows()
         diagnostics = list(self._diagnostics)
         if self._unlisted:
-            diagnostics.append(Diagnostic(0, f"and {self._unlisted} findings more", Severity.ERROR, self._files[0]))
+            text = f"and {self._unlisted} findings more"
+            diagnostics.append(Diagnostic(0, text, Severity.ERROR, self._files[0], code="NC150"))
         return self.control.finish(self._files, self._comments, diagnostics)
 
     def _check_rest(self, main: SourceText) -> None:
@@ -147,19 +148,19 @@ class Interpreter(ABC, Generic[A]):
             self.control.line = main.line
             if self._has_words(main.next_line()):
                 text = "stands behind the end of the program: it never runs; another program needs a file of its own"
-                self._note(text, Severity.ERROR)
+                self._note(text, Severity.ERROR, "NC161")
                 return
 
     @abstractmethod
     def _has_words(self, raw: str) -> bool:
         """Whether a line has anything but comments, marks of the transfer and its number."""
 
-    def _note(self, text: str, severity: Severity) -> None:
+    def _note(self, text: str, severity: Severity, code: str) -> None:
         if len(self._diagnostics) >= MAX_DIAGNOSTICS:
             self._unlisted += 1
             return
         file = self._files[self.control.modal.file.current]
-        self._diagnostics.append(Diagnostic(self.control.line, text, severity, file))
+        self._diagnostics.append(Diagnostic(self.control.line, text, severity, file, code=code))
 
     # The loop
 
@@ -251,12 +252,15 @@ class Interpreter(ABC, Generic[A]):
         return [self._stack[0].source, *(source for source, _ in self._sources.values())]
 
     def _limit_error(self, what: str) -> InputError:
-        return self._stack[-1].source.problem(self.control.line, f"the program {what}", "does it end?")
+        return self._stack[-1].source.problem(self.control.line, f"the program {what}", "does it end?", code="NC140")
 
     def _check_depth(self) -> None:
         if len(self._stack) >= MAX_CALL_DEPTH:
             raise self._stack[-1].source.problem(
-                self.control.line, f"calls subprograms deeper than {MAX_CALL_DEPTH} levels", "does one call itself?"
+                self.control.line,
+                f"calls subprograms deeper than {MAX_CALL_DEPTH} levels",
+                "does one call itself?",
+                code="NC141",
             )
 
     # Subprograms

@@ -94,9 +94,9 @@ def _read(table: Table, is_own_word: Callable[[str], bool] | None) -> tuple[Know
         word = _known_word(table, key)
         normal = plain_code(word.word)
         if is_own_word is not None and is_own_word(normal):
-            table.add_problem(key, *_OWN)
+            table.add_problem(key, *_OWN, code="NC190")
         elif normal != word.word and word.code is None:
-            table.add_problem(key, "begins with a code with leading zeros", f"write {normal}")
+            table.add_problem(key, "begins with a code with leading zeros", f"write {normal}", code="NC190")
         found[normal] = word
     report_twins(table, lambda key: plain_code(_normal(key)))
     table.raise_problems()
@@ -108,11 +108,15 @@ def _known_word(table: Table, key: str) -> KnownWord:
     text, _, means = (value if value is not None else EFFECTS[0]).partition(":")
     effects = tuple(effect.strip() for effect in text.split(","))
     if unknown := [effect for effect in effects if effect not in EFFECTS]:
-        table.add_problem(key, f"has no effect {unknown[0]!r}", f"write one of {', '.join(EFFECTS)}")
+        table.add_problem(key, f"has no effect {unknown[0]!r}", f"write one of {', '.join(EFFECTS)}", code="NC190")
     if not key.strip():
-        table.add_problem("", "has a word without letters", 'write such as M60, "CYCL DEF 392" or "G65 P9810"')
+        table.add_problem(
+            "", "has a word without letters", 'write such as M60, "CYCL DEF 392" or "G65 P9810"', code="NC190"
+        )
     elif not re.fullmatch(r"[A-Z][A-Z0-9_ .:\\/\"-]{0,60}", key.upper()):
-        table.add_problem(key, "is no word of a program", 'write such as M60, "CYCL DEF 392" or "G65 P9810"')
+        table.add_problem(
+            key, "is no word of a program", 'write such as M60, "CYCL DEF 392" or "G65 P9810"', code="NC190"
+        )
     return KnownWord(_normal(key), effects, means.strip())
 
 

@@ -34,7 +34,9 @@ def no_reading(machine: Machine) -> None:
     """Raise ``InputError`` for every key of the table ``reading``, where the family's reader asks for none."""
     table = reading_of(machine)
     for key in list(table.keys()):
-        table.add_problem(key, "is not a key that is known here", "leave it out: this family has no such keys")
+        table.add_problem(
+            key, "is not a key that is known here", "leave it out: this family has no such keys", code="DEF320"
+        )
     table.raise_problems()
 
 

@@ -27,10 +27,12 @@ class Subprograms:
             elif rank is None:
                 endings = ", ".join(suffix for suffix in self._suffixes if suffix)
                 problems.append(
-                    Problem(str(path), 0, "is not a name of a subprogram", f"let it end in one of {endings}")
+                    Problem(
+                        str(path), 0, "is not a name of a subprogram", f"let it end in one of {endings}", code="NC130"
+                    )
                 )
             elif (first := found.setdefault((self._stem(path.name), rank), path)) is not path:
-                problems.append(Problem(str(path), 0, f"is called as {first} is", "name one of them"))
+                problems.append(Problem(str(path), 0, f"is called as {first} is", "name one of them", code="NC130"))
         if problems:
             raise InputError(problems)
         for (stem, _), path in sorted(found.items(), key=lambda each: each[0][1]):

@@ -140,7 +140,7 @@ def read_block(reader: ExpressionReader, on_repeated_word: Callable[[str], None]
 def block_reader(text: str, arithmetic: Arithmetic, parameters: Parameters) -> ExpressionReader:
     """Return a reader at the start of a block."""
     if len(text) > MAX_LENGTH:
-        raise BlockError(f"the block is longer than {MAX_LENGTH} characters")
+        raise BlockError(f"the block is longer than {MAX_LENGTH} characters", code="NC214")
     return ExpressionReader(text, arithmetic, parameters)
 
 

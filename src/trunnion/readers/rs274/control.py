@@ -66,11 +66,11 @@ class Rs274Control(VirtualControl):
         clockwise = self.motion == CLOCKWISE
         given = {axis: words[name] * self.length_unit for axis, name in enumerate("IJK") if name in words}
         if self.plane_axis in given:
-            self.note(f"{'IJK'[self.plane_axis]} has no meaning for a circle in this plane", Severity.WARNING)
+            self.note(f"{'IJK'[self.plane_axis]} has no meaning for a circle in this plane", Severity.WARNING, "NC213")
             del given[self.plane_axis]
         if "R" in words:
             if given:
-                self.note("R and a centre in one block: R counts", Severity.ERROR)
+                self.note("R and a centre in one block: R counts", Severity.ERROR, "NC216")
             return arcs.by_radius(start, end, words["R"] * self.length_unit, self.plane_axis, clockwise, turns)
         if not given:
             raise arcs.ArcError("the circle has no centre")

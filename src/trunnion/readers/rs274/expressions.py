@@ -26,6 +26,10 @@ Value = float | None
 class BlockError(Exception):
     """The reason why a block is not executed."""
 
+    def __init__(self, text: str, *, code: str = "NC210") -> None:
+        super().__init__(text)
+        self.code = code
+
 
 class Parameters(Protocol):
     """Where expressions look up parameters."""
@@ -108,7 +112,7 @@ class ExpressionReader:
         self.at = match.end()
         value = float(match.group())
         if value > MAX_VALUE:
-            raise BlockError("a number is larger than any machine's")
+            raise BlockError("a number is larger than any machine's", code="NC215")
         return value, "." not in match.group()
 
     def signed_value(self) -> tuple[Value, bool]:
@@ -224,9 +228,9 @@ def _evaluate(operation: Callable[[], float], name: str) -> float:
     try:
         value = operation()
     except (ValueError, OverflowError, ZeroDivisionError):
-        raise BlockError(f"{name} has no value here") from None
+        raise BlockError(f"{name} has no value here", code="NC215") from None
     if isinstance(value, complex) or not abs(value) <= MAX_VALUE:
-        raise BlockError(f"{name} has no value here")
+        raise BlockError(f"{name} has no value here", code="NC215")
     return float(value)
 
 

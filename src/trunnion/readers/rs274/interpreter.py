@@ -108,7 +108,7 @@ class Rs274Interpreter(Interpreter[A]):
         return bool(text) and not text.startswith("%")
 
     def _report_block(self, error: BlockError) -> None:
-        self._note(f"not understood: {error}: the block is not executed", Severity.ERROR)
+        self._note(f"not understood: {error}: the block is not executed", Severity.ERROR, error.code)
 
     def _handle_comment(self, comment: str) -> None:
         """Act on a comment that has a meaning for the control."""
@@ -163,18 +163,18 @@ class Rs274Interpreter(Interpreter[A]):
         here = control.line
         for row in missing.tolist():
             control.line = int(columns.line[row - columns.base])
-            self._note("a line without a feed", Severity.ERROR)
+            self._note("a line without a feed", Severity.ERROR, "NC240")
         control.line = here
 
     # Words
 
     def _report_repeated_word(self, letter: str) -> None:
-        self._note(f"{letter} is written twice: the last one counts", Severity.ERROR)
+        self._note(f"{letter} is written twice: the last one counts", Severity.ERROR, "NC212")
 
     def _translate(self, block: Block, meanings: WordMeanings) -> None:
         """Put the family's words in place of the control's own; report those that the control does not have."""
         for word in meanings.translate(block):
-            self._note(f"unknown word {word}", Severity.ERROR)
+            self._note(f"unknown word {word}", Severity.ERROR, "NC211")
 
     def _modal_g_code(self, code: int) -> bool:
         """Execute a G code that all these languages share; False if it is another one."""
@@ -202,9 +202,13 @@ class Rs274Interpreter(Interpreter[A]):
             self.control.compensates_in_space = code in COMPENSATION_IN_SPACE
         if code in not_simulated:
             text, changes_path = not_simulated[code]
-            self._note(f"{g_code_text(code)}: {text}", Severity.ERROR if changes_path else Severity.WARNING)
+            self._note(
+                f"{g_code_text(code)}: {text}",
+                Severity.ERROR if changes_path else Severity.WARNING,
+                "NC220" if changes_path else "NC221",
+            )
         elif code not in without_path_effect:
-            self._note(f"unknown word {g_code_text(code)}", Severity.ERROR)
+            self._note(f"unknown word {g_code_text(code)}", Severity.ERROR, "NC211")
 
     def _report_values(self, block: Block, values: Mapping[tuple[int, str], Values]) -> None:
         """Report values that a word cannot have; ``values`` by G code in tenths and letter."""
@@ -212,7 +216,7 @@ class Rs274Interpreter(Interpreter[A]):
             if code in block.g and letter in block.words:
                 fault = fault_of_value(g_code_text(code), letter, block.words[letter].value, known)
                 if fault:
-                    self._note(fault, Severity.ERROR)
+                    self._note(fault, Severity.ERROR, "NC215")
 
     def _take_radius(self, code: int, block: Block) -> None:
         """Note the register D of G41 and G42; without one, the radius is that of the tool."""
@@ -230,7 +234,7 @@ class Rs274Interpreter(Interpreter[A]):
             if letter in "XYZ" or letter in self.control.rotary_names:
                 axes[letter] = value, PositionMode.MODAL
             else:
-                self._note(f"{letter}: the machine has no such axis", Severity.ERROR)
+                self._note(f"{letter}: the machine has no such axis", Severity.ERROR, "NC230")
         return axes
 
     def _feed_and_speed(self, block: Block) -> None:
@@ -238,7 +242,7 @@ class Rs274Interpreter(Interpreter[A]):
         feed = block.take("F")
         if feed is not None:
             if feed < 0.0:
-                raise BlockError("a feed below zero")
+                raise BlockError("a feed below zero", code="NC215")
             control.programmed_feed = feed if self._inverse_time else feed * control.feed_unit
         speed = block.take("S")
         if speed is not None:
@@ -261,7 +265,7 @@ class Rs274Interpreter(Interpreter[A]):
 
     def _report_unused_words(self, block: Block) -> None:
         for letter in block.unused():
-            self._note(f"{letter} has no use in this block", Severity.ERROR)
+            self._note(f"{letter} has no use in this block", Severity.ERROR, "NC213")
 
     # Motion
 
@@ -281,14 +285,14 @@ class Rs274Interpreter(Interpreter[A]):
             feed = control.programmed_feed
             if math.isnan(feed) or feed <= 0.0 or (self._inverse_time and not written):
                 what = "a line" if control.motion == LINEAR else "a circle"
-                self._note(f"{what} without a feed", Severity.ERROR)
+                self._note(f"{what} without a feed", Severity.ERROR, "NC240")
         return written
 
     # Cycles
 
     def _report_rotary_words(self, axes: Collection[str], where: str = "a cycle") -> None:
         if set(axes) - set("XYZ"):
-            self._note(f"rotary words in {where}: they are not executed", Severity.ERROR)
+            self._note(f"rotary words in {where}: they are not executed", Severity.ERROR, "NC213")
 
     @staticmethod
     def _require_words(words: Collection[str], letters: str) -> None:
@@ -299,7 +303,7 @@ class Rs274Interpreter(Interpreter[A]):
 
     def _check_cycle_feed(self) -> None:
         if not self.control.programmed_feed > 0.0:
-            self._note("a cycle without a feed", Severity.ERROR)
+            self._note("a cycle without a feed", Severity.ERROR, "NC240")
 
     @staticmethod
     def _cycle_motions(motions: Callable[[], list[HoleMotion]]) -> list[HoleMotion]:
@@ -307,4 +311,4 @@ class Rs274Interpreter(Interpreter[A]):
         try:
             return motions()
         except CycleExecutionError as error:
-            raise BlockError(f"the cycle {error}") from None
+            raise BlockError(f"the cycle {error}", code=error.code) from None

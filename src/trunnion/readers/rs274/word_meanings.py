@@ -69,7 +69,9 @@ def read_word_meanings(
         value = own.text(key)
         word, target = _code(key), _code(value)
         if word is None or (word[0] == "G" and word[1] in _PLAIN):
-            own.add_problem(key, "is no word that could mean another", "write such as G234 or M128; G0 to G3 stay")
+            own.add_problem(
+                key, "is no word that could mean another", "write such as G234 or M128; G0 to G3 stay", code="NC190"
+            )
             continue
         letter, code = word
         if value == UNKNOWN:
@@ -77,12 +79,16 @@ def read_word_meanings(
         elif letter == "G" and value in names:
             g[code] = names[value]
         elif target is not None and not is_own_word(plain_code(value)):
-            own.add_problem(key, f"is {value!r}, which the family does not have", "write a word that it has")
+            own.add_problem(
+                key, f"is {value!r}, which the family does not have", "write a word that it has", code="NC190"
+            )
         elif target is not None and target[0] == letter:
             (g if letter == "G" else m)[code] = target[1]
         else:
             others = ", ".join((*(names if letter == "G" else ()), UNKNOWN))
-            own.add_problem(key, f"is {value!r}", f"write the {letter} word that means the same, or {others}")
+            own.add_problem(
+                key, f"is {value!r}", f"write the {letter} word that means the same, or {others}", code="NC190"
+            )
     report_twins(own, lambda key: _code(key) or key)
     own.report_unread_keys()
     return WordMeanings(g, m)

@@ -85,7 +85,8 @@ def machine_bodies(machine: Machine, warn: Callable[[Problem], None] | None = No
         except InputError as error:
             file, at = body.place
             problems += [
-                Problem(file, at, f"body {body.name}: {each.file} {each.what}", each.cure) for each in error.problems
+                Problem(file, at, f"body {body.name}: {each.file} {each.what}", each.cure, code=each.code)
+                for each in error.problems
             ]
             continue
         pose = np.eye(4)
@@ -100,7 +101,9 @@ def machine_bodies(machine: Machine, warn: Callable[[Problem], None] | None = No
     if found and warn is not None and not machine.spindle_point_is_stated:
         what = "has no spindle.gauge_point_mm: spindle and tools are not checked against the rest of the machine"
         cure = "enter where the spindle nose stands with the slides at zero"
-        warn(Problem(machine.files[0] if machine.files else machine.key, 0, what, cure, Severity.WARNING))
+        warn(
+            Problem(machine.files[0] if machine.files else machine.key, 0, what, cure, Severity.WARNING, code="SIM310")
+        )
     return tuple(found)
 
 
@@ -167,10 +170,10 @@ def _file_beside(shape: BodyFile) -> Path:
     path = definition.parent / shape.file
     if not definition.is_file():
         cure = "name a file in the definition of a machine that is a file itself"
-        raise InputError(Problem(shape.file, 0, "belongs to no definition file", cure))
+        raise InputError(Problem(shape.file, 0, "belongs to no definition file", cure, code="SIM312"))
     if not is_within(path, definition.parent):
         cure = "put the mesh into the folder of the definition or below it"
-        raise InputError(Problem(shape.file, 0, "leads out of the folder of the definition", cure))
+        raise InputError(Problem(shape.file, 0, "leads out of the folder of the definition", cure, code="SIM312"))
     if path.exists() and (unusable := unusable_file(path, "a mesh")):
         raise InputError(replace(unusable, file=shape.file))
     return path

@@ -63,20 +63,20 @@ def read_step(data: bytes, label: str, deviation: float) -> tuple[Floats, Ints]:
         import_extra("cascadio", "cad")
     if re.search(rb"=\s*DOCUMENT_FILE\s*\(", data):
         what = "has parts in other files, which are not opened"
-        raise InputError(Problem(label, 0, what, "export the assembly as one file"))
+        raise InputError(Problem(label, 0, what, "export the assembly as one file", code="SIM217"))
     # -P: no module of the current folder is run.
     command = [sys.executable, "-P", "-c", _CHILD, repr(deviation), repr(_TURN)]
     try:
         done = subprocess.run(command, input=data, capture_output=True, check=False, timeout=_LONGEST)
     except subprocess.TimeoutExpired:
         what = f"is not made facets within {_LONGEST:g} s"
-        raise InputError(Problem(label, 0, what, "export it as STL or 3MF")) from None
+        raise InputError(Problem(label, 0, what, "export it as STL or 3MF", code="SIM212")) from None
     said = re.sub(r"\x1b\[[0-9;]*m", "", done.stderr.decode("utf-8", "replace"))
     if done.returncode or not done.stdout:
-        raise InputError(Problem(label, 0, f"is damaged: {_reason(said)}", _CURE))
+        raise InputError(Problem(label, 0, f"is damaged: {_reason(said)}", _CURE, code="SIM210"))
     if "without geometry" in said:
         what = "has a body whose surface is not there or cannot be made facets"
-        raise InputError(Problem(label, 0, what, _CURE))
+        raise InputError(Problem(label, 0, what, _CURE, code="SIM210"))
     vertices, faces = read_by_trimesh(done.stdout, "glb", label, "cad")
     return 1000.0 * vertices, faces
 

@@ -34,13 +34,13 @@ def read_stl(data: bytes, label: str, max_facets: int) -> Floats:
     else:
         there = (len(data) - _HEADER) / _FACET.itemsize
         what = f"is damaged: its head promises {count} facets, and it holds {there:g}"
-    raise InputError(Problem(label, 0, what, "export or copy it again"))
+    raise InputError(Problem(label, 0, what, "export or copy it again", code="SIM210"))
 
 
 def _check_count(count: int, label: str, max_facets: int) -> None:
     if count > max_facets:
         what = f"has {count} facets, more than {max_facets}"
-        raise InputError(Problem(label, 0, what, "export it with a coarser tolerance"))
+        raise InputError(Problem(label, 0, what, "export it with a coarser tolerance", code="SIM212"))
 
 
 def _read_text(data: bytes, label: str, max_facets: int) -> Floats:
@@ -57,7 +57,9 @@ def _read_text(data: bytes, label: str, max_facets: int) -> Floats:
             try:
                 x, y, z = map(float, words[1:])
             except ValueError:
-                raise InputError(Problem(label, line, "is no vertex of three numbers", "export it again")) from None
+                raise InputError(
+                    Problem(label, line, "is no vertex of three numbers", "export it again", code="SIM210")
+                ) from None
             numbers.extend((x, y, z))
         elif last == b"facet":
             facets += 1
@@ -65,12 +67,16 @@ def _read_text(data: bytes, label: str, max_facets: int) -> Floats:
         elif last == b"endfacet":
             ends += 1
             if len(numbers) != 9 * ends or ends != facets:
-                raise InputError(Problem(label, line, "ends a facet that has not three corners", "export it again"))
+                raise InputError(
+                    Problem(label, line, "ends a facet that has not three corners", "export it again", code="SIM210")
+                )
         elif last not in (b"solid", b"outer", b"endloop", b"endsolid"):
-            raise InputError(Problem(label, line, "is no line of an STL file", "export it again"))
+            raise InputError(Problem(label, line, "is no line of an STL file", "export it again", code="SIM210"))
     if last != b"endsolid" or facets != ends:
         raise InputError(
-            Problem(label, line, "is cut short: the end of the solid is missing", "export or copy it again")
+            Problem(
+                label, line, "is cut short: the end of the solid is missing", "export or copy it again", code="SIM210"
+            )
         )
     return np.frombuffer(numbers, np.float64).reshape(-1, 3).copy() if numbers else np.zeros((0, 3))
 

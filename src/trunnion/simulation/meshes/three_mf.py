@@ -51,9 +51,9 @@ def read_three_mf(data: bytes, label: str, max_bytes: int, max_facets: int) -> t
     except (
         KeyError, ValueError, ET.ParseError, zipfile.BadZipFile, zlib.error, NotImplementedError, EOFError, OSError,
     ) as error:  # fmt: skip
-        raise InputError(Problem(label, 0, f"is damaged: {error}", "export or copy it again")) from None
+        raise InputError(Problem(label, 0, f"is damaged: {error}", "export or copy it again", code="SIM210")) from None
     except RuntimeError as error:  # a packed file with a password
-        raise InputError(Problem(label, 0, f"cannot be unpacked: {error}", "export it again")) from None
+        raise InputError(Problem(label, 0, f"cannot be unpacked: {error}", "export it again", code="SIM210")) from None
     vertices = np.concatenate([np.zeros((0, 3)), *collected.vertices])
     return vertices, np.concatenate([np.zeros((0, 3), np.int64), *collected.faces]), unit
 
@@ -92,14 +92,14 @@ def _unpacked(data: bytes, label: str, max_bytes: int) -> bytes:
         names = [name for name in archive.namelist() if name.lstrip("/").lower().endswith(".model")]
         if len(names) != 1:
             what = f"holds {len(names)} models where one is expected"
-            raise InputError(Problem(label, 0, what, "export one part into one file"))
+            raise InputError(Problem(label, 0, what, "export one part into one file", code="SIM217"))
         with archive.open(names[0]) as stream:
             model = stream.read(max_bytes + 1)
     if len(model) > max_bytes:
         what = f"unpacks to more than {max_bytes // 1_000_000} MB"
-        raise InputError(Problem(label, 0, what, "export it with fewer facets"))
+        raise InputError(Problem(label, 0, what, "export it with fewer facets", code="SIM212"))
     if b"<!" in model[:4096].replace(b"<!--", b""):
-        raise InputError(Problem(label, 0, "declares entities, which no model needs", "export it again"))
+        raise InputError(Problem(label, 0, "declares entities, which no model needs", "export it again", code="SIM210"))
     return model
 
 
@@ -152,7 +152,7 @@ class _Collected:
         self.facets += len(found.faces) + 1  # an object without facets counts too, so that none multiply without end
         if self.facets > self.max_facets:
             what = f"has more than {self.max_facets} facets"
-            raise InputError(Problem(self.label, 0, what, "export it with a coarser tolerance"))
+            raise InputError(Problem(self.label, 0, what, "export it with a coarser tolerance", code="SIM212"))
         if found.faces:
             points = np.array(found.vertices, np.float64).reshape(-1, 3)
             faces = np.array(found.faces, np.int64)

@@ -36,11 +36,15 @@ def read_by_trimesh(data: bytes, ending: str, label: str, extra: str = "simulate
         raise
     except ImportError as error:
         if error.name in _GUESSERS:
-            raise InputError(Problem(label, 0, "is damaged: its text is not UTF-8", "export it again")) from None
+            raise InputError(
+                Problem(label, 0, "is damaged: its text is not UTF-8", "export it again", code="SIM210")
+            ) from None
         raise
     except Exception as error:  # whatever a parser raises for a damaged file
         reason = str(error).strip().split("\n")[0][:100] or type(error).__name__
-        raise InputError(Problem(label, 0, f"is damaged: {reason}", "export it again")) from None
+        raise InputError(Problem(label, 0, f"is damaged: {reason}", "export it again", code="SIM210")) from None
     if len(faces) and not (faces.min() >= 0 and faces.max() < len(vertices)):
-        raise InputError(Problem(label, 0, "is damaged: a facet names a vertex that is not there", "export it again"))
+        raise InputError(
+            Problem(label, 0, "is damaged: a facet names a vertex that is not there", "export it again", code="SIM210")
+        )
     return vertices, faces

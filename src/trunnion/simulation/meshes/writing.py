@@ -26,7 +26,9 @@ def check_mesh_name(path: str | Path, others: Sequence[str] = ()) -> None:
     if ending not in (*_WRITERS, *others):
         unknown = f'ends in "{Path(path).suffix}", a format that is not written'
         what = unknown if ending else "has no ending that names a format"
-        raise InputError(Problem(str(path), 0, what, f"end it in one of {', '.join((*_WRITERS, *others))}"))
+        raise InputError(
+            Problem(str(path), 0, what, f"end it in one of {', '.join((*_WRITERS, *others))}", code="SIM218")
+        )
 
 
 def save_mesh(mesh: TriangleMesh, path: str | Path, *, inputs: Iterable[str | os.PathLike[str]] = ()) -> None:
@@ -51,7 +53,7 @@ def save_mesh(mesh: TriangleMesh, path: str | Path, *, inputs: Iterable[str | os
     check_mesh_name(path)
     ending = Path(path).suffix.lower()
     if not len(mesh.faces):
-        raise InputError(Problem(str(path), 0, "would be empty: nothing is left of the body"))
+        raise InputError(Problem(str(path), 0, "would be empty: nothing is left of the body", code="SIM219"))
     data = _WRITERS[ending](mesh)
     with atomic_file(path, inputs=inputs) as stream:
         stream.write(data)

@@ -102,7 +102,7 @@ def stock_shape(
 
 
 def _wrong(text: object, what: str) -> InputError:
-    return InputError(argument_problem("stock", f"{text} {what}", _FORM))
+    return InputError(argument_problem("stock", f"{text} {what}", _FORM, code="SIM122"))
 
 
 def default_cell(shape: StockShape, narrowest: float) -> float:
@@ -120,7 +120,7 @@ def check_narrow_tools(tools: Mapping[str, float], cell: float) -> None:
         what = f"is {cell:g} mm, and tool {name}, {wide:g} mm wide, may pass between the rays unseen"
         digit = 10.0 ** (math.floor(math.log10(wide)) - 1)
         cure = f"take cells of {math.floor(0.5 * wide / digit) * digit:g} mm"
-        raise InputError(argument_problem("cell", what, cure))
+        raise InputError(argument_problem("cell", what, cure, code="SIM120"))
 
 
 def check_cell(shape: StockShape, cell: float) -> None:
@@ -136,7 +136,11 @@ def check_cell(shape: StockShape, cell: float) -> None:
         digit = 10.0 ** (math.floor(math.log10(fits)) - 1)
         fits = math.ceil(fits / digit) * digit
         what = f"cells of {cell:g} mm take {needed(cell) / 1e9:.0f} GB of memory for this stock"
-        raise InputError(argument_problem("cell", what, f"cells of {fits:g} mm take less than {MOST_BYTES / 1e9:g} GB"))
+        raise InputError(
+            argument_problem(
+                "cell", what, f"cells of {fits:g} mm take less than {MOST_BYTES / 1e9:g} GB", code="SIM120"
+            )
+        )
 
 
 def make_stock(shape: StockShape, cell: float) -> Stock:

@@ -84,7 +84,9 @@ def turned_stock(stock: Stock, pose: Pose, cell: float) -> tuple[Lattice, tuple[
         If nothing is left of the stock.
     """
     if stock.volume <= 0.0:
-        raise InputError(Problem("stock", 0, "nothing is left of it for the next set-up", "check its place and pose"))
+        raise InputError(
+            Problem("stock", 0, "nothing is left of it for the next set-up", "check its place and pose", code="SIM135")
+        )
     if pose.keeps_rays:
         return _turned_rays(stock, pose)
     mesh = stock_surface(stock).moved(pose.matrix)

@@ -96,16 +96,18 @@ def _nothing_describes(word: str, number: int | None, libraries: Sequence[ToolLi
     }
     for file, diameter in diameters.items():
         what = f"tool {word} has a diameter of {diameter:g} mm, and nothing says its form"
-        return Problem(file, 0, what, f"state its kind: {word}=ball takes the diameter from the table")
+        return Problem(file, 0, what, f"state its kind: {word}=ball takes the diameter from the table", code="SIM150")
     cure = f"state it, such as {word}=ball:10,length=60,flutes=20, or give a tool library that has it"
-    return argument_problem("tools", f"nothing says the form of tool {word}, which the program calls", cure)
+    return argument_problem(
+        "tools", f"nothing says the form of tool {word}, which the program calls", cure, code="SIM150"
+    )
 
 
 def _stated(stated: Sequence[ToolShape], number: int | None, name: str) -> ToolShape | None:
     same = [shape for shape in stated if (shape.number == number if number is not None else shape.name == name)]
     if len(same) > 1:
         what = f"tool {name if number is None else number} is stated {len(same)} times"
-        raise InputError(argument_problem("tools", what, "state it once"))
+        raise InputError(argument_problem("tools", what, "state it once", code="SIM151"))
     return same[0] if same else None
 
 
@@ -117,6 +119,8 @@ def _of_cl_files(cl_tools: Sequence[ClTool], number: int | None, name: str) -> T
         if shape.sections != shapes[0].sections:
             what = f"tool {name if number is None else number} is another one in line {same[0].line} of {same[0].file}"
             raise InputError(
-                Problem(each.file, each.line, what, "number and name tools apart, or state the tool itself")
+                Problem(
+                    each.file, each.line, what, "number and name tools apart, or state the tool itself", code="SIM151"
+                )
             )
     return shapes[0] if shapes else None

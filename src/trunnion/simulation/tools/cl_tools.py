@@ -34,11 +34,11 @@ def cl_tool_shape(tool: Tool, number: int | None, *, file: str, line: int, diale
     """
     called = f"tool {number}" if number is not None else f"tool {tool.name}" if tool.name else "its tool"
     if unsettled := _unsettled(tool, dialect):
-        raise InputError(Problem(file, line, f"{called} {unsettled}", _SAY_IT))
+        raise InputError(Problem(file, line, f"{called} {unsettled}", _SAY_IT, code="SIM154"))
     sizes = _sizes(tool)
     if faults := shape_faults(sizes):
         whats = ((f"{called}: its {size.replace('_', ' ')} {what}", cure) for size, what, cure in faults)
-        raise InputError([Problem(file, line, what, f"{cure}, or {_SAY_IT}") for what, cure in whats])
+        raise InputError([Problem(file, line, what, f"{cure}, or {_SAY_IT}", code="SIM152") for what, cure in whats])
     return tool_shape(sizes, number, tool.name, tool.holder)
 
 

@@ -65,7 +65,7 @@ def tool_shape(sizes: ToolSizes, number: int | None = None, name: str = "", desc
         If sizes are impossible, with all of them.
     """
     if faults := shape_faults(sizes):
-        raise InputError([argument_problem(size, what, cure) for size, what, cure in faults])
+        raise InputError([argument_problem(size, what, cure, code="SIM152") for size, what, cure in faults])
     outline = cutter_outline(sizes)
     length, flute_length, remarks = _lengths(sizes, outline[-1].end[1])
     outline += _side(sizes, outline[-1].end, flute_length)

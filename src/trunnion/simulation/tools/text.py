@@ -89,17 +89,17 @@ def parse_tool(text: str, diameters: Mapping[int, float] | None = None) -> ToolS
         called, sizes = _read(text, diameters or {})
     except _TextError as error:
         what, cure = error.args
-        raise InputError(_problem(shown, what, cure)) from None
+        raise InputError(_problem(shown, what, cure, "SIM153")) from None
     if faults := shape_faults(sizes):
         named = ((_NAME_OF.get(size, size), what, cure) for size, what, cure in faults)
-        raise InputError([_problem(shown, f"{name} {what}", cure) for name, what, cure in named])
+        raise InputError([_problem(shown, f"{name} {what}", cure, "SIM152") for name, what, cure in named])
     if _TOOL_NUMBER.fullmatch(called):
         return tool_shape(sizes, int(called))
     return tool_shape(sizes, None, called)
 
 
-def _problem(shown: str, what: str, cure: str) -> Problem:
-    return argument_problem("tools", f'"{shown}": {what}', cure)
+def _problem(shown: str, what: str, cure: str, code: str) -> Problem:
+    return argument_problem("tools", f'"{shown}": {what}', cure, code=code)
 
 
 def _read(text: str, diameters: Mapping[int, float]) -> tuple[str, ToolSizes]:

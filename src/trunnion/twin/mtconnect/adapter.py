@@ -15,7 +15,7 @@ from typing import Final
 
 from trunnion.twin.mtconnect.device import device_name
 from trunnion.twin.playback import Playback, PlayState
-from trunnion.twin.snapshots import Snapshots, TwinProgram
+from trunnion.twin.snapshots import Snapshots, TwinProgram, displayed
 
 #: Milliseconds between two questions of an agent.
 HEARTBEAT: Final = 10_000
@@ -32,6 +32,7 @@ _EXECUTION: Final = {
     PlayState.READY: "READY",
     PlayState.RUNNING: "ACTIVE",
     PlayState.HELD: "FEED_HOLD",
+    PlayState.STOPPED: "PROGRAM_STOPPED",
     PlayState.ENDED: "PROGRAM_COMPLETED",
 }
 
@@ -39,6 +40,8 @@ _EXECUTION: Final = {
 _FAREWELL: Final = 1.0
 
 UNAVAILABLE: Final = "UNAVAILABLE"
+
+_NORMAL: Final = "NORMAL||||"
 
 
 class _Agent:
@@ -71,9 +74,9 @@ class MTConnectAdapter:
         self._tasks: set[asyncio.Task[None]] = set()
         self._server: asyncio.Server | None = None
         self._values: dict[str, str] = {}
-        self._conditions: dict[str, str] = {"system": "NORMAL||||"}
+        self._conditions: dict[str, str] = {"system": _NORMAL}
         for axis in program.machine.axes:
-            self._conditions[f"{axis.name}_travel"] = "NORMAL||||"
+            self._conditions[f"{axis.name}_travel"] = _NORMAL
         fixed = {"avail": "AVAILABLE", "estop": "ARMED", "mode": "AUTOMATIC", "main_program": program.name}
         self._values |= fixed
 
@@ -122,10 +125,6 @@ class MTConnectAdapter:
         stamp = datetime.fromtimestamp(wall, UTC)
         if changed := self._changed(now):
             self._send(_line(stamp, changed))
-        if playback.state is PlayState.READY:
-            for key, told in self._conditions.items():
-                if told != "NORMAL||||":
-                    self._condition(stamp, key, "NORMAL||||")
 
     async def message(self, text: str, stamp: datetime) -> None:
         """Send a message of the program."""
@@ -133,9 +132,12 @@ class MTConnectAdapter:
 
     async def alarm(self, identifier: str, text: str, stamp: datetime) -> None:
         """Send an alarm of the machine: a fault of the axis that it names, or of the system."""
-        kind, _, axis = identifier.partition(" ")
-        key = f"{axis}_{kind}" if f"{axis}_{kind}" in self._conditions else "system"
+        key = self._condition_of(identifier)
         self._condition(stamp, key, f"FAULT|{_clean(identifier)}|||{_clean(text)}")
+
+    async def alarm_over(self, identifier: str, text: str, stamp: datetime) -> None:
+        """Send that a fault is over."""
+        self._condition(stamp, self._condition_of(identifier), _NORMAL)
 
     def lagging(self) -> dict[object, int]:
         """Agents that have not taken what was sent, and how much they have taken so far."""
@@ -195,6 +197,11 @@ class MTConnectAdapter:
         self._values |= changed
         return changed
 
+    def _condition_of(self, identifier: str) -> str:
+        """The condition of the axis that an alarm names, else that of the system."""
+        kind, _, axis = identifier.partition(" ")
+        return f"{axis}_{kind}" if f"{axis}_{kind}" in self._conditions else "system"
+
     def _condition(self, stamp: datetime, key: str, told: str) -> None:
         self._conditions[key] = told
         self._send(f"{_stamp(stamp)}|{key}|{told}\n")
@@ -208,16 +215,18 @@ class MTConnectAdapter:
             "line": str(block.line),
             "block_number": block.number or UNAVAILABLE,
             "tool": _clean(block.tool) or UNAVAILABLE,
-            "feed": _number(float(snapshots.tip_feed[k])),
+            "feed": _number(float(snapshots.feed[k])),
             "tip": " ".join(map(_number, snapshots.tip[k].tolist())),
             "S_actual": _number(abs(rpm)),
-            "S_commanded": _number(abs(block.rpm)),
+            "S_commanded": _number(abs(float(snapshots.told_rpm[k]))),
             "S_direction": "CLOCKWISE" if rpm > 0.0 else "COUNTER_CLOCKWISE" if rpm < 0.0 else "NONE",
         }
         if UNAVAILABLE in values["tip"]:
             values["tip"] = UNAVAILABLE
         for column, axis in enumerate(machine.axes):
-            values[f"{axis.name}_actual"] = _number(float(snapshots.joints[k, column]))
+            values[f"{axis.name}_actual"] = _number(
+                float(displayed(machine, column, snapshots.joints[k : k + 1, column])[0])
+            )
             values[f"{axis.name}_state"] = "TRAVEL" if snapshots.moving[k, column] else "STOPPED"
         return values
 
@@ -236,5 +245,6 @@ def _number(value: float) -> str:
 
 
 def _clean(text: str) -> str:
-    """A text that ends neither its field nor its line."""
-    return " ".join(text.replace("|", "/").split())
+    """A text that ends neither its field nor its line: agents read a text in quotes with its bars escaped."""
+    line = " ".join(text.split())
+    return '"' + line.replace("|", "\\|") + '"' if "|" in line else line

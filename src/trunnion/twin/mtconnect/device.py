@@ -83,12 +83,13 @@ def device_xml(program: TwinProgram) -> str:
 def _axes(components: ET.Element, machine: Machine) -> None:
     axes = ET.SubElement(components, "Axes", id="axes", name="axes")
     listed = ET.SubElement(axes, "Components")
-    for axis in machine.axes:
+    for column, axis in enumerate(machine.axes):
         kind, name = ("Rotary" if axis.is_rotary else "Linear"), axis.name
         element = ET.SubElement(listed, kind, id=f"axis_{name}", name=name)
         measured = ("ANGLE", "DEGREE") if axis.is_rotary else ("POSITION", "MILLIMETER")
         units = {"subType": "ACTUAL", "units": measured[1], "nativeUnits": measured[1]}
-        where = {} if axis.is_rotary else {"coordinateSystem": "MACHINE"}
+        system = "MACHINE" if machine.is_placed(column) else "WORK"
+        where = {} if axis.is_rotary else {"coordinateSystem": system}
         items: list[_Item] = [
             (f"{name}_actual", "SAMPLE", measured[0], units | where),
             (f"{name}_state", "EVENT", "AXIS_STATE", {}),

@@ -54,7 +54,7 @@ def server_certificate(folder: Path, application: str, host: str) -> ServerCerti
         data = certificate.read_bytes()
     except OSError as error:
         what = f"the certificate of the server cannot be written: {error.strerror}"
-        raise InputError(Problem(str(folder), 0, what, "make the folder writable")) from None
+        raise InputError(Problem(str(folder), 0, what, "make the folder writable", code="TWN140")) from None
     return ServerCertificate(certificate, key, hashlib.sha1(data, usedforsecurity=False).hexdigest().upper())
 
 
@@ -83,7 +83,7 @@ def client_certificate(folder: Path) -> ClientCertificate:
             _make(certificate, key, application, socket.gethostname())
     except OSError as error:
         what = f"the certificate of the client cannot be written: {error.strerror}"
-        raise InputError(Problem(str(folder), 0, what, "make the folder writable")) from None
+        raise InputError(Problem(str(folder), 0, what, "make the folder writable", code="TWN140")) from None
     return ClientCertificate(certificate, key, application)
 
 

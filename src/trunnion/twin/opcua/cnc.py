@@ -7,11 +7,11 @@ from typing import Final
 
 from asyncua import Node, ua
 
-from trunnion.machines import Axis, Machine
+from trunnion.machines import Machine
 from trunnion.twin.nodesets import CNC
 from trunnion.twin.opcua.columns import FRAME, machine_axes
 from trunnion.twin.opcua.space import VERSION, Space
-from trunnion.twin.snapshots import TwinProgram
+from trunnion.twin.snapshots import TwinProgram, display_range
 
 _INTERFACE_TYPE, _AXIS_TYPE, _SPINDLE_TYPE, _CHANNEL_TYPE = 1007, 1004, 1005, 1002
 
@@ -43,7 +43,7 @@ async def build_cnc(space: Space, program: TwinProgram) -> None:
     await _channel(space, program)
     channel = space.node(CHANNEL)
     for name, column in machine_axes(machine):
-        await _axis(space, machine.axes[column], name)
+        await _axis(space, machine, column, name)
         await channel.add_reference(space.id_of(f"{AXES}.{name}"), ua.ObjectIds.HasComponent)
     await _spindle(space, machine)
     await channel.add_reference(space.id_of(SPINDLE), ua.ObjectIds.HasComponent)
@@ -65,17 +65,18 @@ async def _position(space: Space, path: str, key: str, unit: str, low: float, hi
         space.show(f"{key}.{what}", _DOUBLE, f"{path}.{name}")
 
 
-async def _axis(space: Space, axis: Axis, name: str) -> None:
+async def _axis(space: Space, machine: Machine, column: int, name: str) -> None:
+    axis, (low, high) = machine.axes[column], display_range(machine, column)
     path, unit = f"{AXES}.{name}", "DD" if axis.is_rotary else "MMT"
     await space.add(space.node(AXES), path, name, CNC, (CNC, _AXIS_TYPE))
     await _drive(space, path)
     await space.put(f"{path}.IsReferenced", True, _BOOLEAN)
     await space.put(f"{path}.IsRotational", axis.is_rotary, _BOOLEAN)
     await space.put(f"{path}.ZeroOffset", 0.0, _DOUBLE)
-    await space.unit(f"{path}.ZeroOffset", unit, axis.low, axis.high)
+    await space.unit(f"{path}.ZeroOffset", unit, low, high)
     space.show(f"axis.{name}.status", _INT32, f"{path}.ActStatus")
     for measured in ("PosDirect", "PosIndirect"):
-        await _position(space, f"{path}.{measured}", f"axis.{name}", unit, axis.low, axis.high)
+        await _position(space, f"{path}.{measured}", f"axis.{name}", unit, low, high)
     await space.historize(f"axis.{name}.actual", f"{path}.PosDirect.ActPos")
 
 
@@ -144,14 +145,13 @@ async def _channel(space: Space, program: TwinProgram) -> None:
 
 async def _tool_centre_point(space: Space, machine: Machine, path: str) -> None:
     """Positions of the tip: without frames of the program, base and workpiece coordinates are the same here."""
-    rotary = {machine.names[k]: machine.axes[k] for k in machine.rotary}
+    rotary = {machine.names[k]: display_range(machine, k) for k in machine.rotary}
     for frame in ("PosTcpWcs", "PosTcpBcs"):
         for name in FRAME:
             await _position(space, f"{path}.{frame}{name}", f"tip.{name}", "MMT", -1e5, 1e5)
         for name in ("A", "B", "C"):
             if name in rotary:
-                axis = rotary[name]
-                await _position(space, f"{path}.{frame}{name}", f"axis.{name}", "DD", axis.low, axis.high)
+                await _position(space, f"{path}.{frame}{name}", f"axis.{name}", "DD", *rotary[name])
             else:
                 await _absent_position(space, f"{path}.{frame}{name}")
 

@@ -16,7 +16,7 @@ from asyncua import ua
 
 from trunnion.arrays import Floats
 from trunnion.machines import Machine
-from trunnion.twin.snapshots import Snapshots
+from trunnion.twin.snapshots import Snapshots, TwinProgram, displayed
 
 #: Axes of the workpiece frame.
 FRAME: Final = ("X", "Y", "Z")
@@ -39,11 +39,13 @@ def machine_axes(machine: Machine) -> tuple[tuple[str, int], ...]:
     return (*slides, *rotary)
 
 
-def columns_of(machine: Machine, snapshots: Snapshots) -> Columns:
+def columns_of(program: TwinProgram, snapshots: Snapshots) -> Columns:
     """The values of all names at the times of snapshots."""
     found: Columns = {}
+    machine = program.machine
     for name, column in machine_axes(machine):
-        actual, to_go = _known(snapshots.joints[:, column]), _known(snapshots.remaining[:, column])
+        shown = displayed(machine, column, snapshots.joints[:, column])
+        actual, to_go = _known(shown), _known(snapshots.remaining[:, column])
         found |= _position(f"axis.{name}", actual, to_go)
         found[f"axis.{name}.status"] = [_MOVING if moves else _IN_POSITION for moves in snapshots.moving[:, column]]
     for k, name in enumerate(FRAME):
@@ -54,7 +56,7 @@ def columns_of(machine: Machine, snapshots: Snapshots) -> Columns:
         column = slides.get(name, machine.linear[k])
         found[f"geo.{name}.actual"] = _known(np.where(tcp, snapshots.tip[:, k], snapshots.joints[:, column]))
         found[f"geo.{name}.to_go"] = _known(np.where(tcp, snapshots.to_go[:, k], snapshots.remaining[:, column]))
-    return found | _spindle(snapshots) | _blocks(snapshots)
+    return found | _spindle(snapshots) | _blocks(program, snapshots)
 
 
 def _known(values: Floats) -> list[float | None]:
@@ -73,11 +75,11 @@ def _position(name: str, actual: Sequence[float | None], to_go: Sequence[float |
 
 def _spindle(snapshots: Snapshots) -> Columns:
     rpm = snapshots.rpm.tolist()
-    wanted = [block.rpm for block in snapshots.blocks]
+    wanted = snapshots.told_rpm.tolist()
     status = []
     for actual, target in zip(rpm, wanted, strict=True):
         reached = abs(actual - target) <= _SPEED_REACHED
-        faster = abs(actual) < abs(target)
+        faster = abs(actual) < abs(target) and actual * target >= 0.0
         moves = _SPINDLE_ACCELERATING if faster else _SPINDLE_DECELERATING
         still = _SPINDLE_IN_TARGET if target else _SPINDLE_STOPPED
         status.append(still if reached else moves)
@@ -92,12 +94,12 @@ def _spindle(snapshots: Snapshots) -> Columns:
     }
 
 
-def _blocks(snapshots: Snapshots) -> Columns:
+def _blocks(program: TwinProgram, snapshots: Snapshots) -> Columns:
     blocks = snapshots.blocks
     return {
         "program.seconds": snapshots.seconds.tolist(),
         "program.row": snapshots.row.tolist(),
-        "program.feed": snapshots.tip_feed.tolist(),
+        "program.feed": snapshots.feed.tolist(),
         "block.feed": [block.feed for block in blocks],
         "block.texts": [list(block.blocks) for block in blocks],
         "block.before": [block.blocks[0] for block in blocks],
@@ -109,10 +111,5 @@ def _blocks(snapshots: Snapshots) -> Columns:
         "block.g": [list(block.g) for block in blocks],
         "block.m": [list(block.m) for block in blocks],
         "block.tool": [block.tool for block in blocks],
-        "block.tool_number": [tool_number(block.tool) for block in blocks],
+        "block.tool_number": [program.tool_number(block.tool) for block in blocks],
     }
-
-
-def tool_number(name: str) -> int:
-    """The number of a tool that is called by one; 0 for names."""
-    return int(name) if name.isascii() and name.isdigit() and int(name) < 2**31 else 0

@@ -38,10 +38,12 @@ class Events:
             generator.event.Severity = _MESSAGE_SEVERITY
             await generator.trigger(stamp, text)
 
-    async def alarm(self, identifier: str, text: str, stamp: datetime) -> None:
-        """Tell an alarm of the machine."""
+    async def alarm(self, identifier: str, text: str, stamp: datetime, *, active: bool) -> None:
+        """Tell an alarm of the machine, or that it is over."""
         for generator in self._alarms:
             generator.event.Severity = _ALARM_SEVERITY
             generator.event.AlarmIdentifier = identifier
-            generator.event.Retain = False
+            generator.event.Retain = active
+            generator.event.ActiveState = ua.LocalizedText("Active" if active else "Inactive", "en")
+            setattr(generator.event, "ActiveState/Id", active)
             await generator.trigger(stamp, text)

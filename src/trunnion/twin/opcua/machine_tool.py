@@ -5,7 +5,6 @@ from typing import Final
 from asyncua import ua
 
 from trunnion.twin.nodesets import DEVICES, MACHINE_TOOL, MACHINERY
-from trunnion.twin.opcua.columns import tool_number
 from trunnion.twin.opcua.space import Space
 from trunnion.twin.snapshots import TwinProgram
 
@@ -104,7 +103,7 @@ async def _tools(space: Space, program: TwinProgram) -> None:
     for place, name in enumerate(program.tools, 1):
         path = f"{_TOOLS}.Tool{place}"
         await space.add(tools, path, f"Tool {name}", MACHINE_TOOL, (MACHINE_TOOL, _TOOL))
-        await space.put(f"{path}.ControlIdentifier1", tool_number(name) or place, _UINT32)
+        await space.put(f"{path}.ControlIdentifier1", program.tool_number(name), _UINT32)
         await space.put(f"{path}.ControlIdentifierInterpretation", _NUMBER_BASED, _INT32)
         await space.put(f"{path}.Locked", False, _BOOLEAN)
         for text in ("Identifier", "Name"):

@@ -18,12 +18,12 @@ class OpcUaOutlet:
     """Tells the clients of a server."""
 
     def __init__(self, program: TwinProgram, server: TwinServer, publisher: Publisher, begun: float) -> None:
-        self._machine, self._server, self._publisher = program.machine, server, publisher
+        self._program, self._server, self._publisher = program, server, publisher
         self._begun = begun
 
     async def show(self, snapshots: Snapshots, stamps: list[datetime], microseconds: list[int]) -> None:
         """Publish what the machine shows at some times."""
-        await self._publisher.show(columns_of(self._machine, snapshots), stamps, microseconds)
+        await self._publisher.show(columns_of(self._program, snapshots), stamps, microseconds)
 
     async def changed(self, playback: Playback, wall: float) -> None:
         """Publish what the program does now."""
@@ -37,7 +37,11 @@ class OpcUaOutlet:
 
     async def alarm(self, identifier: str, text: str, stamp: datetime) -> None:
         """Send an alarm of the machine as an event."""
-        await self._server.events.alarm(identifier, text, stamp)
+        await self._server.events.alarm(identifier, text, stamp, active=True)
+
+    async def alarm_over(self, identifier: str, text: str, stamp: datetime) -> None:
+        """Send the end of an alarm as an event."""
+        await self._server.events.alarm(identifier, text, stamp, active=False)
 
     def lagging(self) -> dict[object, int]:
         """Subscriptions whose queues are half full, and the messages that each has sent."""

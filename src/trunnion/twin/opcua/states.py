@@ -15,12 +15,13 @@ _WORDS: Final = {
     PlayState.READY: (0, 2, 0, 5, "Initializing", "NotExecuting"),
     PlayState.RUNNING: (1, 0, 1, 3, "Running", "Executing"),
     PlayState.HELD: (3, 1, 2, 2, "Interrupted", "NotExecuting"),
+    PlayState.STOPPED: (3, 1, 2, 2, "Interrupted", "NotExecuting"),
     PlayState.ENDED: (0, 2, 0, 5, "Ended", "NotExecuting"),
 }
 
 _AUTOMATIC: Final = 2  # CncOperationMode
 
-#: A year: what a machine predicts that stands.
+#: A year: nobody predicts further.
 _FAR: Final = 365 * 86400.0
 
 
@@ -53,7 +54,9 @@ def states_of(playback: Playback, space: Space, wall: float, begun: float) -> di
     return found
 
 
-def _predicted(playback: Playback, wall: float) -> datetime:
-    """When the program ends, to the second; a standing program ends that much later."""
-    seconds = wall + min(playback.remaining(), _FAR)
-    return datetime.fromtimestamp(0, UTC) + timedelta(seconds=round(seconds))
+def _predicted(playback: Playback, wall: float) -> datetime | None:
+    """When the program ends, to the second; a standing program ends that much later, and one at override 0 never."""
+    remaining = playback.remaining()
+    if not remaining <= _FAR:
+        return None
+    return datetime.fromtimestamp(0, UTC) + timedelta(seconds=round(wall + remaining))

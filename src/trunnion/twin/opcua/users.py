@@ -30,6 +30,9 @@ _WRONG_SECONDS: Final = 30.0
 
 _NAME: Final = re.compile(r"[A-Za-z0-9_.@-]{1,64}")
 
+#: The right of all others to write a POSIX file.
+_WRITE_OF_OTHERS: Final = 0o002
+
 
 class Role(StrEnum):
     """What a user may do: read, or operate the twin as well."""
@@ -96,9 +99,15 @@ def write_user(path: Path, name: str, role: Role, password: str) -> None:
     """
     if not _NAME.fullmatch(name):
         cure = "take 1 to 64 letters, digits or _ . @ -"
-        raise InputError(Problem(str(path), 0, f"{name!r} is no name of a user", cure))
-    if len(password) < 8:
-        raise InputError(Problem(str(path), 0, "the password is too short", "take 8 characters or more"))
+        raise InputError(Problem(str(path), 0, f"{name!r} is no name of a user", cure, code="TWN130"))
+    try:
+        password.encode()
+    except UnicodeEncodeError:
+        raise InputError(
+            Problem(str(path), 0, "the password is no text in UTF-8", "write it in UTF-8", code="TWN130")
+        ) from None
+    if len(password.strip()) < 8:
+        raise InputError(Problem(str(path), 0, "the password is too short", "take 8 characters or more", code="TWN130"))
     others = [user for user in _read(path) if user.name != name] if path.exists() else []
     lines = [_line(user) for user in (*others, _hashed(name, role, password))]
     try:
@@ -110,16 +119,25 @@ def write_user(path: Path, name: str, role: Role, password: str) -> None:
             sink.write("# Users of a Trunnion twin: name:role:scrypt:N:r:p:salt:hash\n" + "".join(lines))
         beside.replace(path)
     except OSError as error:
-        raise InputError(Problem(str(path), 0, f"cannot be written: {error.strerror}", "name another file")) from None
+        raise InputError(
+            Problem(str(path), 0, f"cannot be written: {error.strerror}", "name another file", code="TWN131")
+        ) from None
 
 
 def _read(path: Path) -> list[StoredUser]:
+    if path.exists() and not path.is_file():
+        raise InputError(Problem(str(path), 0, "is no file of users", "name a file", code="TWN131"))
+    if os.name == "posix" and path.exists() and path.stat().st_mode & _WRITE_OF_OTHERS:
+        what, cure = "everybody can write it, and so make himself a user", "take that right away: chmod 600"
+        raise InputError(Problem(str(path), 0, what, cure, code="TWN131"))
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         what = getattr(error, "strerror", None) or "it is no text in UTF-8"
         cure = "add a user with argument add_user=NAME"
-        raise InputError(Problem(str(path), 0, f"the file of users cannot be read: {what}", cure)) from None
+        raise InputError(
+            Problem(str(path), 0, f"the file of users cannot be read: {what}", cure, code="TWN131")
+        ) from None
     users, problems = [], []
     for number, line in enumerate(text.splitlines(), 1):
         if not line.strip() or line.startswith("#"):
@@ -127,7 +145,9 @@ def _read(path: Path) -> list[StoredUser]:
         user = _parsed(line)
         if user is None:
             what = "is no user; a line is name:role:scrypt:N:r:p:salt:hash"
-            problems.append(Problem(str(path), number, what, "remove it, and add the user again with add_user=True"))
+            problems.append(
+                Problem(str(path), number, what, "remove it, and add the user again with add_user=True", code="TWN131")
+            )
         else:
             users.append(user)
     if problems:

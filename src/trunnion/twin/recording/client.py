@@ -119,7 +119,13 @@ class Connection:
         answers = await session.create_monitored_items(request)
         places = [column.place for column, node in zip(self._columns, found, strict=True) if node is not None]
         refused = [
-            Problem(str(place), 0, f"cannot be subscribed to: {answer.StatusCode.name}", "ask for the right to read it")
+            Problem(
+                str(place),
+                0,
+                f"cannot be subscribed to: {answer.StatusCode.name}",
+                "ask for the right to read it",
+                code="TWN230",
+            )
             for place, answer in zip(places, answers, strict=True)
             if not answer.StatusCode.is_good()
         ]
@@ -163,7 +169,7 @@ class Connection:
         """The node of a column; None if it may be absent; a ``Problem`` if it may not."""
         found = await self._node(column.place)
         if isinstance(found, str):
-            missing = Problem(str(column.place), 0, "is not there on the server", found)
+            missing = Problem(str(column.place), 0, "is not there on the server", found, code="TWN230")
             return None if column.is_optional else missing
         return found
 
@@ -266,13 +272,15 @@ async def _secure(client: Any, access: Access) -> None:
     policy = next((each for each in _POLICIES if each.URI in offered), None)
     if policy is None:
         cure = "switch on one of Basic256Sha256, Aes128_Sha256_RsaOaep and Aes256_Sha256_RsaPss at the server"
-        raise InputError(Problem(access.address, 0, "offers no channel that is signed and encrypted", cure))
+        raise InputError(
+            Problem(access.address, 0, "offers no channel that is signed and encrypted", cure, code="TWN221")
+        )
     certificate: bytes = offered[policy.URI]
     fingerprint = hashlib.sha1(certificate, usedforsecurity=False).hexdigest().upper()
     if fingerprint != access.fingerprint.replace(":", "").replace(" ", "").upper():
         what = f"has a certificate with the fingerprint {fingerprint}, which is not trusted"
         cure = f"compare it with what the machine shows, and give argument trust={fingerprint}"
-        raise InputError(Problem(access.address, 0, what, cure))
+        raise InputError(Problem(access.address, 0, what, cure, code="TWN222"))
     own = client_certificate(access.folder)
     client.application_uri = own.application
     await client.set_security(

@@ -73,7 +73,7 @@ class MachineFeed:
         except FAILURES as error:
             what = f"cannot be connected to: {_reason(error)}"
             cure = "compare address, user and security with those of the server"
-            raise InputError(Problem(self._access.address, 0, what, cure)) from None
+            raise InputError(Problem(self._access.address, 0, what, cure, code="TWN220")) from None
         columns = zip(self._connection.names, self._nodes.columns, strict=True)
         there = [(name, column) for name, column in columns if name]
         self.names = tuple(name for name, _ in there)
@@ -82,7 +82,9 @@ class MachineFeed:
         if twice or not there:
             await self.close()
             what = f"has two columns of the name {twice[0]}" if twice else "has none of the variables"
-            raise InputError(Problem(self._access.address, 0, what, "write a list of nodes for this server"))
+            raise InputError(
+                Problem(self._access.address, 0, what, "write a list of nodes for this server", code="TWN231")
+            )
         self._kept = [k for k, name in enumerate(self._connection.names) if name]
 
     async def rows(self) -> AsyncGenerator[list[Row], None]:
@@ -130,7 +132,7 @@ class MachineFeed:
             except InputError as error:
                 if str(error) != told:
                     told = str(error)
-                    self._warn(error.problems[0].what)
+                    self._warn(error.problems[0].what, error.problems[0].code)
             except FAILURES:
                 pass
             else:
@@ -139,8 +141,8 @@ class MachineFeed:
             await asyncio.sleep(delay)
             delay = min(2.0 * delay, _LAST_TRY)
 
-    def _warn(self, what: str) -> None:
-        self._tell(Problem(self._access.address, 0, what, severity=Severity.WARNING))
+    def _warn(self, what: str, code: str = "TWN240") -> None:
+        self._tell(Problem(self._access.address, 0, what, severity=Severity.WARNING, code=code))
 
 
 def _reason(error: BaseException) -> str:

@@ -7,6 +7,7 @@ Times are ISO 8601 in UTC, numbers have all their digits, what is not known is e
 import contextlib
 import csv
 import io
+import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from datetime import UTC, datetime, timedelta
@@ -21,6 +22,12 @@ from trunnion.twin.recording.rows import Row, Value
 from trunnion.wording import one_line
 
 _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
+
+#: Characters of a text at most; blocks and names of programs are far shorter.
+LONGEST_TEXT: Final = 32_000
+
+#: What a spreadsheet takes for the beginning of a formula.
+_FORMULAS: Final = ("=", "+", "-", "@")
 
 #: Rows of a piece of a Parquet file.
 _GROUP: Final = 65_536
@@ -40,11 +47,11 @@ def check_is_new(place: OutputPlace) -> None:
         If something is there.
     """
     if place.is_stream:
-        raise InputError(Problem(place.name, 0, "is no file, and a recording is one", "name a file"))
+        raise InputError(Problem(place.name, 0, "is no file, and a recording is one", "name a file", code="TWN310"))
     for path in dict.fromkeys((place.path, journal_of(place.path))):
         if path.exists():
             what = f"exists, and a recording is never written over{'' if path == place.path else ' (it was not ended)'}"
-            raise InputError(Problem(str(path), 0, what, "name another file, or move this one away"))
+            raise InputError(Problem(str(path), 0, what, "name another file, or move this one away", code="TWN310"))
 
 
 class RecordingWriter:
@@ -117,7 +124,7 @@ class RecordingWriter:
         arrow, parquet = (import_extra(name, "twin") for name in ("pyarrow", "pyarrow.parquet"))
         time, number, text = arrow.timestamp("us", tz="UTC"), arrow.float64(), arrow.string()
         kinds: list[tuple[Any, Callable[[str], Any]]] = [(time, parse_stamp)] * 3 + [(text, str)]
-        kinds += [(text, str) if name in self._texts else (number, float) for name in self._names]
+        kinds += [(text, unguarded) if name in self._texts else (number, float) for name in self._names]
         schema = arrow.schema([(name, kind) for name, (kind, _) in zip(_all(self._names), kinds, strict=True)])
         with (
             self._journal.open(encoding="utf-8", newline="") as journal,
@@ -136,7 +143,7 @@ class RecordingWriter:
 
     def _failed(self, error: OSError) -> InputError:
         what = f"cannot be written: {error.strerror or error}"
-        return InputError(Problem(str(self._journal), 0, what, "what was recorded so far stays"))
+        return InputError(Problem(str(self._journal), 0, what, "what was recorded so far stays", code="TWN311"))
 
 
 def _groups(lines: Iterator[list[str]]) -> Iterator[list[list[str]]]:
@@ -174,5 +181,16 @@ def _stamp(microseconds: int | None) -> str:
     return (_EPOCH + timedelta(microseconds=microseconds)).replace(tzinfo=None).isoformat(timespec="microseconds") + "Z"
 
 
+def unguarded(text: str) -> str:
+    """A text as the machine told it: without the apostrophe that keeps a spreadsheet from running it."""
+    return text[1:] if text.startswith("'") and text[1:].startswith(_FORMULAS) else text
+
+
 def _cell(value: Value) -> str:
-    return "" if value is None else one_line(value) if isinstance(value, str) else repr(value)
+    """A cell; a text as it is but for its length, and for what a spreadsheet would take for a formula."""
+    if value is None:
+        return ""
+    if isinstance(value, str):
+        text = one_line(value[:LONGEST_TEXT])[:LONGEST_TEXT]
+        return f"'{text}" if text.startswith(_FORMULAS) else text
+    return repr(value) if math.isfinite(value) else ""

@@ -19,6 +19,7 @@ _NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}", re.ASCII)
 
 #: Columns that every recording has.
 TIMES: Final = ("source", "server", "received", "mark")
+STAMPS: Final = TIMES[:3]
 
 #: Columns of texts, whatever a list says.
 TEXTS: Final = (PROGRAM, "block")
@@ -95,11 +96,13 @@ def read_nodes(root: Table) -> NodeList:
     found = [_column(name, columns.table(name), namespace) for name in columns.names()]
     for name in columns.names():
         if not _NAME.fullmatch(name) or name in TIMES:
-            columns.add_problem(name, "cannot be the name of a column", "write letters, digits and _, such as X")
+            columns.add_problem(
+                name, "cannot be the name of a column", "write letters, digits and _, such as X", code="TWN232"
+            )
     if not found and "columns" in root:
-        root.add_problem("columns", "is empty", "name what is recorded, such as [columns.X]")
+        root.add_problem("columns", "is empty", "name what is recorded, such as [columns.X]", code="TWN232")
     if len(found) > _MOST_COLUMNS:
-        root.add_problem("columns", f"has {len(found)} columns", f"write at most {_MOST_COLUMNS}")
+        root.add_problem("columns", f"has {len(found)} columns", f"write at most {_MOST_COLUMNS}", code="TWN232")
     root.report_unread_keys()
     root.raise_problems()
     return NodeList(tuple(found))
@@ -113,7 +116,7 @@ def _column(name: str, table: Table, namespace: str) -> Column:
         place=place or Place(),
         is_text=table.flag("text", name in TEXTS),
         is_optional=table.flag("optional", False),
-        element=table.integer("element", 0, at_least=0, at_most=10_000),
+        element=table.integer("element", 0, at_least=1, at_most=10_000),
         named_by=named,
     )
     table.report_unread_keys()
@@ -124,14 +127,16 @@ def _place(table: Table, identifier: str, path: str, namespace: str, *, required
     """The place that one of two keys states."""
     by_id, by_path = table.text(identifier, ""), table.text(path, "")
     if by_id and by_path:
-        table.add_problem(path, f"is given beside {identifier}", "write one of them")
+        table.add_problem(path, f"is given beside {identifier}", "write one of them", code="TWN232")
     if by_path:
         return Place(path=tuple(filter(None, by_path.split("/"))))
     if by_id:
         if not namespace:
-            table.add_problem(identifier, "has no namespace", 'write namespace = "…", the URI in which the id counts')
+            table.add_problem(
+                identifier, "has no namespace", 'write namespace = "…", the URI in which the id counts', code="TWN232"
+            )
         return Place(namespace, by_id if re.match(r"[isgb]=", by_id) else f"s={by_id}")
     if required:
         cure = f"write {identifier} = of a NodeId, or {path} = of names from the objects on"
-        table.add_problem("", "does not say which variable it is", cure)
+        table.add_problem("", "does not say which variable it is", cure, code="TWN232")
     return None

@@ -7,7 +7,6 @@ Out:    a ``Recording``, or an ``InputError`` with the mistakes.
 import csv
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from datetime import datetime
 from itertools import islice
 from pathlib import Path
 from typing import Any, Final
@@ -18,16 +17,23 @@ from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.extras import import_extra
 from trunnion.model.recording import NO_TIME, Mark, Recording, TextColumn
-from trunnion.twin.recording.files import parse_stamp
-from trunnion.twin.recording.nodes import TEXTS, TIMES
+from trunnion.twin.recording.files import LONGEST_TEXT, parse_stamp, unguarded
+from trunnion.twin.recording.nodes import STAMPS, TEXTS, TIMES
 
 #: Rows and columns of a recording at most, and mistakes that are told.
 _MOST_ROWS: Final = 10_000_000
 _MOST_COLUMNS: Final = 300
 _MOST_PROBLEMS: Final = 20
 
-#: Rows that are read at a time.
+#: Rows that are read at a time, and bytes of the cells of a group at most.
 _GROUP: Final = 65_536
+_MOST_BYTES: Final = 256 * 1024 * 1024
+
+#: Kinds of numbers in Parquet.
+_NUMBERS: Final = ("double", "float", *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)))
+
+#: Greater numbers are none of a machine.
+_GREATEST: Final = 1e12
 
 _Cells = Sequence[Any]
 
@@ -44,11 +50,15 @@ def read_recording(path: Path) -> Recording:
         raise InputError(problem)
     suffix = path.suffix.lower()
     if suffix not in (".csv", ".parquet"):
-        raise InputError(Problem(str(path), 0, "is no recording", "give one that ends in .csv or .parquet"))
+        raise InputError(
+            Problem(str(path), 0, "is no recording", "give one that ends in .csv or .parquet", code="TWN320")
+        )
     try:
         return _Reader(str(path)).read(_csv_groups(path) if suffix == ".csv" else _parquet_groups(path))
     except (OSError, csv.Error) as error:
-        raise InputError(Problem(str(path), 0, f"cannot be read: {error}", "give a recording of trunnion")) from None
+        raise InputError(
+            Problem(str(path), 0, f"cannot be read: {error}", "give a recording of trunnion", code="TWN320")
+        ) from None
 
 
 class _Reader:
@@ -70,7 +80,9 @@ class _Reader:
                 parts.setdefault(name, []).append(self._column(name, group[name]))
             self._rows += len(group[names[0]])
             if self._rows > _MOST_ROWS:
-                raise InputError(Problem(self._file, 0, f"has more than {_MOST_ROWS} rows", "record it in parts"))
+                raise InputError(
+                    Problem(self._file, 0, f"has more than {_MOST_ROWS} rows", "record it in parts", code="TWN320")
+                )
             if len(self._problems) >= _MOST_PROBLEMS:
                 break
         if self._problems:
@@ -87,14 +99,14 @@ class _Reader:
         )
 
     def _column(self, name: str, cells: _Cells) -> Any:
-        if name in ("source", "server", "received"):
+        if name in STAMPS:
             return self._times(name, cells)
         if name == "mark":
             self._add_marks(cells)
             return np.zeros(0)
         if name in TEXTS:
             codes = self._codes.setdefault(name, {"": 0})
-            return np.array([codes.setdefault(str(cell or ""), len(codes)) for cell in cells], np.int64)
+            return np.array([codes.setdefault(unguarded(str(cell or "")), len(codes)) for cell in cells], np.int64)
         return self._numbers(name, cells)
 
     def _times(self, name: str, cells: _Cells) -> Ints:
@@ -102,7 +114,7 @@ class _Reader:
         for k, cell in enumerate(cells):
             try:
                 if cell is not None and cell != "":
-                    found[k] = parse_stamp(cell.isoformat() if isinstance(cell, datetime) else cell)
+                    found[k] = cell if isinstance(cell, int) else parse_stamp(cell)
             except (ValueError, OverflowError):
                 self._wrong(k, name, cell, "is no time", "write it as 2026-05-04T08:30:00.020000Z")
         return found
@@ -112,12 +124,11 @@ class _Reader:
         for k, cell in enumerate(cells):
             try:
                 if cell is not None and cell != "":
-                    found[k] = float(cell)
+                    found[k] = _number(cell)
             except (TypeError, ValueError):
                 self._wrong(k, name, cell, "is no number", "leave it empty where it is not known")
                 if len(self._problems) >= _MOST_PROBLEMS:
                     break
-        found[~np.isfinite(found)] = math.nan
         return found
 
     def _add_marks(self, cells: _Cells) -> None:
@@ -129,7 +140,25 @@ class _Reader:
                     self._wrong(k, "mark", cell, "is no mark", f"known are {', '.join(Mark)}")
 
     def _wrong(self, k: int, name: str, cell: object, what: str, cure: str) -> None:
-        self._problems.append(Problem(self._file, self._rows + k + 2, f"{name} {what}: {str(cell)[:40]!r}", cure))
+        self._problems.append(
+            Problem(self._file, self._rows + k + 2, f"{name} {what}: {str(cell)[:40]!r}", cure, code="TWN321")
+        )
+
+
+def _number(cell: object) -> float:
+    """A number that a machine can show.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If it is none.
+    """
+    if isinstance(cell, bool) or not isinstance(cell, str | int | float):
+        raise TypeError
+    value = float(cell)
+    if not abs(value) <= _GREATEST:
+        raise ValueError
+    return value
 
 
 def _csv_groups(path: Path) -> Iterator[dict[str, _Cells]]:
@@ -138,16 +167,17 @@ def _csv_groups(path: Path) -> Iterator[dict[str, _Cells]]:
         lines = csv.reader(source)
         names = [name.strip() for name in next(lines, [])]
         if not names:
-            raise InputError(Problem(str(path), 0, "is empty", "give a recording"))
+            raise InputError(Problem(str(path), 0, "is empty", "give a recording", code="TWN320"))
         _check_names(path, names)
         first = True
         while group := list(islice(lines, _GROUP)):
             if len(group) < _GROUP and not is_whole:
                 group.pop()  # a line that was not finished when its process was killed
+            group = [line for line in group if line]
             for k, line in enumerate(group):
                 if len(line) != len(names):
                     what, cure = f"has {len(line)} cells, not {len(names)}", "write one for each column"
-                    raise InputError(Problem(str(path), lines.line_num - len(group) + k + 1, what, cure))
+                    raise InputError(Problem(str(path), lines.line_num - len(group) + k + 1, what, cure, code="TWN321"))
             if group or first:
                 yield dict(zip(names, zip(*group, strict=True), strict=True)) if group else dict.fromkeys(names, ())
             first = False
@@ -158,15 +188,15 @@ def _csv_groups(path: Path) -> Iterator[dict[str, _Cells]]:
 def _check_names(path: Path, names: Sequence[str]) -> None:
     """Refuse columns that are not those of a recording."""
     what = ""
-    if len(set(names)) < len(names):
-        what = "has columns of the same name"
+    if len({name.casefold() for name in names}) < len(names):
+        what = "has columns of the same name (capitals make no difference)"
     elif len(names) > _MOST_COLUMNS:
         what = f"has more than {_MOST_COLUMNS} columns"
     elif "source" not in names:
         what = "has no column source"
     if what:
         cure = "the columns of a recording are source, received, mark, X, Y, …"
-        raise InputError(Problem(str(path), 1, what, cure))
+        raise InputError(Problem(str(path), 1, what, cure, code="TWN320"))
 
 
 def _ends_with_a_line(path: Path) -> bool:
@@ -181,9 +211,72 @@ def _parquet_groups(path: Path) -> Iterator[dict[str, _Cells]]:
         with parquet.ParquetFile(path) as file:
             names = list(file.schema_arrow.names)
             _check_names(path, names)
+            _check_kinds(path, file.schema_arrow)
             if not file.metadata.num_rows:
                 yield dict.fromkeys(names, ())
-            for batch in file.iter_batches(_GROUP):
-                yield {name: batch.column(k).to_pylist() for k, name in enumerate(names)}
+            # Texts stay dictionaries: a long one that comes again and again is there once.
+            texts = [field.name for field in file.schema_arrow if str(field.type) in ("string", "large_string")]
+            with parquet.ParquetFile(path, read_dictionary=texts) as whole:
+                for batch in whole.iter_batches(_batch_rows(path, file)):
+                    yield {name: _cells(batch.column(k), arrow, path, name) for k, name in enumerate(names)}
     except arrow.ArrowException as error:
-        raise InputError(Problem(str(path), 0, f"is no Parquet file: {error}", "give a recording")) from None
+        raise InputError(
+            Problem(str(path), 0, f"is no Parquet file: {error}", "give a recording", code="TWN320")
+        ) from None
+
+
+def _check_kinds(path: Path, schema: Any) -> None:
+    """Refuse columns of kinds that are none of a recording's."""
+    for field in schema:
+        kind = str(field.type)
+        if kind.startswith("dictionary<values="):
+            kind = kind.removeprefix("dictionary<values=").partition(",")[0]
+        is_time = kind.startswith("timestamp")
+        is_text = kind in ("string", "large_string", "null")
+        if field.name in STAMPS:
+            good, what = is_time or is_text, "holds no times"
+        elif field.name in TEXTS or field.name == "mark":
+            good, what = is_text, "holds no texts"
+        else:
+            good, what = is_text or kind in _NUMBERS, "holds no numbers"
+        if not good:
+            cure = "times are timestamps, block, program and mark texts, and all else numbers"
+            raise InputError(Problem(str(path), 1, f"column {field.name} {what} but {kind}", cure, code="TWN320"))
+
+
+def _batch_rows(path: Path, file: Any) -> int:
+    """Rows that are read at a time: so many that their cells, as the file states them, take no more than is allowed."""
+    metadata = file.metadata
+    most = 1
+    for k in range(metadata.num_row_groups):
+        group = metadata.row_group(k)
+        if group.total_byte_size > _MOST_BYTES:
+            what = f"has a row group of {group.total_byte_size} bytes, more than {_MOST_BYTES}"
+            raise InputError(Problem(str(path), 0, what, "write it with smaller row groups", code="TWN320"))
+        most = max(most, group.num_rows)
+    return min(_GROUP, most)
+
+
+def _cells(column: Any, arrow: Any, path: Path, name: str) -> list[Any]:
+    """The values of a column of a batch; times as microseconds since 1970."""
+    if arrow.types.is_timestamp(column.type):
+        unit = {"s": 1_000_000.0, "ms": 1000.0, "us": 1.0, "ns": 1e-3}[column.type.unit]
+        found = column.cast(arrow.int64()).to_pylist()
+        return [None if each is None else round(each * unit) if unit != 1e-3 else each // 1000 for each in found]
+    if arrow.types.is_dictionary(column.type):
+        texts = column.dictionary.to_pylist()
+        _check_texts(path, name, texts)
+        return [None if k is None else texts[k] for k in column.indices.to_pylist()]
+    if column.nbytes > _MOST_BYTES:
+        raise InputError(
+            Problem(str(path), 0, f"holds more than {_MOST_BYTES} bytes in {name}", "give a recording", code="TWN320")
+        )
+    cells: list[Any] = column.to_pylist()
+    _check_texts(path, name, [cell for cell in cells if isinstance(cell, str)])
+    return cells
+
+
+def _check_texts(path: Path, name: str, texts: Sequence[str | None]) -> None:
+    if any(text is not None and len(text) > LONGEST_TEXT for text in texts):
+        what = f"has a text of more than {LONGEST_TEXT} characters in {name}"
+        raise InputError(Problem(str(path), 0, what, "no block of a program is so long", code="TWN320"))

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.model.feed_path import FeedPath, row_feed_path_lengths
+from trunnion.model.feed_path import NO_ROTATION, FeedPath, row_feed_path_lengths
 from trunnion.model.toolpath import Kind
+from trunnion.timing import HARDLY_MOVES
 from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
 from trunnion.verification.deviations.declared_deviations import AcceptedDeviations, needlessly_lowered_feeds
+from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.expected.tolerances import FEED_PER_REV_SHARE
 from trunnion.verification.results import Check, Place
 from trunnion.wording import counted
@@ -27,9 +29,12 @@ _TIME_SHARE = 1e-3
 _LARGEST = 1e-6
 
 
-def check_feed(context: ComparedContext, accepted: AcceptedDeviations) -> Check:
-    """Feeds of all rows that are not rapids, as far as they were not declared to be lowered."""
-    compared = _compare_points(context)
+def check_feed(context: ComparedContext, accepted: AcceptedDeviations, original: ExpectedPath) -> Check:
+    """Feeds of all rows that are not rapids, as far as they were not declared to be lowered.
+
+    ``original`` has the feeds of the CL files.
+    """
+    compared = _compare_points(context, original)
     count, places = compared.count, compared.places
     for segments in context.matching.arc_segments:
         wanted, tolerances = (
@@ -66,7 +71,7 @@ class _ComparedFeeds:
     ranges: dict[str, tuple[float, float]]
 
 
-def _compare_points(context: ComparedContext) -> _ComparedFeeds:
+def _compare_points(context: ComparedContext, original: ExpectedPath) -> _ComparedFeeds:
     """Feeds of all motions that go or lead to a CL point."""
     run, expected = context.run, context.expected
     found = _ComparedFeeds([], 0, {})
@@ -75,7 +80,12 @@ def _compare_points(context: ComparedContext) -> _ComparedFeeds:
         at_feed = (run.kind[nc] != Kind.RAPID) & (expected.kind(cl) != Kind.RAPID)
         per_rev, asked, mode = expected.per_rev(cl), expected.feed(cl), run.state.feed_mode.at(nc)
         digit = np.where(per_rev, FEED_PER_REV_SHARE * asked, feed_tolerance)
+        if context.settings.fastest_feed:
+            asked, either = _asked_at_rest(context, nc, asked, original.feed(cl))
         near, feed = _compare_feeds(context, nc, asked, expected.max_tip_tolerance, digit)
+        if context.settings.fastest_feed and len(either):
+            own = original.feed(cl[either])
+            near[either] |= _compare_feeds(context, nc[either], own, expected.max_tip_tolerance, digit[either])[0]
         stated = at_feed & ~np.isnan(asked)
         wrong = at_feed & ((mode == 95) != per_rev)
         wrong |= stated & ~near
@@ -93,6 +103,25 @@ def _compare_points(context: ComparedContext) -> _ComparedFeeds:
             text = f"moves with {has}; the CL file wants {asked[k]:g} {'mm/rev' if per_rev[k] else 'mm/min'}"
             found.places.append(context.place_with_cl(int(nc[k]), float(feed[k]), text, int(cl[k])))
     return found
+
+
+def _asked_at_rest(context: ComparedContext, nc: Ints, asked: Floats, own: Floats) -> tuple[Floats, Ints]:
+    """The feeds asked for where those that the axes reach are declared, (k,), and where that of the CL file may stand.
+
+    Rows that turn rotary axes while the tip hardly moves keep ``own``, the feed of the CL file, (k,).
+    """
+    if context.settings.feed_limit is not None:
+        own = np.fmin(own, context.settings.feed_limit)
+    rows = np.flatnonzero((asked != own) & ~np.isnan(own) & (nc > 0))
+    before, after = context.run.positions(nc[rows] - 1), context.run.positions(nc[rows])
+    travel = np.linalg.norm(after.tip - before.tip, axis=1)
+    turns = np.abs(after.joints - before.joints)[:, list(context.run.machine.rotary)].max(axis=1, initial=0.0)
+    slack = 2.0 * math.sqrt(3.0) * context.expected.max_tip_tolerance
+    turning = turns > NO_ROTATION
+    asked = asked.copy()
+    rests = rows[turning & (travel < HARDLY_MOVES - slack)]
+    asked[rests] = own[rests]
+    return asked, rows[turning & (np.abs(travel - HARDLY_MOVES) <= slack)]
 
 
 def _compare_feeds(

@@ -97,18 +97,19 @@ def check_speed(context: Context, motion: AxisMotion) -> Check:
     """Shares of rapid speed; the control slows down where more than all of it is needed, so this never fails."""
     title = "speed of the axes at the programmed feed"
     stated = any(axis.rapid for axis in context.run.machine.axes)
-    return _check_shares(context, motion.speed, "speed", title, "rapid speed", stated)
+    return _check_shares(context, motion.speed, "speed", title, "rapid speed", stated, "no axis moves at feed")
 
 
 def check_acceleration(context: Context, motion: AxisMotion) -> Check:
     """Shares of acceleration; the control slows down where more than all of it is needed, so this never fails."""
     title = "acceleration of the axes between blocks"
     stated = any(axis.acceleration for axis in context.run.machine.axes)
-    return _check_shares(context, motion.acceleration, "acceleration", title, "acceleration", stated)
+    none = "no two motions at feed follow each other"
+    return _check_shares(context, motion.acceleration, "acceleration", title, "acceleration", stated, none)
 
 
 def _check_shares(
-    context: Context, shares: Sequence[WorstRows], key: str, title: str, quantity: str, stated: bool
+    context: Context, shares: Sequence[WorstRows], key: str, title: str, quantity: str, stated: bool, none: str
 ) -> Check:
     axes = context.run.machine.axes
     if not stated:
@@ -123,7 +124,7 @@ def _check_shares(
     top = max(range(len(axes)), key=lambda k: shares[k].value)
     worst = shares[top]
     if worst.row < 0:
-        return Check(key, title, True, "no axis moves at feed", 0.0, 1.0, f"of {quantity}")
+        return Check(key, title, True, none, 0.0, 1.0, f"of {quantity}")
     count = sum(each.count for each in shares)
     summary = (
         f"{axes[top].name} at most {100.0 * worst.value:.0f} % of its {quantity}, in {context.block_name(worst.row)}"

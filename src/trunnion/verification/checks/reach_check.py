@@ -7,7 +7,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats
 from trunnion.timing import reached_feeds
 from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
-from trunnion.verification.deviations.reached_rows import ReachedRows, reached_rows
+from trunnion.verification.deviations.reached_rows import ReachedRows, longest, reached_rows
 from trunnion.verification.expected.path import ExpectedPath
 from trunnion.verification.results import Check
 from trunnion.wording import counted, format_duration
@@ -29,14 +29,16 @@ def check_reach(context: ComparedContext, original: ExpectedPath) -> list[Check]
     if not settings.fastest_feed:
         return []
     found = reached_rows(context.run, original, context.matching, settings.feed_limit)
-    feed, digit = _declared(context.expected)
+    feed, digit, declared = _declared(context.expected)
     with np.errstate(invalid="ignore"):
+        kept = np.abs(feed - found.own) <= 0.5 * digit
         above_most = feed > found.most * (1.0 + 1e-9) + 0.5 * digit
         too_high = feed > found.feed * (1.0 + _ABOVE) + digit
         too_low = feed < np.minimum(found.feed * (1.0 - _BELOW), found.most) - digit
         lowered = feed < found.most - 0.5 * digit
-    unknown = lowered & np.isnan(found.feed)
-    bad = np.flatnonzero(above_most | too_high | too_low | unknown)
+    unknown = lowered & np.isnan(found.feed) & ~kept
+    kept &= declared & (too_high | too_low)
+    bad = np.flatnonzero(above_most | ((too_high | too_low) & ~kept) | unknown)
     places = []
     for row in bad[:MAX_PLACES].tolist():
         text = f"has a feed of {feed[row]:g}, and the axes reach {found.feed[row]:.5g} there"
@@ -45,28 +47,34 @@ def check_reach(context: ComparedContext, original: ExpectedPath) -> list[Check]
         elif unknown[row]:
             text = f"has a feed of {feed[row]:g} in place of {found.most[row]:g}, and what the axes reach is not known"
         places.append(context.place_of_cl_row(row, float(feed[row]), text))
-    return [check_from_places("reach", _TITLE, places, _summary(context, original, found, feed, lowered), len(bad))]
+    now = float(reached_feeds(context.run, np.full(len(context.run), np.nan)).seconds.sum())
+    times = f"{format_duration(now)} of motion, {format_duration(found.seconds)} at the feeds of the CL file"
+    if now > longest(found.seconds):
+        return [Check("reach", _TITLE, False, f"far longer than it may be: {times}", places=tuple(places))]
+    summary = "nothing is cut at a feed per minute"
+    if np.isfinite(found.most).any():
+        summary = f"{_summary(context, found, feed, lowered & ~kept, int(np.count_nonzero(kept)))}; {times}"
+    return [check_from_places("reach", _TITLE, places, summary, len(bad))]
 
 
-def _declared(expected: ExpectedPath) -> tuple[Floats, Floats]:
-    """The feeds of all rows, (m,), and the last printed digit of each."""
+def _declared(expected: ExpectedPath) -> tuple[Floats, Floats, Flags]:
+    """The feeds of all rows, (m,), the last printed digit of each, and which of them are declared."""
     feeds = [section.operation.moves.feed for section in expected.sections]
     digits = [np.full(len(feed), 2.0 * s.tolerances.feed) for feed, s in zip(feeds, expected.sections, strict=True)]
-    return np.concatenate(feeds), np.concatenate(digits)
+    declared = np.zeros(len(expected), np.bool_)
+    for section in expected.sections:
+        if section.tolerances.deviations is not None:
+            declared[section.first + section.tolerances.deviations.reached_rows] = True
+    return np.concatenate(feeds), np.concatenate(digits), declared
 
 
-def _summary(context: ComparedContext, original: ExpectedPath, found: ReachedRows, feed: Floats, lowered: Flags) -> str:
-    """How many feeds are lower, by how much, and what that takes."""
-    run, limit = context.run, context.settings.feed_limit
+def _summary(context: ComparedContext, found: ReachedRows, feed: Floats, lowered: Flags, kept: int) -> str:
+    """How many feeds are lower, and by how much."""
+    limit = context.settings.feed_limit
     total, count = (int(np.count_nonzero(rows)) for rows in (np.isfinite(found.most), lowered))
-    if not total:
-        return "nothing is cut at a feed per minute"
     text = f"lower than {'in the CL file' if limit is None else f'{limit:g} mm/min'} at {count} of"
     text += f" {counted(total, 'point')}"
     if count:
         share = 100.0 * float((1.0 - feed[lowered] / found.most[lowered]).max())
         text += f", by {share:.0f} % at most"
-    now, seconds = float(reached_feeds(run, np.full(len(run), np.nan)).seconds.sum()), found.seconds
-    if limit is not None:
-        seconds = reached_rows(run, original, context.matching, None).seconds
-    return f"{text}; {format_duration(now)} of motion, {format_duration(seconds)} at the feeds of the CL file"
+    return text + (f"; that of the CL file is kept at {kept}, since the program would take far longer" if kept else "")

@@ -7,7 +7,8 @@ from trunnion.verification.context import MAX_PLACES, Context, check_from_places
 from trunnion.verification.results import Check, Place
 from trunnion.verification.row_ranges import chunk_bounds
 
-_KEY, _TITLE = "rpm", "spindle speeds that the machine has"
+_KEY = "rpm"
+_TITLE = "spindle speeds that the machine has"
 
 
 def check_spindle_range(context: Context) -> Check:

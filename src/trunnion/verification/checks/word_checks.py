@@ -31,7 +31,8 @@ def check_words(context: Context) -> Check:
 
 def _place(context: Context, diagnostic: Diagnostic) -> Place:
     of_subprogram = diagnostic.file in context.run.files[1:]
-    return Place(diagnostic.line, -1, 0.0, diagnostic.text, nc_file=diagnostic.file if of_subprogram else "")
+    nc_file = diagnostic.file if of_subprogram else ""
+    return Place(diagnostic.line, -1, 0.0, diagnostic.text, nc_file=nc_file, code=diagnostic.code)
 
 
 def _compared_errors(expected: ExpectedPath, run: Run, errors: list[Diagnostic]) -> list[Diagnostic]:
@@ -50,7 +51,7 @@ def _lines_of(file: str, encoding: str) -> list[str]:
         return [decode(line, encoding) for line in Path(file).read_bytes().split(b"\n")]
     except OSError as error:
         what = f"cannot be read again: {error.strerror}"
-        raise InputError(Problem(file, 0, what, "keep the program until it has been verified")) from error
+        raise InputError(Problem(file, 0, what, "keep the program until it has been verified", code="NC111")) from error
 
 
 def _is_inserted(diagnostic: Diagnostic, lines: Sequence[str], texts: set[str]) -> bool:

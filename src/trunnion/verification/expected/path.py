@@ -51,7 +51,8 @@ class OperationSettings:
 class Section:
     """One operation within the expected path: rows ``first`` to ``end`` (exclusive), in the program's frame.
 
-    ``kept`` has the row of the CL file's operation for each of its rows; None where all are here.
+    ``kept`` has the row of the CL file's operation for each of its rows; None where all are here. ``whole`` is that
+    operation with all of them.
     """
 
     file: str
@@ -59,6 +60,7 @@ class Section:
     first: int
     tolerances: Tolerances
     settings: OperationSettings
+    whole: Operation
     kept: Ints | None = None
 
     @property
@@ -114,7 +116,9 @@ class ExpectedPath:
         moving = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
         if not moving:
             file = toolpaths[0].file if toolpaths else "CL file"
-            raise InputError(Problem(file, 0, "there is no motion in it to compare with", "output the toolpath again"))
+            raise InputError(
+                Problem(file, 0, "there is no motion in it to compare with", "output the toolpath again", code="NC180")
+            )
         frame = Frame() if absolute else moving[0][1].frame
         limits = _by_operation(tolerances, len(moving))
         sections: list[Section] = []
@@ -143,7 +147,7 @@ class ExpectedPath:
                     limit = replace(limit, deviations=limit.deviations.without_rows(gone))
                 operation = without_rows(operation, gone)
                 kept = np.flatnonzero(~gone) if kept is None else kept[~gone]
-            sections.append(Section(path.file, operation, first, limit, settings, kept))
+            sections.append(Section(path.file, operation, first, limit, settings, placed, kept))
             hole_ends.append(len(found))
             first += len(operation.moves)
         self.sections: tuple[Section, ...] = tuple(sections)

@@ -34,6 +34,7 @@ class AxisMotion:
     """What a program makes the axes do.
 
     seconds         (n,) float64; no rows unless times were asked for
+    waiting         (n,) float64, those of them that the axes wait; no rows unless times were asked for
     tip_feed        (n,) float64, mm/min; no rows unless times were asked for
     speed           for each axis, the share of its rapid speed that rows at feed need; 1 is all of it
     acceleration    for each axis, the share of its acceleration
@@ -45,6 +46,7 @@ class AxisMotion:
     """
 
     seconds: Floats
+    waiting: Floats
     tip_feed: Floats
     speed: tuple[WorstRows, ...]
     acceleration: tuple[WorstRows, ...]
@@ -70,6 +72,7 @@ class AxisMotionAnalyzer:
         axes = run.machine.axes
         self._motion = AxisMotion(
             seconds=np.zeros(0),
+            waiting=np.zeros(0),
             tip_feed=np.zeros(0),
             speed=tuple(WorstRows(1.0 + 1e-9, max_rows) for _ in axes),
             acceleration=tuple(WorstRows(1.0 + 1e-9, max_rows) for _ in axes),
@@ -141,8 +144,9 @@ class AxisMotionAnalyzer:
         """Everything, once all rows have been added."""
         if self._timer is None:
             return self._motion
-        seconds, tip_feed = self._timer.result()
-        return replace(self._motion, seconds=seconds, tip_feed=tip_feed)
+        times = self._timer.result()
+        seconds = times.moving + times.waiting
+        return replace(self._motion, seconds=seconds, waiting=times.waiting, tip_feed=times.tip_feed)
 
 
 def _tip_deviations(machine: Machine, positions: PositionChunk, rows: Ints, count: int) -> Floats:

@@ -1,19 +1,27 @@
-"""The check of a recording: how far the machine was off the program's path, and how much of its travel it used."""
+"""The check of a recording: how far the machine was off the program's path, how it went through it, how much of it was
+recorded, and how much of its travel the machine used.
+"""
 
+import math
 from collections.abc import Iterator
+from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Floats
+from trunnion.arrays import Floats, Ints
 from trunnion.machines import Machine
 from trunnion.model.recording import Mark
 from trunnion.verification.context import MAX_PLACES, Context
 from trunnion.verification.recorded.compared import RecordedComparison
+from trunnion.verification.recorded.course import Coverage, Fault, coverage, faults, longest_stand
 from trunnion.verification.results import Check, Place
 from trunnion.wording import counted
 
 KEY = "recorded"
 TITLE = "the machine as it was recorded"
+
+#: Seconds for which a recording that stands at one place is told.
+_LONG_STAND: Final = 10.0
 
 #: Axes beyond their limits by less than this are at them, mm or degrees.
 _ROUNDING = 1e-4
@@ -26,27 +34,82 @@ def check_recorded(context: Context, compared: RecordedComparison) -> Check:
         why = _not_compared(compared) or "it is empty"
         summary = f"no position of {compared.recording.name} is on the path of this program: {why}"
         return Check(KEY, TITLE, False, summary, None, compared.tolerance, "mm")
+    run = context.run
+    wrong = [_fault_place(context, compared, fault) for fault in faults(run, compared)]
+    found = coverage(run, compared)
+    holes = _hole_places(context, found)
     beyond = list(_beyond_travel(context, compared))
     bad = _bad_rows(compared)
     rows = bad or _worst_rows(compared)[:1]
-    places = [*beyond, *(_place(context, compared, row) for row in rows[:MAX_PLACES])]
+    off = [_place(context, compared, row) for row in rows[:MAX_PLACES]]
+    places = [*wrong, *beyond, *off, *holes] if bad else [*wrong, *beyond, *holes, *off]
     worst = float(compared.tip_off[at].max())
     parts = [
+        _named(compared),
+        _part(context, found),
         f"tip at most {worst:.4f} mm off the path, tool axis {float(compared.axis_off[at].max()):.4f} degrees",
         f"{counted(len(at), 'position')} in {int((compared.positions > 0).sum())} of {len(context.run)} motions",
-        _uncovered(context, compared),
         _apart(context, compared),
+        _stood(context, compared),
         _not_compared(compared),
         _travel(context, compared),
     ]
-    if bad or beyond:
+    fails = bool(wrong or holes or bad or beyond)
+    if fails:
         first = places[0]
-        more = len(bad) + len(beyond) - 1
-        parts.insert(0, f"{first.block_name}: {first.text}" + (f", and {counted(more, 'more place')}" if more else ""))
+        more = len(wrong) + len(holes) + len(bad) + len(beyond) - 1
+        text = first.text if first in (*wrong, *holes) else f"{first.block_name}: {first.text}"
+        parts.insert(0, text + (f", and {counted(more, 'more place')}" if more else ""))
     return Check(
-        KEY, TITLE, not bad and not beyond, "; ".join(filter(None, parts)), worst, compared.tolerance, "mm",
+        KEY, TITLE, not fails, "; ".join(filter(None, parts)), worst, compared.tolerance, "mm",
         tuple(places[:MAX_PLACES]),
     )  # fmt: skip
+
+
+def _fault_place(context: Context, compared: RecordedComparison, fault: Fault) -> Place:
+    row = fault.row if fault.row >= 0 else _row_near(compared, fault.at)
+    text = f"{fault.text} (line {fault.at + 2} of {compared.recording.name})"
+    return context.place(row, math.nan, f"{context.block_name(row)}: {text}" if fault.row >= 0 else text)
+
+
+def _row_near(compared: RecordedComparison, at: int) -> int:
+    """The row of the last position up to a place of the recording."""
+    told = compared.row[: at + 1]
+    return int(told[told >= 0][-1]) if (told >= 0).any() else 0
+
+
+def _hole_places(context: Context, found: Coverage) -> list[Place]:
+    """A place for each part of the program that is missing in the midst of the recording."""
+    holes = found.holes
+    parts = np.split(holes, np.flatnonzero(np.diff(holes) > 1) + 1) if len(holes) else []
+    return [context.place(int(part[0]), math.nan, _missing(context, part)) for part in parts]
+
+
+def _missing(context: Context, rows: Ints) -> str:
+    one, last = context.block_name(int(rows[0])), context.block_name(int(rows[-1]))
+    names = one if len(rows) == 1 else f"{one} to {last}, {counted(len(rows), 'motion')},"
+    return f"{names} {'was' if len(rows) == 1 else 'were'} not recorded"
+
+
+def _named(compared: RecordedComparison) -> str:
+    return f"the machine calls the program {compared.name}" if compared.name else ""
+
+
+def _part(context: Context, found: Coverage) -> str:
+    """Which part of the program was recorded."""
+    if found.share > 0.99995 and not len(found.holes) and not len(found.gaps):
+        return "all of the path was recorded"
+    share = f"{min(100.0 * found.share, 99.9):.1f} % of the path was recorded"
+    whole = f"ONLY {share}, from {context.block_name(found.first)} to {context.block_name(found.last)}"
+    gaps = f"; {counted(len(found.gaps), 'motion')} while the connection was broken" if len(found.gaps) else ""
+    return f"{whole}{gaps}"
+
+
+def _stood(context: Context, compared: RecordedComparison) -> str:
+    seconds, at = longest_stand(compared)
+    if seconds < _LONG_STAND:
+        return ""
+    return f"it shows one place for {seconds:.0f} s at {context.block_name(int(compared.row[at]))}"
 
 
 def _bad_rows(compared: RecordedComparison) -> list[int]:
@@ -72,14 +135,6 @@ def _place(context: Context, compared: RecordedComparison, row: int) -> Place:
         text = f"{text} ({shares})"
     text = f"{text}, its tool axis {compared.axis_off[k]:.4f} degrees (line {k + 2} of {compared.recording.name})"
     return context.place(row, float(max(tip_off[k], compared.axis_off[k])), text)
-
-
-def _uncovered(context: Context, compared: RecordedComparison) -> str:
-    missing = np.flatnonzero(compared.moves & (compared.positions == 0))
-    if not len(missing):
-        return "all blocks that move were recorded"
-    have = "has" if len(missing) == 1 else "have"
-    return f"{counted(len(missing), 'motion')} {have} no position, the first is {context.block_name(int(missing[0]))}"
 
 
 def _apart(context: Context, compared: RecordedComparison) -> str:
@@ -154,6 +209,4 @@ def _place_of_value(
 ) -> Place:
     """The place of the first row of the recording with a value."""
     at = int(np.flatnonzero(column == value)[0])
-    told = compared.row[: at + 1]
-    row = int(told[told >= 0][-1]) if (told >= 0).any() else 0
-    return context.place(row, over, f"{text} (line {at + 2} of {compared.recording.name})")
+    return context.place(_row_near(compared, at), over, f"{text} (line {at + 2} of {compared.recording.name})")

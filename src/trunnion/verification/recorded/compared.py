@@ -5,8 +5,10 @@ Out:    a ``RecordedComparison``.
 Units:  mm and degrees, workpiece frame.
 
 Where the machine told the line that it ran, a position is compared with that block and with those that ran at the
-positions before and after it: a control shows block and axes at times of its own. Else positions follow the path: each
-is looked for from the place of the one before, not much further than the machine has moved.
+positions before and after it: a control shows block and axes at times of its own. Positions without a line, or in
+another program, are compared with what lies between the lines that were told before and after them. Without any line
+positions follow the path: each is looked for from the place of the one before, not much further than the machine has
+moved.
 """
 
 from dataclasses import dataclass
@@ -49,7 +51,9 @@ class RecordedComparison:
     off        (k, 3)  from the nearest place of the path to the recorded tip, NaN where it was not compared
     axis_off   (k,)    degrees from the tool axis there to the recorded one
     tolerance  how far off it may be, mm and degrees
-    foreign    positions in other programs
+    foreign    positions in other programs, while a tool is changed or outside of this one
+    strange    rows with a line that the program does not have
+    back       rows at which the machine goes back in the program
     outside    positions before the program, after it, and in blocks of which nobody knows where the tool is
     incomplete rows of the recording without all axes
     name       what the machine calls the program, if that is none of the names of its files
@@ -57,6 +61,7 @@ class RecordedComparison:
     positions  (n,)    how many positions each row has
     worst      (n, 2)  how far off tip and tool axis were at worst, NaN where a row has no position
     moves      (n,)    rows in which something moves, and of which it is known where
+    lengths    (n,)    way of the tip in each row, a degree of the tool axis counting as a millimetre
     """
 
     recording: Recording
@@ -67,6 +72,8 @@ class RecordedComparison:
     axis_off: Floats
     tolerance: float
     foreign: int
+    strange: Ints
+    back: Ints
     outside: int
     incomplete: int
     name: str
@@ -74,6 +81,7 @@ class RecordedComparison:
     positions: Ints
     worst: Floats
     moves: Flags
+    lengths: Floats
 
     @property
     def compared(self) -> Ints:
@@ -97,19 +105,24 @@ def compare_recording(run: Run, recording: Recording, tolerance: float) -> Recor
     joints, tip, axis = _poses(run.machine, recording)
     whole = np.isfinite(tip).all(axis=1) & np.isfinite(axis).all(axis=1)
     told, path = told_rows(run, recording), ProgramPath.of(run)
-    usable = whole & ~told.foreign
     by_line = bool((told.row >= 0).any())
+    apart = _apart(run, told) if by_line else told.foreign
+    usable = whole & ~apart
     row = np.full(len(recording), -1, np.int64)
     off, axis_off = np.full((len(recording), 3), np.nan), np.full(len(recording), np.nan)
     at = np.flatnonzero(usable & (told.row != BEFORE))
     anew = np.logical_or.reduceat(recording.marked(Mark.GAP), np.r_[0, at[:-1] + 1]) if len(at) else at.astype(np.bool_)
     if by_line:
-        at, anew = at[told.row[at] != UNTOLD], anew[told.row[at] != UNTOLD]
-        found = _by_line(path, told, tip, axis, at, anew, tolerance)
+        rows, following = _told_around(told.row)
+        within = (told.row[at] != UNTOLD) | ((rows[at] >= 0) & (following[at] >= rows[at]))
+        at, anew = at[within], anew[within]
+        found = _by_line(path, (rows, following), tip, axis, at, anew, tolerance)
     else:
         found = _Walk(path, tolerance).follow(tip[at], axis[at], anew)
     there = found.piece >= 0
-    row[at[there]] = told.row[at[there]] if by_line else path.row[found.piece[there]]
+    row[at[there]] = path.row[found.piece[there]]
+    stated = told.row >= 0
+    row = np.where((row >= 0) & stated, told.row, row)
     off[at], axis_off[at] = found.off, found.axis_off
     gone = row < 0
     off[gone], axis_off[gone] = np.nan, np.nan
@@ -122,7 +135,9 @@ def compare_recording(run: Run, recording: Recording, tolerance: float) -> Recor
         off=off,
         axis_off=axis_off,
         tolerance=tolerance,
-        foreign=int((whole & told.foreign).sum()),
+        foreign=int((whole & apart).sum()),
+        strange=np.flatnonzero(told.strange),
+        back=told.goes_back(len(run), recording.marked(Mark.GAP)),
         outside=int((usable & gone).sum()),
         incomplete=int((~whole & (recording.source >= 0)).sum()),
         name=told.name,
@@ -130,6 +145,7 @@ def compare_recording(run: Run, recording: Recording, tolerance: float) -> Recor
         positions=positions,
         worst=worst,
         moves=_moves(len(run), path),
+        lengths=_row_lengths(len(run), path),
     )
 
 
@@ -137,12 +153,20 @@ def _poses(machine: Machine, recording: Recording) -> tuple[Floats | None, Float
     """Axis values if the recording has all, tips and tool axes, (k, 5), (k, 3) and (k, 3)."""
     columns = {name.casefold(): column for name, column in recording.values.items()}
     names = [name.casefold() for name in machine.names]
+    doubled = [name for name in names if sum(each.casefold() == name for each in recording.values) > 1]
+    if doubled:
+        what = f"has two columns for axis {doubled[0].upper()}"
+        raise InputError(
+            Problem(recording.file, 1, what, "leave the one that holds it: capitals make no difference", code="TWN321")
+        )
     missing = [machine.names[k] for k, name in enumerate(names) if name not in columns]
     has_tip = all(name in columns for name in TIP)
     if missing and not (has_tip and all(names[k] in columns for k in machine.rotary)):
         what = f"has no column {missing[0]}" if len(missing) == 1 else f"has no columns {', '.join(missing)}"
         cure = f"a recording for {machine.key} has the axes {', '.join(machine.names)}"
-        raise InputError(Problem(recording.file, 1, what, f"{cure}, or {', '.join(TIP)} in place of the slides"))
+        raise InputError(
+            Problem(recording.file, 1, what, f"{cure}, or {', '.join(TIP)} in place of the slides", code="TWN350")
+        )
     joints = np.zeros((len(recording), 5))
     for k, name in enumerate(names):
         if name in columns and (not missing or k in machine.rotary):
@@ -153,14 +177,36 @@ def _poses(machine: Machine, recording: Recording) -> tuple[Floats | None, Float
     return None, np.column_stack([columns[name] for name in TIP]), axis
 
 
+def _apart(run: Run, told: ToldRows) -> Flags:
+    """Positions in other programs of which nobody knows where they should be: while a tool is changed, or outside."""
+    rows, following = _told_around(told.row)
+    changes = np.zeros(len(run) + 2, np.int64)
+    changes[[min(each.before_row, len(run)) + 1 for each in run.events if each.kind == "tool_change"]] = 1
+    changes = np.cumsum(changes)
+    within = (rows >= 0) & (following >= rows)
+    changed = changes[np.maximum(following, 0) + 1] > changes[np.maximum(rows, 0) + 1]
+    return np.asarray(told.foreign & (~within | changed))
+
+
+def _told_around(told: Ints) -> tuple[Ints, Ints]:
+    """For each position the row told last, itself included, and the one told next; -1 where there is none."""
+    k = len(told)
+    index = np.arange(k)
+    before = np.maximum.accumulate(np.where(told != UNTOLD, index, -1)) if k else index
+    after = np.minimum.accumulate(np.where(told != UNTOLD, index, k)[::-1])[::-1] if k else index
+    padded = np.append(told, -1)
+    return np.maximum(padded[before], -1), np.maximum(padded[after], -1)
+
+
 def _by_line(
-    path: ProgramPath, told: ToldRows, tip: Floats, axis: Floats, at: Ints, anew: Flags, tolerance: float
+    path: ProgramPath, around: tuple[Ints, Ints], tip: Floats, axis: Floats, at: Ints, anew: Flags, tolerance: float
 ) -> Nearest:
-    """The nearest places to positions ``at`` in the blocks that the machine told."""
-    rows = told.row[at]
-    before, after = np.r_[rows[:1], rows[:-1]], np.r_[rows[1:], rows[-1:]]
+    """The nearest places to some positions, by the rows that were told before and after them."""
+    rows, following = around[0][at], around[1][at]
+    before, after = np.r_[rows[:1], rows[:-1]], np.r_[following[1:], following[-1:]]
     before = np.where(anew | (before > rows), rows, before)
-    after = np.where(np.r_[anew[1:], True] | (after < rows), rows, after)
+    after = np.where(np.r_[anew[1:], True] | (after < following), following, after)
+    after = np.maximum(after, rows)
     last = len(path.first) - 2
     low = path.first[np.maximum(before - _BESIDE, 0)]
     high = path.first[np.minimum(after + _BESIDE, last) + 1]
@@ -180,11 +226,10 @@ class _Walk:
     def __init__(self, path: ProgramPath, tolerance: float) -> None:
         self._path, self._tolerance = path, tolerance
         self._near_enough = max(tolerance, 2.0 * SAG)
-        steps = np.linalg.norm(path.tip[1] - path.tip[0], axis=1)
-        steps = np.nan_to_num(steps) + np.degrees(np.linalg.norm(np.nan_to_num(path.axis[1] - path.axis[0]), axis=1))
-        self._length = np.concatenate(([0.0], np.cumsum(steps)))
+        self._length = np.concatenate(([0.0], np.cumsum(path.lengths())))
         self._unknown = np.concatenate(([0], np.cumsum(~path.known)))
         self._now = -1
+        self._step = 0.0  # how far the machine went last on the path
 
     def follow(self, tip: Floats, axis: Floats, anew: Flags) -> Nearest:
         """The nearest places to positions, (k,); none before the first and after the last of the program."""
@@ -195,7 +240,7 @@ class _Walk:
             piece[k] = self._next(tip[k : k + 1], axis[k : k + 1], float(moved[k]), anew=bool(anew[k]))
         last = np.flatnonzero(piece >= 0)
         low = np.maximum(piece, 0)
-        found = nearest_places(self._path, tip, axis, low, np.where(piece >= 0, low + 1, low))
+        found = self._nearest_around(tip, axis, piece)
         beside = self._unknown[np.minimum(low + 2, len(self._path))] > self._unknown[np.maximum(low - 1, 0)]
         found.piece[beside & (found.measure > self._tolerance)] = -1
         self._forget_the_end(found, last)
@@ -205,27 +250,51 @@ class _Walk:
         """The piece of the next position; -1: it is none of the path."""
         if self._now < 0 or anew:
             begun = self._near(tip, axis, max(self._now, 0), len(self._path))
+            if begun < 0 <= self._now:  # it may run once more
+                begun = self._near(tip, axis, 0, self._now)
             if begun >= 0 or self._now < 0:
                 self._now = begun
                 return begun
-        ways = [_FURTHER[1] + _FURTHER[0] * moved * wider for wider in _WIDER]
-        narrow, unknown = -1, False
+        # A position that is off says nothing about how far the machine has gone.
+        gone = min(moved, _FURTHER[1] + _FURTHER[0] * self._step)
+        ways = [_FURTHER[1] + _FURTHER[0] * gone * wider for wider in _WIDER]
+        narrow = -1
         for way in ways:
-            high = int(np.searchsorted(self._length, self._length[self._now] + way, "right"))
-            high = min(max(high, self._now + 2), self._now + _MOST_PIECES, len(self._path))
+            high = self._reach(way)
             found, away = self._look(tip, axis, self._now, high)
             if away <= self._near_enough:
-                self._now = found
+                self._now, self._step = found, moved
                 return found
             if narrow < 0:
-                narrow, unknown = found, bool(self._unknown[high] > self._unknown[self._now])
+                narrow = found
         if (begun := self._near(tip, axis, 0, min(len(self._path), _BEGINNING))) >= 0:
             self._now = begun  # the program runs once more
             return begun
-        if unknown:
-            return -1
+        near = self._reach(_FURTHER[1] + _FURTHER[0] * self._step)
+        if self._unknown[near] > self._unknown[self._now]:
+            return -1  # it may be where nobody knows the tool
         self._now = max(narrow, self._now)
         return narrow
+
+    def _reach(self, way: float) -> int:
+        """The first piece that is further along the path than some way."""
+        high = int(np.searchsorted(self._length, self._length[self._now] + way, "right"))
+        return min(max(high, self._now + 2), self._now + _MOST_PIECES, len(self._path))
+
+    def _nearest_around(self, tip: Floats, axis: Floats, piece: Ints) -> Nearest:
+        """The nearest place in these pieces and in those beside them: they are curved, and were taken for straight."""
+        best = None
+        for beside in (0, -1, 1, -2, 2):
+            low = np.clip(piece + beside, 0, max(len(self._path) - 1, 0))
+            found = nearest_places(self._path, tip, axis, low, np.where(piece >= 0, low + 1, low))
+            if best is None:
+                best = found
+                continue
+            better = found.measure < best.measure
+            best.piece[better], best.off[better] = found.piece[better], found.off[better]
+            best.axis_off[better] = found.axis_off[better]
+        assert best is not None
+        return best
 
     def _near(self, tip: Floats, axis: Floats, low: int, high: int) -> int:
         """The nearest of some pieces if it is within the tolerance, else -1."""
@@ -254,6 +323,13 @@ def _by_row(n: int, row: Ints, off: Floats, axis_off: Floats) -> tuple[Ints, Flo
     np.maximum.at(worst[:, 1], row[compared], axis_off[compared])
     worst[worst < 0.0] = np.nan
     return np.bincount(row[compared], minlength=n).astype(np.int64), worst
+
+
+def _row_lengths(n: int, path: ProgramPath) -> Floats:
+    """The way of the tip in n rows, (n,)."""
+    lengths = np.zeros(n)
+    np.add.at(lengths, path.row, path.lengths())
+    return lengths
 
 
 def _moves(n: int, path: ProgramPath) -> Flags:

@@ -70,6 +70,12 @@ class ProgramPath:
     def __len__(self) -> int:
         return len(self.row)
 
+    def lengths(self) -> Floats:
+        """Way of the tip in each piece, (m,), a degree of the tool axis counting as a millimetre; 0 where not known."""
+        steps = np.nan_to_num(np.linalg.norm(self.tip[1] - self.tip[0], axis=1))
+        turned = np.linalg.norm(np.nan_to_num(self.axis[1] - self.axis[0]), axis=1)
+        return np.asarray(steps + np.degrees(turned))
+
 
 def _counts(machine: Machine, before: Floats, after: Floats) -> Ints:
     """How many parts pieces are cut into, so that the tip goes straight in each."""

@@ -42,16 +42,16 @@ def cycle_lines(
     dwell = formats["dwell"].text(dwell_parts(formats) * cycle_dwell_seconds(cycle, spindle)) if cycle.dwell else ""
     if cycle.method not in _CYCLES:
         what = f"CYCLE/{cycle.method}: whether G84 pecks, and how, is a parameter of the control"
-        raise HoleCycleError(what, "leave DEEP or BRKCHP out, or output the holes as motion")
+        raise HoleCycleError(what, "leave DEEP or BRKCHP out, or output the holes as motion", code="CTL360")
     plain, with_dwell = _CYCLES[cycle.method]
     code = with_dwell if dwell else plain
     if code is None:
         what = f"{cycle.method} with a dwell at the bottom, for which {plain} has no word"
-        raise UnsupportedCycleError(what, "leave DWELL out")
+        raise UnsupportedCycleError(what, "leave DWELL out", code="CTL350")
     missing = [word.strip() for word in settings.get("missing_cycles", "").split(",")]
     if code in missing or (dwell and f"{code} P" in missing):
         what = f"{cycle.method}{' with a dwell' if code not in missing else ''}, for which this control has no cycle"
-        raise UnsupportedCycleError(what, "output the holes as motion")
+        raise UnsupportedCycleError(what, "output the holes as motion", code="CTL350")
     before: list[str] = []
     if cycle.method in (HoleMethod.TAP, HoleMethod.FLOATING_TAP):
         _, running = thread(cycle, spindle)
@@ -85,7 +85,9 @@ def dwell_parts(formats: Formats) -> float:
 def _peck_depth(cycle: Cycle) -> float:
     """Q: the depth of every peck, the first measured from where the feed begins."""
     if any(cycle.pecks[1:]):
-        raise UnsupportedCycleError("decreasing peck depths, and Q of G83 is constant", "write STEP with one number")
+        raise UnsupportedCycleError(
+            "decreasing peck depths, and Q of G83 is constant", "write STEP with one number", code="CTL350"
+        )
     return cycle.pecks[0]
 
 
@@ -95,8 +97,10 @@ def _bore_shift(cycle: Cycle, settings: Mapping[str, str]) -> float:
         what = (
             f"BORE,NODRAG,{cycle.spindle_angle:g}: the angle at which the spindle stops is a parameter of the control"
         )
-        raise HoleCycleError(what, "write BORE,NODRAG without an angle")
+        raise HoleCycleError(what, "write BORE,NODRAG without an angle", code="CTL360")
     if not settings["bore_lift"]:
         what = "BORE,NODRAG does not say how far the tool lifts off"
-        raise HoleCycleError(what, "setting bore_lift=MM says it; to which side is a parameter of the control")
+        raise HoleCycleError(
+            what, "setting bore_lift=MM says it; to which side is a parameter of the control", code="CTL360"
+        )
     return float(settings["bore_lift"])

@@ -101,7 +101,9 @@ def escape_comment(text: str) -> str:
 def tool_call(number: int, name: str, by_name: bool) -> str:
     """Return what follows ``T``: a number, for tools have no names."""
     if by_name:
-        raise UnsupportedFeatureError(f"tools are called by number, and not as {name}", "write setting tool=NUMBER")
+        raise UnsupportedFeatureError(
+            f"tools are called by number, and not as {name}", "write setting tool=NUMBER", code="CTL130"
+        )
     return str(number)
 
 
@@ -157,7 +159,7 @@ def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[
     problems = iso.feed_per_rev_before_spindle(operation, spindle_known)
     if np.ptp(operation.moves.axis, axis=0).max(initial=0.0) > 0.0:
         what = "cutter radius compensation while the tool axis changes"
-        why = UnsupportedFeatureError(what, "output the path without CUTCOM")
+        why = UnsupportedFeatureError(what, "output the path without CUTCOM", code="CTL220")
         events = [event for event in operation.events if isinstance(event, CutterComp) and event.side != "OFF"]
         problems += [(event.line, why) for event in events]
     return problems

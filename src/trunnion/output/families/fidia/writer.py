@@ -80,7 +80,9 @@ def escape_comment(text: str) -> str:
 def tool_call(number: int, name: str, by_name: bool) -> str:
     """Return what follows ``T.``: a number, for tools have no names."""
     if by_name:
-        raise UnsupportedFeatureError(f"tools are called by number, and not as {name}", "write setting tool=NUMBER")
+        raise UnsupportedFeatureError(
+            f"tools are called by number, and not as {name}", "write setting tool=NUMBER", code="CTL130"
+        )
     return str(number)
 
 
@@ -123,7 +125,9 @@ def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[
     if not len(per_rev):
         return []
     what = "a feed per revolution, which this control does not have"
-    return [(int(moves.line[per_rev[0]]), UnsupportedFeatureError(what, "output it in mm/min (FEDRAT/MMPM)"))]
+    return [
+        (int(moves.line[per_rev[0]]), UnsupportedFeatureError(what, "output it in mm/min (FEDRAT/MMPM)", code="CTL330"))
+    ]
 
 
 def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
@@ -141,7 +145,7 @@ def cycle_call(
     assert cycle.retract_height is not None
     if cycle.method not in _CYCLES:
         what = f"no documented cycle for {cycle.method}"
-        raise UnsupportedCycleError(what, "output the holes as motion")
+        raise UnsupportedCycleError(what, "output the holes as motion", code="CTL350")
     _check_thread(cycle, spindle)
     seconds = cycle_dwell_seconds(cycle, spindle)
     number = formats["coordinate"].text
@@ -162,7 +166,9 @@ def cycle_cancel() -> list[str]:
 def _peck_depth(cycle: Cycle) -> float:
     """D: the depth of every peck, the first measured from where the feed begins."""
     if any(cycle.pecks[1:]):
-        raise UnsupportedCycleError("decreasing peck depths, and D is constant", "write STEP with one number")
+        raise UnsupportedCycleError(
+            "decreasing peck depths, and D is constant", "write STEP with one number", code="CTL350"
+        )
     return cycle.pecks[0]
 
 
@@ -172,13 +178,15 @@ def _check_thread(cycle: Cycle, spindle: SpindleState | None) -> None:
         return
     running = running_spindle(spindle, "CYCLE/TAP")
     if running.sense is not Sense.CLW:
-        raise HoleCycleError("a thread with a left hand, for which no cycle is known", "output it as motion")
+        raise HoleCycleError(
+            "a thread with a left hand, for which no cycle is known", "output it as motion", code="CTL350"
+        )
     if cycle.feed is None or not cycle.feed > 0.0:
-        raise HoleCycleError("CYCLE/TAP without a feed", "write MMPR,pitch")
+        raise HoleCycleError("CYCLE/TAP without a feed", "write MMPR,pitch", code="PLN610")
     feed = cycle.feed * running.rpm if cycle.per_rev else cycle.feed
     if abs(feed - round(feed)) > _FEED_TOLERANCE:
         what = f"a thread at {feed:.3f} mm/min, and F is a whole number: the pitch would be wrong"
-        raise HoleCycleError(what, "choose a speed at which pitch times speed is whole")
+        raise HoleCycleError(what, "choose a speed at which pitch times speed is whole", code="CTL320")
 
 
 def row_words(rapid: Flags, per_rev: Flags, codes: Codes) -> dict[str, Ints]:

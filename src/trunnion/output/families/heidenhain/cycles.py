@@ -92,12 +92,14 @@ def cycle_definition(
     define = _DEFINITIONS.get(cycle.method)
     if define is None:
         what = f"CYCLE/{cycle.method}: no cycle of the control leaves the hole as it asks for"
-        raise HoleCycleError(what, "output the holes as motion")
+        raise HoleCycleError(what, "output the holes as motion", code="CTL350")
     number, name, values = define(cycle, top, spindle)
     if cycle.method is HoleMethod.BORE_WITH_LIFT:
         if not side:
             what = "BORE,NODRAG does not say to which side the tool moves off the wall"
-            raise HoleCycleError(what, "setting disengage=1 is -X, 2 -Y, 3 +X, 4 +Y, with the spindle at its angle")
+            raise HoleCycleError(
+                what, "setting disengage=1 is -X, 2 -Y, 3 +X, 4 +Y, with the spindle at its angle", code="CTL360"
+            )
         values = {**values, 214: float(side), 336: cycle.spindle_angle}
     lines = [f"CYCL DEF {number} {name}", *(_parameter_line(q, value, formats) for q, value in values.items())]
     return [f"{line} ~" for line in lines[:-1]] + lines[-1:]
@@ -109,7 +111,7 @@ def _parameter_line(q: int, value: float, formats: Formats) -> str:
         return f"  Q{q}=MAX ;{name}"
     if value and not number_format.least <= value <= number_format.greatest:
         what = f"CYCLE with Q{q}={value:g} ({name.lower()})"
-        raise HoleCycleError(what, f"stay within {number_format.least:g} to {number_format.greatest:g}")
+        raise HoleCycleError(what, f"stay within {number_format.least:g} to {number_format.greatest:g}", code="CTL110")
     text = number_format.text(value)
     return f"  Q{q}={text if text[0] in '+-' else '+' + text} ;{name}"
 
@@ -142,7 +144,7 @@ def _peck(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefini
     peck, decrement, least = cycle.pecks
     full = cycle.method is HoleMethod.DEEP_DRILLING
     if decrement and not least > 0.0:
-        raise HoleCycleError("STEP without a shortest peck", "write STEP,first,less,shortest")
+        raise HoleCycleError("STEP without a shortest peck", "write STEP,first,less,shortest", code="PLN610")
     if decrement and not full:
         return _peck_with_decreasing_depths(cycle, top, spindle)
     low, high = _heights(cycle, top)
@@ -171,7 +173,9 @@ def _peck_with_decreasing_depths(cycle: Cycle, top: float, spindle: SpindleState
 def _tap(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
     """Without a floating holder: the pitch has the sign of the thread's hand."""
     if cycle.dwell:
-        raise HoleCycleError("DWELL at the bottom of a thread: the control has none there", "leave DWELL out")
+        raise HoleCycleError(
+            "DWELL at the bottom of a thread: the control has none there", "leave DWELL out", code="CTL350"
+        )
     running = running_spindle(spindle, "CYCLE/TAP")
     low, high = _heights(cycle, top)
     pitch = _feed(cycle, running) / running.rpm
@@ -188,7 +192,9 @@ def _tap_in_pecks(cycle: Cycle, top: float, spindle: SpindleState | None) -> Cyc
     """A rigid tap in pecks, with full retracts or chip breaks between them."""
     if any(cycle.pecks[1:]):
         raise HoleCycleError(
-            "decreasing peck depths in a thread: the control has constant ones", "write STEP with one number"
+            "decreasing peck depths in a thread: the control has constant ones",
+            "write STEP with one number",
+            code="CTL350",
         )
     _, _, values = _tap(cycle, top, spindle)
     back = 0.0 if cycle.method is HoleMethod.DEEP_TAP else _CHIP_BREAK_PITCHES

@@ -116,7 +116,9 @@ def escape_comment(text: str) -> str:
 def tool_call(number: int, name: str, by_name: bool) -> str:
     """Return what follows ``TOOL CALL``: a number, or a name in quotation marks."""
     if by_name and '"' in name:
-        raise UnsupportedFeatureError(f"the tool name {name} has a quotation mark in it", "write setting tool=NUMBER")
+        raise UnsupportedFeatureError(
+            f"the tool name {name} has a quotation mark in it", "write setting tool=NUMBER", code="CTL130"
+        )
     return f'"{name}"' if by_name else str(number)
 
 
@@ -159,7 +161,7 @@ def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[
     """Return radius compensation in another plane than XY."""
     cure = "write XYPLAN, or no CUTCOM"
     return [
-        (event.line, UnsupportedFeatureError(f"radius compensation in the plane {event.plane}", cure))
+        (event.line, UnsupportedFeatureError(f"radius compensation in the plane {event.plane}", cure, code="CTL220"))
         for event in operation.events
         if isinstance(event, CutterComp) and event.plane not in ("", "XYPLAN")
     ]

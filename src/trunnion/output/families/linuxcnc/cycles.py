@@ -47,7 +47,7 @@ def cycle_lines(cycle: Cycle, top: float, spindle: SpindleState | None, formats:
     make = _CYCLES.get(cycle.method)
     if make is None:
         what = f"CYCLE/{cycle.method}: no cycle of LinuxCNC leaves the hole as it asks for"
-        raise HoleCycleError(what, "output the holes as motion")
+        raise HoleCycleError(what, "output the holes as motion", code="CTL350")
     code, words = make(cycle, spindle, formats)
     plane = "G99" if retract == rapid else "G98"
     return [" ".join((plane, f"G{code}", FIRST_HOLE, f"Z{bottom}", f"R{rapid}", *words))]
@@ -66,10 +66,12 @@ def _drill(cycle: Cycle, spindle: SpindleState | None, formats: Formats) -> GCod
 def _peck(cycle: Cycle, spindle: SpindleState | None, formats: Formats) -> GCodeAndWords:
     """Equal pecks of Q, the first measured from R."""
     if any(cycle.pecks[1:]):
-        raise UnsupportedCycleError("decreasing peck depths, and Q of G83 is constant", "write STEP with one number")
+        raise UnsupportedCycleError(
+            "decreasing peck depths, and Q of G83 is constant", "write STEP with one number", code="CTL350"
+        )
     if cycle.dwell:
         raise UnsupportedCycleError(
-            "DWELL at the bottom of a pecked hole: the control has none there", "leave DWELL out"
+            "DWELL at the bottom of a pecked hole: the control has none there", "leave DWELL out", code="CTL350"
         )
     return (83 if cycle.method is HoleMethod.DEEP_DRILLING else 73), [f"Q{formats['coordinate'].text(cycle.pecks[0])}"]
 
@@ -78,7 +80,9 @@ def _rigid_pitch(cycle: Cycle, spindle: SpindleState | None) -> float:
     """K of G33.1, mm: the thread has the hand of the spindle."""
     pitch, _ = thread(cycle, spindle)
     if cycle.dwell:
-        raise HoleCycleError("DWELL at the bottom of a thread: the control has none there", "leave DWELL out")
+        raise HoleCycleError(
+            "DWELL at the bottom of a thread: the control has none there", "leave DWELL out", code="CTL350"
+        )
     return pitch
 
 

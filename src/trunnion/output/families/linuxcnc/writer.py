@@ -56,7 +56,9 @@ def escape_comment(text: str) -> str:
 def tool_call(number: int, name: str, by_name: bool) -> str:
     """Return what follows ``T``: a number, for tools have no names."""
     if by_name:
-        raise UnsupportedFeatureError(f"tools are called by number, and not as {name}", "write setting tool=NUMBER")
+        raise UnsupportedFeatureError(
+            f"tools are called by number, and not as {name}", "write setting tool=NUMBER", code="CTL130"
+        )
     return str(number)
 
 
@@ -97,7 +99,9 @@ def first_block_words(motion: Motion, tool: str, register: int, settings: Mappin
 
 def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsupportedFeatureError]]:
     """Return G95 without a spindle speed, and G41 or G42 in the plane YZ."""
-    why = UnsupportedFeatureError("cutter radius compensation in the plane YZ", "output the path without CUTCOM")
+    why = UnsupportedFeatureError(
+        "cutter radius compensation in the plane YZ", "output the path without CUTCOM", code="CTL220"
+    )
     compensated = [
         (event.line, why)
         for event in operation.events

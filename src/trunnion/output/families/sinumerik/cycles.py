@@ -136,7 +136,7 @@ def _tap_in_pecks(of: _Input) -> CycleArguments:
     peck, decrement, _ = of.cycle.pecks
     if decrement:
         what = "decreasing peck depths in a thread: the control has constant ones"
-        raise HoleCycleError(what, "write STEP with one number")
+        raise HoleCycleError(what, "write STEP with one number", code="CTL350")
     full = of.cycle.method is HoleMethod.DEEP_TAP
     name, arguments = _tap(of)
     pecks = ["2" if full else "1", of.number(min(peck, of.cycle.depth)), "0" if full else of.number(_CHIP_BREAK)]
@@ -154,7 +154,7 @@ def _floating_tap(of: _Input) -> CycleArguments:
 def _ream(of: _Input) -> CycleArguments:
     """In and out at the feed of the cycle."""
     if of.cycle.feed is None:
-        raise HoleCycleError("CYCLE/BORE without a feed", "write MMPM,feed")
+        raise HoleCycleError("CYCLE/BORE without a feed", "write MMPM,feed", code="PLN610")
     return "CYCLE85", ["", of.dwell, of.feed(of.cycle.feed), of.feed(of.cycle.feed)]
 
 
@@ -163,7 +163,7 @@ def _bore(of: _Input) -> CycleArguments:
     lifts = of.cycle.method is HoleMethod.BORE_WITH_LIFT
     if lifts and not of.lift:
         what = "BORE,NODRAG does not say how far and to which side the tool lifts off"
-        raise HoleCycleError(what, "setting bore_lift=MM says it, along X with the spindle at its angle")
+        raise HoleCycleError(what, "setting bore_lift=MM says it, along X with the spindle at its angle", code="CTL360")
     lift = of.number(of.lift if lifts and of.lift else 0.0)
     return "CYCLE86", ["", of.dwell, _sense_code(of.spindle), lift, "0", "0", of.angle(of.cycle.spindle_angle)]
 

@@ -99,7 +99,9 @@ def escape_comment(text: str) -> str:
 def tool_call(number: int, name: str, by_name: bool) -> str:
     """Return what follows ``T=``: a number, or a name in quotation marks."""
     if by_name and '"' in name:
-        raise UnsupportedFeatureError(f"the tool name {name} has a quotation mark in it", "write setting tool=NUMBER")
+        raise UnsupportedFeatureError(
+            f"the tool name {name} has a quotation mark in it", "write setting tool=NUMBER", code="CTL130"
+        )
     return f'"{name}"' if by_name else str(number)
 
 
@@ -199,7 +201,7 @@ def cycle_call(
     lift = float(settings["bore_lift"]) if settings.get("bore_lift") else None
     if settings[HOLES_SETTING] != HOLES_IN_PLANES and cycle.method is HoleMethod.BORE_WITH_LIFT:
         what = "BORE,NODRAG while the tool axis changes: X of the frame is not known"
-        raise HoleCycleError(what, "setting holes=planes")
+        raise HoleCycleError(what, "setting holes=planes", code="CTL370")
     call = cycle_statement(cycle, top, spindle, lift, formats)
     if settings[HOLES_SETTING] == "torot":
         return [EACH_HOLE, "TOROT", call, "TOROTOF", "TRANS"]

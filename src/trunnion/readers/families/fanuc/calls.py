@@ -57,7 +57,7 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
                 continue
             block.take(letter)
             if letter not in words.ARGUMENTS:
-                self._note(f"{letter} is not an argument of a macro", Severity.ERROR)
+                self._note(f"{letter} is not an argument of a macro", Severity.ERROR, "NC215")
                 continue
             arguments[words.ARGUMENTS[letter]] = self._argument(letter, word)
         if block.m:
@@ -70,7 +70,7 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
 
     def _argument(self, letter: str, word: Number) -> float:
         if word.whole and word.value and not self.control.settings.calculator and letter not in "DEHMST":
-            self._note(f"argument {letter} without a point: taken as it is written", Severity.WARNING)
+            self._note(f"argument {letter} without a point: taken as it is written", Severity.WARNING, "NC217")
         return word.value
 
     def _call_modal_macro(self, active: ActiveProgram) -> None:
@@ -103,7 +103,7 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
             self._variables.enter(arguments)
             if self._variables.depth > _MAX_MACRO_DEPTH:
                 what = f"macros inside each other deeper than {_MAX_MACRO_DEPTH} levels: controls may have no more"
-                self._note(what, Severity.WARNING)
+                self._note(what, Severity.WARNING, "NC141")
         self._stack.append(entered)
 
     def _find_program(self, number: int, repeats: int) -> tuple[ActiveProgram, int]:
@@ -115,7 +115,7 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
         names = (f"O{number:04d}", f"O{number:05d}", f"O{number}", f"{number:04d}", f"{number}")
         path = next((path for name in names if (path := self._subprograms.find(name))), None)
         if path is None:
-            raise BlockError(f"missing subprogram O{number:04d}; name its file")
+            raise BlockError(f"missing subprogram O{number:04d}; name its file", code="NC132")
         source, file = self._open_subprogram(path)
         assert isinstance(source, FanucText)
         return ActiveProgram(source, file, repeats), source.program(number) or 1
@@ -128,7 +128,9 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
                 self._flow.jump(active, line, _program_number(target))
                 return
             # No event "end": the control goes on at the first block.
-            self._note("M99 begins the program anew without end: only its first run is followed", Severity.WARNING)
+            self._note(
+                "M99 begins the program anew without end: only its first run is followed", Severity.WARNING, "NC162"
+            )
             raise ProgramEnd
         depth = len(self._stack)
         self._leave_program()

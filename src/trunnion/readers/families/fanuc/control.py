@@ -111,7 +111,7 @@ class FanucControl(Rs274Control):
         """G68.2: tilt the plane by its origin (3,), mm, and Euler angles Z, X, Z, degrees, in the work offset."""
         self._report_length("G68.2")
         if self.tilted:
-            self.note("G68.2 while a plane is tilted: the old one is given up", Severity.WARNING)
+            self.note("G68.2 while a plane is tilted: the old one is given up", Severity.WARNING, "NC351")
         first, second, third = euler
         linear = rotation_matrix(2, first) @ rotation_matrix(0, second) @ rotation_matrix(2, third)
         self.rotation = AffineMap()
@@ -120,12 +120,16 @@ class FanucControl(Rs274Control):
         if np.allclose(linear[:, 2], (0.0, 0.0, 1.0), rtol=0.0, atol=1e-9):
             self.preconditions.meet("G53.1")
         else:
-            self.preconditions.require("G53.1", "moves in the plane of G68.2 before G53.1 has turned the tool to it")
+            self.preconditions.require(
+                "G53.1", "moves in the plane of G68.2 before G53.1 has turned the tool to it", "NC351"
+            )
 
     def _report_length(self, word: str) -> None:
         """Report a word that switches a plane inside a tool length: the length must be switched inside the plane."""
         if self.length_active and not self.plane_of_pose:
-            self.note(f"{word} with a tool length in force: an alarm (PS0049); G49 comes before it", Severity.ERROR)
+            self.note(
+                f"{word} with a tool length in force: an alarm (PS0049); G49 comes before it", Severity.ERROR, "NC340"
+            )
 
     def cancel_rotation(self) -> None:
         """G69: cancel rotations and the tilted plane; one that follows the rotary position stays."""
@@ -143,7 +147,9 @@ class FanucControl(Rs274Control):
         """Take the plane normal to the tool as it stands, about the zero of the work offset."""
         if self.tcp:
             self.note(
-                "the plane of the rotary position while TCP is on: the control has one or the other", Severity.ERROR
+                "the plane of the rotary position while TCP is on: the control has one or the other",
+                Severity.ERROR,
+                "NC340",
             )
         self.resolve_rows()
         first, second = (float(self.current_joints[column]) for column in self.machine.rotary)
@@ -161,7 +167,7 @@ class FanucControl(Rs274Control):
     def align_with_plane(self) -> None:
         """G53.1: turn the rotary axes so that the tool is normal to the plane, with the least rotation."""
         if not self.tilted:
-            self.note("G53.1 without a plane of G68.2: it is not executed", Severity.ERROR)
+            self.note("G53.1 without a plane of G68.2: it is not executed", Severity.ERROR, "NC351")
             return
         self.preconditions.meet("G53.1")
         self.resolve_rows()
@@ -172,7 +178,9 @@ class FanucControl(Rs274Control):
             if tool_orientation.is_in_travel(self.machine, pair)
         ]
         if not inside:
-            self.note("G53.1: no rotary position inside the travel stands the tool on this plane", Severity.ERROR)
+            self.note(
+                "G53.1: no rotary position inside the travel stands the tool on this plane", Severity.ERROR, "NC350"
+            )
             return
         current, first = self.current_joints[list(self.machine.rotary)], self.deciding_axis
         rotations = [np.round(np.abs(np.array(pair) - current), 6).tolist() for pair in inside]

@@ -93,11 +93,11 @@ class CycleInterpreter(OffsetInterpreter):
         if self._not_stated and not of_machine:
             if self.motion_code != 0:
                 missing = ", ".join(sorted(self._not_stated))
-                self._note(f"cuts in a new plane before {missing} is stated at rapid there", Severity.ERROR)
+                self._note(f"cuts in a new plane before {missing} is stated at rapid there", Severity.ERROR, "NC351")
                 self._not_stated = frozenset()
             self._not_stated -= set(axes)
         if self._spindle_stands and self.motion_code not in (0, *cycles.THREADS):
-            self._note(f"cuts while the spindle stands still: {self._spindle_stands}", Severity.ERROR)
+            self._note(f"cuts while the spindle stands still: {self._spindle_stands}", Severity.ERROR, "NC370")
             self._spindle_stands = ""
 
     def _check_words(self, block: Block) -> None:
@@ -106,10 +106,14 @@ class CycleInterpreter(OffsetInterpreter):
         if settings.repeat_letter == "L":
             pecks = "K" if self.motion_code == cycles.FINE_BORE else "IJK"
             if found := [letter for letter in pecks if letter in block.words]:
-                raise BlockError(f"{found[0]} of a cycle, which describes pecks or a retract, is not simulated")
+                raise BlockError(
+                    f"{found[0]} of a cycle, which describes pecks or a retract, is not simulated", code="NC220"
+                )
         dwell = block.words.get("P")
         if settings.point_is_seconds and dwell is not None and dwell.whole and dwell.value:
-            raise BlockError("P of a cycle without a point: no source says whether it counts seconds or milliseconds")
+            raise BlockError(
+                "P of a cycle without a point: no source says whether it counts seconds or milliseconds", code="NC217"
+            )
 
     def _hole(self) -> cycles.Hole:
         control, words = self.control, self._modal_words

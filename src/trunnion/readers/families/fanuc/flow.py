@@ -72,7 +72,7 @@ class Flow:
         try:
             return bool(reader.bracket_value())
         except BlockError as error:
-            self._note(f"not understood: {error}: taken as not fulfilled", Severity.ERROR)
+            self._note(f"not understood: {error}: taken as not fulfilled", Severity.ERROR, "NC143")
             reader.at = _behind_bracket(reader.text, begin)
             return False
 
@@ -101,7 +101,7 @@ class Flow:
         """Continue at a block number."""
         target = active.source.number(number, line)
         if target is None:
-            raise BlockError(f"there is no block N{number} to go to")
+            raise BlockError(f"there is no block N{number} to go to", code="NC133")
         active.source.jump_without_choice(target)
 
     def _while(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> None:

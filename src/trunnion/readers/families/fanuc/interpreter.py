@@ -76,7 +76,7 @@ class FanucInterpreter(CycleInterpreter):
             return
         if self._needs_number:
             self._needs_number = False
-            self._note("the program begins without its number: write O and digits first", Severity.ERROR)
+            self._note("the program begins without its number: write O and digits first", Severity.ERROR, "NC160")
         reader = block_reader(text, ARITHMETIC, self._variables)
         if self._flow.accept(active, line, reader):
             self._nurbs.break_off()
@@ -102,7 +102,7 @@ class FanucInterpreter(CycleInterpreter):
         if not digits.isdigit() or len(digits) > 8:
             raise BlockError(f"no program number: {text[:40]!r}")
         if active.begun and active.line != line:
-            self._note("the program runs into the next one: it ends here", Severity.ERROR)
+            self._note("the program runs into the next one: it ends here", Severity.ERROR, "NC160")
             self._end_of_file(active)
         active.begun = True
 
@@ -129,7 +129,7 @@ class FanucInterpreter(CycleInterpreter):
             control.select_tool(f"{tool:g}")
         last = control.settings.m_codes_last
         if last and len(block.m) > 1:
-            self._note("two M words in a block: the control takes one", Severity.ERROR)
+            self._note("two M words in a block: the control takes one", Severity.ERROR, "NC212")
         for code in block.m:
             if not last and code not in words.AFTER_MOTION:
                 self._m_code(code)
@@ -185,10 +185,10 @@ class FanucInterpreter(CycleInterpreter):
     def _g_code(self, code: int, block: Block) -> None:
         control = self.control
         if code == words.CONTOUR and "Q" not in block.words:
-            self._note("G5.1 needs Q1 for on, or Q0 for off", Severity.ERROR)
+            self._note("G5.1 needs Q1 for on, or Q0 for off", Severity.ERROR, "NC215")
         taken = [letter for letter in words.WORDS_OF_CODE.get(code, "") if block.take(letter) is not None]
         if code == words.STROKE_LIMITS and taken:
-            self._note("G22 with positions limits where the axes may go: not simulated", Severity.ERROR)
+            self._note("G22 with positions limits where the axes may go: not simulated", Severity.ERROR, "NC220")
         if code in words.OFFSETS or code == words.MORE_OFFSETS:
             self._work_offset(code, block)
         elif code in (words.TCP, words.TCP_VECTOR):
@@ -209,7 +209,7 @@ class FanucInterpreter(CycleInterpreter):
             control.set_tcp(False)
             control.set_length(code != words.LENGTH_OFF)
             if code == 440:
-                self._note("G44: the tool length with the other sign is not simulated", Severity.ERROR)
+                self._note("G44: the tool length with the other sign is not simulated", Severity.ERROR, "NC220")
         elif code == words.ROTATION_OFF:
             control.cancel_rotation()
         elif code in (980, 990):
@@ -230,7 +230,7 @@ class FanucInterpreter(CycleInterpreter):
         control = self.control
         degree, rounding = block.take("P"), block.take("E")
         if degree is not None and (fault := fault_of_value("smoothness", "P", degree, words.SMOOTHNESSES)):
-            self._note(fault, Severity.ERROR)
+            self._note(fault, Severity.ERROR, "NC215")
         if rounding is not None:
             control.add_tolerance(rounding * control.length_unit)
 
@@ -240,14 +240,18 @@ class FanucInterpreter(CycleInterpreter):
         block.take("H")
         posture = block.take("P")
         if posture not in (None, 0.0, 1.0):
-            self._note(f"P{posture:g} of G43.4 and G43.5 is not known", Severity.ERROR)
+            self._note(f"P{posture:g} of G43.4 and G43.5 is not known", Severity.ERROR, "NC215")
         vectors = code == words.TCP_VECTOR
         if control.tcp and control.vectors != vectors:
-            self._note("G43.4 and G43.5 change without G49 between them: taken as if it were there", Severity.WARNING)
+            self._note(
+                "G43.4 and G43.5 change without G49 between them: taken as if it were there", Severity.WARNING, "NC341"
+            )
         if vectors and any(letter in block.words for letter in "IJK") and not self._only_head_turns:
-            self._note("I J K in the block of G43.5: an alarm where a table turns (PS5421)", Severity.ERROR)
+            self._note("I J K in the block of G43.5: an alarm where a table turns (PS5421)", Severity.ERROR, "NC340")
         if control.plane_of_pose:
-            self._note("TCP in the plane of the rotary position: the control has one or the other", Severity.ERROR)
+            self._note(
+                "TCP in the plane of the rotary position: the control has one or the other", Severity.ERROR, "NC340"
+            )
         control.set_tcp(True)
         control.set_length(True)
         control.set_orientation(Orientation.GREAT_CIRCLE if posture == 1.0 else Orientation.ANGLES)
@@ -273,7 +277,7 @@ class FanucInterpreter(CycleInterpreter):
         elif code == words.CALL_FILE:
             for letter in "PL":
                 block.take(letter)
-            self._note("M198: programs of other folders are not called", Severity.ERROR)
+            self._note("M198: programs of other folders are not called", Severity.ERROR, "NC132")
         else:
             self._m_code(code)
 
@@ -287,11 +291,11 @@ class FanucInterpreter(CycleInterpreter):
             self._check_cut(axes, of_machine=words.MACHINE in block.g)
         vector = self._vector(block) if control.vectors and self.motion_code in (0, 10) else None
         if control.vectors and axes.keys() & set(control.rotary_names) and words.MACHINE not in block.g:
-            self._note("rotary words under G43.5, which takes I J K: an alarm (PS5421)", Severity.ERROR)
+            self._note("rotary words under G43.5, which takes I J K: an alarm (PS5421)", Severity.ERROR, "NC340")
         if control.plane_of_pose and axes.keys() & set(control.rotary_names):
-            self._note("rotary axes turn in the plane of the rotary position: end it first", Severity.ERROR)
+            self._note("rotary axes turn in the plane of the rotary position: end it first", Severity.ERROR, "NC340")
         if self.motion_code == words.NURBS and words.MACHINE not in block.g and (axes or vector is not None):
-            raise BlockError("a position behind the last knot of G6.2, where only G6.2 goes on")
+            raise BlockError("a position behind the last knot of G6.2, where only G6.2 goes on", code="NC322")
         if self.motion_code in cycles.CYCLES:
             self._cycle(block, axes)
             if axes:
@@ -318,7 +322,7 @@ class FanucInterpreter(CycleInterpreter):
         values = [block.take(letter) for letter in "IJK"]
         incline = block.take("Q")
         if incline:
-            self._note("the inclination Q of G43.5 is not simulated", Severity.ERROR)
+            self._note("the inclination Q of G43.5 is not simulated", Severity.ERROR, "NC220")
         if all(value is None for value in values):
             return None
         vector = np.array([value or 0.0 for value in values])

@@ -48,21 +48,21 @@ class NurbsBlocks:
             return self._add(block)
         except (BlockError, SplineError) as error:
             self.is_open = False
-            raise BlockError(f"G6.2: {error}") from None
+            raise BlockError(f"G6.2: {error}", code="NC322") from None
 
     def break_off(self) -> None:
         """Report that the program ends, or leaves, before the curve is complete."""
         if self.is_open:
             self.is_open = False
-            self._control.note("G6.2 without its last knots: the curve is not executed", Severity.ERROR)
+            self._control.note("G6.2 without its last knots: the curve is not executed", Severity.ERROR, "NC322")
 
     def _add(self, block: Block) -> int:
         if NURBS in block.g:
             if self.is_open:
-                raise BlockError("the curve before lacks knots")
+                raise BlockError("the curve before lacks knots", code="NC322")
             self._begin(block)
         elif block.g or block.m:
-            raise BlockError("another command before the last knot")
+            raise BlockError("another command before the last knot", code="NC322")
         knot, weight = block.take("K"), block.take("R")
         pole = tuple(block.take(axis) for axis in "XYZ")
         if knot is None:

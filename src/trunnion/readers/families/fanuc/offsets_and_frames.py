@@ -33,7 +33,7 @@ class OffsetInterpreter(CallInterpreter):
             raise BlockError(f"{word} needs P")
         if more is not None:
             if more != int(more) or not extended_offset(int(more), highest):
-                raise BlockError(f"P of {word} is not from 1 to {highest}")
+                raise BlockError(f"P of {word} is not from 1 to {highest}", code="NC215")
             system = 6 + int(more)
         control.system = system
         offset = 53 + system if system <= 6 else extended_offset(system - 6)
@@ -44,7 +44,7 @@ class OffsetInterpreter(CallInterpreter):
         """Execute a G code of ``words.TAKING_AXIS_WORDS``, except for macros."""
         control = self.control
         if control.tilted and code in (words.LOCAL, words.PRESET):
-            self._note("shifts in a tilted plane are not simulated", Severity.ERROR)
+            self._note("shifts in a tilted plane are not simulated", Severity.ERROR, "NC220")
         match code:
             case words.DWELL:
                 self._dwell(block)
@@ -71,14 +71,14 @@ class OffsetInterpreter(CallInterpreter):
             block.take(letter)
         milliseconds = block.take("P")
         if (milliseconds or 0.0) < 0.0 or (number is not None and number.value < 0.0):
-            raise BlockError("a dwell below zero")
+            raise BlockError("a dwell below zero", code="NC215")
         if number is not None:
             unit = self.control.settings.seconds if number.whole else 1.0
             self.control.add_event("dwell", number.value * unit)
         elif milliseconds is not None:
             self.control.add_event("dwell", milliseconds / 1000.0)
         else:
-            self._note("G4 without a time", Severity.WARNING)
+            self._note("G4 without a time", Severity.WARNING, "NC218")
 
     # Offsets and shifts
 
@@ -86,11 +86,11 @@ class OffsetInterpreter(CallInterpreter):
         """Return X, Y and Z of a block in mm; shifts of rotary axes are reported unless they are 0."""
         for name in self.control.rotary_names:
             if block.take(name):
-                self._note(f"a shift of {name} is not simulated", Severity.ERROR)
+                self._note(f"a shift of {name} is not simulated", Severity.ERROR, "NC220")
         values = [block.take(name) for name in "XYZ"]
         scaled = [None if value is None else value * self.control.length_unit for value in values]
         if any(value is not None and abs(value) > MAX_POSITION for value in scaled):
-            raise BlockError("a shift is larger than any machine")
+            raise BlockError("a shift is larger than any machine", code="NC215")
         return scaled
 
     def _shifted(self, block: Block) -> list[float | None]:
@@ -109,7 +109,7 @@ class OffsetInterpreter(CallInterpreter):
                 control.preset[axis] += float(control.programmed_position[axis]) - value
         rotation = control.rotation
         if control.tilted or not rotation.keeps_lengths or not np.allclose(rotation.linear, np.eye(3)):
-            self._note("G92 in a turned frame is not simulated", Severity.ERROR)
+            self._note("G92 in a turned frame is not simulated", Severity.ERROR, "NC220")
         control.update_frame()
 
     def _set_data(self, block: Block) -> None:
@@ -121,11 +121,11 @@ class OffsetInterpreter(CallInterpreter):
         if fault:
             for letter in "RXYZQDH":
                 block.take(letter)
-            raise BlockError(fault)
+            raise BlockError(fault, code="NC215")
         if kind is not None and kind in words.TOOL_DATA:
             for letter in "RXYZQDH":
                 block.take(letter)
-            self._note(f"G10 L{kind:g} {words.TOOL_DATA[int(kind)]}: not simulated", Severity.ERROR)
+            self._note(f"G10 L{kind:g} {words.TOOL_DATA[int(kind)]}: not simulated", Severity.ERROR, "NC220")
             return
         if (
             kind not in (2.0, 20.0)
@@ -135,7 +135,7 @@ class OffsetInterpreter(CallInterpreter):
         ):
             for letter in "RXYZ":
                 block.take(letter)
-            raise BlockError("G10 with this L and P is not simulated")
+            raise BlockError("G10 with this L and P is not simulated", code="NC220")
         values = self._point(block)
         system = int(number) if kind == 2.0 else 6 + int(number)
         old = control.offset_of(system)
@@ -155,7 +155,7 @@ class OffsetInterpreter(CallInterpreter):
             raise BlockError("G28 and G30 need the axes that go home")
         if code == words.OTHER_HOME:
             which = block.take("P")
-            self._note(f"G30 P{which or 2:g}: taken as the reference position of G28", Severity.WARNING)
+            self._note(f"G30 P{which or 2:g}: taken as the reference position of G28", Severity.WARNING, "NC224")
         self._counter.count_blocks(1)
         motion, control.motion = control.motion, RAPID
         before = control.programmed_position.copy()
@@ -200,9 +200,9 @@ class OffsetInterpreter(CallInterpreter):
         angles = [block.take(letter) or 0.0 for letter in "IJK"]
         order = block.take("Q")
         if kind or (order is not None and order != 313):
-            raise BlockError("G68.2 with P or Q is not simulated: only Euler angles are")
+            raise BlockError("G68.2 with P or Q is not simulated: only Euler angles are", code="NC220")
         if any(not abs(angle) < MAX_POSITION for angle in angles):
-            raise BlockError("an angle is not one that a plane has")
+            raise BlockError("an angle is not one that a plane has", code="NC215")
         self.control.tilt(origin, (angles[0], angles[1], angles[2]))
 
     def _align_with_plane(self, block: Block) -> None:

@@ -82,7 +82,7 @@ class FanucText(SourceText):
         try:
             return self._jump_targets.loops[line]
         except KeyError:
-            raise self.problem(line, "has a DO or END that begins or ends nothing") from None
+            raise self.problem(line, "has a DO or END that begins or ends nothing", code="NC142") from None
 
     def _match_loops(self) -> dict[int, int]:
         partners: dict[int, int] = {}
@@ -93,12 +93,12 @@ class FanucText(SourceText):
             if match.group(1).upper() == b"DO":
                 open_.append((number, line))
                 if len(open_) > MAX_NESTING:
-                    raise self.problem(line, f"nests loops deeper than {MAX_NESTING} levels")
+                    raise self.problem(line, f"nests loops deeper than {MAX_NESTING} levels", code="NC141")
             elif not open_ or open_[-1][0] != number:
-                raise self.problem(line, f"has END{number} without its DO{number}")
+                raise self.problem(line, f"has END{number} without its DO{number}", code="NC142")
             else:
                 begin = open_.pop()[1]
                 partners[begin], partners[line] = line, begin
         if open_:
-            raise self.problem(open_[-1][1], f"begins DO{open_[-1][0]}, which never ends")
+            raise self.problem(open_[-1][1], f"begins DO{open_[-1][0]}, which never ends", code="NC142")
         return partners

@@ -82,7 +82,7 @@ class Variables:
     def value(self, key: int | str) -> Value:
         """Return the value of a variable, None for an empty one."""
         if isinstance(key, str):
-            raise BlockError(f"#<{key}>: variables have numbers here")
+            raise BlockError(f"#<{key}>: variables have numbers here", code="NC223")
         if key == 0:
             return None
         if key <= LOCAL_COUNT:
@@ -91,7 +91,7 @@ class Variables:
             return self._common.get(key)
         value = self._system_value(key)
         if value is None:
-            raise BlockError(f"#{key} is a value that only the control knows")
+            raise BlockError(f"#{key} is a value that only the control knows", code="NC222")
         return value
 
     def is_set(self, key: int | str) -> bool:
@@ -101,7 +101,7 @@ class Variables:
     def set(self, key: int | str, value: Value) -> None:
         """Set a variable, or make it empty."""
         if isinstance(key, str) or not (0 < key <= LOCAL_COUNT or COMMON_FROM <= key < SYSTEM_FROM):
-            raise BlockError(f"#{key} is not a variable that programs set")
+            raise BlockError(f"#{key} is not a variable that programs set", code="NC223")
         table = self._local[-1] if key <= LOCAL_COUNT else self._common
         if value is None:
             table.pop(key, None)

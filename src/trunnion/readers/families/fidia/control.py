@@ -59,7 +59,7 @@ class FidiaControl(Rs274Control):
         """Change to the selected tool, whose length counts from the next G55 on."""
         super().change_tool()
         if self.tool_in_spindle.strip("0"):
-            self.preconditions.require("G55", "moves with another tool before G55 has taken up its length")
+            self.preconditions.require("G55", "moves with another tool before G55 has taken up its length", "NC361")
 
     def take_plane(self) -> None:
         """G154: the plane normal to the tool as it stands, about the zero of the work offset."""
@@ -82,7 +82,7 @@ class FidiaControl(Rs274Control):
         if not math.isfinite(top):
             return
         if self.tcp:
-            self.note("M242 while TCP is on: the slide Z goes up", Severity.WARNING)
+            self.note("M242 while TCP is on: the slide Z goes up", Severity.WARNING, "NC341")
         self.resolve_rows()
         slides = self.current_joints[self._slides].copy()
         slides[2] = top

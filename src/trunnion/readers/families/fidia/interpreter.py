@@ -26,7 +26,7 @@ class _NoParameters:
     """This language has no parameters."""
 
     def value(self, key: int | str) -> Value:
-        raise BlockError("parameters are not simulated")
+        raise BlockError("parameters are not simulated", code="NC220")
 
     def is_set(self, key: int | str) -> bool:
         return False
@@ -70,7 +70,7 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
         block = read_block(reader, self._report_repeated_word)
         self._translate(block, self.control.settings.words)
         if block.assignments:
-            raise BlockError("parameters are not simulated")
+            raise BlockError("parameters are not simulated", code="NC220")
         self._execute_words(block, None if tool is None else tool.group(1))
 
     def _execute_words(self, block: Block, tool: str | None) -> None:
@@ -94,7 +94,7 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
             if code not in words.AFTER_MOTION:
                 self._m_code(code)
         if tool is not None and words.TOOL not in block.m and 6 not in block.m:
-            self._note(f"T{tool} without M306 or M6: the tool is only chosen", Severity.WARNING)
+            self._note(f"T{tool} without M306 or M6: the tool is only chosen", Severity.WARNING, "NC362")
         if not any(code in words.NO_MOTION for code in block.g):
             self._execute_motion(block, selected)
         self._report_unused_words(block)
@@ -121,7 +121,7 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
         if code in words.UNITS:
             control.set_units(words.UNITS[code], True)
             if words.UNITS[code]:
-                self._note("G70: what F counts in inches is not known", Severity.ERROR)
+                self._note("G70: what F counts in inches is not known", Severity.ERROR, "NC241")
         elif code == words.OFFSET:
             number = block.take("O")
             if number is None or number != int(number) or not 1 <= number <= 99:
@@ -141,9 +141,9 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
     def _dwell(self, block: Block) -> None:
         seconds = block.take("H")
         if seconds is None:
-            self._note("G4 without a time HD", Severity.ERROR)
+            self._note("G4 without a time HD", Severity.ERROR, "NC218")
         elif seconds < 0.0:
-            raise BlockError("a dwell below zero")
+            raise BlockError("a dwell below zero", code="NC215")
         else:
             self.control.add_event("dwell", seconds)
 
@@ -175,7 +175,9 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
             control.go_to_machine(axes, feed_written=self._check_feed(block))
         elif rotary and control.tilted and not control.tcp:
             if set(axes) != rotary:
-                self._note("positions and rotary words in one block of a plane: only the axes turn", Severity.ERROR)
+                self._note(
+                    "positions and rotary words in one block of a plane: only the axes turn", Severity.ERROR, "NC216"
+                )
             control.motion = MOTIONS[self.motion_code]
             control.turn_axes({name: axes[name] for name in rotary}, feed_written=self._check_feed(block))
         else:
@@ -193,7 +195,7 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
             return
         self._report_rotary_words(axes)
         if control.plane_axis != 2 or not control.absolute:
-            raise BlockError("cycles are simulated in G17 and G90 only")
+            raise BlockError("cycles are simulated in G17 and G90 only", code="NC220")
         self._require_words(self._modal_words, "ZER")
         self._check_cycle_feed()
         motions = self._cycle_motions(

@@ -61,13 +61,13 @@ class HeidenhainControl(PlaneControl):
     def _judge_feed_path(self) -> None:
         """Note M116 with TCP: the manuals say that they exclude each other."""
         if self.tcp and self.modal.feed_path.current == int(FeedPath.TIP):
-            self.note("M116 and M128 exclude each other: write M117 before M128", Severity.ERROR)
+            self.note("M116 and M128 exclude each other: write M117 before M128", Severity.ERROR, "NC340")
 
     def judge_compensation(self) -> None:
         """Note radius compensation with M128, which takes the delta values (DR) and not the radius (TNC 640 manual)."""
         if self.tcp and self.modal.compensation.current:
             text = "radius compensation with M128 is by the delta values DR, and not by the radius of the tool"
-            self.note(f"{text}: write M129 before it, or the path of the tool centre", Severity.ERROR)
+            self.note(f"{text}: write M129 before it, or the path of the tool centre", Severity.ERROR, "NC340")
 
     def takes_shortest_path(self, axis: Axis) -> bool:
         """With M126."""
@@ -90,14 +90,14 @@ class HeidenhainControl(PlaneControl):
         that cancels it elsewhere has lost a block.
         """
         if self.shortest_path and not self._cancels_shortest_path:
-            self.note("ends with M126 on: taken to end with the program; M127 says so", Severity.WARNING)
+            self.note("ends with M126 on: taken to end with the program; M127 says so", Severity.WARNING, "NC363")
         elif self._cancels_shortest_path:
             self.end_operation("ends")
             end = self.line
             for line, what in self._shortest_path_left_on:
                 self.line = line
                 text = f"{what} with M126 on, which the program cancels elsewhere: write M127 before it"
-                self.note(text, Severity.ERROR)
+                self.note(text, Severity.ERROR, "NC363")
             self.line = end
 
     def feed_at_tip(self, on: bool) -> None:
@@ -105,7 +105,7 @@ class HeidenhainControl(PlaneControl):
         heads = [axis.name for axis in self.machine.axes if axis.is_rotary and axis.mount is Mount.TOOL]
         if on and heads:
             text = f"M116 leaves out the axes of a head: the feed where {' and '.join(heads)} turns is unknown"
-            self.note(text, Severity.WARNING)
+            self.note(text, Severity.WARNING, "NC241")
         self.modal.feed_path.set(self.row, int(FeedPath.TIP if on else FeedPath.AXES))
         self._judge_feed_path()
 
@@ -121,7 +121,9 @@ class HeidenhainControl(PlaneControl):
     def call_tool(self, name: str | None, tool_axis: int | None) -> None:
         """TOOL CALL: another tool, or None; and another tool axis, which is normal to the working plane, or None."""
         if self.tcp and name is None:
-            self.note("TOOL CALL with M128 on: switch it off before (M129), and on again after", Severity.ERROR)
+            self.note(
+                "TOOL CALL with M128 on: switch it off before (M129), and on again after", Severity.ERROR, "NC340"
+            )
         if name is not None:
             self.select_tool(name)
         active = self._length_active if name is None else name.strip("0") != ""
@@ -149,7 +151,7 @@ class HeidenhainControl(PlaneControl):
             if value:
                 self.add_event("delta", (f"TOOL DEF {letter}", value))
                 text = f"TOOL DEF gives tool {name} {letter} {value:g} mm: the path is that without it"
-                self.note(text, Severity.WARNING)
+                self.note(text, Severity.WARNING, "NC360")
 
     def fetch_tool(self) -> None:
         """M6: change to the tool that TOOL CALL has called, unless the tool has not moved since then."""
@@ -210,7 +212,9 @@ class HeidenhainControl(PlaneControl):
             super().move(axes, vector, circle=circle, machine_frame=machine_frame, feed_written=feed_written)
             return
         if circle is not None:
-            self.note("rotary axes turn during a circle of a tilted plane: taken as a straight line", Severity.ERROR)
+            self.note(
+                "rotary axes turn during a circle of a tilted plane: taken as a straight line", Severity.ERROR, "NC321"
+            )
         self._turn_in_plane(axes, int(ProgrammedWord.FEED) if feed_written else 0)
 
     def _vector_of_angles(self, axes: Mapping[str, AxisWord]) -> Floats:
@@ -236,6 +240,6 @@ class HeidenhainControl(PlaneControl):
             reachable = not np.abs(goal).max() > MAX_POSITION
             slides = self._slides_for(self._mapped(goal), joints) if reachable else None
         if slides is None:
-            self.note("the slides cannot reach this position: the block is not executed", Severity.ERROR)
+            self.note("the slides cannot reach this position: the block is not executed", Severity.ERROR, "NC310")
             return
         self.move_axes(self._line_kind, slides, rotary, bits)

@@ -95,7 +95,9 @@ class Definitions:
         """Another block follows: no line can follow on those of an older cycle; its title alone defines nothing."""
         if self._open is not None and self._open[1] == 0:
             number = self._open[0]
-            self._note(f"cycle {number} has a title ({number}.0) and no line {number}.1 after it", Severity.ERROR)
+            self._note(
+                f"cycle {number} has a title ({number}.0) and no line {number}.1 after it", Severity.ERROR, "NC210"
+            )
         self._open = None
 
     def define(self, text: str, parameters: Parameters) -> None:
@@ -124,7 +126,7 @@ class Definitions:
         if number in LEGACY_CYCLES or number in CYCLES_NOT_SIMULATED:
             self.defined_cycle = Cycle(number)
         elif number not in _IMMEDIATE:
-            self._note(f"cycle {number} {title[:40]} is unknown", Severity.ERROR)
+            self._note(f"cycle {number} {title[:40]} is unknown", Severity.ERROR, "NC211")
 
     def _continue_definition(self, number: int, line: int, rest: str, parameters: Parameters) -> None:
         if number in CYCLES_NOT_SIMULATED:
@@ -155,13 +157,13 @@ class Definitions:
                 self._tolerance(line, words(rest), parameters)
                 control.add_event("cycle32", rest)
             case _:
-                self._note(f"a line of cycle {number}, which is unknown", Severity.ERROR)
+                self._note(f"a line of cycle {number}, which is unknown", Severity.ERROR, "NC211")
 
     # Cycles that act at once
 
     def _shift(self, rest: str, parameters: Parameters) -> None:
         if rest.startswith("#"):
-            self._note("cycle 7 takes a datum from a table, which only the control has", Severity.ERROR)
+            self._note("cycle 7 takes a datum from a table, which only the control has", Severity.ERROR, "NC222")
             return
         shift = list(self._control.datum.shift)
         values = _axis_values(words(rest), parameters, "XYZ")
@@ -170,7 +172,7 @@ class Definitions:
             value *= self._control.length_unit
             shift[axis] = shift[axis] + value if word.incremental else value
         if any(abs(value) > MAX_POSITION for value in shift):
-            raise KlartextError("a shift that no machine has")
+            raise KlartextError("a shift that no machine has", code="NC215")
         datum = replace(self._control.datum, shift=(shift[0], shift[1], shift[2]))
         parts = {plane_datums.SHIFTS["XYZ".index(word.name)] for word, _ in values}
         self._control.set_datum(datum, parts, incremental=any(word.incremental for word, _ in values))
@@ -187,7 +189,7 @@ class Definitions:
         incremental = any(word.incremental for word in block_words)
         for word in block_words:
             if word.name != "ROT" or word.operand is None:
-                raise KlartextError(f"unknown word {word.name}")
+                raise KlartextError(f"unknown word {word.name}", code="NC211")
             value = value_of(word.operand, parameters)
             angle = angle + value if word.incremental else value
         self._control.set_datum(
@@ -204,13 +206,13 @@ class Definitions:
                 centre["XYZ".index(word.name[2])] = value * self._control.length_unit
                 continue
             if not _MIN_SCALE < value < _MAX_SCALE:
-                raise KlartextError(f"a scale of {value:g}")
+                raise KlartextError(f"a scale of {value:g}", code="NC215")
             if word.name == "SCL":
                 scale = [value, value, value]
             elif word.name in ("X", "Y", "Z"):
                 scale["XYZ".index(word.name)] = value
             else:
-                raise KlartextError(f"unknown word {word.name}")
+                raise KlartextError(f"unknown word {word.name}", code="NC211")
         datum = replace(
             self._control.datum, scale=(scale[0], scale[1], scale[2]), centre=(centre[0], centre[1], centre[2])
         )
@@ -222,9 +224,11 @@ class Definitions:
             known = TOLERANCE_WORDS.get((line, word.name))
             value = None if word.operand is None else value_of(word.operand, parameters)
             if known is None or value is None:
-                raise KlartextError(f"unknown word {word.name} in line {line} of cycle 32")
+                raise KlartextError(f"unknown word {word.name} in line {line} of cycle 32", code="NC211")
             if value < 0.0 or (isinstance(known, Values) and value not in known):
-                raise KlartextError(f"{word.name}{value:g} in line {line} of cycle 32: the control does not know it")
+                raise KlartextError(
+                    f"{word.name}{value:g} in line {line} of cycle 32: the control does not know it", code="NC215"
+                )
         if line == 1:
             operands = [word.operand for word in block_words if word.name == "T" and word.operand is not None]
             tolerance = value_of(operands[0], parameters) if operands else 0.0
@@ -249,16 +253,16 @@ class Definitions:
         q_values = self._read_parameters(number, rest, parameters)
         if number in CYCLES or number in CYCLES_NOT_SIMULATED:
             if number in ACT_WHEN_DEFINED:
-                self._note(f"cycle {number} ({CYCLES_NOT_SIMULATED[number]}) is not simulated", Severity.ERROR)
+                self._note(f"cycle {number} ({CYCLES_NOT_SIMULATED[number]}) is not simulated", Severity.ERROR, "NC220")
                 return
             self.defined_cycle = Cycle(number, q_values=q_values)
             if number == BORE_MILLING:
                 text = "cycle 208: the tool's radius is the control's, and the path is that of the wall"
-                self._note(text, Severity.WARNING)
+                self._note(text, Severity.WARNING, "NC221")
         elif number == PRESET:
             self._preset(q_values)
         else:
-            self._note(f"cycle {number} {title[:40].strip()} is unknown", Severity.ERROR)
+            self._note(f"cycle {number} {title[:40].strip()} is unknown", Severity.ERROR, "NC211")
 
     def _read_parameters(self, number: int, rest: str, parameters: Parameters) -> dict[int, float]:
         """Assign the Q parameters of a definition; returns them by number."""
@@ -275,7 +279,7 @@ class Definitions:
                 parameters.forget(canonical(target))
                 continue
             if word is not None:
-                self._note(f"cycle {number}: {target}={word} is not simulated", Severity.ERROR)
+                self._note(f"cycle {number}: {target}={word} is not simulated", Severity.ERROR, "NC220")
                 continue
             value = parameters[canonical(parameter)] if parameter else float(figures.replace(",", "."))
             value = -value if sign == "-" else value
@@ -286,7 +290,7 @@ class Definitions:
     def _preset(self, q_values: dict[int, float]) -> None:
         preset = q_values.get(339, 0.0)
         if preset != int(preset) or not 0 <= preset < 65535:
-            raise KlartextError(f"preset {preset:g} does not exist")
+            raise KlartextError(f"preset {preset:g} does not exist", code="NC215")
         self._control.set_offset(int(preset), f"preset {preset:g}")
 
     # Calls
@@ -313,7 +317,7 @@ class Definitions:
             raise CycleExecutionError("was called before any was defined")
         if cycle.number in CYCLES_NOT_SIMULATED:
             raise CycleExecutionError(
-                f"{cycle.number} ({CYCLES_NOT_SIMULATED[cycle.number]}) is known but not simulated"
+                f"{cycle.number} ({CYCLES_NOT_SIMULATED[cycle.number]}) is known but not simulated", code="NC220"
             )
         # A pitch counts in the unit of lengths, a feed in that of feeds.
         rpm = float(control.modal.rpm.current) * control.length_unit / control.feed_unit
@@ -340,7 +344,7 @@ def _axis_values(block_words: list[Word], parameters: Parameters, names: str) ->
     """Return the words of axes with their values; no others may be there."""
     for word in block_words:
         if word.operand is None or word.name not in names:
-            raise KlartextError(f"unknown word {word.name or word.text}")
+            raise KlartextError(f"unknown word {word.name or word.text}", code="NC211")
     return [(word, value_of(word.operand, parameters)) for word in block_words if word.operand is not None]
 
 

@@ -91,7 +91,9 @@ def cycle_motions(number: int, values: Mapping[int, float], rpm: float) -> list[
     """
     for parameter, known in Q_VALUES.items():
         if parameter in values and values[parameter] not in known:
-            raise CycleExecutionError(f"has Q{parameter}={values[parameter]:g}, and is known with {known} only")
+            raise CycleExecutionError(
+                f"has Q{parameter}={values[parameter]:g}, and is known with {known} only", code="NC215"
+            )
     hole = Hole(values, rpm)
     motions = [
         replace(motion, rapid=True, feed=None) if motion.feed == math.inf else motion for motion in CYCLES[number](hole)

@@ -69,7 +69,7 @@ class FlowInterpreter(Interpreter[ActiveProgram]):
             return
         if len(active.returns) >= MAX_LABEL_DEPTH:
             what = f"calls labels deeper than {MAX_LABEL_DEPTH} levels"
-            raise active.source.problem(self.control.line, what, "does one call itself?")
+            raise active.source.problem(self.control.line, what, "does one call itself?", code="NC141")
         active.returns.append(here)
         active.source.jump(target)
 
@@ -88,7 +88,7 @@ class FlowInterpreter(Interpreter[ActiveProgram]):
         name = _label_name(label, active.parameters)
         found = active.source.label(name)
         if found is None:
-            self._note(f"the label {name[:60]} is missing: the program ends here", Severity.ERROR)
+            self._note(f"the label {name[:60]} is missing: the program ends here", Severity.ERROR, "NC133")
             raise ProgramEnd
         return found
 
@@ -96,7 +96,7 @@ class FlowInterpreter(Interpreter[ActiveProgram]):
         """Call a program, one of the files given by the user."""
         path = self._subprograms.find(name)
         if path is None:
-            self._note(f"missing program {name[:80]}: it is not executed; name its file", Severity.ERROR)
+            self._note(f"missing program {name[:80]}: it is not executed; name its file", Severity.ERROR, "NC132")
             return
         self._check_depth()
         parameters = Parameters(self._stack[-1].parameters)

@@ -68,15 +68,19 @@ def execute(text: str, parameters: Parameters, note: Note) -> str | None:
         return _jump(number, rest, parameters)
     if number in FN_NOT_SIMULATED:
         severity = Severity.ERROR if number == FN_SYSTEM_DATA else Severity.WARNING
-        note(f"FN {number} {FN_NOT_SIMULATED[number]}: not simulated", severity)
+        note(
+            f"FN {number} {FN_NOT_SIMULATED[number]}: not simulated",
+            severity,
+            "NC220" if severity is Severity.ERROR else "NC221",
+        )
         return None
     target = ASSIGNED.match(rest.removeprefix("SYSREAD").lstrip() if number == _SYSTEM else rest)
     if target is None:
-        raise KlartextError(f"FN {number} is not simulated")
+        raise KlartextError(f"FN {number} is not simulated", code="NC220")
     name = canonical(target[1])
     if number == _SYSTEM:
         parameters.forget(name)
-        note(f"FN 18 SYSREAD: only the control knows what {name} becomes", Severity.WARNING)
+        note(f"FN 18 SYSREAD: only the control knows what {name} becomes", Severity.WARNING, "NC222")
         return None
     try:
         parameters[name] = _value(number, rest[target.end() :].strip(), parameters)
@@ -107,7 +111,7 @@ def _value(number: int, rest: str, parameters: Parameters) -> float:
         operand = formula(match[1], parameters)
         return guarded(lambda: FUNCTIONS[word](operand), word)
     if number not in _ARITHMETIC:
-        raise KlartextError(f"FN {number} is not simulated")
+        raise KlartextError(f"FN {number} is not simulated", code="NC220")
     word, work = _ARITHMETIC[number]
     match = re.fullmatch(rf"{_OPERAND}[ \t]*{word}[ \t]*{_OPERAND}", rest)
     if match is None:

@@ -108,11 +108,11 @@ class HeidenhainInterpreter(FlowInterpreter):
     def _execute_line(self, active: ActiveProgram, line: int, raw: str) -> None:
         if len(raw) > MAX_LENGTH:
             self._block_parts.clear()
-            self._note(f"the line is longer than {MAX_LENGTH} characters: it is not executed", Severity.ERROR)
+            self._note(f"the line is longer than {MAX_LENGTH} characters: it is not executed", Severity.ERROR, "NC214")
             return
         parts = split_line(raw)
         if self._block_parts and parts.number >= 0 and not ASSIGNED.match(parts.statement):
-            self._note("the block before it goes on (~), and a new one begins", Severity.ERROR)
+            self._note("the block before it goes on (~), and a new one begins", Severity.ERROR, "NC210")
             self._finish_block(active)
             self.control.line = line
         if parts.block_skip and self._options.skip:
@@ -128,7 +128,9 @@ class HeidenhainInterpreter(FlowInterpreter):
                 self._finish_block(active)
             elif self._block_length > MAX_LENGTH:
                 self._block_parts.clear()
-                self._note(f"the block is longer than {MAX_LENGTH} characters: it is not executed", Severity.ERROR)
+                self._note(
+                    f"the block is longer than {MAX_LENGTH} characters: it is not executed", Severity.ERROR, "NC214"
+                )
         finally:
             self._record_comment(line, parts.comment)
 
@@ -144,7 +146,9 @@ class HeidenhainInterpreter(FlowInterpreter):
         try:
             self._statement(active, statement)
         except KlartextError as error:
-            self._note(f"not understood: {statement[:80]}: {error}: the block is not executed", Severity.ERROR)
+            self._note(
+                f"not understood: {statement[:80]}: {error}: the block is not executed", Severity.ERROR, error.code
+            )
 
     def _leave_program(self) -> None:
         if self._block_parts:
@@ -155,9 +159,9 @@ class HeidenhainInterpreter(FlowInterpreter):
         super()._leave_program()
 
     def _check_rest(self, main: SourceText) -> None:
-        def note(text: str, severity: Severity) -> None:
+        def note(text: str, severity: Severity, code: str) -> None:
             self.control.line = main.line - 1
-            self._note(text, severity)
+            self._note(text, severity, code)
 
         program_frame.check_rest(self._main, main, note)
         program_frame.check_end_of_file(self._main, note)
@@ -183,7 +187,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         if keyword in self._handlers:
             self._handlers[keyword](active, statement[len(keyword) :])
         elif keyword in BLOCKS_NOT_SIMULATED:
-            self._note(f"{keyword} {BLOCKS_NOT_SIMULATED[keyword]}", Severity.ERROR)
+            self._note(f"{keyword} {BLOCKS_NOT_SIMULATED[keyword]}", Severity.ERROR, "NC220")
         else:
             # A block of M words, or of a single axis, needs no path function.
             self._path_block(active, "L", statement)
@@ -211,7 +215,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         program_frame.begin(active, rest.split(), self.control.row, self._note)
         unit = rest.split()[-1]
         if unit not in ("MM", "INCH"):
-            self._note("BEGIN PGM without MM or INCH", Severity.ERROR)
+            self._note("BEGIN PGM without MM or INCH", Severity.ERROR, "NC160")
         self.control.set_units(unit == "INCH", False)
         self.control.feed_unit = _TENTH if unit == "INCH" else 1.0
 
@@ -251,7 +255,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         self._set_compensation(block)
         in_machine = self._moves_in_machine(block)
         if vector is not None and not control.tip_programmed:
-            self._note("TX TY TZ need M128: the vector is taken as the tool axis", Severity.ERROR)
+            self._note("TX TY TZ need M128: the vector is taken as the tool axis", Severity.ERROR, "NC340")
         moves, row = bool(axes) or vector is not None or circle is not None, control.row
         if moves:
             feed_written = block.feed is not None and not block.rapid
@@ -270,14 +274,14 @@ class HeidenhainInterpreter(FlowInterpreter):
             self.control.modal.compensation.set(self.control.row, _RADIUS_COMPENSATION[block.side])
         if block.side in ("RL", "RR"):
             text = "radius compensation is not simulated: the path is that of the tool centre as programmed"
-            self._note(f"{block.side}: {text}", Severity.WARNING)
+            self._note(f"{block.side}: {text}", Severity.WARNING, "NC221")
             self.control.judge_compensation()
 
     def _moves_in_machine(self, block: Block) -> bool:
         """Whether a block programs positions of the machine axes (M91, M92)."""
         codes = {code for code, _ in block.m}
         if M_SECOND_MACHINE in codes:
-            self._note("M92: where it counts from is set in the machine, taken as M91", Severity.WARNING)
+            self._note("M92: where it counts from is set in the machine, taken as M91", Severity.WARNING, "NC224")
         return bool(codes & {M_MACHINE, M_SECOND_MACHINE})
 
     def _remove_missing_axes(self, block: Block) -> None:
@@ -286,7 +290,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         if self.control.spatial_angles_active:
             known |= {"A", "B", "C"}
         for name in sorted(block.axes.keys() - known):
-            self._note(f"the machine has no axis {name}: its word is not executed", Severity.ERROR)
+            self._note(f"the machine has no axis {name}: its word is not executed", Severity.ERROR, "NC230")
             del block.axes[name]
 
     def _feed(self, block: Block) -> float | None:
@@ -332,7 +336,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         call_words = words(rest)
         first = call_words[0].name if call_words else ""
         if first == "PAT":
-            self._note("CYCL CALL PAT: point patterns are not simulated", Severity.ERROR)
+            self._note("CYCL CALL PAT: point patterns are not simulated", Severity.ERROR, "NC220")
             return
         with_position = first == "POS"
         block = read_block(call_words[1:] if with_position else call_words, active.parameters)
@@ -352,7 +356,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         try:
             motions = self._definitions.call(active.parameters)
         except CycleExecutionError as error:
-            self._note(f"the cycle {error}: it is not executed", Severity.ERROR)
+            self._note(f"the cycle {error}: it is not executed", Severity.ERROR, error.code)
             return
         self._counter.count_blocks(len(motions))
         self.control.drill(motions, self._definitions.spindle_work())
@@ -373,4 +377,4 @@ class HeidenhainInterpreter(FlowInterpreter):
             case ["MODE", "MILL"]:
                 pass
             case _:
-                self._note(f"FUNCTION{rest[:60]} is not simulated", Severity.ERROR)
+                self._note(f"FUNCTION{rest[:60]} is not simulated", Severity.ERROR, "NC220")

@@ -78,7 +78,7 @@ class MFunctions:
         for (owner, letter), known in M_VALUES.items():
             given = arguments.get(letter) if owner == code else None
             if given is not None and (fault := fault_of_value(f"M{code}", letter, given, known)):
-                self._note(fault, Severity.ERROR)
+                self._note(fault, Severity.ERROR, "NC215")
         self._words_of_function(code, arguments)
         for kind, value in M_EVENTS.get(code, ()):
             control.add_event(kind, value)
@@ -90,7 +90,7 @@ class MFunctions:
         elif code in (M_PER_TURN, M_PER_MINUTE):
             control.modal.feed_mode.set(control.row, 95 if code == M_PER_TURN else 94)
             if code == M_PER_TURN and control.length_unit != 1.0:
-                control.note("M136 in inches: what F counts per revolution is not known", Severity.ERROR)
+                control.note("M136 in inches: what F counts per revolution is not known", Severity.ERROR, "NC241")
         elif code in (M_FEED_AT_TIP, M_FEED_IN_DEGREES):
             control.feed_at_tip(code == M_FEED_AT_TIP)
         elif code == M_RETRACT:
@@ -106,7 +106,11 @@ class MFunctions:
             raise ProgramEnd
         elif code in M_NOT_SIMULATED:
             text, changes_path = M_NOT_SIMULATED[code]
-            self._note(f"M{code}: {text}", Severity.ERROR if changes_path else Severity.WARNING)
+            self._note(
+                f"M{code}: {text}",
+                Severity.ERROR if changes_path else Severity.WARNING,
+                "NC220" if changes_path else "NC221",
+            )
         elif code not in _HANDLED_ELSEWHERE:
             control.add_event("m", float(code))
 
@@ -115,12 +119,12 @@ class MFunctions:
         control = self._control
         for (owner, letter), text in M_WORDS_NOT_SIMULATED.items():
             if owner == code and letter in arguments:
-                self._note(f"M{code}: {text}", Severity.ERROR)
+                self._note(f"M{code}: {text}", Severity.ERROR, "NC220")
         if code == M_POINT_FILTER and (distance := arguments.get("T")) is not None:
             control.add_tolerance(distance * control.length_unit)
         if code == M_TILTING_AXES and arguments and arguments.keys() != set(control.rotary_names):
             names = " and ".join(sorted(arguments))
-            self._note(f"M{code}: tilting with {names} alone is not simulated", Severity.ERROR)
+            self._note(f"M{code}: tilting with {names} alone is not simulated", Severity.ERROR, "NC220")
 
     def _retract(self, arguments: dict[str, float | None]) -> None:
         control = self._control
@@ -159,14 +163,14 @@ def tool_block(control: HeidenhainControl, rest: str, parameters: Parameters) ->
     tool_axes = [word.name for word in block_words if word.operand is None]
     unknown = [*(set(tool_axes) - {"X", "Y", "Z"}), *(values.keys() - {"S", "F", "DL", "DR", "DR2"})]
     if unknown:
-        raise KlartextError(f"unknown word {unknown[0] or 'in quotes'}")
+        raise KlartextError(f"unknown word {unknown[0] or 'in quotes'}", code="NC211")
     feed = values.get("F")
     if feed is not None and not 0.0 <= feed <= MAX_FEED:
-        raise KlartextError(f"a feed is not from 0 to {MAX_FEED:g}")
+        raise KlartextError(f"a feed is not from 0 to {MAX_FEED:g}", code="NC215")
     along = "XYZ".index(tool_axes[-1]) if tool_axes else None
     if along is not None and abs(control.machine.spindle_direction[along]) < _ALONG:
         text = f"TOOL CALL with {tool_axes[-1]}: the length of the tool does not count along the spindle"
-        control.note(text, Severity.ERROR)
+        control.note(text, Severity.ERROR, "NC361")
     control.call_tool(name, along)
     if "S" in values:
         control.modal.rpm.set(control.row, abs(values["S"]))

@@ -18,6 +18,10 @@ _TOKEN = re.compile(r"[ \t]*(?:(Q[LR]?[0-9]{1,4})|([0-9]+[.,]?[0-9]*|[.,][0-9]+)
 class KlartextError(Exception):
     """The reason why a block is not executed."""
 
+    def __init__(self, text: str, *, code: str = "NC210") -> None:
+        super().__init__(text)
+        self.code = code
+
 
 class Parameters:
     """The parameters of a program: Q and QR are shared by all programs, QL are local to each."""
@@ -36,7 +40,7 @@ class Parameters:
     def __getitem__(self, name: str) -> float:
         value = self.get(name)
         if value is None:
-            raise KlartextError(f"{name} has no value that the program says")
+            raise KlartextError(f"{name} has no value that the program says", code="NC223")
         return value
 
     def __setitem__(self, name: str, value: float) -> None:
@@ -50,7 +54,7 @@ class Parameters:
 def checked(value: float) -> float:
     """Return a value that a parameter can have; KlartextError for others."""
     if not abs(value) <= MAX_VALUE:
-        raise KlartextError("a value is larger than any parameter can hold")
+        raise KlartextError("a value is larger than any parameter can hold", code="NC215")
     return value
 
 
@@ -193,4 +197,4 @@ def guarded(function: Callable[[], float], name: str) -> float:
     try:
         return checked(function())
     except (ValueError, OverflowError, ZeroDivisionError):
-        raise KlartextError(f"{name} has no value here") from None
+        raise KlartextError(f"{name} has no value here", code="NC215") from None

@@ -92,7 +92,7 @@ def read_block(words: Sequence[Word], parameters: Parameters) -> Block:
         arguments = M_ARGUMENTS.get(block.m[-1][0], frozenset()) if block.m else frozenset()
         name = word.name
         if word.text is not None or (name not in arguments and word.operand is None and name not in _FLAGS):
-            raise KlartextError(f"unknown word {name or word.text}")
+            raise KlartextError(f"unknown word {name or word.text}", code="NC211")
         value = None if word.operand is None else value_of(word.operand, parameters)
         if name in arguments:
             block.m[-1][1][name] = value
@@ -123,7 +123,7 @@ def _flag(block: Block, name: str) -> None:
 def _value(block: Block, name: str, value: float, how: PositionMode) -> None:
     if name in _AXES:
         if name in block.axes:
-            raise KlartextError(f"{name} is written twice")
+            raise KlartextError(f"{name} is written twice", code="NC212")
         block.axes[name] = value, how
     elif name in ("PR", "PA"):
         block.polar[name] = value, how
@@ -131,7 +131,7 @@ def _value(block: Block, name: str, value: float, how: PositionMode) -> None:
         block.vectors[name] = value
     elif name == "F":
         if not 0.0 <= value <= MAX_FEED:
-            raise KlartextError(f"a feed is not from 0 to {MAX_FEED:g}")
+            raise KlartextError(f"a feed is not from 0 to {MAX_FEED:g}", code="NC215")
         block.feed = value
     elif name == "R":
         # R0 switches cutter compensation off; other values are the radius of a circle.
@@ -144,7 +144,7 @@ def _value(block: Block, name: str, value: float, how: PositionMode) -> None:
             raise KlartextError(f"M{value:g} is not a function")
         block.m.append((int(value), {}))
     else:
-        raise KlartextError(f"unknown word {name}{value:g}")
+        raise KlartextError(f"unknown word {name}{value:g}", code="NC211")
 
 
 # Polar coordinates
@@ -165,7 +165,7 @@ def polar_end(control: HeidenhainControl, block: Block, *, circle: bool) -> dict
         value, how = block.polar["PA"]
         angle = angle + value if how is PositionMode.INCREMENTAL else value
     if abs(angle) > 360.0 * MAX_TURNS or not abs(radius) < MAX_POSITION:
-        raise KlartextError("polar coordinates that no machine has")
+        raise KlartextError("polar coordinates that no machine has", code="NC215")
     end = {
         "XYZ"[first]: (pole[first] + radius * math.cos(math.radians(angle))) / control.length_unit,
         "XYZ"[second]: (pole[second] + radius * math.sin(math.radians(angle))) / control.length_unit,
@@ -196,7 +196,7 @@ def circle_of(control: HeidenhainControl, head: str, block: Block) -> Circle:
             raise KlartextError("CR needs a radius")
         radius = block.radius * control.length_unit
         if abs(radius) > MAX_POSITION:
-            raise KlartextError("a radius that no machine has")
+            raise KlartextError("a radius that no machine has", code="NC215")
         return lambda start, end: arcs.by_radius(start, end, radius, control.plane_axis, clockwise, 0)
     pole = _pole(control).copy()
     turns = 0

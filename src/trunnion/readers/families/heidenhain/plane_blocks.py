@@ -44,7 +44,7 @@ def plane_block(control: HeidenhainControl, block_words: Sequence[Word], paramet
     elif kind in _KINDS:
         store_rotary_angles(parameters, control, control.tilt(plane(kind, values), positioning))
     else:
-        note(f"PLANE {kind} is known but not simulated", Severity.ERROR)
+        note(f"PLANE {kind} is known but not simulated", Severity.ERROR, "NC220")
 
 
 def _axial(
@@ -91,13 +91,13 @@ def _positioning(
                 positioning = replace(positioning, retract=value * control.length_unit)
             case _, float():
                 if word.name in values:
-                    raise KlartextError(f"{word.name} is written twice")
+                    raise KlartextError(f"{word.name} is written twice", code="NC212")
                 values[word.name] = value
             case _:
-                raise KlartextError(f"unknown word {word.name or word.text}")
+                raise KlartextError(f"unknown word {word.name or word.text}", code="NC211")
     if not positioning.mode:
         if block_words:
-            note("PLANE without TURN, MOVE or STAY: taken as STAY", Severity.WARNING)
+            note("PLANE without TURN, MOVE or STAY: taken as STAY", Severity.WARNING, "NC351")
         positioning = replace(positioning, mode="STAY")
     return positioning, values
 
@@ -113,15 +113,17 @@ def tcpm_block(control: HeidenhainControl, block_words: Sequence[Word], note: No
             case ("F", "TCP") | ("AXIS", "POS"):
                 pass
             case "F", "CONT":
-                note("FUNCTION TCPM with F CONT: feeds of the machine's axes are not simulated", Severity.ERROR)
+                note(
+                    "FUNCTION TCPM with F CONT: feeds of the machine's axes are not simulated", Severity.ERROR, "NC220"
+                )
             case "AXIS", "SPAT":
                 spatial_angles = True
             case "PATHCTRL", ("AXIS" | "VECTOR"):
                 orientation = Orientation.GREAT_CIRCLE if pair[1] == "VECTOR" else Orientation.ANGLES
             case _:
-                note(f"FUNCTION TCPM: {' '.join(pair)} is not simulated", Severity.ERROR)
+                note(f"FUNCTION TCPM: {' '.join(pair)} is not simulated", Severity.ERROR, "NC220")
     if len(names) % 2:
-        note(f"FUNCTION TCPM: unexpected {names[-1]}", Severity.ERROR)
+        note(f"FUNCTION TCPM: unexpected {names[-1]}", Severity.ERROR, "NC215")
     control.set_tcp(True)
     control.spatial_angles_active = spatial_angles
     control.angles = [0.0, 0.0, 0.0]

@@ -84,7 +84,9 @@ class PlaneControl(VirtualControl):
         what = f"which {parts} counts here is unconfirmed: set before the tilted plane and again in it"
         if not self.tilted:
             what = f"whether the {parts} of the tilted plane ends with it is unconfirmed"
-        self.preconditions.require("datum", f"{what}; reset in the plane what is set in it, before the plane ends")
+        self.preconditions.require(
+            "datum", f"{what}; reset in the plane what is set in it, before the plane ends", "NC351"
+        )
 
     # Planes
 
@@ -138,7 +140,7 @@ class PlaneControl(VirtualControl):
         solutions = tool_orientation.solutions(self.machine, normal, self.current_joints)
         pairs = [self._in_nearest_turn(pair) for pair in solutions]
         if not pairs:
-            self.note("PLANE: no rotary position stands the tool on this plane", Severity.ERROR)
+            self.note("PLANE: no rotary position stands the tool on this plane", Severity.ERROR, "NC350")
             return None
         inside = [pair for pair in pairs if tool_orientation.is_in_travel(self.machine, pair)]
         sequence = positioning.sequence
@@ -146,7 +148,7 @@ class PlaneControl(VirtualControl):
             inside = [pair for pair in inside if pair[1] * sequence > 0.0 or abs(pair[1]) < _ZERO]
         if not inside:
             text = "inside the travel" if not sequence else f"with SEQ{'-' if sequence < 0 else '+'}"
-            self.note(f"PLANE: no rotary position {text} stands the tool on this plane", Severity.ERROR)
+            self.note(f"PLANE: no rotary position {text} stands the tool on this plane", Severity.ERROR, "NC350")
             return None
         current = [float(self.current_joints[column]) for column in self.machine.rotary]
         return min(inside, key=lambda pair: sum(abs(value - now) for value, now in zip(pair, current, strict=True)))
@@ -183,7 +185,7 @@ class PlaneControl(VirtualControl):
             tip_after = tip[0] + positioning.distance * (axis_after - axis[0])
             following = self._slides_for(tip_after, joints)
             if following is None:
-                self.note("PLANE MOVE: the slides cannot follow", Severity.ERROR)
+                self.note("PLANE MOVE: the slides cannot follow", Severity.ERROR, "NC310")
             else:
                 slides = following
         self.move_axes(Kind.RAPID if positioning.rapid else Kind.LINEAR, slides, target)
@@ -217,7 +219,7 @@ class PlaneControl(VirtualControl):
         slides = self.current_joints[self._slides].copy()
         one_mm_on = self._slides_for(tip[0] + axis[0], self.current_joints)
         if one_mm_on is None:
-            self.note("M140: the slides cannot go along the tool axis", Severity.ERROR)
+            self.note("M140: the slides cannot go along the tool axis", Severity.ERROR, "NC310")
             return
         per_mm = one_mm_on - slides
         # The end of the travel is a position of the machine, wherever the workpiece is.
@@ -225,7 +227,9 @@ class PlaneControl(VirtualControl):
         if to_the_end:
             distance = self._free_travel(slides, per_mm)
             if math.isinf(distance):
-                self.note("M140 MB MAX: the travel of the slides is not known, the tool stays", Severity.WARNING)
+                self.note(
+                    "M140 MB MAX: the travel of the slides is not known, the tool stays", Severity.WARNING, "NC224"
+                )
                 return
         feed_before = self.programmed_feed
         if feed is not None:

@@ -102,4 +102,4 @@ def plane(kind: str, values: Mapping[str, float]) -> Floats:
             points = [np.array(need(f"P{k}X", f"P{k}Y", f"P{k}Z")) for k in (1, 2, 3)]
             return through_points(*points)
         case _:
-            raise KlartextError(f"PLANE {kind} is not simulated")
+            raise KlartextError(f"PLANE {kind} is not simulated", code="NC220")

@@ -16,9 +16,9 @@ _END: Final = re.compile(r"[ \t]*(?:[0-9]+[ \t]*)?END[ \t]+PGM(?![A-Z])", re.IGN
 def begin(active: ActiveProgram, words: list[str], row: int, note: Note) -> None:
     """Begin a program; ``words`` are those behind BEGIN."""
     if active.name is not None:
-        note("a second program begins: it needs a file of its own", Severity.ERROR)
+        note("a second program begins: it needs a file of its own", Severity.ERROR, "NC160")
     elif active.has_blocks or row > active.source.first_row:
-        note("BEGIN PGM is not the first block: no control loads the program", Severity.ERROR)
+        note("BEGIN PGM is not the first block: no control loads the program", Severity.ERROR, "NC160")
     active.name = _name(words)
 
 
@@ -27,14 +27,14 @@ def end(active: ActiveProgram, words: list[str], note: Note) -> None:
     active.ended = True
     name = _name(words)
     if active.name is not None and name != active.name:
-        note(f"END PGM {name} ends the program that began as {active.name}", Severity.ERROR)
+        note(f"END PGM {name} ends the program that began as {active.name}", Severity.ERROR, "NC160")
 
 
 def check_end_of_file(active: ActiveProgram, note: Note) -> None:
     """Report a program whose file ends before END PGM."""
     if active.name is not None and not active.ended:
         active.ended = True
-        note("the program has no END PGM: no control loads it", Severity.ERROR)
+        note("the program has no END PGM: no control loads it", Severity.ERROR, "NC160")
 
 
 def check_rest(active: ActiveProgram, source: SourceText, note: Note) -> None:
@@ -44,7 +44,7 @@ def check_rest(active: ActiveProgram, source: SourceText, note: Note) -> None:
         if active.name is not None and not active.ended:
             active.ended = _END.match(raw) is not None
         elif active.ended and split_line(raw).statement:
-            note("stands behind END PGM: another program needs a file of its own", Severity.ERROR)
+            note("stands behind END PGM: another program needs a file of its own", Severity.ERROR, "NC161")
             return
 
 

@@ -102,7 +102,7 @@ class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
             raise BlockError(f"no O word: {name[:40]}")
         handler(OWord(active, line, label, reader))
         if not reader.ended:
-            self._note(f"not understood behind {name}: {reader.rest!r}", Severity.ERROR)
+            self._note(f"not understood behind {name}: {reader.rest!r}", Severity.ERROR, "NC210")
 
     @staticmethod
     def _label(reader: ExpressionReader) -> str:
@@ -159,13 +159,13 @@ class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
             return ActiveProgram(active.source.restarted(), active.file), here.begin
         path = self._subprograms.find(label.strip("<>"))
         if path is None:
-            raise BlockError(f"missing subprogram O{label[:80]}; name its file")
+            raise BlockError(f"missing subprogram O{label[:80]}; name its file", code="NC132")
         source, file = self._open_subprogram(path)
         assert isinstance(source, LinuxcncText)
         found = source.subprogram(label)
         if found is None:
             file_of_rows.set(self.control.row, active.file)
-            raise BlockError(f"{path.name} holds no O{label[:80]} SUB")
+            raise BlockError(f"{path.name} holds no O{label[:80]} SUB", code="NC132")
         return ActiveProgram(source, file), found.begin
 
     # Branches and loops
@@ -197,7 +197,7 @@ class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
         try:
             return bool(reader.bracket_value())
         except BlockError as error:
-            self._note(f"not understood: {error}: taken as not fulfilled", Severity.ERROR)
+            self._note(f"not understood: {error}: taken as not fulfilled", Severity.ERROR, "NC143")
             reader.at = len(reader.text)
             return False
 
@@ -223,7 +223,7 @@ class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
         try:
             repeats = int(min(max(word.reader.bracket_value(), 0.0), 1e12))
         except BlockError as error:
-            self._note(f"not understood: {error}: not repeated", Severity.ERROR)
+            self._note(f"not understood: {error}: not repeated", Severity.ERROR, "NC143")
             word.reader.at = len(word.reader.text)
         if repeats < 1:
             word.jump(structure.end + 1)

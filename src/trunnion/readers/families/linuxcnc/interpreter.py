@@ -83,7 +83,7 @@ class LinuxcncInterpreter(CycleInterpreter):
     # Blocks
 
     def _report_repeated_word(self, letter: str) -> None:
-        raise BlockError(f"{letter} is written twice")
+        raise BlockError(f"{letter} is written twice", code="NC212")
 
     def _handle_comment(self, comment: str) -> None:
         match = _MESSAGE.match(comment)
@@ -169,7 +169,7 @@ class LinuxcncInterpreter(CycleInterpreter):
         elif code == words.CONTINUOUS:
             tolerance, naive = block.take("P"), block.take("Q")
             if (tolerance or 0.0) < 0.0 or (naive or 0.0) < 0.0:
-                self._note("G64 with a tolerance below zero", Severity.ERROR)
+                self._note("G64 with a tolerance below zero", Severity.ERROR, "NC215")
             # P0 is no tolerance: the control keeps its speed, as without P.
             control.add_tolerance(tolerance * control.length_unit if tolerance else np.inf)
             control.add_exact_stop("off")
@@ -201,7 +201,7 @@ class LinuxcncInterpreter(CycleInterpreter):
             if value := block.take(letter):
                 self.control.add_tool_delta(f"{name} {letter}", value * self.control.length_unit)
         if block.take("H"):
-            self._note(f"{name} H: the length of another tool is not simulated", Severity.ERROR)
+            self._note(f"{name} H: the length of another tool is not simulated", Severity.ERROR, "NC220")
 
     def _length_number(self, block: Block) -> int:
         """Return which length G43 takes: that of H, or of the tool in the spindle; 0 if its number is unknown."""
@@ -215,12 +215,13 @@ class LinuxcncInterpreter(CycleInterpreter):
         for letter in words.WITHOUT_PATH_EFFECT_M.get(code, "") or words.WORDS_OF_M_CODE.get(code, ""):
             value, known = block.take(letter), words.VALUES_M.get((code, letter))
             fault = "" if value is None or known is None else fault_of_value(f"M{code}", letter, value, known)
+            kind = "NC215"
             if code in words.ANALOG_OUTPUTS and letter == "E" and value == words.KINEMATICS_OUTPUT:
-                fault = f"M{code} E{value:g} switches the kinematics: not simulated; M428 and M429 are"
+                fault, kind = f"M{code} E{value:g} switches the kinematics: not simulated; M428 and M429 are", "NC220"
             if code == words.ADAPTIVE_FEED and value != 0.0:
-                fault = "M52 lets a signal scale the feed: not simulated; M52 P0 does not"
+                fault, kind = "M52 lets a signal scale the feed: not simulated; M52 P0 does not", "NC220"
             if fault:
-                self._note(fault, Severity.ERROR)
+                self._note(fault, Severity.ERROR, kind)
         if code in (words.TCP_ON, words.TCP_OFF):
             control.set_tcp(code == words.TCP_ON)
         elif code == 61:
@@ -233,16 +234,16 @@ class LinuxcncInterpreter(CycleInterpreter):
             for letter in "PQ":
                 block.take(letter)
             control.add_event("m", float(code))
-            self._note(f"M{code} belongs to the machine: what it does is not known", Severity.WARNING)
+            self._note(f"M{code} belongs to the machine: what it does is not known", Severity.WARNING, "NC224")
             if code in words.USERS_TCP:
                 text = f"M{code} switches TCP in some configurations: M428 and M429 do, or declare what it does"
-                self._note(text, Severity.ERROR)
+                self._note(text, Severity.ERROR, "NC224")
         elif code in words.NOT_SIMULATED_M:
-            self._note(f"M{code}: {words.NOT_SIMULATED_M[code]}", Severity.ERROR)
+            self._note(f"M{code}: {words.NOT_SIMULATED_M[code]}", Severity.ERROR, "NC220")
         elif code == words.TCP_USER:
-            self._note("M430: kinematics of the user are not known", Severity.ERROR)
+            self._note("M430: kinematics of the user are not known", Severity.ERROR, "NC224")
         elif code not in words.WITHOUT_PATH_EFFECT_M and not self._common_m_code(code):
-            self._note(f"unknown word M{code}", Severity.ERROR)
+            self._note(f"unknown word M{code}", Severity.ERROR, "NC211")
 
     # Motion
 
@@ -258,11 +259,13 @@ class LinuxcncInterpreter(CycleInterpreter):
         circle = code in (20, 30) and (explicit or any(letter in block.words for letter in "IJKR"))
         if not axes and not circle:
             if explicit and code in cycles.CYCLES:
-                self._note("a cycle without a position", Severity.ERROR)
+                self._note("a cycle without a position", Severity.ERROR, "NC218")
                 self.motion_code = code
         elif code == CANCEL:
             self._initial = None
-            self._note("a position without a G word that goes there: the block is not executed", Severity.ERROR)
+            self._note(
+                "a position without a G word that goes there: the block is not executed", Severity.ERROR, "NC218"
+            )
         elif code in cycles.CYCLES:
             self._cycle(code, block, axes)
         elif code == words.RIGID_TAP:

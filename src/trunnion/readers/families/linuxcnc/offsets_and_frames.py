@@ -38,9 +38,9 @@ class OffsetInterpreter(OWordInterpreter):
         if code == DWELL:
             seconds = block.take("P")
             if seconds is None:
-                self._note("G4 without a time P", Severity.ERROR)
+                self._note("G4 without a time P", Severity.ERROR, "NC218")
             elif seconds < 0.0:
-                raise BlockError("a dwell below zero")
+                raise BlockError("a dwell below zero", code="NC215")
             else:
                 control.add_event("dwell", seconds)
         elif code == SET_DATA:
@@ -52,7 +52,7 @@ class OffsetInterpreter(OWordInterpreter):
                 control.axis_offset = np.zeros(6)
                 control.axis_offset_known = True
             if code == 923 and not control.axis_offset_known:
-                self._note("G92.3 brings back an offset that is not in the program", Severity.ERROR)
+                self._note("G92.3 brings back an offset that is not in the program", Severity.ERROR, "NC222")
             control.axis_offset_active = code == 923
             control.update_frame()
         elif code in HOMES:
@@ -79,7 +79,7 @@ class OffsetInterpreter(OWordInterpreter):
             elif not active:
                 offset[axis] = 0.0
         if float(np.abs(offset).max()) > MAX_POSITION:
-            raise BlockError("an offset is larger than any machine")
+            raise BlockError("an offset is larger than any machine", code="NC215")
         control.axis_offset, control.axis_offset_active = offset, True
         control.axis_offset_known = True
         control.update_frame()
@@ -93,7 +93,7 @@ class OffsetInterpreter(OWordInterpreter):
             for letter in "XYZABCUVWRIJQ":
                 block.take(letter)
             if kind in words.TOOL_DATA:
-                self._note(f"G10 L{kind:g} writes length and radius of a tool: not simulated", Severity.ERROR)
+                self._note(f"G10 L{kind:g} writes length and radius of a tool: not simulated", Severity.ERROR, "NC220")
             return
         if kind not in (2.0, 20.0) or system is None or system != int(system) or not 0 <= system <= 9:
             raise BlockError("G10 needs L2 or L20, and P from 0 to 9")
@@ -110,7 +110,7 @@ class OffsetInterpreter(OWordInterpreter):
         else:
             offset.values += self._offset_change(offset, block)
         if float(np.abs(offset.values).max()) > MAX_POSITION or abs(offset.rotation) > MAX_POSITION:
-            raise BlockError("an offset is larger than any machine")
+            raise BlockError("an offset is larger than any machine", code="NC215")
         control.set_values(number, offset)
 
     def _offset_change(self, offset: Offset, block: Block) -> Floats:
@@ -136,7 +136,7 @@ class OffsetInterpreter(OWordInterpreter):
                 value *= self.control.length_unit
             elif value is not None and name not in self.control.rotary_names:
                 if value:
-                    self._note(f"{name}: the machine has no such axis", Severity.ERROR)
+                    self._note(f"{name}: the machine has no such axis", Severity.ERROR, "NC230")
                 value = None
             values.append(value)
         return values

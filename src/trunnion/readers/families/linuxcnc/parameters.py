@@ -67,11 +67,11 @@ class Parameters:
         if found is not None:
             return found
         if isinstance(key, str):
-            raise BlockError(f"#<{key}> has no value")
+            raise BlockError(f"#<{key}> has no value", code="NC223")
         if not 1 <= key <= MAX_NUMBER:
-            raise BlockError(f"#{key} is not from 1 to {MAX_NUMBER}")
+            raise BlockError(f"#{key} is not from 1 to {MAX_NUMBER}", code="NC215")
         if key > 5000:
-            raise BlockError(f"#{key} is a value that only the control knows")
+            raise BlockError(f"#{key} is a value that only the control knows", code="NC222")
         return 0.0
 
     def is_set(self, key: int | str) -> bool:
@@ -88,9 +88,9 @@ class Parameters:
         """Set a parameter."""
         if isinstance(key, int):
             if not 1 <= key <= MAX_NUMBER:
-                raise BlockError(f"#{key} is not from 1 to {MAX_NUMBER}")
+                raise BlockError(f"#{key} is not from 1 to {MAX_NUMBER}", code="NC215")
             if key > 5000:
-                raise BlockError(f"#{key} is set by the control, not by programs")
+                raise BlockError(f"#{key} is set by the control, not by programs", code="NC223")
             self._numbers[key] = value
             return
         table = self._global if key.startswith("_") else self._local[-1]

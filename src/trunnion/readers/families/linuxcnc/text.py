@@ -67,7 +67,7 @@ class LinuxcncText(SourceText):
         try:
             return self._structures()[1][line]
         except KeyError:
-            raise self.problem(line, "has an O word that begins or ends nothing") from None
+            raise self.problem(line, "has an O word that begins or ends nothing", code="NC142") from None
 
     def _structures(self) -> tuple[dict[str, Structure], dict[int, Structure]]:
         if self._jump_targets.found is None:
@@ -86,17 +86,17 @@ class LinuxcncText(SourceText):
             if word in ("BREAK", "CONTINUE"):
                 inside = [kept for name, kept in open_ if name == label and kept.word in _LOOPS]
                 if not inside:
-                    raise self.problem(line, f"has {word} outside a loop of its label")
+                    raise self.problem(line, f"has {word} outside a loop of its label", code="NC142")
                 by_line[line] = inside[-1]
             elif word in ("ELSEIF", "ELSE"):
                 if top is None or top[1].word != "IF":
-                    raise self.problem(line, f"has {word} without its IF")
+                    raise self.problem(line, f"has {word} without its IF", code="NC142")
                 top[1].branches.append(line)
                 by_line[line] = top[1]
             elif word.startswith("END") or (word == "WHILE" and top is not None and top[1].word == "DO"):
                 opening = word.removeprefix("END") if word.startswith("END") else "DO"
                 if top is None or top[1].word != opening:
-                    raise self.problem(line, f"has {word} without its beginning")
+                    raise self.problem(line, f"has {word} without its beginning", code="NC142")
                 structure = open_.pop()[1]
                 structure.end = line
                 structure.branches.append(line)
@@ -108,8 +108,8 @@ class LinuxcncText(SourceText):
                 by_line[line] = structure
                 open_.append((label, structure))
                 if len(open_) > MAX_NESTING:
-                    raise self.problem(line, f"nests control structures deeper than {MAX_NESTING} levels")
+                    raise self.problem(line, f"nests control structures deeper than {MAX_NESTING} levels", code="NC141")
         if open_:
             structure = open_[-1][1]
-            raise self.problem(structure.begin, f"begins {structure.word}, which never ends")
+            raise self.problem(structure.begin, f"begins {structure.word}, which never ends", code="NC142")
         return subprograms, by_line

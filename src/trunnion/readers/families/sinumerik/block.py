@@ -120,7 +120,7 @@ class BlockReader:
                 else:
                     raise ExpressionError(f"unexpected {token.text}")
             except ExpressionError as error:
-                self._note(f"not understood: {_text(tokens, before)}: {error}", Severity.ERROR)
+                self._note(f"not understood: {_text(tokens, before)}: {error}", Severity.ERROR, error.code)
                 break
         return block
 
@@ -194,7 +194,7 @@ class BlockReader:
 
     def _axis(self, block: Block, name: str, value: float, mode: PositionMode) -> None:
         if name in block.axes:
-            self._note(f"{name} is written twice: the last one counts", Severity.WARNING)
+            self._note(f"{name} is written twice: the last one counts", Severity.WARNING, "NC212")
         block.axes[name] = value, mode
 
     def _address(self, reader: ExpressionReader, block: Block, address: tuple[str, str], word: _Word) -> None:
@@ -210,7 +210,7 @@ class BlockReader:
             case (("M" | "S"), _) if not master_spindle:
                 # M2=3 and S2=100 address spindle 2; only the master spindle is simulated.
                 text = f"M{extension}={_code(number, 'M')}" if letter == "M" else f"S{extension}="
-                self._note(f"{text} speaks to another spindle: not followed", Severity.WARNING)
+                self._note(f"{text} speaks to another spindle: not followed", Severity.WARNING, "NC221")
             case "G", "":
                 block.g.append(_code(number, "G"))
             case "M", _:
@@ -219,7 +219,7 @@ class BlockReader:
                 block.speed = number
             case "F", "":
                 if not 0.0 <= number <= MAX_FEED:
-                    raise ExpressionError(f"a feed is not from 0 to {MAX_FEED:g}")
+                    raise ExpressionError(f"a feed is not from 0 to {MAX_FEED:g}", code="NC215")
                 block.feed = number
             case "D", "":
                 block.edge = _code(number, "D")
@@ -234,9 +234,11 @@ class BlockReader:
             case (("L" | "P"), ""):
                 self._subprogram_word(reader, block, letter, number)
             case (("A" | "B" | "C" | "X" | "Y" | "Z" | "U" | "V" | "W"), ""):
-                self._note(f"the machine has no axis {letter}: {letter}{number:g} is not executed", Severity.ERROR)
+                self._note(
+                    f"the machine has no axis {letter}: {letter}{number:g} is not executed", Severity.ERROR, "NC230"
+                )
             case _:
-                self._note(f"unknown word {letter}{extension}={number:g}", Severity.ERROR)
+                self._note(f"unknown word {letter}{extension}={number:g}", Severity.ERROR, "NC211")
 
     @staticmethod
     def _subprogram_word(reader: ExpressionReader, block: Block, letter: str, number: float) -> None:
@@ -313,7 +315,7 @@ class BlockReader:
                 raise ExpressionError("FGROUP takes names of axes")
         if axes and axes != {"X", "Y", "Z"}:
             axis_names = _text(reader.tokens, start, reader.at - 1)
-            raise ExpressionError(f"F that counts for {axis_names} is not simulated; FGROUP(X,Y,Z) is")
+            raise ExpressionError(f"F that counts for {axis_names} is not simulated; FGROUP(X,Y,Z) is", code="NC220")
 
     @staticmethod
     def _polynomial(reader: ExpressionReader, block: Block) -> None:
@@ -340,9 +342,11 @@ class BlockReader:
         elif name == FEED_RADIUS:
             block.feed_radius = _number(value)
         elif name in OTHER_FEEDS and value != OTHER_FEEDS[name]:
-            raise ExpressionError(f"{name} changes the feed: not simulated")
+            raise ExpressionError(f"{name} changes the feed: not simulated", code="NC220")
         elif name in GREATEST and not 0.0 <= _number(value) <= GREATEST[name]:
-            raise ExpressionError(f"{name} is not from 0 to {GREATEST[name]:g}: farther off than the checks allow for")
+            raise ExpressionError(
+                f"{name} is not from 0 to {GREATEST[name]:g}: farther off than the checks allow for", code="NC215"
+            )
 
     def _subprograms(self, reader: ExpressionReader, name: str) -> None:
         """Read and report a word that is not simulated, with everything that belongs to it."""
@@ -354,15 +358,15 @@ class BlockReader:
         value = self._value(reader)[0] if reader.peek() == "=" else None
         if name == "TCARR" and value == 0.0:
             return
-        self._note(f"{_text(reader.tokens, start, reader.at)} is known but not simulated", Severity.ERROR)
+        self._note(f"{_text(reader.tokens, start, reader.at)} is known but not simulated", Severity.ERROR, "NC220")
 
     def _assignment(self, reader: ExpressionReader, name: str, variables: Variables) -> None:
         if name.startswith("$"):
-            raise ExpressionError(f"{name} is a system variable, which is not simulated")
+            raise ExpressionError(f"{name} is a system variable, which is not simulated", code="NC220")
         index = reader.index()
         reader.expect("=")
         if not variables.assign(name, index, reader.value()):
-            self._note(f"{name} has no DEF in the program; write DEF REAL {name}", Severity.ERROR)
+            self._note(f"{name} has no DEF in the program; write DEF REAL {name}", Severity.ERROR, "NC223")
 
 
 def read_call(reader: ExpressionReader, name: str) -> Call:

@@ -39,7 +39,7 @@ class CallInterpreter(Interpreter[ActiveProgram]):
     def _call_one(self, calls: Sequence[Call]) -> None:
         """Call the subprogram of a block, after everything else in the block is executed."""
         if len(calls) > 1:
-            self._note("several subprograms in one block: only the first is executed", Severity.ERROR)
+            self._note("several subprograms in one block: only the first is executed", Severity.ERROR, "NC212")
         for call in calls[:1]:
             self._enter_subprogram(call)
 
@@ -50,6 +50,7 @@ class CallInterpreter(Interpreter[ActiveProgram]):
             self._note(
                 f"unknown word or missing subprogram {call.name[:80]}: it is not executed; name its file, if it is one",
                 Severity.ERROR,
+                "NC132",
             )
             return
         if call.repeats < 1:

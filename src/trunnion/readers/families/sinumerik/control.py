@@ -48,10 +48,23 @@ class SinumerikControl(VirtualControl):
         self._machine_vectors = False
         self.tool_frame = False
         self._offset_is_lost = False
+        self._programmed_ends, self._smooths = "off", False
         # The word in force of each group that counts within radius compensation.
         self._compensation_modes: dict[str, str] = {}
         super().__init__(machine, note, shortest=shortest)
         self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), comment=";", assign="=")
+
+    def add_exact_stop(self, mode: str) -> None:
+        """Record a G code of exact stops, which counts until ``smooth`` switches, or another one."""
+        if mode != "block":
+            self._programmed_ends, self._smooths = mode, False
+        super().add_exact_stop(mode)
+
+    def smooth(self, on: bool) -> None:
+        """Switch continuous path on, as CYCLE832 does, or go back to the G code that the program had before it."""
+        if on != self._smooths and self._programmed_ends != "off":
+            super().add_exact_stop("off" if on else self._programmed_ends)
+        self._smooths = on
 
     def lose_offset(self) -> None:
         """Record that TRAORI clears the work offset that is selected; the coordinates stay those of the program."""
@@ -102,7 +115,7 @@ class SinumerikControl(VirtualControl):
 
     def _report_compensation_mode(self, word: str) -> None:
         if effect := WITHIN_COMPENSATION[word][1]:
-            self.note(f"{word} within radius compensation: {effect}, which is not simulated", Severity.ERROR)
+            self.note(f"{word} within radius compensation: {effect}, which is not simulated", Severity.ERROR, "NC220")
 
     def set_working_plane(self, plane: int) -> None:
         """Select the working plane (G17, G18, G19) by its normal axis."""
@@ -155,7 +168,7 @@ class SinumerikControl(VirtualControl):
             if name not in params:
                 continue
             if axis == self.plane_axis:
-                self.note(f"{name} has no meaning for a circle in this plane", Severity.WARNING)
+                self.note(f"{name} has no meaning for a circle in this plane", Severity.WARNING, "NC213")
                 continue
             centre = start.copy() if centre is None else centre
             value, how = params[name]
@@ -164,7 +177,7 @@ class SinumerikControl(VirtualControl):
         if "CR" in params:
             radius = params["CR"][0] * self.length_unit
             if centre is not None:
-                self.note("CR= and a centre in one block: CR= counts", Severity.ERROR)
+                self.note("CR= and a centre in one block: CR= counts", Severity.ERROR, "NC216")
             return arcs.by_radius(start, end, radius, self.plane_axis, clockwise, turns)
         if "AR" in params:
             angle = params["AR"][0]
@@ -194,7 +207,7 @@ class SinumerikControl(VirtualControl):
             self.tool_frame = False
             return
         if not self.tcp or self.tilted or (not self.tool_frame and not np.array_equal(program.linear, np.eye(3))):
-            self.note(f"{word} without TRAORI, or on top of a turned frame, is not simulated", Severity.ERROR)
+            self.note(f"{word} without TRAORI, or on top of a turned frame, is not simulated", Severity.ERROR, "NC340")
             return
         self.set_program_frame(
             self._along_tool(program.shift if word.startswith("TOROT") else np.zeros(3)), keep_base=False
@@ -218,7 +231,9 @@ class SinumerikControl(VirtualControl):
         if turns:
             self.set_program_frame(self._along_tool(program.shift), keep_base=False)
         if (turns or self.tool_frame) and any(any(motion.lateral) for motion in motions):
-            self.note("the cycle lifts off along X and Y of a frame that the control's settings turn", Severity.ERROR)
+            self.note(
+                "the cycle lifts off along X and Y of a frame that the control's settings turn", Severity.ERROR, "NC224"
+            )
         super().drill(motions, work)
         if turns:
             self.set_program_frame(program, keep_base=False)
@@ -254,17 +269,21 @@ class SinumerikControl(VirtualControl):
         """Return rotary values whose tool axis is ``normal``, with the second axis on the side of ``direction``."""
         pairs = tool_orientation.solutions(self.machine, normal, self.current_joints)
         if not pairs:
-            self.note("CYCLE800: no rotary position stands the tool on this plane", Severity.ERROR)
+            self.note("CYCLE800: no rotary position stands the tool on this plane", Severity.ERROR, "NC350")
             return None
         inside = [pair for pair in pairs if tool_orientation.is_in_travel(self.machine, pair)]
         if not inside:
-            self.note("CYCLE800: no rotary position inside the travel stands the tool on this plane", Severity.ERROR)
+            self.note(
+                "CYCLE800: no rotary position inside the travel stands the tool on this plane", Severity.ERROR, "NC350"
+            )
             return None
         chosen = sorted(pairs, key=lambda pair: pair[1], reverse=direction > 0)[0]
         if chosen not in inside:
-            self.note("CYCLE800: the solution that _DIR asks for is outside the travel", Severity.ERROR)
+            self.note("CYCLE800: the solution that _DIR asks for is outside the travel", Severity.ERROR, "NC350")
             chosen = inside[0]
         target = tool_orientation.nearest_in_travel(self.machine, chosen, self.current_joints)
         if tool_orientation.is_other_solution(self.machine, target, self.current_joints, normal):
-            self.note("CYCLE800 turns the tool, which stands on the plane, to the other solution", Severity.ERROR)
+            self.note(
+                "CYCLE800 turns the tool, which stands on the plane, to the other solution", Severity.ERROR, "NC350"
+            )
         return target

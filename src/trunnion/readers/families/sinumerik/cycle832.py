@@ -1,4 +1,9 @@
-"""CYCLE832: within what tolerance the control may smooth the path."""
+"""CYCLE832: within what tolerance the control may smooth the path.
+
+With a machining type the cycle, as the control has it, programs continuous path (G64, G642 or G645, with a compressor),
+whatever G60 stands before it; off, the control goes back to its settings. What a machine's builder puts into CUST_832
+is not known here.
+"""
 
 from typing import Final
 
@@ -23,14 +28,15 @@ def smooth(control: SinumerikControl, call: Call) -> None:
     tolerance, mode, orientation = (*call.arguments, None, None, None)[:3]
     if len(call.arguments) > _MOST_ARGUMENTS or (isinstance(orientation, float) and orientation < 0.0):
         text = "CYCLE832 takes a tolerance, a mode, and a tolerance of the orientation that is not below zero"
-        control.note(text, Severity.ERROR)
+        control.note(text, Severity.ERROR, "NC215")
     if isinstance(mode, float) and not _is_mode(mode):
-        control.note(f"CYCLE832 with the mode {mode:g}, which the control does not have", Severity.ERROR)
+        control.note(f"CYCLE832 with the mode {mode:g}, which the control does not have", Severity.ERROR, "NC215")
     given = tolerance if isinstance(tolerance, float) else 0.0
     if given < 0.0 or (given == 0.0 and isinstance(mode, float) and int(mode) % 10):
         text = f"CYCLE832 smooths within {given:g}: give its first value, such as 0.02, or _OFF"
-        control.note(text, Severity.ERROR)
+        control.note(text, Severity.ERROR, "NC215")
     control.add_tolerance(given * control.length_unit)
+    control.smooth(isinstance(mode, float) and _is_mode(mode) and int(mode) % 10 > 0)
 
 
 def _is_mode(mode: float) -> bool:

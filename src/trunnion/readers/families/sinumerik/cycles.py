@@ -147,7 +147,9 @@ def check_unread(name: str, arguments: Arguments, plane_axis: int) -> None:
     """
     for place, known in CYCLE_VALUES.get(name, {}).items():
         if (value := _or(arguments, place)) not in known:
-            raise CycleExecutionError(f"has {value:g} as its value {place}: the control knows {known} there")
+            raise CycleExecutionError(
+                f"has {value:g} as its value {place}: the control knows {known} there", code="NC215"
+            )
     place = _AXIS_PLACES.get(name, 0)
     axis = _or(arguments, place) if place else 0.0
     if axis and axis != plane_axis + 1:
@@ -161,13 +163,13 @@ def check_unread(name: str, arguments: Arguments, plane_axis: int) -> None:
     first = _MODE_PLACES[name]
     geometry, plane, alternatives = (_or(arguments, first + k) for k in range(3))
     if geometry:
-        raise CycleExecutionError(f"has _GMODE {geometry:g}, which is not simulated")
+        raise CycleExecutionError(f"has _GMODE {geometry:g}, which is not simulated", code="NC220")
     if plane and plane != 3 - plane_axis:
         raise CycleExecutionError(f"has _DMODE {plane:g}, which is not the working plane")
     if not alternatives:
         return
     if name not in ("CYCLE81", "CYCLE82") or alternatives not in _ALTERNATIVES:
-        raise CycleExecutionError(f"has _AMODE {alternatives:g}, which is not simulated")
+        raise CycleExecutionError(f"has _AMODE {alternatives:g}, which is not simulated", code="NC220")
     depth, dwell = alternatives % 10, alternatives // 10
     if (depth == 1 and not _or(arguments, 5)) or (depth == 2 and _or(arguments, 5)):
         raise CycleExecutionError(f"has _AMODE {alternatives:g}, which does not fit DP and DPR")

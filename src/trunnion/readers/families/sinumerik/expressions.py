@@ -25,6 +25,10 @@ MAX_VALUE: Final = 1e300
 class ExpressionError(Exception):
     """The reason why an expression has no value."""
 
+    def __init__(self, text: str, *, code: str = "NC210") -> None:
+        super().__init__(text)
+        self.code = code
+
 
 class Names(Protocol):
     """Where expressions look up variables."""
@@ -225,7 +229,7 @@ class ExpressionReader:
         try:
             return _sound(float(function(*arguments)))
         except (ValueError, OverflowError, ZeroDivisionError):
-            raise ExpressionError(f"{name} has no value here") from None
+            raise ExpressionError(f"{name} has no value here", code="NC215") from None
 
 
 def whole(value: float) -> int:

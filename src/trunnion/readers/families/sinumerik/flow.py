@@ -72,7 +72,7 @@ class Flow:
         try:
             holds = bool(reader.number())
         except ExpressionError as error:
-            self._note(f"not understood: IF: {error}: taken as not fulfilled", Severity.ERROR)
+            self._note(f"not understood: IF: {error}: taken as not fulfilled", Severity.ERROR, "NC143")
             while reader.token is not None and not reader.peek().startswith("GOTO"):
                 reader.at += 1
             holds = False
@@ -112,7 +112,7 @@ class Flow:
 
     def _repeat(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         if reader.token is not None:
-            raise ExpressionError("repeating a part of the program by its labels is not simulated")
+            raise ExpressionError("repeating a part of the program by its labels is not simulated", code="NC220")
         active.source.partner(line)
 
     def _until(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
@@ -185,7 +185,7 @@ class Flow:
         if name == "R":
             active.variables.set_parameter(index[0], value)
         elif not active.variables.assign(name, index, value):
-            self._note(f"{name} has no DEF in the program; write DEF REAL {name}", Severity.ERROR)
+            self._note(f"{name} has no DEF in the program; write DEF REAL {name}", Severity.ERROR, "NC223")
 
     def _goto(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
         reader.at -= 1
@@ -204,7 +204,7 @@ class Flow:
         if found is not None:
             active.source.jump_without_choice(found)
         elif word != "GOTOC":
-            self._note(f"the target {target} of {word} is missing: the program ends here", Severity.ERROR)
+            self._note(f"the target {target} of {word} is missing: the program ends here", Severity.ERROR, "NC133")
             raise ProgramEnd
 
     def _target(
@@ -287,7 +287,7 @@ class Flow:
         else:
             given = reader.value()
             if size:
-                self._note(f"{name}: a field takes SET(...)", Severity.ERROR)
+                self._note(f"{name}: a field takes SET(...)", Severity.ERROR, "NC215")
             else:
                 active.variables.assign(name, (), given)
 
@@ -295,7 +295,9 @@ class Flow:
         """Define the parameters of the PROC line with the arguments of the call."""
         handed = active.variables.arguments
         if any(token.text == "SAVE" for token in reader.tokens[reader.at :]):
-            self._note("SAVE: G words come back at the end of the subprogram, which is not simulated", Severity.ERROR)
+            self._note(
+                "SAVE: G words come back at the end of the subprogram, which is not simulated", Severity.ERROR, "NC220"
+            )
         reader.at += 1
         if not reader.accept("("):
             return

@@ -122,7 +122,7 @@ class SinumerikInterpreter(CallInterpreter):
             self._record_comment(line, comment)
             return
         if len(words) > MAX_LENGTH:
-            self._note(f"the block is longer than {MAX_LENGTH} characters: it is not executed", Severity.ERROR)
+            self._note(f"the block is longer than {MAX_LENGTH} characters: it is not executed", Severity.ERROR, "NC214")
             return
         tokens = tokenize(words)
         at = self._read_line_start(tokens)
@@ -169,7 +169,7 @@ class SinumerikInterpreter(CallInterpreter):
         try:
             flow(reader, active, line)
         except ExpressionError as error:
-            self._note(f"not understood: {first.text}: {error}", Severity.ERROR)
+            self._note(f"not understood: {first.text}: {error}", Severity.ERROR, error.code)
 
     # Blocks
 
@@ -232,14 +232,14 @@ class SinumerikInterpreter(CallInterpreter):
         if not has_motion or G_NO_MOTION.intersection(block.g):
             return False
         if {"I", "J", "K"} & block.params.keys() and control.motion <= LINEAR:
-            self._note("I, J and K have no meaning for a straight line", Severity.WARNING)
+            self._note("I, J and K have no meaning for a straight line", Severity.WARNING, "NC213")
         if block.vector and not control.tip_programmed:
-            self._note("A3= B3= C3= need TRAORI: the vector is taken as the tool axis", Severity.ERROR)
+            self._note("A3= B3= C3= need TRAORI: the vector is taken as the tool axis", Severity.ERROR, "NC340")
         if control.tool_frame and {"X", "Y"} & block.axes.keys():
             text = "X and Y before TOROTOF point where the control's settings have them: not known"
-            self._note(text, Severity.ERROR)
+            self._note(text, Severity.ERROR, "NC224")
         if self._other_feed_radius and control.motion != RAPID and self._only_turns(block):
-            self._note("FGREF changes the feed of the rotary axes: not simulated", Severity.ERROR)
+            self._note("FGREF changes the feed of the rotary axes: not simulated", Severity.ERROR, "NC220")
         control.move(
             block.axes,
             block.tool_axis,
@@ -272,13 +272,17 @@ class SinumerikInterpreter(CallInterpreter):
         elif code in G_FEEDS:
             control.modal.feed_mode.set(control.row, G_FEEDS[code])
             if code in G_SURFACE:
-                self._note(f"G{code}: constant surface speed is not simulated", Severity.ERROR)
+                self._note(f"G{code}: constant surface speed is not simulated", Severity.ERROR, "NC220")
         elif code in G_OFFSETS:
             control.set_offset(code, f"G{code}")
             control.regain_offset(code)
         elif code in G_NOT_SIMULATED:
             text, changes_path = G_NOT_SIMULATED[code]
-            self._note(f"G{code}: {text}", Severity.ERROR if changes_path else Severity.WARNING)
+            self._note(
+                f"G{code}: {text}",
+                Severity.ERROR if changes_path else Severity.WARNING,
+                "NC220" if changes_path else "NC221",
+            )
             if code in _THREADS:
                 control.motion = LINEAR
         elif code in EXACT_STOPS:
@@ -287,18 +291,20 @@ class SinumerikInterpreter(CallInterpreter):
             control.modify_compensation(f"G{code}")
         elif code in G_RESERVED:
             text = "belongs to the machine's builder: what it does is not known; a definition can declare it"
-            self._note(f"G{code} {text}", Severity.ERROR)
+            self._note(f"G{code} {text}", Severity.ERROR, "NC224")
         elif not (
             code in G_WITHOUT_PATH_EFFECT or code in G_RADIUS_COMPENSATION or code in G_MACHINE or code == _DWELL
         ):
-            self._note(f"unknown word G{code}", Severity.ERROR)
+            self._note(f"unknown word G{code}", Severity.ERROR, "NC211")
 
     def _word(self, word: str, block: Block) -> None:
         control = self.control
         match word:
             case "TRAORI":
                 if block.traori not in (1.0, 2.0):
-                    self._note(f"TRAORI({block.traori:g}): only the machine knows what it transforms", Severity.ERROR)
+                    self._note(
+                        f"TRAORI({block.traori:g}): only the machine knows what it transforms", Severity.ERROR, "NC224"
+                    )
                 control.set_tcp(True)
                 control.lose_offset()
             case "TRAFOOF":
@@ -331,9 +337,9 @@ class SinumerikInterpreter(CallInterpreter):
         elif block.speed is not None:
             self.control.add_event("dwell", -block.speed)
         else:
-            self._note("G4 without a time", Severity.ERROR)
+            self._note("G4 without a time", Severity.ERROR, "NC218")
         if block.axes:
-            self._note("axis words beside G4 are not executed", Severity.ERROR)
+            self._note("axis words beside G4 are not executed", Severity.ERROR, "NC213")
 
     def _m_code(self, code: int) -> None:
         control = self.control
@@ -350,28 +356,28 @@ class SinumerikInterpreter(CallInterpreter):
             raise ProgramEnd
         elif code in M_GEARS:
             text = "chooses a gear, whose speeds only the machine knows; a definition can declare it"
-            self._note(f"M{code} {text}", Severity.ERROR)
+            self._note(f"M{code} {text}", Severity.ERROR, "NC224")
         else:
             control.add_event("m", float(code))
 
     def _frame(self, words: list[str], block: Block) -> None:
         control = self.control
         if len(words) > 1:
-            self._note("several frame words in one block: the last one counts", Severity.ERROR)
+            self._note("several frame words in one block: the last one counts", Severity.ERROR, "NC212")
         word = words[-1]
         additive = word.startswith("A")
         statement = word.removeprefix("A")
         values: dict[str, float] = {}
         for name, (value, _) in {**block.axes, **block.params}.items():
             if abs(value) * control.length_unit > MAX_POSITION:
-                self._note(f"{word}: {name} is larger than any machine: the frame is not used", Severity.ERROR)
+                self._note(f"{word}: {name} is larger than any machine: the frame is not used", Severity.ERROR, "NC330")
                 return
             if name in ("X", "Y", "Z"):
                 values[name] = value * control.length_unit if statement == "TRANS" else value
             elif name == "RPL":
                 values[name] = value
             else:
-                self._note(f"{word}: {name} is not simulated", Severity.ERROR)
+                self._note(f"{word}: {name} is not simulated", Severity.ERROR, "NC220")
         frame = frame_of_statement(statement, values, control.plane_axis)
         control.set_program_frame(control.program_frame.compose(frame) if additive else frame)
         control.add_event("frame", "" if not additive and not values else word)
@@ -403,7 +409,7 @@ class SinumerikInterpreter(CallInterpreter):
             numbers = cycles.in_millimetres(call.name, numbers, control.length_unit, control.feed_unit)
             motions, work = cycles.cycle_motions(call.name, numbers, rpm), cycles.spindle_work(call.name, numbers)
         except CycleExecutionError as error:
-            self._note(f"{call.name} {error}: it is not executed", Severity.ERROR)
+            self._note(f"{call.name} {error}: it is not executed", Severity.ERROR, error.code)
             return
         self._counter.count_blocks(len(motions))
         control.drill([motion.with_lengths_in(control.length_unit) for motion in motions], work)

@@ -33,7 +33,7 @@ def move_along_polynomials(control: SinumerikControl, block: Block, count: Calla
     """
     fault = _fault(control, block)
     if fault:
-        control.note(f"{fault}: the block is not executed", Severity.ERROR)
+        control.note(f"{fault}: the block is not executed", Severity.ERROR, "NC322")
         return
     interval, unit = block.interval or 1.0, control.length_unit
     start = control.programmed_position / unit
@@ -55,7 +55,7 @@ def move_along_polynomials(control: SinumerikControl, block: Block, count: Calla
     try:
         points = points_of_polynomial(coefficients, interval, unit)
     except SplineError as error:
-        control.note(f"{error}: the block is not executed", Severity.ERROR)
+        control.note(f"{error}: the block is not executed", Severity.ERROR, "NC322")
         return
     count(len(points))
     control.move_along_spline(polynomial_spline(coefficients * unit, interval), points * unit, bits)

@@ -72,7 +72,7 @@ class SinumerikText(SourceText):
         try:
             return self._jump_targets.partners[line]
         except KeyError:
-            raise self.problem(line, "has a control word that begins or ends nothing") from None
+            raise self.problem(line, "has a control word that begins or ends nothing", code="NC142") from None
 
     def _match_structures(self) -> dict[int, tuple[int, int]]:
         partners: dict[int, tuple[int, int]] = {}
@@ -85,11 +85,11 @@ class SinumerikText(SourceText):
                 continue
             if word == "ELSE":
                 if not open_ or open_[-1][0] != "IF" or open_[-1][2]:
-                    raise self.problem(line, "has an ELSE without its IF")
+                    raise self.problem(line, "has an ELSE without its IF", code="NC142")
                 open_[-1] = ("IF", open_[-1][1], line)
             elif word in _ENDS:
                 if not open_ or open_[-1][0] != _ENDS[word]:
-                    raise self.problem(line, f"has {word} without its {_ENDS[word]}")
+                    raise self.problem(line, f"has {word} without its {_ENDS[word]}", code="NC142")
                 _, begin, middle = open_.pop()
                 partners[begin] = (middle, line)
                 partners[line] = (0, begin)
@@ -98,9 +98,9 @@ class SinumerikText(SourceText):
             else:
                 open_.append((word, line, 0))
                 if len(open_) > MAX_NESTING:
-                    raise self.problem(line, f"nests control structures deeper than {MAX_NESTING} levels")
+                    raise self.problem(line, f"nests control structures deeper than {MAX_NESTING} levels", code="NC141")
         if open_:
-            raise self.problem(open_[-1][1], f"begins {open_[-1][0]}, which never ends")
+            raise self.problem(open_[-1][1], f"begins {open_[-1][0]}, which never ends", code="NC142")
         return partners
 
 

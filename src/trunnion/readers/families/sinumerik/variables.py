@@ -48,7 +48,7 @@ class Variables:
     def define(self, kind: str, name: str, value: Value | None = None, *, place: tuple[int, int] = (0, 0)) -> None:
         """DEF: define a variable of this program, once; a jump may lead to the same place, line and word, again."""
         if self._places.setdefault(name, place) != place:
-            raise ExpressionError(f"{name} is defined twice")
+            raise ExpressionError(f"{name} is defined twice", code="NC223")
         self._types[name] = kind
         self._local[name] = {}
         self.assign(name, (), value if value is not None else ("" if kind in ("STRING", "AXIS") else 0.0))
@@ -101,10 +101,10 @@ class Variables:
         if name in CONSTANTS and not index:
             return float(CONSTANTS[name])
         if name.startswith("$"):
-            raise ExpressionError(f"{name} is a system variable, which only the control knows")
-        raise ExpressionError(f"{name} has no value")
+            raise ExpressionError(f"{name} is a system variable, which only the control knows", code="NC222")
+        raise ExpressionError(f"{name} has no value", code="NC223")
 
     @staticmethod
     def _check_index(number: int) -> None:
         if not 0 <= number <= MAX_NUMBER:
-            raise ExpressionError(f"{number} is not from 0 to {MAX_NUMBER}")
+            raise ExpressionError(f"{number} is not from 0 to {MAX_NUMBER}", code="NC215")

@@ -50,7 +50,10 @@ def read_autodesk(file: str, root: Mapping[str, Any]) -> ToolLibrary:
     entries = library.children("data", _MOST_TOOLS)
     if library.faults:
         raise InputError(
-            [Problem(file, 0, what, "export the library again, or fewer tools") for what in library.faults]
+            [
+                Problem(file, 0, what, "export the library again, or fewer tools", code="SIM170")
+                for what in library.faults
+            ]
         )
     tools: list[LibraryTool] = []
     unusable: list[UnusableTool] = []
@@ -76,7 +79,7 @@ def _read_tool(file: str, place: str, tool: JsonObject) -> LibraryTool | Unusabl
         tool.faults.extend(f"its {size.replace('_', ' ')} {what}; {cure}" for size, what, cure in faults)
     if tool.faults or not found:
         shown = " ".join(filter(None, ("tool", "" if called is None else str(called), name)))
-        problems = (Problem(file, 0, f"{shown} ({place}): {what}", _SAY_IT) for what in tool.faults)
+        problems = (Problem(file, 0, f"{shown} ({place}): {what}", _SAY_IT, code="SIM152") for what in tool.faults)
         return UnusableTool(called, name, tuple(problems))
     kind = short_text(tool.values.get("type"))
     return LibraryTool(found, called, name, kind, tuple(_remarks(kind, tool)))

@@ -88,7 +88,7 @@ def read_freecad(file: str, root: Mapping[str, Any]) -> ToolLibrary:
         ]
     if whats or sizes is None:
         cure = "state the tool itself: its kind and its sizes"
-        problems = tuple(Problem(file, 0, f"tool bit {name}: {what}", cure) for what in whats)
+        problems = tuple(Problem(file, 0, f"tool bit {name}: {what}", cure, code="SIM152") for what in whats)
         return ToolLibrary(file, (), (UnusableTool(None, name, problems),))
     remarks = [f"a tool bit has no holder: all of its length, {sizes.length:g} mm, stands free"] if sizes.length else []
     remarks += ["it is a tap: simulated without its thread"] if known == "tap" else []

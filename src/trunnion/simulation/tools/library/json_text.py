@@ -27,19 +27,21 @@ def parse_json(file: str, data: bytes) -> object:
     """
     if len(data) > MAX_BYTES:
         cure = "export fewer tools at a time"
-        raise InputError(Problem(file, 0, f"has more than {MAX_BYTES >> 20} MB of tools", cure))
+        raise InputError(Problem(file, 0, f"has more than {MAX_BYTES >> 20} MB of tools", cure, code="SIM172"))
     try:
         text = data.decode("utf-8-sig")
         return json.loads(text, parse_constant=_refuse, object_pairs_hook=_unique)
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        raise InputError(Problem(file, line, "is not UTF-8 text", "export the library again")) from None
+        raise InputError(Problem(file, line, "is not UTF-8 text", "export the library again", code="SIM170")) from None
     except RecursionError:
-        raise InputError(Problem(file, 0, "nests too deeply", "export the library again")) from None
+        raise InputError(Problem(file, 0, "nests too deeply", "export the library again", code="SIM170")) from None
     except json.JSONDecodeError as error:
-        raise InputError(Problem(file, error.lineno, f"is not JSON: {error.msg}", "export the library again")) from None
+        raise InputError(
+            Problem(file, error.lineno, f"is not JSON: {error.msg}", "export the library again", code="SIM170")
+        ) from None
     except ValueError as error:  # also a number with thousands of digits
-        raise InputError(Problem(file, 0, f"is not JSON: {error}", "export the library again")) from None
+        raise InputError(Problem(file, 0, f"is not JSON: {error}", "export the library again", code="SIM170")) from None
 
 
 def _refuse(word: str) -> NoReturn:

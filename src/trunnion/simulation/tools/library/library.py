@@ -73,7 +73,9 @@ class ToolLibrary:
             if len(found) > 1:
                 same = ", ".join(dict.fromkeys(tool.name or str(tool.number) for tool in found))
                 cure = "number and name them apart, or state the tool itself: its kind and its sizes"
-                raise InputError(Problem(self.file, 0, f"{len(found)} tools have the {what} {called}: {same}", cure))
+                raise InputError(
+                    Problem(self.file, 0, f"{len(found)} tools have the {what} {called}: {same}", cure, code="SIM173")
+                )
             if found:
                 return found[0].shape()
         return None
@@ -91,4 +93,4 @@ class ToolLibrary:
             return found
         called_by = f"number {number}" if number is not None else f'name "{name}"'
         cure = "add it to the library, or state the tool itself: its kind and its sizes"
-        raise InputError(Problem(self.file, 0, f"has no tool of the {called_by}", cure))
+        raise InputError(Problem(self.file, 0, f"has no tool of the {called_by}", cure, code="SIM173"))

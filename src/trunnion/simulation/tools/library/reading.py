@@ -66,10 +66,10 @@ def _read(file: Path, most: int) -> bytes:
         with file.open("rb") as stream:
             data = stream.read(most + 1)
     except OSError as error:
-        raise InputError(Problem(str(file), 0, f"cannot be read: {error.strerror or error}")) from None
+        raise InputError(Problem(str(file), 0, f"cannot be read: {error.strerror or error}", code="SIM170")) from None
     if len(data) > most:
         what = f"has more than {most} bytes"
-        raise InputError(Problem(str(file), 0, what, "export fewer tools at a time"))
+        raise InputError(Problem(str(file), 0, what, "export fewer tools at a time", code="SIM172"))
     return data
 
 
@@ -83,40 +83,46 @@ def _text(name: str, data: bytes) -> str:
 def _unit(unit: str) -> float:
     if unit not in _UNITS:
         what = f'is "{unit}"' if unit else "is not stated: a tool table does not say its unit"
-        raise InputError(argument_problem("unit", what, 'write "mm" or "inch", the unit of the machine'))
+        raise InputError(argument_problem("unit", what, 'write "mm" or "inch", the unit of the machine', code="SIM175"))
     return _UNITS[unit]
 
 
 def _from_json(name: str, data: bytes) -> ToolLibrary:
     if data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] != b"{":
-        raise InputError(Problem(name, 0, "is no tool library that is known here", _CURE))
+        raise InputError(Problem(name, 0, "is no tool library that is known here", _CURE, code="SIM171"))
     root = parse_json(name, data)
     assert isinstance(root, dict)
     if "data" in root:
         return read_autodesk(name, root)
     if "parameter" in root and ("shape" in root or "shape-type" in root):
         return read_freecad(name, root)
-    raise InputError(Problem(name, 0, "is JSON, but neither a tool library nor a tool bit", _CURE))
+    raise InputError(Problem(name, 0, "is JSON, but neither a tool library nor a tool bit", _CURE, code="SIM171"))
 
 
 def _unpack(name: str, data: bytes) -> bytes:
     """The one JSON text of an archive."""
     if data.count(_ENTRY) > _MAX_FILES:
-        raise InputError(Problem(name, 0, f"is an archive with more than {_MAX_FILES} files", _AS_EXPORTED))
+        raise InputError(
+            Problem(name, 0, f"is an archive with more than {_MAX_FILES} files", _AS_EXPORTED, code="SIM172")
+        )
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             infos = archive.infolist()
             found = [info for info in infos if info.filename.casefold().endswith(".json")]
             if len(found) != 1:
                 what = f"is an archive with {counted(len(infos), 'file')}, {len(found)} of them JSON"
-                raise InputError(Problem(name, 0, what, _AS_EXPORTED))
+                raise InputError(Problem(name, 0, what, _AS_EXPORTED, code="SIM170"))
             if found[0].flag_bits & 1 or found[0].compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-                raise InputError(Problem(name, 0, "is an archive with a password or a rare packing", _AS_EXPORTED))
+                raise InputError(
+                    Problem(name, 0, "is an archive with a password or a rare packing", _AS_EXPORTED, code="SIM170")
+                )
             with archive.open(found[0]) as stream:
                 text = stream.read(MAX_BYTES + 1)
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, OSError, RuntimeError, ValueError) as error:
-        raise InputError(Problem(name, 0, f"is a damaged archive: {error}", "export the library again")) from None
+        raise InputError(
+            Problem(name, 0, f"is a damaged archive: {error}", "export the library again", code="SIM170")
+        ) from None
     if len(text) > MAX_BYTES:
         what = f"grows to more than {MAX_BYTES >> 20} MB while it is unpacked"
-        raise InputError(Problem(name, 0, what, "export fewer tools at a time"))
+        raise InputError(Problem(name, 0, what, "export fewer tools at a time", code="SIM172"))
     return text

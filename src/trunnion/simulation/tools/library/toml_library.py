@@ -52,11 +52,13 @@ def read_tool_tables(root: Table) -> tuple[LibraryTool, ...]:
         number = table.integer("number", None, at_least=0, at_most=_MOST)
         name = table.text("name", "")
         if "number" not in table and not name:
-            table.add_problem("", "has neither number nor name", "write number = 3, as programs call the tool")
+            table.add_problem(
+                "", "has neither number nor name", "write number = 3, as programs call the tool", code="SIM174"
+            )
         called: dict[str, int | str | None] = {"number": number, "name": name or None}
         for key, value in called.items():
             if value is not None and taken.setdefault(value, table.path) != table.path:
-                table.add_problem(key, f"is that of {taken[value]} too", "tell tools apart")
+                table.add_problem(key, f"is that of {taken[value]} too", "tell tools apart", code="SIM151")
         tools += _read_tool(table, number, name)
     return tuple(tools)
 
@@ -85,7 +87,7 @@ def _read_tool(table: Table, number: int | None, name: str) -> list[LibraryTool]
     found = ToolSizes(kind, **sizes)
     faults = shape_faults(found)
     for size, what, cure in faults:
-        table.add_problem(size if size in _PIECES else _key(size), what, cure)
+        table.add_problem(size if size in _PIECES else _key(size), what, cure, code="SIM152")
     return [] if faults else [LibraryTool(found, number, name, description)]
 
 

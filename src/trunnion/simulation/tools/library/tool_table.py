@@ -41,14 +41,18 @@ def read_tool_table(file: str, text: str, unit: float) -> ToolLibrary:
     for line, content in enumerate(text.split("\n"), 1):
         words, what = _words(content.partition(";")[0])
         if what:
-            problems.append(Problem(file, line, what, _LINE))
+            problems.append(Problem(file, line, what, _LINE, code="SIM174"))
         if not words or what:
             continue
         number, diameter = int(words["T"]), words.get("D", 0.0) * unit
         if number in seen:
-            problems.append(Problem(file, line, f"tool {number} is there twice", "number tools apart"))
+            problems.append(Problem(file, line, f"tool {number} is there twice", "number tools apart", code="SIM151"))
         elif not 0.0 <= diameter <= GREATEST:
-            problems.append(Problem(file, line, f"tool {number} has the diameter {words['D']:g}", "write one above 0"))
+            problems.append(
+                Problem(
+                    file, line, f"tool {number} has the diameter {words['D']:g}", "write one above 0", code="SIM174"
+                )
+            )
         elif diameter:
             diameters[number] = diameter
         seen.add(number)

@@ -1,0 +1,375 @@
+"""Hooks of a user: Python files that change what CL files ask for, before anything is planned.
+
+In:     files that the user has named, and toolpaths.
+Out:    toolpaths that are checked as strictly as those of CL files, with a remark for each operation that was changed.
+        They are what the program is proven against.
+"""
+
+import inspect
+import math
+import types
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Final, TypeVar
+
+import numpy as np
+
+from trunnion.api.job import PostJob
+from trunnion.cl import unknown_statement_remarks
+from trunnion.controls.vocabulary import HOOKS_NOTICE
+from trunnion.definitions.messages import did_you_mean
+from trunnion.errors import InputError, Problem, Severity, unusable_file
+from trunnion.hooks import Block, Context
+from trunnion.model.motion import Decision, DecisionTopic
+from trunnion.model.splines import Splines
+from trunnion.model.toolpath import Arcs, Event, Insert, Kind, Moves, Operation, Phase, ShopStatement, Toolpath
+from trunnion.wording import counted
+
+#: The functions that a file of hooks may have, and what each is called with.
+_FUNCTIONS: Final = {
+    "on_operation": ("operation", "context"),
+    "on_event": ("event", "context"),
+    "on_block": ("block", "context"),
+}
+
+_Kind = TypeVar("_Kind", Operation, Event)
+
+#: What values of events may be, by how their records declare them.
+_TYPES: Final[dict[str, type | tuple[type, ...]]] = {"str": str, "int": int, "float": (int, float), "bool": bool}
+
+_FARTHEST: Final = 1e6  # mm
+_LONGEST_TEXT: Final = 1000
+_MODULE: Final = "trunnion_hooks"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HookFile:
+    """A file of hooks that has been run: its functions by name."""
+
+    path: Path
+    functions: dict[str, Callable[..., object]]
+
+    def line_of(self, name: str) -> int:
+        """The line of a function, 0 if it is not in the file."""
+        code = getattr(self.functions[name], "__code__", None)
+        return code.co_firstlineno if code is not None and code.co_filename == str(self.path) else 0
+
+
+def load_hooks(paths: Iterable[Path]) -> tuple[HookFile, ...]:
+    """Run files of hooks, in their order.
+
+    Raises
+    ------
+    InputError
+        If a file is none, fails, or has no hooks, at its line.
+    """
+    return tuple(_load(path) for path in paths)
+
+
+class Hooks:
+    """Calls the functions of hook files for toolpaths.
+
+    changed_motion  names of the operations whose motion is another one than in their CL file, in order
+    decisions       what was changed, for reports
+    """
+
+    def __init__(self, files: Sequence[HookFile], job: PostJob) -> None:
+        self._files, self._job = files, job
+        self.changed_motion: list[str] = []
+        self.decisions: list[Decision] = []
+
+    @property
+    def notices(self) -> tuple[str, ...]:
+        """Comments for the head of the program."""
+        if not self.changed_motion:
+            return ()
+        files = ", ".join(file.path.name for file in self._files)
+        return (f"{HOOKS_NOTICE} {files}: {', '.join(dict.fromkeys(self.changed_motion))}",)
+
+    def change(self, toolpaths: Iterable[Toolpath]) -> list[Toolpath]:
+        """Return what hooks make of toolpaths, with remarks on what they changed.
+
+        Raises
+        ------
+        InputError
+            If a hook fails, or returns what no CL file could say.
+        """
+        return [self._changed(toolpath) for toolpath in toolpaths]
+
+    def _changed(self, toolpath: Toolpath) -> Toolpath:
+        if not self._files:
+            return toolpath
+        operations, remarks = list(toolpath.operations), list[Problem]()
+        for file in self._files:
+            found: list[Operation] = []
+            for number, operation in enumerate(operations, 1):
+                new = self._run(file, toolpath.file, operation, number)
+                remarks += self._remarks(file, operation, new)
+                found += new
+            operations = found
+        told = frozenset(unknown_statement_remarks(toolpath))
+        new_toolpath = replace(toolpath, operations=tuple(operations))
+        remarks += [remark for remark in toolpath.remarks if remark not in told]
+        remarks += unknown_statement_remarks(new_toolpath)
+        return replace(new_toolpath, remarks=tuple(remarks))
+
+    def _run(self, file: HookFile, cl_file: str, operation: Operation, number: int) -> list[Operation]:
+        call = _Caller(file, cl_file, self._job, number)
+        found = [operation]
+        if "on_operation" in file.functions:
+            returned = call("on_operation", operation, operation)
+            found = [operation] if returned is None else call.listed("on_operation", returned, Operation)
+            found = [_plain_operation(call, operation, each) for each in found]
+        for name, change in (("on_event", call.events), ("on_block", call.block_events)):
+            if name in file.functions:
+                found = [replace(each, events=change(each)) for each in found]
+        return found
+
+    def _remarks(self, file: HookFile, before: Operation, after: Sequence[Operation]) -> list[Problem]:
+        """What a file of hooks has changed in an operation, as warnings."""
+        if len(after) == 1 and after[0] is before:
+            return []
+        what = _motion_change(before, after)
+        if what:
+            self.changed_motion += [each.name for each in after] or [before.name]
+        old, new = list(before.events), [event for each in after for event in each.events]
+        if after and old != new:
+            what.append(f"changed its events ({len(old)} to {len(new)})")
+        if len(after) == 1 and (before.name, before.tool) != (after[0].name, after[0].tool):
+            what.append("changed its name or tool")
+        if not what:
+            return []
+        text = f"operation {before.name}: hooks {' and '.join(what)}; the program is proven against what they made"
+        self.decisions.append(
+            Decision(before.file, before.name, before.line, -1, DecisionTopic.HOOKS, f"{file.path.name}: {text}")
+        )
+        name = next(iter(file.functions))
+        return [Problem(str(file.path), file.line_of(name), text, severity=Severity.WARNING, code="HOK140")]
+
+
+def _motion_change(before: Operation, after: Sequence[Operation]) -> list[str]:
+    """How operations move the tool otherwise than the one in whose place they stand, in words; none if they do not."""
+    if len(after) != 1:
+        return [f"made {counted(len(after), 'operation')} of it" if after else "left it out"]
+    old, new = before.moves, after[0].moves
+    if len(old) != len(new):
+        return [f"changed its motion from {counted(len(old), 'point')} to {len(new)}"]
+    differs = np.zeros(len(old), np.bool_)
+    for one, other in ((old.tip, new.tip), (old.axis, new.axis), (old.kind, new.kind), (old.per_rev, new.per_rev)):
+        differs |= (one != other).reshape(len(old), -1).any(axis=1)
+    differs |= ~((old.feed == new.feed) | (np.isnan(old.feed) & np.isnan(new.feed)))
+    if differs.any():
+        return [f"changed its motion at {int(differs.sum())} of {counted(len(old), 'point')}"]
+    arcs, frame = (before.arcs, after[0].arcs), before.frame == after[0].frame
+    names = ("row", "centre", "normal", "radius", "full_turns")
+    same = frame and all(np.array_equal(*(getattr(each, name) for each in arcs)) for name in names)
+    return [] if same else ["changed its circles or its coordinate system"]
+
+
+class _Caller:
+    """Calls the functions of one file for one operation, and checks what they return."""
+
+    def __init__(self, file: HookFile, cl_file: str, job: PostJob, number: int) -> None:
+        self._file, self._cl_file, self._job, self._number = file, cl_file, job, number
+
+    def __call__(self, name: str, given: object, operation: Operation) -> object:
+        """Call a function with an operation, an event or a block."""
+        job = self._job
+        context = Context(
+            self._cl_file,
+            operation,
+            self._number,
+            job.machine.name,
+            job.control.name,
+            types.MappingProxyType({**job.settings}),
+        )
+        try:
+            return self._file.functions[name](given, context)
+        except (Exception, SystemExit) as error:
+            raise InputError(
+                _failure(self._file.path, error, f"{name} fails for operation {operation.name}")
+            ) from error
+
+    def refuse(self, name: str, what: str, cure: str) -> InputError:
+        """The error for what a function has returned."""
+        return InputError(
+            Problem(str(self._file.path), self._file.line_of(name), f"{name} returns {what}", cure, code="HOK130")
+        )
+
+    def listed(self, name: str, returned: object, kind: type[_Kind]) -> list[_Kind]:
+        """What a function has returned, as a list."""
+        found = [returned] if isinstance(returned, kind) else returned
+        if isinstance(found, Sequence) and not isinstance(found, str) and all(isinstance(each, kind) for each in found):
+            return list(found)
+        what = f"{type(returned).__name__}"
+        word = kind.__name__.lower()
+        raise self.refuse(name, f"a value of type {what}", f"return an {word}, a list of them, or None for no change")
+
+    def events(self, operation: Operation) -> tuple[Event, ...]:
+        """The events of an operation as ``on_event`` leaves them."""
+        found: list[Event] = []
+        for event in operation.events:
+            returned = self("on_event", event, operation)
+            if returned is None:
+                found.append(event)
+                continue
+            for new in self.listed("on_event", returned, Event):
+                if new is not event:
+                    new = self._checked("on_event", replace(new, row=event.row, line=event.line), len(operation.moves))
+                found.append(new)
+        return tuple(found)
+
+    def block_events(self, operation: Operation) -> tuple[Event, ...]:
+        """The events of an operation with those that ``on_block`` adds, behind the others of their rows."""
+        added: list[Event] = []
+        for block in _blocks(operation.moves):
+            returned = self("on_block", block, operation)
+            for new in [] if returned is None else self.listed("on_block", returned, Event):
+                if new.row not in (block.row, block.row + 1):
+                    cure = "make events with row=block.row, or row=block.row + 1 for behind it"
+                    raise self.refuse("on_block", f"an event at row {new.row} for the block of row {block.row}", cure)
+                new = replace(new, line=block.line) if new.line < 1 else new
+                added.append(self._checked("on_block", new, len(operation.moves)))
+        return tuple(sorted((*operation.events, *added), key=lambda event: event.row))
+
+    def checked_events(self, events: Iterable[Event], rows: int) -> tuple[Event, ...]:
+        """The events of an operation that ``on_operation`` has returned."""
+        found = [self._checked("on_operation", event, rows) for event in events]
+        return tuple(sorted(found, key=lambda event: event.row))
+
+    def _checked(self, name: str, event: Event, rows: int) -> Event:
+        if not isinstance(event, Event) or type(event) in (Event, ShopStatement):
+            raise self.refuse(name, "what is no event", "make events of the classes in trunnion.hooks")
+        if not 0 <= event.row <= rows:
+            raise self.refuse(name, f"an event at row {event.row}", f"its operation has the rows 0 to {rows}")
+        hints = {field.name: getattr(field.type, "__name__", field.type) for field in fields(event)}
+        for field in fields(event):
+            value = getattr(event, field.name)
+            if not _is_plain(value) or not isinstance(value, _TYPES.get(str(hints[field.name]), object)):
+                cure = "texts are of one line, and numbers are finite"
+                raise self.refuse(name, f"{type(event).__name__} with {field.name} = {value!r:.60}", cure)
+        return replace(event, template="") if isinstance(event, Insert) and event.template else event
+
+
+def _plain_operation(call: _Caller, before: Operation, operation: Operation) -> Operation:
+    """An operation that a hook has returned, checked as a reader's is by the way it is made."""
+    if operation is before:
+        return operation
+    moves, rows, arcs = operation.moves, len(operation.moves), operation.arcs
+    fault = _column_fault(moves) or _arc_fault(moves, arcs)
+    if not fault and not (isinstance(operation.name, str) and operation.name and _is_plain(operation.name)):
+        fault = "has no name, or one with control characters"
+    if fault:
+        cure = "change copies of the columns: replace(operation, moves=replace(operation.moves, feed=…))"
+        raise call.refuse("on_operation", f"an operation {operation.name!r:.60} that {fault}", cure)
+    # A spline is about its points: whoever changes these wants lines.
+    splines = operation.splines if moves is before.moves else Splines.empty()
+    events = operation.events
+    if events is not before.events or rows != len(before.moves):
+        events = call.checked_events(events, rows)
+    return replace(operation, events=events, splines=splines, file=before.file)
+
+
+def _column_fault(moves: Moves) -> str:
+    n = len(moves.tip)
+    shapes = {"tip": (n, 3), "axis": (n, 3)} | dict.fromkeys(("kind", "phase", "feed", "per_rev", "line"), (n,))
+    for name, shape in shapes.items():
+        column = getattr(moves, name)
+        if not isinstance(column, np.ndarray) or column.shape != shape:
+            return f"has a column {name} of another shape than {shape}"
+    if n == 0:
+        return "has no points"
+    types_ = {"tip": np.float64, "axis": np.float64, "feed": np.float64, "kind": np.uint8, "phase": np.uint8,
+              "per_rev": np.bool_, "line": np.int32}  # fmt: skip
+    for name, wanted in types_.items():
+        if getattr(moves, name).dtype != wanted:
+            return f"has a column {name} that is no {np.dtype(wanted).name}"
+    if not (np.abs(moves.tip) <= _FARTHEST).all():
+        return f"has a point that is none, or beyond {_FARTHEST:g} mm"
+    if not (np.abs(np.linalg.norm(moves.axis, axis=1) - 1.0) <= 1e-6).all():
+        return "has a tool axis that is no unit vector"
+    if not ((moves.kind <= max(Kind)) & (moves.phase <= max(Phase))).all():
+        return "has a kind or a phase that is none"
+    if (moves.feed < 0.0).any() or np.isinf(moves.feed).any():
+        return "has a feed that is none"
+    return "has normals of another shape" if moves.normal is not None and moves.normal.shape != (n, 3) else ""
+
+
+def _arc_fault(moves: Moves, arcs: Arcs) -> str:
+    rows = np.flatnonzero(moves.kind == Kind.ARC)
+    if not np.array_equal(rows, arcs.row):
+        return "has other arcs than its rows of kind ARC"
+    m = len(rows)
+    shapes_fit = arcs.centre.shape == (m, 3) == arcs.normal.shape and arcs.radius.shape == (m,) == arcs.full_turns.shape
+    values = (arcs.centre, arcs.normal, arcs.radius)
+    return "" if shapes_fit and all(np.isfinite(each).all() for each in values) else "has an arc that is none"
+
+
+def _is_plain(value: object) -> bool:
+    """Whether a value of an event could come from a CL file."""
+    if isinstance(value, str):
+        return len(value) <= _LONGEST_TEXT and value.isprintable()
+    if isinstance(value, tuple):
+        return len(value) <= _LONGEST_TEXT and all(map(_is_plain, value))
+    return isinstance(value, bool) or (isinstance(value, int | float) and math.isfinite(value) and abs(value) <= 1e9)
+
+
+def _blocks(moves: Moves) -> Iterable[Block]:
+    columns = (moves.tip, moves.axis, moves.kind, moves.phase, moves.feed, moves.per_rev, moves.line)
+    for row, (tip, axis, kind, phase, feed, per_rev, line) in enumerate(
+        zip(*(c.tolist() for c in columns), strict=True)
+    ):
+        yield Block(row, tuple(tip), tuple(axis), Kind(kind), Phase(phase), feed, per_rev, line)
+
+
+def _load(path: Path) -> HookFile:
+    problem = unusable_file(path, "a file of hooks")
+    if problem is None and path.suffix != ".py":
+        problem = Problem(
+            str(path), 0, "is no Python file", "give the path of a file of hooks, such as shop.py", code="HOK110"
+        )
+    if problem is not None:
+        raise InputError(problem)
+    module = types.ModuleType(_MODULE)
+    module.__file__ = str(path)
+    try:
+        exec(compile(path.read_text(encoding="utf-8-sig"), str(path), "exec"), module.__dict__)
+    except (Exception, SystemExit) as error:
+        raise InputError(_failure(path, error, "the file of hooks fails")) from error
+    named = {name: value for name, value in vars(module).items() if name.startswith("on_") and callable(value)}
+    for name, function in named.items():
+        if name not in _FUNCTIONS:
+            line = getattr(getattr(function, "__code__", None), "co_firstlineno", 0)
+            cure = did_you_mean(name, _FUNCTIONS) or f"hooks are {', '.join(_FUNCTIONS)}"
+            raise InputError(Problem(str(path), line, f"{name} is no hook", cure, code="HOK110"))
+        _check_signature(path, name, function)
+    if not named:
+        cure = f"write a function {' or '.join(_FUNCTIONS)}"
+        raise InputError(Problem(str(path), 0, "the file has no hooks", cure, code="HOK110"))
+    return HookFile(path, {name: named[name] for name in _FUNCTIONS if name in named})
+
+
+def _check_signature(path: Path, name: str, function: Callable[..., object]) -> None:
+    try:
+        inspect.signature(function).bind(*_FUNCTIONS[name])
+    except (TypeError, ValueError):
+        line = getattr(getattr(function, "__code__", None), "co_firstlineno", 0)
+        cure = f"write def {name}({', '.join(_FUNCTIONS[name])}):"
+        raise InputError(Problem(str(path), line, f"{name} takes other arguments", cure, code="HOK110")) from None
+
+
+def _failure(path: Path, error: BaseException, what: str) -> Problem:
+    """The problem that an exception is, at the line of the file where it came about."""
+    line, trace = 0, error.__traceback__
+    while trace is not None:
+        if trace.tb_frame.f_code.co_filename == str(path):
+            line = trace.tb_lineno
+        trace = trace.tb_next
+    if isinstance(error, SyntaxError) and error.filename == str(path):
+        line = error.lineno or 0
+    text = str(error).splitlines()
+    said = f": {text[0]}" if text else ""
+    return Problem(
+        str(path), line, f"{what}: {type(error).__name__}{said}", "mend it there, or leave the hooks out", code="HOK120"
+    )

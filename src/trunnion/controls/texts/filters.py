@@ -1,0 +1,215 @@
+"""The filters of templates. ``docs/templates.md`` explains them; the number formats of a control are filters too."""
+
+import unicodedata
+from collections.abc import Callable, Mapping
+from typing import Any, Final
+
+from jinja2 import pass_context
+from jinja2.runtime import Context
+
+from trunnion.controls.template import number_text
+from trunnion.controls.texts.values import (
+    LONGEST_TEXT,
+    Fault,
+    Length,
+    Rendering,
+    as_number,
+    bounded_text,
+    number_of,
+    shown,
+    text_of,
+)
+
+#: The name under which a template's context has its ``Rendering``; none of its own names begins so.
+RENDERING: Final = "_rendering"
+
+#: Filters that stand for what is written otherwise, or must be bounded. No template can write such a name.
+FORMAT: Final = "number format"
+EACH: Final = "passes of a loop"
+RANGE: Final = "whole numbers"
+JOINED: Final = "texts one after the other"
+
+_LONGEST_RANGE: Final = 10_000
+_FARTHEST: Final = 10**12
+_WIDEST: Final = 200
+
+
+def rendering_of(context: Context) -> Rendering:
+    """The writing of a template that is going on."""
+    rendering = context.parent[RENDERING]
+    assert isinstance(rendering, Rendering)
+    return rendering
+
+
+@pass_context
+def printed(context: Context, value: object) -> str:
+    """Return a value as the text of the program."""
+    return text_of(value, rendering_of(context).printing.unit)
+
+
+# What the tree puts in place of something else
+
+
+@pass_context
+def _format(context: Context, value: object, name: str) -> str | None:
+    """A number in a number format of the control."""
+    if value is None or value == "":
+        return None
+    printing, number = rendering_of(context).printing, as_number(value)
+    number_format = printing.formats[name]
+    if isinstance(value, Length) and printing.unit != 1.0 and number_format.unit == 1.0:
+        raise Fault(f"prints a length by the format {name}, which is in mm", "write inch = { decimals = … } into it")
+    if number is None:
+        raise Fault(f"prints {shown(value)} by the format {name}, and it is no number")
+    return number_text("value", number, number_format)
+
+
+@pass_context
+def _each(context: Context, items: object, steps: int) -> tuple[object, ...]:
+    """What a loop goes through, once its passes are paid for."""
+    if items is None:
+        return ()
+    if not isinstance(items, tuple | list | range):
+        raise Fault(f"goes through {shown(items)}, which is no list")
+    rendering_of(context).charge(steps * len(items))
+    return tuple(items)
+
+
+def _range(first: object, *others: object) -> range:
+    """Whole numbers, as Python's range has them."""
+    numbers = [each for each in (first, *others) if isinstance(each, int) and not isinstance(each, bool)]
+    if len(numbers) != len(others) + 1 or len(numbers) > 3 or (len(numbers) == 3 and numbers[2] == 0):
+        raise Fault("has a range that is not of whole numbers", "write range(3), or range(1, 4)")
+    if max(map(abs, numbers)) > _FARTHEST or len(found := range(*numbers)) > _LONGEST_RANGE:
+        raise Fault(f"has a range of more than {_LONGEST_RANGE} numbers")
+    return found
+
+
+@pass_context
+def _joined(context: Context, first: object, *others: object) -> str | None:
+    """Texts one after the other; None if one is absent."""
+    unit, parts = rendering_of(context).printing.unit, (first, *others)
+    return None if any(part is None for part in parts) else bounded_text("".join(text_of(part, unit) for part in parts))
+
+
+# Texts
+
+
+def _of_text(what: str, change: Callable[..., str]) -> Callable[..., str | None]:
+    """A filter of texts, which leaves an absent one absent."""
+
+    def changed(value: object, *arguments: object) -> str | None:
+        return None if value is None else bounded_text(change(_plain(value, what), *arguments))
+
+    return changed
+
+
+def _plain(value: object, what: str) -> str:
+    if isinstance(value, str):
+        return str.__str__(value)
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return text_of(value)
+    raise Fault(f"has {shown(value)} where | {what} wants a text")
+
+
+def _ascii(text: str) -> str:
+    letters = unicodedata.normalize("NFKD", text.replace("ß", "ss").replace("Ø", "O").replace("ø", "o"))
+    plain = "".join(letter for letter in letters if not unicodedata.combining(letter))
+    return "".join(letter if " " <= letter <= "~" else "?" for letter in plain.upper())
+
+
+def _cut(text: str, most: object = 80) -> str:
+    return text[: _whole(most, "cut", LONGEST_TEXT)]
+
+
+def _pad(text: str, width: object = 0, sign: object = "0") -> str:
+    if not isinstance(sign, str) or len(sign) != 1:
+        raise Fault("pads with what is not one letter")
+    return text.rjust(_whole(width, "pad", _WIDEST), sign)
+
+
+def _replace(text: str, old: object = "", new: object = "") -> str:
+    old, new = _plain(old, "replace"), _plain(new, "replace")
+    if not old or len(text) + text.count(old) * len(new) > LONGEST_TEXT:
+        raise Fault("replaces an empty text, or makes one that is too long")
+    return text.replace(old, new)
+
+
+def _whole(value: object, what: str, most: int) -> int:
+    if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value <= most:
+        raise Fault(f"has {shown(value)} in | {what}", f"write a whole number up to {most}")
+    return value
+
+
+# Numbers and lists
+
+
+def _round(value: object, decimals: object = 0) -> float | None:
+    if value is None:
+        return None
+    rounded = round(float(number_of(value, "round")), _whole(decimals, "round", 9))
+    if isinstance(value, Length):
+        return Length(rounded)
+    return int(rounded) if decimals == 0 else rounded
+
+
+def _absolute(value: object) -> float | None:
+    if value is None:
+        return None
+    number = abs(number_of(value, "abs"))
+    return Length(number) if isinstance(value, Length) else number
+
+
+def _list(value: object, what: str) -> tuple[object, ...]:
+    if isinstance(value, tuple | list | range):
+        return tuple(value)
+    raise Fault(f"has {shown(value)} where | {what} wants a list")
+
+
+@pass_context
+def _join(context: Context, value: object, between: object = "") -> str:
+    items, unit, sign = _list(value, "join"), rendering_of(context).printing.unit, _plain(between, "join")
+    rendering_of(context).charge(len(items))
+    if len(sign) * len(items) > LONGEST_TEXT:
+        raise Fault(f"makes a text of more than {LONGEST_TEXT} letters")
+    return bounded_text(sign.join(text_of(item, unit) for item in items if item is not None))
+
+
+def _default(value: object, other: object = None) -> object:
+    return other if value is None or value == "" else value
+
+
+def _is_odd(value: object) -> bool:
+    return number_of(value, "odd") % 2 == 1
+
+
+def _is_even(value: object) -> bool:
+    return number_of(value, "even") % 2 == 0
+
+
+#: The tests of templates, behind ``is``.
+TESTS: Final[Mapping[str, Callable[..., bool]]] = {
+    "none": lambda value: value is None, "odd": _is_odd, "even": _is_even,
+}  # fmt: skip
+
+_OWN: Final[Mapping[str, Callable[..., Any]]] = {
+    "upper": _of_text("upper", str.upper),
+    "lower": _of_text("lower", str.lower),
+    "trim": _of_text("trim", str.strip),
+    "ascii": _of_text("ascii", _ascii),
+    "cut": _of_text("cut", _cut),
+    "pad": _of_text("pad", _pad),
+    "replace": _of_text("replace", _replace),
+    "default": _default,
+    "number": as_number,
+    "round": _round,
+    "abs": _absolute,
+    "count": lambda value: len(_list(value, "count")),
+    "first": lambda value: next(iter(_list(value, "first")), None),
+    "last": lambda value: next(iter(_list(value, "last")[::-1]), None),
+    "join": _join,
+}
+
+ALL: Final[Mapping[str, Callable[..., Any]]] = {
+    **_OWN, FORMAT: _format, EACH: _each, RANGE: _range, JOINED: _joined,
+}  # fmt: skip

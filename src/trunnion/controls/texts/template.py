@@ -1,0 +1,201 @@
+"""A template in the template language: what it prints, what is wrong with it, and its lines for a program."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Final, NoReturn
+
+import jinja2
+from jinja2 import meta, nodes
+
+from trunnion.controls.template import Printing, Template, Value
+from trunnion.controls.texts import filters, tree
+from trunnion.controls.texts.sandbox import SANDBOX
+from trunnion.controls.texts.values import ABSENT, MOST_CHARACTERS, Fault, Length, Rendering, as_number
+from trunnion.controls.words import WordRangeError
+from trunnion.errors import InputError, Problem
+
+#: What Python says of an expression whose values do not fit.
+_FAULTS: Final = (jinja2.TemplateError, TypeError, ValueError, ArithmeticError, RecursionError, LookupError)
+
+_OPTIONAL: Final = re.compile(f"{tree.OPENING}([^{tree.OPENING}{tree.CLOSING}]*){tree.CLOSING}")
+_TAG: Final = re.compile(r"\{%.*?%\}|\{#.*?#\}|\{\{.*?\}\}", re.DOTALL)
+_STATEMENT_LINE: Final = re.compile(r"\{[%#]")
+_PRINTED: Final = re.compile(r"\{\{-?\s*([A-Za-z_]\w*)\s*(?:\|\s*([A-Za-z_]\w*)\s*)?-?\}\}")
+
+_NOT_UNDERSTOOD: Final = "docs/templates.md has the language"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TextTemplate(Template):
+    """A template with statements or expressions of the template language.
+
+    found       (line, name, format) of each value that it prints or asks for; the name is empty for another expression
+    attributes  values of tools and operations that it asks for
+    code        what it is for Jinja
+    cost        operations of one writing, without the passes of its loops
+    """
+
+    found: tuple[tuple[int, str, str], ...] = ()
+    attributes: frozenset[str] = frozenset()
+    code: jinja2.Template | None = field(default=None, repr=False)
+    cost: int = 0
+
+    @property
+    def is_text(self) -> bool:
+        """Whether its lines are not those of the program: they are not."""
+        return True
+
+    @property
+    def record_values(self) -> frozenset[str]:
+        """The values of tools and operations that it asks for."""
+        return self.attributes
+
+    def fields(self) -> frozenset[tuple[str, str]]:
+        """Return the (name, format) of every value that it asks for; the format is empty where it has none."""
+        return frozenset((name, number_format) for _, name, number_format in self.found if name)
+
+    def fields_by_line(self) -> list[frozenset[tuple[str, str]]]:
+        """Return the fields of each line."""
+        lines = [set[tuple[str, str]]() for _ in self.lines]
+        for line, name, number_format in self.found:
+            if name:
+                lines[min(line, len(lines)) - 1].add((name, number_format))
+        return [frozenset(each) for each in lines]
+
+    def fields_beside(self, name: str) -> list[set[str]]:
+        """Return where it is printed: always, as nobody knows what a condition finds."""
+        return [set()] if any(each == name for each, _ in self.fields()) else []
+
+    def numbers(self) -> set[tuple[str, str]]:
+        """Return the (text, format) of what it prints by a format and is no value by name."""
+        return {("…", number_format) for _, name, number_format in self.found if not name and number_format}
+
+    def unread_fields(self) -> list[str]:
+        """Return the lines with braces that are no field, and those with half of double brackets."""
+        return [
+            line
+            for line, plain in zip(self.lines, self.plain_lines(), strict=True)
+            if set("{}") & set(plain) or plain.count("[[") != plain.count("]]")
+        ]
+
+    def plain_lines(self) -> list[str]:
+        """Return the lines with a zero byte for each field, expression and statement."""
+        plain = _TAG.sub(lambda tag: "\0" + "\n" * tag[0].count("\n"), "\n".join(self.lines))
+        return tree.FIELD.sub("\0", plain).split("\n")
+
+    def pattern_lines(self) -> tuple[str, ...]:
+        """Return the lines that print nothing but fields: a program may have been written from these."""
+        lines = []
+        for line in self.lines:
+            simple = _PRINTED.sub(lambda m: f"{{{m[1]}:{m[2]}}}" if m[2] else f"{{{m[1]}}}", line)
+            if not _STATEMENT_LINE.search(simple) and "{{" not in simple and "}}" not in simple and simple.strip():
+                lines.append(simple)
+        return tuple(lines)
+
+    def place_of(self, line: int) -> tuple[str, int]:
+        """Return file and line of the definition of one of the lines, counted from 0."""
+        return self.file, self.line + line + (len(self.lines) > 1) if self.line else 0
+
+    def expand(self, values: Mapping[str, Value], printing: Printing) -> list[str]:
+        """Return the lines of the program, without those whose values are absent, and without empty ones.
+
+        Raises
+        ------
+        InputError
+            If it does what it cannot do, or a number is beyond the limits of its format; at its line.
+        """
+        assert self.code is not None
+        rendering = Rendering(printing)
+        context: dict[str, object] = {name: _prepared(name, value, printing) for name, value in values.items()}
+        context |= {**printing.lists, filters.RENDERING: rendering}
+        pieces: list[str] = []
+        left = min(MOST_CHARACTERS, printing.budget.characters)
+        try:
+            rendering.charge(self.cost)
+            for piece in self.code.generate(context):
+                pieces.append(piece)
+                left -= len(piece)
+                if left < 0:
+                    raise Fault("writes too much", f"write at most {MOST_CHARACTERS} letters")
+        except (Fault, WordRangeError, *_FAULTS) as error:
+            self._refuse(error)
+        text = "".join(pieces)
+        printing.budget.characters -= len(text)
+        return _complete_lines(text)
+
+    def _refuse(self, error: Exception) -> NoReturn:
+        line, trace = 0, error.__traceback__
+        while trace is not None:
+            if trace.tb_frame.f_code.co_filename == self.name:
+                line = trace.tb_lineno
+            trace = trace.tb_next
+        file, at = self.place_of(max(line, 1) - 1)
+        fault = error if isinstance(error, Fault) else Fault(f"does not work: {error}", _NOT_UNDERSTOOD)
+        if isinstance(error, WordRangeError):
+            fault = Fault(
+                f"prints a {error.what}", "correct the value; the control's definition has the limits of formats"
+            )
+        raise InputError(Problem(file, at, f"template {self.name} {fault.what}", fault.cure, code="DEF510")) from None
+
+
+def text_template(name: str, text: str, file: str, line: int) -> tuple[TextTemplate, Fault | None]:
+    """Read a template in the template language.
+
+    Returns
+    -------
+    template
+        Without code if something is wrong.
+    fault
+        The first thing in it that cannot be, at its line within the text, from 1; None if it can be compiled. Whether
+        its names and formats exist depends on the control.
+    """
+    lines = tuple(text.rstrip("\n").split("\n"))
+    try:
+        found, attributes, code, cost = _compiled(name, "\n".join(lines))
+    except Fault as fault:
+        return TextTemplate(name, lines, file, line), fault
+    except jinja2.TemplateSyntaxError as error:
+        return TextTemplate(name, lines, file, line), Fault(
+            f"is not understood: {error.message}", _NOT_UNDERSTOOD, error.lineno
+        )
+    except (RecursionError, SyntaxError, ValueError, ArithmeticError, MemoryError):
+        what = "has too much within each other, or a number that is none"
+        return TextTemplate(name, lines, file, line), Fault(what, _NOT_UNDERSTOOD)
+    return TextTemplate(name, lines, file, line, found, attributes, code, cost), None
+
+
+def _compiled(name: str, text: str) -> tuple[tuple[tuple[int, str, str], ...], frozenset[str], jinja2.Template, int]:
+    """What a template asks for, its code, and how many operations it is."""
+    checked = tree.with_fields(tree.parsed(text))
+    formats = list(tree.formats_of(checked))
+    asked = [(node.lineno, node.name) for node in checked.find_all(nodes.Name) if node.ctx == "load"]
+    attributes = frozenset(node.attr for node in checked.find_all(nodes.Getattr))
+    cost = tree.for_compiler(checked, {each for _, _, each in formats})
+    free = meta.find_undeclared_variables(checked)
+    named = {(line, value) for line, value, _ in formats}
+    found = [(line, value if value in free else "", each) for line, value, each in formats]
+    found += [(line, value, "") for line, value in asked if value in free and (line, value) not in named]
+    code = SANDBOX.compile(checked, name, name)
+    return tuple(found), attributes, jinja2.Template.from_code(SANDBOX, code, {}), cost
+
+
+def _prepared(name: str, value: Value, printing: Printing) -> object:
+    """A value as expressions have it: numbers as such, and lengths as lengths."""
+    if value is None or value == "":
+        return None
+    if name in printing.lengths and (number := as_number(value)) is not None:
+        return Length(number)
+    if isinstance(value, str) and name in printing.numbers:
+        return as_number(value)
+    return value
+
+
+def _complete_lines(text: str) -> list[str]:
+    lines = []
+    for line in text.split("\n"):
+        line = _OPTIONAL.sub(lambda part: "" if ABSENT in part[1] else part[1], line)
+        line = line.replace(tree.OPENING, "").replace(tree.CLOSING, "").rstrip()
+        if line and ABSENT not in line:
+            lines.append(line)
+    return lines

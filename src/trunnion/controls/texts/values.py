@@ -1,0 +1,170 @@
+"""What expressions of templates deal with: numbers, lengths, texts, lists, and records of tools and operations.
+
+An absent value is None: what is made of it is absent too, and a line that prints it is left out.
+"""
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache
+from typing import Final
+
+from trunnion.controls.template import Printing
+
+#: Stands in a printed line for an absent value.
+ABSENT: Final = "\0"
+
+#: Letters of one text that an expression makes.
+LONGEST_TEXT: Final = 10_000
+
+#: Operations and letters of one template each time that it is written.
+MOST_STEPS: Final = 1_000_000
+MOST_CHARACTERS: Final = 1_000_000
+
+_GREATEST: Final = 1e15
+_CONTROL_CHARACTERS: Final = dict.fromkeys((*range(32), 127, 133, 8232, 8233), " ")
+_NUMBER: Final = re.compile(r"[-+]?(?:\d{1,15}\.?\d{0,15}|\.\d{1,15})", re.ASCII)
+
+
+class Fault(Exception):  # noqa: N818 - it is the template's
+    """What a template does that it cannot: ``what`` it is, the ``cure``, and its line if that is known, else 0."""
+
+    def __init__(self, what: str, cure: str = "", line: int = 0) -> None:
+        super().__init__(what)
+        self.what, self.cure, self.line = what, cure, line
+
+
+class Length(float):
+    """A length or feed in mm, which a program prints in its unit."""
+
+
+class Later:
+    """A value that is worked out when a template asks for it."""
+
+    __slots__ = ("_make",)
+
+    def __init__(self, make: Callable[[], object]) -> None:
+        self._make = cache(make)
+
+    def value(self) -> object:
+        """Return it, worked out once."""
+        return self._make()
+
+
+class Record(str):
+    """A tool or an operation: prints as its number or name, and has ``values`` by name."""
+
+    values: Mapping[str, object]
+
+    def __new__(cls, text: str, values: Mapping[str, object]) -> "Record":
+        """Make a record that prints as ``text``."""
+        record = super().__new__(cls, text)
+        record.values = values
+        return record
+
+
+@dataclass(slots=True, eq=False)
+class Rendering:
+    """One writing of a template: what it prints with, and the operations that it may still take."""
+
+    printing: Printing
+    steps: int = MOST_STEPS
+
+    def charge(self, steps: int) -> None:
+        """Count operations before they are done."""
+        budget = self.printing.budget
+        self.steps -= steps
+        budget.steps -= steps
+        if min(self.steps, budget.steps) < 0:
+            raise Fault("goes on for too long", "write fewer loops within each other")
+
+
+def shown(value: object) -> str:
+    """A value in a message, cut short."""
+    if isinstance(value, str):
+        return repr(value[:40])
+    if isinstance(value, tuple | list | range):
+        return "a list"
+    return str(value) if isinstance(value, bool | int | float) else "a name that has no value here"
+
+
+def number_of(value: object, what: str) -> float:
+    """A value that must be a number."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        cure = "join texts by ~, and make a number of a text by | number"
+        raise Fault(f"has {shown(value)} where {what} wants a number", cure)
+    return value
+
+
+def as_number(value: object) -> float | None:
+    """A number, or a text of one, as a number; None if it is none."""
+    if isinstance(value, bool):
+        return None
+    if isinstance(value, int | float):
+        return value
+    if isinstance(value, str) and _NUMBER.fullmatch(value.strip()):
+        number = float(value)
+        return int(number) if number.is_integer() else number
+    return None
+
+
+def bounded(number: float) -> float:
+    """A calculated number, if it is not too large."""
+    if not (math.isfinite(number) and abs(number) <= _GREATEST):
+        raise Fault("calculates a number that is too large")
+    return number
+
+
+def bounded_text(text: str) -> str:
+    """A text that was made, if it is not too long."""
+    if len(text) > LONGEST_TEXT:
+        raise Fault(f"makes a text of more than {LONGEST_TEXT} letters")
+    return text
+
+
+def text_of(value: object, unit: float = 1.0) -> str:
+    """A value as the text of a program that counts in ``unit``, mm; no line break comes of it."""
+    if value is None:
+        return ABSENT
+    if isinstance(value, str):
+        return str.__str__(value).translate(_CONTROL_CHARACTERS)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        cure = "go through a list by {% for … %}, or join it by | join"
+        raise Fault(f"prints {shown(value)}, which is neither a text nor a number", cure)
+    number = float(value) / unit if isinstance(value, Length) else value
+    text = f"{number:.6f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
+
+
+def calculated(operator: str, left: object, right: object) -> float | None:
+    """The result of arithmetic; None if one of the numbers is absent.
+
+    A length stays one where it is added to, or multiplied by a number.
+    """
+    if left is None or right is None:
+        return None
+    a, b = number_of(left, operator), number_of(right, operator)
+    if operator in ("/", "//", "%") and b == 0:
+        raise Fault("divides by 0", "ask before whether the number is 0")
+    match operator:
+        case "+":
+            result = a + b
+        case "-":
+            result = a - b
+        case "*":
+            result = a * b
+        case "/":
+            result = a / b
+        case "//":
+            result = a // b
+        case _:
+            result = a % b
+    return Length(bounded(result)) if _is_length(operator, left, right) else bounded(result)
+
+
+def _is_length(operator: str, left: object, right: object) -> bool:
+    lengths = isinstance(left, Length) + isinstance(right, Length)
+    if operator in ("+", "-", "%"):
+        return lengths > 0
+    return lengths == 1 and (operator == "*" or isinstance(left, Length))

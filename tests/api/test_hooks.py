@@ -1,0 +1,250 @@
+"""Hooks: what they change is checked, told and proven; what they do wrong is told at their line; none runs unasked."""
+
+from pathlib import Path
+
+import pytest
+
+import trunnion
+from tests.support.locations import ROOT, TESTS
+from trunnion.cli import main
+
+SHOP = (TESTS / "data" / "shop.cls").read_text(encoding="utf-8")
+CL = SHOP.replace("BORHED/40.5,DEEP\n", "")
+
+IMPORTS = "from dataclasses import replace\nfrom trunnion.hooks import *\n"
+
+
+@pytest.fixture
+def part(tmp_path: Path) -> Path:
+    file = tmp_path / "part.cls"
+    file.write_text(CL, encoding="utf-8")
+    return file
+
+
+def hook(part: Path, text: str, name: str = "shop.py") -> Path:
+    """A file of hooks, whose functions begin in line 3."""
+    file = part.parent / name
+    file.write_text(IMPORTS + text, encoding="utf-8")
+    return file
+
+
+def posted(part: Path, *hooks: Path, output: Path | None = None, report: Path | None = None) -> trunnion.PostResult:
+    result = trunnion.post(part, machine="yl569", hooks=hooks, output=output, report=report)
+    assert result.passed
+    return result
+
+
+def refusal(part: Path, text: str) -> trunnion.Problem:
+    with pytest.raises(trunnion.TrunnionError) as caught:
+        trunnion.post(part, machine="yl569", hooks=[hook(part, text)])
+    return next(problem for problem in caught.value.problems if problem.severity is trunnion.Severity.ERROR)
+
+
+def told(result: trunnion.PostResult) -> list[trunnion.Problem]:
+    return [problem for problem in result.problems if problem.file.endswith(".py")]
+
+
+def test_a_hook_that_changes_nothing_leaves_the_program_as_it_is(part: Path) -> None:
+    quiet = hook(
+        part,
+        "def on_operation(operation, context):\n    return operation\n"
+        "def on_event(event, context):\n    return event if isinstance(event, Message) else None\n"
+        "def on_block(block, context):\n    return []\n",
+    )
+    result = posted(part, quiet)
+    assert result.text == posted(part).text
+    assert not told(result)
+
+
+def test_changed_events_are_in_the_program_and_told(part: Path) -> None:
+    file = hook(
+        part,
+        "def on_event(event, context):\n"
+        "    if isinstance(event, Message):\n"
+        "        return [Message(0, 0, event.text.upper()), Insert(0, 0, 'M61')]\n"
+        "    if isinstance(event, Coolant):\n"
+        "        return []\n",
+    )
+    result = posted(part, file)
+    lines = [line.split(" ", 1)[1] for line in (result.text or "").splitlines()]
+    at = lines.index(";CHECK THE CLAMPS (3X)")
+    assert lines[at + 1] == "M61"
+    assert "M8" not in (result.text or "")
+    (problem,) = told(result)
+    assert (problem.file, problem.line, problem.severity) == (str(file), 3, trunnion.Severity.WARNING)
+    assert problem.what.startswith("operation ROUGH TOP: hooks changed its events")
+    assert "MOTION CHANGED" not in (result.text or "")
+
+
+def test_changed_motion_is_what_the_program_is_proven_against_and_its_head_says_so(part: Path, tmp_path: Path) -> None:
+    file = hook(
+        part,
+        "def on_operation(operation, context):\n"
+        "    if context.number == 2:\n"
+        "        moves = operation.moves\n"
+        "        moves = replace(moves, feed=moves.feed / 2, tip=moves.tip + [0.0, 0.0, 1.0])\n"
+        "        return replace(operation, moves=moves)\n",
+    )
+    result = posted(part, file, report=tmp_path / "report.json")
+    assert "MOTION CHANGED BY HOOKS shop.py: DRILL SIDE" in (result.text or "").splitlines()[0]
+    (problem,) = told(result)
+    assert "hooks changed its motion at 4 of 4 points" in problem.what
+    assert float(result.motions[1].operation.moves.feed[1]) == 150.0
+    assert "hooks changed its motion" in (tmp_path / "report.json").read_text(encoding="utf-8")
+    (tmp_path / "part.mpf").write_text(result.text or "", encoding="utf-8")
+    assert not trunnion.verify(tmp_path / "part.mpf", cl=part, machine="yl569").passed
+    trunnion.convert(tmp_path / "part.mpf", machine="yl569", to_cl=True, output=tmp_path / "back.cls")
+    back = (tmp_path / "back.cls").read_text(encoding="utf-8")
+    assert "MOTION CHANGED BY HOOKS shop.py: DRILL SIDE" in back
+    assert "title=" not in back
+
+
+def test_operations_can_be_left_out_and_multiplied(part: Path) -> None:
+    file = hook(
+        part,
+        "def on_operation(operation, context):\n"
+        "    if operation.name == 'DRILL SIDE':\n        return []\n"
+        "    if operation.name == 'FINISH SIDE':\n        return [operation, replace(operation, name='AGAIN')]\n",
+    )
+    result = posted(part, file)
+    assert [motion.operation.name for motion in result.motions] == ["ROUGH TOP", "FINISH SIDE", "AGAIN"]
+    assert [problem.what.split(";")[0] for problem in told(result)] == [
+        "operation DRILL SIDE: hooks left it out",
+        "operation FINISH SIDE: hooks made 2 operations of it and changed its events (2 to 4)",
+    ]
+    assert "MOTION CHANGED BY HOOKS shop.py: DRILL SIDE, FINISH SIDE, AGAIN" in (result.text or "")
+
+
+def test_a_hook_at_a_block_adds_events_before_and_behind_it(part: Path) -> None:
+    file = hook(
+        part,
+        "def on_block(block, context):\n"
+        "    if context.operation.name == 'ROUGH TOP' and block.kind is Kind.LINEAR and block.tip[0] == 10.0:\n"
+        "        assert block.feed == 500.0 and block.axis == (0.0, 0.0, 1.0)\n"
+        "        assert context.machine and context.settings == {}\n"
+        "        return [Insert(block.row, 0, 'M61'), Insert(block.row + 1, 0, 'M62')]\n",
+    )
+    lines = [line.split(" ", 1)[1] for line in (posted(part, file).text or "").splitlines()]
+    first, second = lines.index("M61"), lines.index("M62")
+    assert [line for line in lines[first:second] if "X10." in line]
+
+
+def test_a_hook_sees_statements_that_are_not_known(part: Path) -> None:
+    part.write_text(SHOP.replace("BORHED/40.5,DEEP", "AUXFUN/61"), encoding="utf-8")
+    with pytest.raises(trunnion.InputError, match="AUXFUN"):
+        posted(part)
+    file = hook(
+        part,
+        "def on_event(event, context):\n"
+        "    if isinstance(event, UnknownStatement) and event.text.startswith('AUXFUN/'):\n"
+        "        return Insert(0, 0, 'M' + event.text.partition('/')[2])\n",
+    )
+    result = posted(part, file)
+    assert "M61" in (result.text or "").split()
+    assert not [problem for problem in result.problems if "AUXFUN" in problem.what]
+
+
+def test_files_of_hooks_are_called_one_after_the_other(part: Path) -> None:
+    texts = ("event.text + '1'", "event.text + '2'")
+    body = "def on_event(event, context):\n    if isinstance(event, Message):\n        return Message(0, 0, {})\n"
+    files = [hook(part, body.format(text), f"{k}.py") for k, text in enumerate(texts)]
+    assert ";check the clamps (3x)12" in (posted(part, *files).text or "")
+    assert ";check the clamps (3x)21" in (posted(part, *files[::-1]).text or "")
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "what"),
+    [
+        ("def on_event(event, context:\n    pass\n", 3, "SyntaxError"),
+        ("x = 1\ny = x / 0\n", 4, "ZeroDivisionError: division by zero"),
+        ("import no_such_module\n", 3, "ModuleNotFoundError"),
+        ("x = 1\n", 0, "has no hooks"),
+        ("def on_evnt(event, context):\n    pass\n", 3, "on_evnt is no hook"),
+        ("def on_event(event):\n    pass\n", 3, "takes other arguments"),
+        ("def on_event(event, context):\n\n    return event.no_such\n", 5, "AttributeError"),
+        ("def on_event(e, c):\n    return told()\ndef told():\n    raise ValueError('no tool 7')\n", 6, "no tool 7"),
+        ("def on_operation(operation, context):\n    raise SystemExit(0)\n", 4, "SystemExit"),
+        ("def on_operation(operation, context):\n    return 'M30'\n", 3, "type str"),
+        ("def on_event(event, context):\n    return ['M30']\n", 3, "type list"),
+        ("def on_event(event, context):\n    return Event(0, 0)\n", 3, "no event"),
+        ("def on_event(event, context):\n    return Insert(0, 0, 'M1\\nM30')\n", 3, "text"),
+        ("def on_event(event, context):\n    return Insert(0, 0, 5)\n", 3, "text"),
+        ("def on_event(event, context):\n    return Dwell(0, 0, float('nan'))\n", 3, "amount"),
+        ("def on_block(block, context):\n    return Insert(block.row + 2, 0, 'M61')\n", 3, "row"),
+        ("def on_operation(o, c):\n    return replace(o, moves=replace(o.moves, feed=o.moves.feed[1:]))\n", 3, "feed"),
+        ("def on_operation(o, c):\n    return replace(o, moves=replace(o.moves, axis=-2 * o.moves.axis))\n", 3, "unit"),
+        ("def on_operation(o, c):\n    return replace(o, moves=replace(o.moves, tip=o.moves.tip / 0))\n", 3, "point"),
+        ("def on_operation(o, c):\n    return replace(o, moves=o.moves.select(slice(0)))\n", 3, "no points"),
+        ("def on_operation(o, c):\n    return replace(o, moves=replace(o.moves, kind=o.moves.kind + 1))\n", 3, "kind"),
+        ("def on_operation(o, c):\n    return replace(o, name='A\\nM30')\n", 3, "control characters"),
+        ("def on_operation(o, c):\n    return replace(o, events=(Stop(99, 0, False),))\n", 3, "row 99"),
+    ],
+)  # fmt: skip
+def test_what_a_hook_does_wrong_is_told_at_its_line(part: Path, text: str, line: int, what: str) -> None:
+    problem = refusal(part, text)
+    assert (Path(problem.file).name, problem.line) == ("shop.py", line)
+    assert what in problem.what
+    assert not list(part.parent.glob("*.mpf"))
+
+
+def test_raw_text_of_a_hook_is_tried_as_that_of_a_cl_file(part: Path) -> None:
+    problem = refusal(part, "def on_block(block, context):\n    return Insert(block.row, 0, 'G91')\n")
+    assert problem.what.startswith("INSERT/G91: ")
+    text = "    return Insert(0, 0, 'G91', 'program_start') if isinstance(event, Message) else None\n"
+    problem = refusal(part, "def on_event(event, context):\n" + text)
+    assert problem.what.startswith("INSERT/G91: ")
+
+
+@pytest.mark.parametrize(
+    ("name", "what"), [("none.py", "file not found"), ("part.cls", "no Python file"), (".", "is a folder")]
+)
+def test_what_is_no_file_of_hooks_is_refused(part: Path, name: str, what: str) -> None:
+    with pytest.raises(trunnion.InputError, match=what):
+        posted(part, part.parent / name)
+
+
+def test_no_file_of_hooks_is_written_over(part: Path) -> None:
+    file = hook(part, "def on_block(block, context):\n    return None\n")
+    before = file.read_bytes()
+    with pytest.raises(trunnion.InputError, match=r"shop\.py"):
+        posted(part, file, output=file)
+    assert main(["post", str(part), "--machine", "yl569", "--hooks", str(file), "--output", str(file)]) == 2
+    assert file.read_bytes() == before
+
+
+def test_hooks_run_only_when_they_are_named(part: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name in ("hooks.py", "part.py", "yl569.py", "ours.py", "conftest.py", "trunnion_hooks.py"):
+        (tmp_path / name).write_text(f"open({str(tmp_path / 'ran')!r}, 'w').close()\n", encoding="utf-8")
+    ours = tmp_path / "ours.toml"
+    ours.write_text('schema = 1\nextends = "yl569"\nname = "Ours"\n', encoding="utf-8")
+    assert main(["post", str(part), "--machine", str(ours), "--output", "-"]) == 0
+    for place in ("", "[control]\n", "[control.settings]\n"):
+        ours.write_text(
+            f'schema = 1\nextends = "yl569"\nname = "Ours"\n{place}hooks = ["hooks.py"]\n', encoding="utf-8"
+        )
+        main(["post", str(part), "--machine", str(ours), "--output", "-"])
+    assert not (tmp_path / "ran").exists()
+    capsys.readouterr()
+
+
+def test_the_command_takes_several_files(part: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    body = "def on_event(event, context):\n    if isinstance(event, Message):\n        return Message(0, 0, '{}')\n"
+    files = [hook(part, body.format(k), f"{k}.py") for k in (1, 2)]
+    arguments = [argument for file in files for argument in ("--hooks", str(file))]
+    assert main(["post", str(part), "--machine", "yl569", "--output", "-", *arguments]) == 0
+    out, err = capsys.readouterr()
+    assert ";2\n" in out
+    assert "1.py:3: warning: operation ROUGH TOP: hooks changed its events" in err
+
+
+def test_the_hooks_of_the_page_do_what_it_says(part: Path) -> None:
+    page = (ROOT / "docs" / "hooks.md").read_text(encoding="utf-8")
+    sample = page.partition("```py\n")[2].partition("```")[0]
+    file = part.parent / "shop.py"
+    file.write_text(sample, encoding="utf-8")
+    result = posted(part, file)
+    lines = [line.split(" ", 1)[1] for line in (result.text or "").splitlines()]
+    shown = page.partition("```\n;")[2].partition("\n")[0]
+    assert lines[0] == f";{shown}"
+    assert lines.count(";cut begins at Z0") == 1
+    assert float(result.motions[0].operation.moves.feed[-2]) == 400.0

@@ -1,0 +1,32 @@
+"""The page of all codes, made of their explanations; run as a module, this writes it."""
+
+from typing import Final
+
+from tests.support.locations import DOCS
+from trunnion.explanations import SUBJECTS, explanations
+
+PAGE: Final = DOCS / "codes.md"
+
+_HEAD: Final = """# Codes of messages
+
+Every error and warning ends with a code, such as `[CL110]`. It stays the same when the words of the message change, and
+`trunnion explain CL110` says what this page says: what it means, why it matters at the machine, and what to do. Checks
+are explained by their names: `trunnion explain tip`. `trunnion explain` alone lists everything; `--json` prints it as
+data.
+"""
+
+
+def page() -> str:
+    """The page of the docs."""
+    text = _HEAD
+    for subject, title in SUBJECTS.items():
+        text += f"\n## {title}\n"
+        for found in explanations().values():
+            if found.subject == subject:
+                text += f"\n### {found.code}\n\n**{found.title}.** {found.means}\n\n"
+                text += f"*At the machine:* {found.matters}\n\n*What to do:* {found.cure}\n"
+    return text
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), encoding="utf-8", newline="\n")
