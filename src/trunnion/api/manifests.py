@@ -115,6 +115,7 @@ def manifest_bytes(
         "machine": {"key": clean(job.machine.key), "name": clean(job.machine.name)},
         "control": clean(program.control.name),
         "may_run": result.passed,
+        "simulation_passed": None if result.simulation is None else result.simulation.passed,
         "files": files,
         "inputs": dict(inputs),
         "settings": dict(sorted(job.settings.items())),

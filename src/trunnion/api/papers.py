@@ -51,9 +51,10 @@ class PostPapers:
         simulated: "SimulationInput | None",
         files: Iterable[FilePath],
     ) -> "PostPapers":
-        """The papers with what was found after the post, told first: problems; a simulation, what it was of and read."""
+        """The papers with what was found after the post: problems, and a simulation with what it was of and read."""
         from trunnion.api.manifests import inputs_of
 
+        # A sheet has room for some warnings: these are the first.
         result = replace(self.result, problems=(*problems, *self.result.problems), simulation=simulation)
         read = self.inputs | {"simulation": inputs_of(files)} if self.inputs else self.inputs
         return replace(self, job=replace(self.job, simulation=simulated), result=result, inputs=read)
