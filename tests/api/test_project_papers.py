@@ -16,7 +16,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "project"
 
 #: Set-up -> its papers.
 PAPERS = {
-    name: f'\nsheet = "{name}.html"\nmanifest = "{name}.json"\nreport = "{name}_report.json"'
+    name: f'\nsheet = "{name}.html"\nmanifest = "{name}.json"\nreport = "{name}_report.html"'
     for name in ("top", "bottom")
 }
 
@@ -72,12 +72,14 @@ def test_sheet_manifest_and_report_tell_what_the_simulation_found(
         assert f"Warning: {what}" in sheet
         assert what in manifest["warnings"]
     assert (manifest["may_run"], manifest["simulation_passed"]) == (True, False)
-    assert data(folder / "top_report.json")["simulation"]["collisions"]
+    report = (folder / "top_report.html").read_text(encoding="utf-8")
+    assert "all passed; the simulation warns, see below" in report
+    assert "<td>part, shank of slot mill</td>" in report.replace("<bdi>", "").replace("</bdi>", "")
     names = {each["name"]: each for each in manifest["inputs"]["simulation"]}
     assert set(names) == {"part.toml", "vice.stl", "tools.toml", "plate.stl", "plate_top.cls"}
     assert all("sha256" in each for each in names.values())
     assert trunnion.verify_manifest(folder / "top.json").passed
-    assert {each["name"] for each in manifest["files"]} == {"plate_top.mpf", "top.html", "top_report.json"}
+    assert {each["name"] for each in manifest["files"]} == {"plate_top.mpf", "top.html", "top_report.html"}
 
 
 def test_each_set_up_has_its_own_findings_and_what_came_before_it(
