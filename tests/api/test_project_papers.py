@@ -126,12 +126,15 @@ def test_a_set_up_behind_the_first_finding_is_told_as_not_simulated(tmp_path: Pa
     text = 'checks = { simulate = "warn" }\nstop_at = "first"\n' + SETUPS
     for name in ("top", "bottom"):
         text = text.replace(f'output = "{name}.mpf"', f'output = "{name}.mpf"{PAPERS[name]}')
-    trunnion.post_project(project(tmp_path, text, top=cl))
+    trunnion.post_project(project(tmp_path, text.replace("report.html", "report.json"), top=cl))
     assert (data(tmp_path / "top.json")["simulation_passed"], data(tmp_path / "bottom.json")["simulation_passed"]) == (
         False,
         None,
     )
     assert "were not looked for" in (tmp_path / "bottom.html").read_text(encoding="utf-8")
+    before = contents(tmp_path)
+    trunnion.post_project(tmp_path / "part.toml")
+    assert contents(tmp_path) == before, "nothing depends on the clock"
 
 
 def test_papers_say_so_where_nothing_was_simulated(tmp_path: Path) -> None:
