@@ -5,7 +5,7 @@
 SLOW = (
     "api/test_arc_travel.py", "api/test_fastest_feeds.py", "api/test_hole_travel.py",
     "api/test_impeller_cutting.py", "api/test_impellers_on_machines.py", "api/test_papers.py",
-    "api/test_project_posting.py",
+    "api/test_project_papers.py", "api/test_project_posting.py",
     "api/test_same_as_command.py",
     "api/test_hooks.py", "api/test_recipes.py", "api/test_shop_texts.py", "api/test_viewing_stock.py",
     "cli/test_cases.py", "cli/test_watch.py",

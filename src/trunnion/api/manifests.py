@@ -10,7 +10,7 @@ caller names, and no others.
 import hashlib
 import json
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -81,10 +81,25 @@ def checksum(path: FilePath) -> str:
 # Writing
 
 
+def post_inputs(job: PostJob, result: PostResult) -> dict[str, list[dict[str, object]]]:
+    """What a post has read, by what it is, each file as it is now."""
+    return {
+        "cl": inputs_of(file_on_disk(toolpath.file) for toolpath in result.toolpaths),
+        "definitions": inputs_of(definition_files(job.machine, job.machine)),
+        "subprograms": inputs_of(job.beside),
+        "simulation": inputs_of(job.simulation_files),
+    }
+
+
 def manifest_bytes(
-    target: "Target", program: Program, job: PostJob, result: PostResult, verification: Verification | None
+    target: "Target",
+    program: Program,
+    job: PostJob,
+    result: PostResult,
+    verification: Verification | None,
+    inputs: Mapping[str, list[dict[str, object]]],
 ) -> bytes:
-    """Return the manifest of a post whose other files are complete and flushed."""
+    """Return the manifest of a post whose other files are complete and flushed; ``inputs`` as ``post_inputs``."""
     main = target.path.name if target.path is not None else target.name
     files = [_entry(main, target.files.path, "program")]
     files += [_entry(path.name, path, "subprogram") for path in target.files.other_paths]
@@ -100,13 +115,9 @@ def manifest_bytes(
         "machine": {"key": clean(job.machine.key), "name": clean(job.machine.name)},
         "control": clean(program.control.name),
         "may_run": result.passed,
+        "simulation_passed": None if result.simulation is None else result.simulation.passed,
         "files": files,
-        "inputs": {
-            "cl": _inputs(file_on_disk(toolpath.file) for toolpath in result.toolpaths),
-            "definitions": _inputs(definition_files(job.machine, job.machine)),
-            "subprograms": _inputs(job.beside),
-            "simulation": _inputs(job.simulation_files),
-        },
+        "inputs": dict(inputs),
         "settings": dict(sorted(job.settings.items())),
         "settings_of_operations": {name: dict(sorted(own.items())) for name, own in sorted(job.own_settings.items())},
         "settings_in_force": dict(sorted(program.effective_settings().items())),
@@ -127,7 +138,7 @@ def _entry(name: str, path: Path, what: str) -> dict[str, object]:
     return {"name": name, "what": what, "bytes": path.stat().st_size, "sha256": checksum(path)}
 
 
-def _inputs(files: Iterable[FilePath]) -> list[dict[str, object]]:
+def inputs_of(files: Iterable[FilePath]) -> list[dict[str, object]]:
     """Files that were read, each once; without checksums where they are none on the disk, as what came from stdin."""
     found: dict[str, dict[str, object]] = {}
     for file in files:

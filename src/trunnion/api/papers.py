@@ -2,49 +2,98 @@
 
 In:     what was posted, and where its papers go.
 Out:    their files.
+
+The papers of a project's programs are written when its checks are done: they tell what these found.
 """
 
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from trunnion import __version__
 from trunnion.api.job import PostJob
 from trunnion.api.post_result import PostResult
+from trunnion.api.reading import FilePath
 from trunnion.api.reports import add_report
 from trunnion.api.targets import Target
+from trunnion.errors import Problem
 from trunnion.output.program import Program
 from trunnion.verification import Verification
 
 if TYPE_CHECKING:  # imported where they are written
+    from trunnion.api.simulation_result import SimulationResult
+    from trunnion.api.simulation_setups import SimulationInput
     from trunnion.reporting.setup_sheet import SheetFile
 
 #: What made a paper.
 MADE_BY: Final = f"Trunnion {__version__}"
 
 
-def write_papers(
+@dataclass(frozen=True, slots=True, eq=False)
+class PostPapers:
+    """All that the papers of a post tell.
+
+    inputs  the manifest's entries of what was read, as it was then
+    """
+
+    target: Target
+    program: Program
+    job: PostJob
+    result: PostResult
+    verification: Verification | None
+    inputs: dict[str, list[dict[str, object]]]
+
+    def with_checks(
+        self,
+        problems: Iterable[Problem],
+        simulation: "SimulationResult | None",
+        simulated: "SimulationInput | None",
+        files: Iterable[FilePath],
+    ) -> "PostPapers":
+        """The papers with what was found after the post: problems, and a simulation with what it was of and read."""
+        from trunnion.api.manifests import inputs_of
+
+        # A sheet has room for some warnings: these are the first.
+        result = replace(self.result, problems=(*problems, *self.result.problems), simulation=simulation)
+        read = self.inputs | {"simulation": inputs_of(files)} if self.inputs else self.inputs
+        return replace(self, job=replace(self.job, simulation=simulated), result=result, inputs=read)
+
+    def write(self) -> None:
+        """Write them beside the program, which is complete; without a proof there is a manifest alone."""
+        target, job, result, verification = self.target, self.job, self.result, self.verification
+        files, places = target.files, target.papers
+        if verification is not None and "report" in places:
+            name = places["report"].name
+            add_report(verification, files.add_paper(places["report"]), name, result.decisions, result.simulation)
+        if verification is not None and "sheet" in places:
+            place = places["sheet"]
+            data = _sheet(target, self.program, job, result, verification, place.path.suffix.lower())
+            files.add_paper(place).write(data)
+        if verification is not None and "listing" in places:
+            from trunnion.reporting.listing import listing
+
+            slides, name = job.settings.get("listing") == "slides", Path(target.name).name
+            text = listing(verification.run, name, verification.operations, slides=slides, made_by=MADE_BY)
+            files.add_paper(places["listing"]).writelines(text)
+        if "manifest" in places:
+            from trunnion.api.manifests import manifest_bytes
+
+            files.flush()
+            data = manifest_bytes(target, self.program, job, result, verification, self.inputs)
+            files.add_paper(places["manifest"]).write(data)
+
+
+def post_papers(
     target: Target, program: Program, job: PostJob, result: PostResult, verification: Verification | None
-) -> None:
-    """Write the papers of a post beside its program, which is complete; without a proof there is a manifest alone."""
-    files, places = target.files, target.papers
-    if verification is not None and "report" in places:
-        name = places["report"].name
-        add_report(verification, files.add_paper(places["report"]), name, result.decisions, result.simulation)
-    if verification is not None and "sheet" in places:
-        place = places["sheet"]
-        files.add_paper(place).write(_sheet(target, program, job, result, verification, place.path.suffix.lower()))
-    if verification is not None and "listing" in places:
-        from trunnion.reporting.listing import listing
+) -> PostPapers:
+    """The papers of a post that is proven."""
+    inputs: dict[str, list[dict[str, object]]] = {}
+    if "manifest" in target.papers:
+        from trunnion.api.manifests import post_inputs
 
-        slides, name = job.settings.get("listing") == "slides", Path(target.name).name
-        text = listing(verification.run, name, verification.operations, slides=slides, made_by=MADE_BY)
-        files.add_paper(places["listing"]).writelines(text)
-    if "manifest" in places:
-        from trunnion.api.manifests import manifest_bytes
-
-        files.flush()
-        data = manifest_bytes(target, program, job, result, verification)
-        files.add_paper(places["manifest"]).write(data)
+        inputs = post_inputs(job, result)
+    return PostPapers(target, program, job, result, verification, inputs)
 
 
 def _sheet(

@@ -20,7 +20,7 @@ from trunnion.api.job import FORCING, PostJob, prepare
 from trunnion.api.machining_times import operation_times, prints_times, write_times
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.paper_files import PaperFiles, paper_files
-from trunnion.api.papers import write_papers
+from trunnion.api.papers import PostPapers, post_papers
 from trunnion.api.planning import load_toolpaths, new_problems, plan_program
 from trunnion.api.post_result import PostResult, ProofFailedError
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
@@ -160,10 +160,12 @@ def post_beside(
     hooks: Sequence[FilePath] = (),
     group: OutputGroup | None = None,
     forcing: str = FORCING,
+    later: list[PostPapers] | None = None,
 ) -> PostResult:
     """Post CL files as ``post`` does, and write over none of the other files of the same work.
 
     The program appears with those of the ``group``, if there is one. What a refusal says of ``force`` is ``forcing``.
+    Papers are written, or go into the list ``later``: who gives it writes them.
     """
     check_observer(observer)
     loaded = as_machine(machine)
@@ -185,11 +187,17 @@ def post_beside(
         toolpaths = load_toolpaths(cl, job, strict, observer, changes.change)
         job = replace(job, notices=changes.notices, decisions=tuple(changes.decisions) if job.options.explain else ())
         target.files.protect(file_on_disk(toolpath.file) for toolpath in toolpaths)
-        return post_toolpaths(toolpaths, job, target, observer)
+        return post_toolpaths(toolpaths, job, target, observer, later)
 
 
-def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, observer: Observer) -> PostResult:
-    """Plan, write and prove a program; errors as ``post`` raises them."""
+def post_toolpaths(
+    toolpaths: Sequence[Toolpath],
+    job: PostJob,
+    target: Target,
+    observer: Observer,
+    later: list[PostPapers] | None = None,
+) -> PostResult:
+    """Plan, write and prove a program; errors as ``post`` raises them, ``later`` as ``post_beside`` takes it."""
     subprograms = job.subprograms(target.files, target.path)
     divided = subprograms is not None
     reading = partial(
@@ -256,7 +264,11 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
     if program.has_time_tokens:
         write_times(target.files, program, times)
     if target.papers:
-        write_papers(target, program, job, result, verification)
+        papers = post_papers(target, program, job, result, verification)
+        if later is None:
+            papers.write()
+        else:
+            later.append(papers)
     return replace(
         result, encoding=job.encoding, output=target.path, subprograms=target.subprograms, _memory=target.memory
     )

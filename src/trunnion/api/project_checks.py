@@ -5,11 +5,12 @@ Out:    what was found, as errors or warnings as the project judges it.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trunnion.api.comparing import diff
+from trunnion.api.forcing import Untold
 from trunnion.api.observer import Observer
 from trunnion.api.post_result import PostResult
 from trunnion.api.project import Division, Judgement, PostedSetup, Project
@@ -30,17 +31,33 @@ _MOST_TOLD = 10
 _SEVERITIES = {Judgement.WARN: Severity.WARNING, Judgement.REFUSE: Severity.ERROR}
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class SetupFindings:
+    """What was found of a set-up, as the project judges it, and its simulation; None: it was not simulated."""
+
+    problems: tuple[Problem, ...]
+    simulation: "SimulationResult | None"
+
+
+class _Warned(Untold):
+    """Passes on progress and warnings: errors are told as the project judges them, once."""
+
+    def problems(self, problems: Sequence[Problem]) -> None:
+        """As ``Observer`` has it."""
+        self._observer.problems([each for each in problems if each.severity is Severity.WARNING])
+
+
 def check_project(
     project: Project, posted: Sequence[tuple[PostedSetup, Sequence[PostResult]]], observer: Observer
-) -> tuple["SimulationResult | None", list[Problem]]:
+) -> tuple["SimulationResult | None", list[SetupFindings]]:
     """Carry out the checks of a project.
 
     Returns
     -------
     simulation
         None: it is not asked for.
-    problems
-        What was found, in the order of set-ups.
+    found
+        Of every set-up of the project, in their order.
 
     Raises
     ------
@@ -48,17 +65,32 @@ def check_project(
         When a file of the simulation or a released program cannot be used.
     """
     checks = project.checks
-    found = list[Problem]()
-    for setup, results in posted:
+    found = [list[Problem]() for _ in project.posted]
+    own = [problems for problems, each in zip(found, project.posted, strict=True) if each is not None]
+    for (setup, results), problems in zip(posted, own, strict=True):
         if checks.longest_s is not None:
-            found += _too_long(project, results)
+            problems += _too_long(project, results)
         if checks.released is not Judgement.OFF and setup.released:
             severity = _SEVERITIES[checks.released]
-            found += [replace(each, severity=severity) for each in _compare_released(project, setup, results)]
-    if checks.simulate is Judgement.OFF:
-        return None, found
-    simulation, problems = _simulate(project, posted, observer)
-    return simulation, [*found, *(replace(each, severity=_SEVERITIES[checks.simulate]) for each in problems)]
+            problems += [replace(each, severity=severity) for each in _compare_released(project, setup, results)]
+    simulation = None if checks.simulate is Judgement.OFF else _simulate(project, posted, _Warned(observer))
+    # A simulation that stops at the first finding has no results of the set-ups behind it.
+    simulated = [] if simulation is None else list(simulation.setups or (simulation,))
+    for one, problems in zip(simulated, found, strict=False):
+        severity = _SEVERITIES[checks.simulate]
+        problems += [replace(each, severity=severity) for each in _found(one, _shows(project))]
+    lacking = [None] * (len(found) - len(simulated))
+    return simulation, [
+        SetupFindings(tuple(problems), one) for problems, one in zip(found, [*simulated, *lacking], strict=True)
+    ]
+
+
+def _shows(project: Project) -> str:
+    """How to see all that the simulation of a project finds, which takes programs that are written."""
+    command = f"trunnion simulate {project.path.name} shows all of it"
+    if project.checks.simulate is Judgement.REFUSE:
+        return f'mend these first; or post with simulate = "warn" under [checks], then {command}'
+    return f"once the programs are written, {command}"
 
 
 def _name(project: Project, result: PostResult) -> str:
@@ -116,8 +148,8 @@ def _compare_released(
 
 def _simulate(
     project: Project, posted: Sequence[tuple[PostedSetup, Sequence[PostResult]]], observer: Observer
-) -> tuple["SimulationResult", list[Problem]]:
-    """Cut the stock in all set-ups one after another, and say what must not be."""
+) -> "SimulationResult":
+    """Cut the stock in all set-ups one after another."""
     from trunnion.api.simulation_steps import simulate_setups
 
     waiting = iter(posted)
@@ -125,29 +157,24 @@ def _simulate(
         each if setup is None else _with_runs(project, each, next(waiting)[1])
         for each, setup in zip(project.simulation.setups, project.posted, strict=True)
     ]
-    found = simulate_setups(replace(project.simulation, setups=setups), observer)
-    return found, [
-        problem for one in found.setups or (found,) for problem in _found(one, f"trunnion simulate {project.path.name}")
-    ]
+    return simulate_setups(replace(project.simulation, setups=setups), observer)
 
 
-def _found(simulated: "SimulationResult", command: str) -> Iterator[Problem]:
-    """What a set-up must not do, each at its program and line; ``command`` shows more of it."""
+def _found(simulated: "SimulationResult", cure: str) -> Iterator[Problem]:
+    """What a set-up must not do, each at its program and line; the ``cure`` says how to see more of it."""
     for finding in simulated.findings[:_MOST_TOLD]:
         x, y, z = finding.place
         between = f"{finding.kind}: {finding.between[0]}, {finding.between[1]}"
         what = f"the simulation finds: {between}: {finding.depth:.3f} mm deep at X{x:.3f} Y{y:.3f} Z{z:.3f}"
         yield Problem(finding.file, finding.line, what, code="PRJ210")
     if len(simulated.findings) > _MOST_TOLD:
-        more = counted(len(simulated.findings) - _MOST_TOLD, "finding")
-        yield Problem(
-            simulated.programs[0], 0, f"the simulation has {more} more", f"{command} shows them", code="PRJ210"
-        )
+        what = f"the simulation has {len(simulated.findings)} findings here; the first {_MOST_TOLD} are told"
+        yield Problem(simulated.programs[0], 0, what, cure, code="PRJ210")
     yield from (remark for remark in simulated.remarks if remark.severity is Severity.ERROR)
     gouge = simulated.gouge
     if gouge is not None and gouge.largest > simulated.limit and not simulated.findings:
         what = f"the simulation finds up to {gouge.largest:.3f} mm missing from the part"
-        yield Problem(simulated.programs[0], 0, what, f"{command} shows where", code="PRJ210")
+        yield Problem(simulated.programs[0], 0, what, cure, code="PRJ210")
 
 
 def _with_runs(project: Project, setup: SetupInput, results: Sequence[PostResult]) -> SetupInput:

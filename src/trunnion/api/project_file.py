@@ -97,6 +97,13 @@ def named_files(project: Project) -> list[FilePath]:
     return [*named, str(project.simulation.stock), *released, *project.hooks]
 
 
+def simulated_files(project: Project, number: int) -> list[FilePath]:
+    """The files that the simulation of a set-up reads, with those of all before it, whose stock it takes."""
+    several = zip(project.simulation.setups[: number + 1], project.posted, strict=False)
+    setups = [replace(each, programs=() if posted else each.programs) for each, posted in several]
+    return [str(project.simulation.stock), *(name for each in setups for name in _named_files(each))]
+
+
 def _named_files(setup: SetupInput) -> Iterator[FilePath]:
     several: tuple[Iterable[object], ...] = setup.programs, setup.subprograms, setup.fixtures, setup.libraries
     for names in (*several, listed("cl", setup.cl, Toolpath), (setup.part,)):

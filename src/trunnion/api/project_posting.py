@@ -5,7 +5,7 @@ Out:    its programs, what the checks of the project found, and an error where o
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,11 +15,12 @@ from trunnion.api.input_files import definition_files
 from trunnion.api.job import prepare
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.paper_files import NO_PAPERS, PaperFiles
+from trunnion.api.papers import PostPapers
 from trunnion.api.planning import load_toolpaths
 from trunnion.api.post_result import PostResult
 from trunnion.api.posting import post_beside
 from trunnion.api.project import Division, PostedSetup, Project
-from trunnion.api.project_checks import check_project
+from trunnion.api.project_checks import SetupFindings, check_project
 from trunnion.api.project_file import load_project, named_files, told_by_keys
 from trunnion.api.project_settings import told_in_project
 from trunnion.api.reading import FilePath, ToolpathLike, as_machine
@@ -144,15 +145,28 @@ def post_into(
         raise _joined(errors)
     check_within([file for _, results in posted for each in results for file in files_of(each)], project)
     with told_by_keys(project.path):
-        simulation, found = check_project(project, posted, observer)
-    found += _left_over(posted)
+        simulation, of_setups = check_project(project, posted, observer)
+    found = [*(problem for each in of_setups for problem in each.problems), *_left_over(posted)]
     refused = [problem for problem in found if problem.severity is Severity.ERROR]
     warnings = [problem for problem in found if problem.severity is Severity.WARNING]
     observer.problems(warnings)
     if refused:
         nothing = Problem(str(project.path), 0, "no program of the project is written", code="CTL940")
         raise RefusedError([*refused, nothing])
+    _write_papers(project, post.later, of_setups)
     return ProjectResult(project, tuple(posted), simulation, tuple(warnings))
+
+
+def _write_papers(project: Project, waiting: Sequence[PostPapers], of_setups: Sequence[SetupFindings]) -> None:
+    """Write the papers that have waited for the checks."""
+    if not waiting:
+        return
+    from trunnion.api.project_papers import write_setup_papers  # only for those that have some
+
+    papers = {each.target.path: each for each in waiting}
+    for number, (setup, found) in enumerate(zip(project.posted, of_setups, strict=True)):
+        if setup is not None and setup.output in papers:
+            write_setup_papers(papers[setup.output], project, number, found)
 
 
 def _running_hooks(project: Project) -> list[Problem]:
@@ -180,6 +194,8 @@ class _SetupPost:
     strict: bool
     explain: bool
     observer: Observer
+    #: Papers that wait for the checks of the project.
+    later: list[PostPapers] = field(default_factory=list)
 
     def programs(self, setup: PostedSetup) -> Iterator[PostResult]:
         """Post the programs of a set-up, one after the other."""
@@ -213,7 +229,7 @@ class _SetupPost:
             cl, self.inputs, machine=machine, output=output, settings=settings, strict=self.strict, force=False,
             explain=self.explain, papers=papers, columns=self.project.checks.longest_s is not None,
             subprograms=setup.subprograms, hooks=self.project.hooks, observer=self.observer, group=self.group,
-            forcing="",
+            forcing="", later=self.later,
         )  # fmt: skip
 
 

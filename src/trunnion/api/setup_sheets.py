@@ -48,6 +48,7 @@ def setup_sheet(
         version=MADE_BY,
         part=clean(next((toolpath.part for toolpath in result.toolpaths if toolpath.part), "")),
         may_run=result.passed,
+        simulated=None if result.simulation is None else result.simulation.passed,
         offsets=_offsets(run),
         zero=machine.workpiece_zero,
         tool_length=machine.tool_length,

@@ -110,6 +110,11 @@ class OutputFiles:
         self._papers.append((path, sink, place))
         return sink
 
+    @contextmanager
+    def reopened(self) -> Iterator["OutputFiles"]:
+        """Take further papers, although everything else is complete and closed; errors are those of ``sync``."""
+        yield from _fill(self)
+
     def protect(self, files: Iterable[str | os.PathLike[str]]) -> None:
         """Never write over these files.
 
@@ -132,7 +137,7 @@ class OutputFiles:
 
     def flush(self) -> None:
         """Make everything written readable at the paths."""
-        for sink in self._all_sinks():
+        for sink in self._open_sinks():
             sink.flush()
 
     def start_sync(self) -> None:
@@ -144,7 +149,7 @@ class OutputFiles:
     def sync(self) -> None:
         """Bring all files to the disk, so that a power failure cannot leave half a file under its final name."""
         self.flush()
-        for sink in self._all_sinks():
+        for sink in self._open_sinks():
             try:
                 os.fsync(sink.fileno())
             except OSError as error:
@@ -165,7 +170,7 @@ class OutputFiles:
         with held_interrupts():
             if self._sync_thread is not None:
                 self._sync_thread.shutdown()
-            for sink in self._all_sinks():
+            for sink in self._open_sinks():
                 with suppress(InputError):
                     sink.close()
 
@@ -202,8 +207,8 @@ class OutputFiles:
         """Return the sinks of all files of the program, the first file's first; not those of its papers."""
         return [self.main, *(sink for sink, _ in self._subprograms.values())]
 
-    def _all_sinks(self) -> list[BinaryIO]:
-        return [*self.sinks(), *(sink for _, sink, _ in self._papers)]
+    def _open_sinks(self) -> list[BinaryIO]:
+        return [sink for sink in (*self.sinks(), *(sink for _, sink, _ in self._papers)) if not sink.closed]
 
 
 def _open(path: Path, known_as: str) -> BinaryIO:

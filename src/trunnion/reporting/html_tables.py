@@ -43,6 +43,8 @@ def _title(content: ReportContent) -> str:
         mark, word, more = "✗", "Failed", f"{failed} of {counted(count, 'check')}; the program must not run as it is"
     elif count:
         mark, word, more = "✓", "Passed", f"{counted(count, 'check')}, all passed"
+        if content.simulation is not None and not content.simulation.passed:
+            more += "; the simulation warns, see below"
     else:
         mark, word, more = "–", "Nothing checked", ""
     state = "bad" if not content.passed else "good" if count else "none"

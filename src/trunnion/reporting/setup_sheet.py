@@ -103,6 +103,7 @@ class SetupSheet:
 
     content     what the report says of checks, axes and times
     may_run     proven, and nothing was overruled
+    simulated   whether its simulation found nothing; None: it was not simulated
     offsets     the work offsets that the program takes
     zero        where the workpiece zero is on the machine; None: it was not said
     system      which coordinate system the program counts in, in words
@@ -116,6 +117,7 @@ class SetupSheet:
     version: str
     part: str
     may_run: bool
+    simulated: bool | None
     offsets: tuple[str, ...]
     zero: tuple[float, float, float] | None
     tool_length: float | None

@@ -61,6 +61,7 @@ def sheet_json(sheet: SetupSheet) -> bytes:
         "program": content.program,
         "part": sheet.part or None,
         "may_run": sheet.may_run,
+        "simulation_passed": sheet.simulated,
         "machine": {"key": content.machine_key, "name": content.machine},
         "control": content.control or None,
         "made_by": sheet.version,
@@ -119,7 +120,8 @@ def _title(sheet: SetupSheet) -> str:
     content = sheet.content
     failed, checks = sum(not check.passed for check in content.checks), counted(len(content.checks), "check")
     if sheet.may_run:
-        verdict = f'<div class="verdict">Proven<small>{checks}, all passed</small></div>'
+        warning = "<br>THE SIMULATION WARNS: see To be checked" if sheet.simulated is False else ""
+        verdict = f'<div class="verdict">Proven<small>{checks}, all passed{warning}</small></div>'
     else:
         why = f"{failed} of {checks} failed" if failed else "refused, and written by force"
         verdict = f'<div class="verdict bad">MUST NOT RUN AS IT IS<small>{why}</small></div>'
