@@ -148,6 +148,20 @@ def test_two_set_ups_do_not_write_one_file_nor_over_one_that_is_read(tmp_path: P
         assert contents(tmp_path) == before
 
 
+def test_a_project_is_not_written_over_what_it_extends(tmp_path: Path) -> None:
+    (tmp_path / "base.toml").write_text('extends = "yl569"\nname = "overruled"\n')
+    (tmp_path / "own.toml").write_text('extends = "./base.toml"\nname = "own"\n')
+    (tmp_path / "shared.toml").write_text('output = "overruled.mpf"\n')
+    for name in ("base.toml", "shared.toml"):
+        text = 'extends = "./shared.toml"\n' + PROJECT.replace("yl569", "own.toml").replace("top.mpf", name)
+        path = project(tmp_path, text)
+        before = contents(tmp_path)
+        assert "although it is read" in problems(path)[0]
+        assert contents(tmp_path) == before
+    text = PROJECT.replace('["top.cls"]', '["top.cls", ""]')
+    assert f'{tmp_path / "part.toml"}:2: error: cl names ""' in problems(project(tmp_path, text))[0]
+
+
 def test_links_in_a_project_lead_nowhere_else(tmp_path: Path) -> None:
     folder = tmp_path / "part"
     path = project(folder, PROJECT + 'divide = "subprograms"\n')

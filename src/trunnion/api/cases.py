@@ -18,8 +18,8 @@ from trunnion.api.dividing import programs_of_operations
 from trunnion.api.observer import SILENT
 from trunnion.api.post_result import PostResult
 from trunnion.api.project import Division, PostedSetup, Project
-from trunnion.api.project_file import load_project
-from trunnion.api.project_posting import ProjectResult, check_within, files_of, post_into, project_inputs
+from trunnion.api.project_file import load_project, project_inputs
+from trunnion.api.project_posting import ProjectResult, check_within, files_of, post_into
 from trunnion.api.text_difference import TextDifference, text_difference
 from trunnion.api.writing import named_run
 from trunnion.errors import InputError, Problem, TrunnionError

@@ -15,7 +15,7 @@ from trunnion.api.arguments import check_observer, check_paths
 from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.forcing import Proof, Untold, write_forced
 from trunnion.api.hooks import Hooks, load_hooks
-from trunnion.api.input_files import cl_files, definition_files
+from trunnion.api.input_files import cl_files, machine_files
 from trunnion.api.job import FORCING, PostJob, prepare
 from trunnion.api.machining_times import operation_times, prints_times, write_times
 from trunnion.api.observer import SILENT, Observer
@@ -171,7 +171,7 @@ def post_beside(
     existing = check_paths("subprograms", subprograms)
     job = replace(job, beside=tuple(existing), forcing=forcing)
     hook_files = check_paths("hooks", hooks)
-    inputs = [*cl_files(cl), *definition_files(machine, loaded), *existing, *hook_files, *others]
+    inputs = [*cl_files(cl), *machine_files(machine, loaded), *existing, *hook_files, *others]
     if simulation is not None:
         from trunnion.api.posted_simulation import simulation_files, simulation_input
 

@@ -83,6 +83,7 @@ class Project:
     checks      what is judged after the posts
     hooks       files of hooks, in their order
     strict      unknown CL statements are errors
+    files       of the project itself, and of what it extends
     into        folder that takes its programs, as they lie in its own; None: that is it
     """
 
@@ -92,6 +93,7 @@ class Project:
     checks: ProjectChecks = ProjectChecks()
     hooks: tuple[str, ...] = ()
     strict: bool = False
+    files: tuple[str, ...] = ()
     into: Path | None = None
 
     @property

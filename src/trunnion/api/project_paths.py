@@ -48,6 +48,8 @@ class ProjectPaths:
     def file(self, table: Table, key: str, name: str) -> str:
         """The path of a file that is read; it lies beside the project or below."""
         if not name:
+            if key in table:
+                table.add_problem(key, 'names ""', _WITHIN)
             return ""
         told = len(table.problems)
         location = self._located(table, key, name)

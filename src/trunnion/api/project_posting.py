@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 from trunnion.api.arguments import check_observer, check_path
 from trunnion.api.dividing import check_tools, operation_programs, programs_of_operations
-from trunnion.api.input_files import definition_files
 from trunnion.api.job import prepare
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.paper_files import NO_PAPERS, PaperFiles
@@ -20,7 +19,7 @@ from trunnion.api.post_result import PostResult
 from trunnion.api.posting import post_beside
 from trunnion.api.project import Division, PostedSetup, Project
 from trunnion.api.project_checks import check_project
-from trunnion.api.project_file import load_project, named_files, told_by_keys
+from trunnion.api.project_file import load_project, project_inputs, told_by_keys
 from trunnion.api.project_settings import told_in_project
 from trunnion.api.reading import FilePath, ToolpathLike, as_machine
 from trunnion.api.settings import Settings, SettingValue
@@ -104,20 +103,6 @@ def post_project(
     loaded = load_project(check_path("project", project))
     with output_group() as group:
         return post_into(group, loaded, settings=settings, strict=strict, explain=explain, observer=observer)
-
-
-def project_inputs(project: Project) -> list[FilePath]:
-    """All files that posting a project reads, those of its machines' definitions too.
-
-    Raises
-    ------
-    InputError
-        If a machine cannot be loaded.
-    """
-    named = [project.path, *named_files(project)]
-    for machine in dict.fromkeys(each.machine for each in project.setups):
-        named += definition_files(machine, as_machine(machine))
-    return named
 
 
 def post_into(
