@@ -173,7 +173,7 @@ def test_accepting_makes_the_programs_of_a_clone_those_of_the_project(tmp_path: 
     clone = project(tmp_path / "clone", first.read_text())
     for program in (*first.parent.glob("*.mpf"), *first.parent.glob("*.spf")):
         clone.with_name(program.name).write_bytes(program.read_bytes())
-    with pytest.raises(trunnion.InputError, match=r"would be replaced, although top\.mpf has not written it"):
+    with pytest.raises(trunnion.InputError, match=r"top\.mpf: error: would be replaced, although no post"):
         trunnion.post_project(clone)
     code, out, _ = tried(capsys, clone, "--accept")
     assert (code, "accepted" in out) == (0, False)

@@ -115,6 +115,7 @@ def post_into(
     inputs = project_inputs(project)
     papers = [paper for each in project.setups for paper in each.papers.by_name().values()]
     check_outputs([*(each.output for each in project.setups), *papers], inputs)
+    _check_replaced(project)
     observer.problems(_running_hooks(project))
     post = _SetupPost(group, project, inputs, dict(settings or {}), strict or project.strict, explain, observer)
     posted, errors = list[tuple[PostedSetup, tuple[PostResult, ...]]](), list[TrunnionError]()
@@ -179,7 +180,8 @@ class _SetupPost:
         toolpaths = load_toolpaths(setup.cl, job, self.strict, Observer())
         motions: list[Motion] = []
         for each in operation_programs(toolpaths, job, setup.output):
-            _check_unnamed(each.output)
+            if found := _replaced(each.output, each.output):
+                raise InputError(found)
             result = self._program(setup, machine, each.toolpath, each.settings, each.output, NO_PAPERS)
             motions += result.motions
             yield result
@@ -202,20 +204,28 @@ class _SetupPost:
         )  # fmt: skip
 
 
-def _check_unnamed(output: Path) -> None:
-    """Raise ``InputError`` if a file whose name nobody chose is there, and is not as a post has written it."""
-    place = resolve_output(output).path
-    if place.exists() and not EarlierJob(place).wrote(place):
-        what = "would be replaced, although no post has written it as it is"
-        raise InputError(
-            Problem(
-                str(output),
-                0,
-                what,
-                "remove it, or take the new one over: trunnion test PROJECT --accept",
-                code="FIL250",
-            )
-        )
+def _check_replaced(project: Project) -> None:
+    """Raise ``InputError`` for files that would be replaced, and that are not as posts have written them.
+
+    The author of a project has named them, who may be anyone: not the user, whose files they are.
+    """
+    found: list[Problem] = []
+    for setup in project.setups:
+        named = [] if setup.division is Division.OPERATIONS else [setup.output]
+        for file in (*named, *setup.papers.by_name().values()):
+            found += _replaced(file, setup.output)
+    if found:
+        raise InputError(found)
+
+
+def _replaced(file: Path, first: Path) -> list[Problem]:
+    """The problem of a file that is there, is not empty, and is not as posts of the ``first`` have written it."""
+    place = resolve_output(file).path
+    if not place.exists() or not place.stat().st_size or EarlierJob(resolve_output(first).path).wrote(place):
+        return []
+    what = "would be replaced, although no post has written it as it is"
+    cure = "remove it, or take the new one over: trunnion test PROJECT --accept"
+    return [Problem(str(file), 0, what, cure, code="FIL250")]
 
 
 def _left_over(posted: Sequence[tuple[PostedSetup, tuple[PostResult, ...]]]) -> list[Problem]:

@@ -32,13 +32,19 @@ class EarlierJob:
 
     def wrote(self, file: Path) -> bool:
         """Whether a file that exists is as one of these jobs has written it."""
+        if file.parent != self._folder:
+            return EarlierJob(file).wrote(file)
         known = self._digests.get(os.path.normcase(file.name))
-        return known is not None and file.parent == self._folder and _digest(file) == known
+        return known is not None and _digest(file) == known
 
     def remember(self, files: Iterable[Path]) -> None:
-        """Record files of the same folder that have been written; it does no harm where that is not possible."""
+        """Record files that have been written; it does no harm where that is not possible."""
         if self._record is None:
             return
+        given = list(files)
+        files = [file for file in given if file.parent == self._folder]
+        for other in (file for file in given if file.parent != self._folder):
+            EarlierJob(other).remember([other])
         digests = {name: known for name, known in self._digests.items() if (self._folder / name).exists()}
         digests |= {os.path.normcase(file.name): _digest(file) for file in files}
         text = json.dumps({name: known for name, known in digests.items() if known})

@@ -192,7 +192,8 @@ class OutputFiles:
     def remember(self) -> None:
         """Record what has been written, once it is in its places, for later jobs of the same first file."""
         if self._earlier is not None:
-            self._earlier.remember(place.path for _, place in self._program_files())
+            written = [*self._program_files(), *self.papers]
+            self._earlier.remember(place.path for _, place in written if not place.is_stream)
 
     def _program_files(self, *, main: bool = True) -> list[tuple[Path, OutputPlace]]:
         files = [(path, place) for path, (_, place) in self._subprograms.items()]
