@@ -8,7 +8,6 @@ Out:    the program: planned, written, read back, run and compared with its tool
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trunnion.api import kernels
@@ -30,7 +29,7 @@ from trunnion.api.settings import Settings
 from trunnion.api.targets import OutputLike, Target, open_target
 from trunnion.api.writing import read_back_while_writing, write
 from trunnion.errors import Problem, Severity, TrunnionError
-from trunnion.files import EarlierJob, OutputGroup, file_on_disk, resolve_output
+from trunnion.files import OutputGroup, file_on_disk
 from trunnion.jit import compile_ahead
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
@@ -219,7 +218,7 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
     except TrunnionError as error:
         if job.papers.report is not None:
             write_refusal(error.problems, job.machine, target.name, job.papers.report)
-            _remember(job.papers.report, target)
+            target.files.remember_alone(job.papers.report)
         raise
     columns = job.columns or program.has_time_tokens
 
@@ -250,7 +249,7 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
     if proof.failed and not job.force:
         if job.papers.report is not None:
             result.write_report(job.papers.report)
-            _remember(job.papers.report, target)
+            target.files.remember_alone(job.papers.report)
         raise _proof_failed(result, job.forcing)
     if program.has_time_tokens:
         write_times(target.files, program, times)
@@ -259,14 +258,6 @@ def post_toolpaths(toolpaths: Sequence[Toolpath], job: PostJob, target: Target, 
     return replace(
         result, encoding=job.encoding, output=target.path, subprograms=target.subprograms, _memory=target.memory
     )
-
-
-def _remember(report: Path, target: Target) -> None:
-    """Record the report of a program that is not written, so that the next one replaces it."""
-    place = resolve_output(report)
-    if not place.is_stream:
-        first = place if target.path is None else resolve_output(target.path)
-        EarlierJob(first.path).remember([place.path])
 
 
 def _with_simulation(

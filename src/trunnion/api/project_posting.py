@@ -106,18 +106,23 @@ def post_project(
 
 
 def post_into(
-    group: OutputGroup, project: Project, *, settings: Settings | None, strict: bool, explain: bool, observer: Observer
-) -> ProjectResult:
+    group: OutputGroup, project: Project, *, settings: Settings | None, strict: bool, explain: bool,
+    observer: Observer, replaces: bool = False,
+) -> ProjectResult:  # fmt: skip
     """Post a project; its files appear with those of the ``group``. Errors are those of ``post_project``.
 
-    A set-up that is refused does not hide what is wrong with the next ones.
+    A set-up that is refused does not hide what is wrong with the next ones. ``replaces``: also files that no post has
+    written, because the user has seen what becomes of them.
     """
     inputs = project_inputs(project)
     papers = [paper for each in project.setups for paper in each.papers.by_name().values()]
     check_outputs([*(each.output for each in project.setups), *papers], inputs)
-    _check_replaced(project)
+    if not replaces:
+        _check_replaced(project)
     observer.problems(_running_hooks(project))
-    post = _SetupPost(group, project, inputs, dict(settings or {}), strict or project.strict, explain, observer)
+    post = _SetupPost(
+        group, project, inputs, dict(settings or {}), strict or project.strict, explain, observer, replaces
+    )
     posted, errors = list[tuple[PostedSetup, tuple[PostResult, ...]]](), list[TrunnionError]()
     for setup in project.setups:
         try:
@@ -166,6 +171,7 @@ class _SetupPost:
     strict: bool
     explain: bool
     observer: Observer
+    replaces: bool
 
     def programs(self, setup: PostedSetup) -> Iterator[PostResult]:
         """Post the programs of a set-up, one after the other."""
@@ -180,7 +186,7 @@ class _SetupPost:
         toolpaths = load_toolpaths(setup.cl, job, self.strict, Observer())
         motions: list[Motion] = []
         for each in operation_programs(toolpaths, job, setup.output):
-            if found := _replaced(each.output, each.output):
+            if not self.replaces and (found := _replaced(each.output, each.output)):
                 raise InputError(found)
             result = self._program(setup, machine, each.toolpath, each.settings, each.output, NO_PAPERS)
             motions += result.motions

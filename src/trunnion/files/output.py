@@ -195,6 +195,12 @@ class OutputFiles:
             written = [*self._program_files(), *self.papers]
             self._earlier.remember(place.path for _, place in written if not place.is_stream)
 
+    def remember_alone(self, paper: Path) -> None:
+        """Record a paper that was written although the program is not."""
+        place = resolve_output(paper)
+        if self._earlier is not None and not place.is_stream:
+            self._earlier.remember([place.path])
+
     def _program_files(self, *, main: bool = True) -> list[tuple[Path, OutputPlace]]:
         files = [(path, place) for path, (_, place) in self._subprograms.items()]
         return [*files, *([(self.path, self._place)] if main and self._place is not None else [])]
