@@ -72,6 +72,8 @@ def _run_manifest(arguments: argparse.Namespace) -> int:
             raise InputError(argument_problem(name, what, cure, code="ARG130"))
     found = verify_manifest(arguments.file, cl=arguments.cl)
     print_result(*(one_line(str(file)) for file in found.files))
+    for name in found.not_compared:
+        tell(one_line(f"{name}: not compared, and the program was made from it: --cl FILE compares it"))
     if not found.proven:
         tell(f"{arguments.file}: the program was written by force, and must not run as it is")
     return 0 if found.passed else 1
