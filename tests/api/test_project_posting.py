@@ -141,6 +141,20 @@ def test_settings_are_told_where_the_project_states_them(tmp_path: Path) -> None
         trunnion.post_project(project(tmp_path), settings={"pole": "no"})
 
 
+@pytest.mark.parametrize("value", ["[]", "[1, 2]", "nan", "inf", "07:32:00", "{ a = 1 }"])
+def test_a_setting_is_a_text_or_a_number(tmp_path: Path, value: str) -> None:
+    (found,) = problems(project(tmp_path, PROJECT.replace('"TOP"', value)))
+    assert found.startswith(f"{tmp_path / 'part.toml'}:4: error: ")
+    assert "write a text or a number" in found
+
+
+def test_characters_that_nobody_sees_are_told_with_a_cure_that_helps(tmp_path: Path) -> None:
+    path = project(tmp_path, PROJECT.replace('"TOP"', '"TO\\u202eP"'))
+    (warned,) = [each for each in trunnion.post_project(path).results[0].problems if "nobody sees" in each.what]
+    assert warned.cure == "rename it without them"
+    assert ";TOP" in path.with_name("top.mpf").read_text()
+
+
 def test_two_set_ups_do_not_write_one_file_nor_over_one_that_is_read(tmp_path: Path) -> None:
     path = project(tmp_path, SETUPS.replace("bottom.mpf", "top.mpf"))
     assert "would be written twice" in problems(path)[0]
