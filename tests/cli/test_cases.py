@@ -139,15 +139,18 @@ def test_accepting_a_renamed_operation_leaves_nothing_to_cure(tmp_path: Path, ca
     assert tried(capsys, path)[0] == 0
 
 
-PAPERS = 'manifest = "m.json"\nlisting = "top.txt"\nsheet = "sheet.html"\nreport = "top.html"\n'
+PAPERS = 'manifest = "m.json"\nlisting = "top.txt"\nsheet = "sheet.json"\nreport = "top.html"\n'
 
 
-def test_papers_are_compared_and_accepted_with_their_program(tmp_path: Path, capsys: Capture) -> None:
+def test_papers_are_compared_and_accepted_with_their_program(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
     path = project(tmp_path, PROJECT + PAPERS)
     trunnion.post_project(path)
     before = contents(tmp_path)
-    assert tried(capsys, path)[0] == 0
-    for name in ("m.json", "top.txt", "sheet.html", "top.html"):
+    monkeypatch.chdir(tmp_path)  # how files are called is nothing of the papers
+    assert tried(capsys, path.name)[0] == 0
+    for name in ("m.json", "top.txt", "sheet.json", "top.html"):
         for change in (path.with_name(name).unlink, lambda name=name: path.with_name(name).write_text("{}\n")):
             change()
             code, out, _ = tried(capsys, path)
@@ -158,7 +161,7 @@ def test_papers_are_compared_and_accepted_with_their_program(tmp_path: Path, cap
     assert tried(capsys, path, "--accept")[0] == 0
     assert trunnion.verify_manifest(tmp_path / "m.json").passed
     now = contents(tmp_path)
-    assert all(now[name] != before[name] for name in ("m.json", "top.txt", "sheet.html", "top.html", "top.mpf"))
+    assert all(now[name] != before[name] for name in ("m.json", "top.txt", "sheet.json", "top.html", "top.mpf"))
     trunnion.post_project(path)  # papers count as what the project has written
     assert contents(tmp_path) == now
 
