@@ -27,6 +27,13 @@ from trunnion.transliteration import lacking, spelled
         ("a\nb\x85c\u2028d\x00e", "utf-8", "a b c d e"),
         ("hub\u202egnp.\u200f\ufeff", "utf-8", "hubgnp."),
         ("\udcff", "utf-8", ""),
+        (
+            "a\u034f\u17b4\u180e\ufe0f\U000e0041\ufdd0\U0001ffffb",
+            "utf-8",
+            "ab",
+        ),  # joiners, selectors, tags, no characters
+        ("a\u2800b\u3164c", "utf-8", "a b c"),  # letters that show nothing
+        ("\ue000\U0010fffd", "utf-8", "__"),
         ("a\tb", "ascii", "a\tb"),
     ],
 )

@@ -9,11 +9,19 @@ from functools import lru_cache
 from typing import Final
 from unicodedata import normalize
 
-#: What breaks a line, or acts on a terminal, and stands for a blank. Tabs stay.
-_BREAKS: Final = re.compile("[\x00-\x08\x0a-\x1f\x7f-\x9f\u2028\u2029]+")
+#: What breaks a line, acts on a terminal, or is a letter that shows nothing, and stands for a blank. Tabs stay.
+_BREAKS: Final = re.compile("[\x00-\x08\x0a-\x1f\x7f-\x9f\u2028\u2029\u115f\u1160\u2800\u3164\uffa0]+")
 
-#: What has no width, or turns the order of a line round.
-_MARKS: Final = re.compile("[\u00ad\u061c\u200b-\u200f\u202a-\u202e\u2060-\u206f\ufeff\ud800-\udfff\ufff9-\uffff]")
+#: What has no width, turns the order of a line round, or is no character: joiners, selectors of variants, tags.
+_MARKS: Final = re.compile(
+    "[\u00ad\u034f\u061c\u17b4\u17b5\u180b-\u180f\u200b-\u200f\u202a-\u202e\u2060-\u206f\ufdd0-\ufdef\ufe00-\ufe0f\ufeff"
+    "\ufff0-\ufffb\ufffe\uffff\ud800-\udfff\U000e0000-\U000e0fff"
+    + "".join(f"{chr(plane + 0xFFFE)}{chr(plane + 0xFFFF)}" for plane in range(0x10000, 0x110000, 0x10000))
+    + "]"
+)
+
+#: What shows something else in each font, if anything.
+_PRIVATE: Final = re.compile("[\ue000-\uf8ff\U000f0000-\U0010ffff]")
 
 #: German has two letters for one with an umlaut, which no table of single characters knows.
 _GERMAN: Final = {"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "ẞ": "SS", "Ä": "Ae", "Ö": "Oe", "Ü": "Ue"}
@@ -30,7 +38,7 @@ def spelled(text: str, encoding: str) -> str:
     """
     if text.isascii() and text.isprintable():
         return text
-    plain = normalize("NFC", _MARKS.sub("", _BREAKS.sub(" ", text)))
+    plain = normalize("NFC", _PRIVATE.sub(_NO_LETTER, _MARKS.sub("", _BREAKS.sub(" ", text))))
     if _has(plain, encoding):
         return plain
     letters = [letter if _has(letter, encoding) else _ascii(letter) for letter in plain]
@@ -39,6 +47,11 @@ def spelled(text: str, encoding: str) -> str:
         if letters[k] != letter and letter in _GERMAN and beside.isupper():
             letters[k] = letters[k].upper()
     return "".join(letters)
+
+
+def is_seen(text: str) -> bool:
+    """Whether every character of a text shows something, or is a blank: none is hidden, or acts on what shows it."""
+    return not any(pattern.search(text) for pattern in (_BREAKS, _MARKS, _PRIVATE)) and "\t" not in text
 
 
 def lacking(text: str, encoding: str) -> str:

@@ -62,6 +62,40 @@ def test_no_result_is_written_over_what_it_is_made_from(folder: Path) -> None:
         assert contents(folder) == before
 
 
+def test_nothing_is_written_over_what_a_definition_leads_to(folder: Path) -> None:
+    """Definitions that give no value, controls, libraries and meshes of bodies count as much as what is named."""
+    Path("base.toml").write_text('extends = "yl569"\nname = "overruled"\n', encoding="utf-8")
+    Path("control.toml").write_text('extends = "sinumerik_840d"\n', encoding="utf-8")
+    Path("iron.stl").write_bytes(b"solid")
+    body = '[[body]]\nname = "door"\nlink = "bed"\nshape = "file"\nfile = "iron.stl"\n'
+    text = f'extends = "./base.toml"\nname = "mine"\n[control]\nextends = "./control.toml"\n{body}'
+    Path("mine.toml").write_text(text, encoding="utf-8")
+    Path("tools.toml").write_text('extends = "./shared.toml"\n', encoding="utf-8")
+    Path("shared.toml").write_text('[[tool]]\nnumber = 1\nkind = "ball"\ndiameter_mm = 10\n', encoding="utf-8")
+    before = contents(folder)
+    simulated = ["--stock", "box:9,9,9", "--tools", "tools.toml"]
+    for name in ("base.toml", "control.toml", "iron.stl"):
+        with pytest.raises(trunnion.InputError, match=READ):
+            trunnion.post("part.cls", machine="mine.toml", output=name)
+        with pytest.raises(trunnion.InputError, match=READ):
+            trunnion.post("part.cls", machine="mine.toml", output="new.mpf", listing=name)
+        with pytest.raises(trunnion.InputError, match=READ):
+            trunnion.convert("part.mpf", machine="mine.toml", to_machine="yl569", output=name)
+        assert main(["simulate", "part.mpf", "--machine", "mine.toml", *simulated, "--json", name]) == 2
+    assert main(["simulate", "part.mpf", "--machine", "mine.toml", *simulated, "--json", "shared.toml"]) == 2
+    posted = ["post", "part.cls", "--machine", "mine.toml", "--simulate", *simulated]
+    assert main([*posted, "--output", "shared.toml"]) == 2
+    assert contents(folder) == before
+    for name in ("link.html", "link.xml"):
+        Path(name).symlink_to("base.toml")
+    assert main(["view", "part.mpf", "--machine", "mine.toml", "--output", "link.html"]) == 2
+    assert main(["verify", "part.mpf", "--machine", "mine.toml", "--report", "link.html"]) == 2
+    assert main(["twin", "part.mpf", "--machine", "mine.toml", "--device-xml", "link.xml"]) == 2
+    for name in ("link.html", "link.xml"):
+        Path(name).unlink()
+    assert contents(folder) == before
+
+
 def test_no_report_is_written_over_what_it_is_about(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
     before = contents(folder)
     verified = trunnion.verify("part.json", machine="mine.toml", cl="part.cls")

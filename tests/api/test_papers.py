@@ -4,6 +4,7 @@ import hashlib
 import json
 import os
 import re
+from collections.abc import Callable
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -225,6 +226,8 @@ def test_a_forced_program_is_told_on_every_paper(tmp_path: Path) -> None:
         {"files": [{"name": "a\0", "what": "program", "bytes": 1, "sha256": ""}]},
         {"files": [{"name": 3, "what": "program"}]},
         {"files": ["job.mpf"]},
+        {"files": [{"name": "a" * 5000, "what": "program", "bytes": 1, "sha256": ""}]},
+        {"files": [{"name": "\ud800", "what": "program", "bytes": 1, "sha256": ""}]},
         {"files": []},
         {"files": {}},
         {"schema": 2},
@@ -235,6 +238,50 @@ def test_a_manifest_leads_to_no_other_file(change: dict[str, Any], tmp_path: Pat
     path.write_text(json.dumps({"schema": 1, "made_by": "x", "files": [], "may_run": True, **change}), encoding="utf-8")
     with pytest.raises(InputError, match="is no manifest of a post"):
         trunnion.verify_manifest(path)
+
+
+def _without(what: str) -> Callable[[dict[str, Any]], object]:
+    return lambda data: data.update(files=[each for each in data["files"] if each["what"] != what])
+
+
+@pytest.mark.parametrize(
+    ("edit", "words"),
+    [
+        (_without("program"), "its program is not the one among its files"),
+        (lambda data: data.update(program="other.mpf"), "its program is not the one among its files"),
+        (lambda data: data["files"].append(data["files"][-1]), "twice"),
+        (lambda data: data["files"].append(data["files"][0] | {"what": "listing"}), "job.mpf twice"),
+        (lambda data: data.update(checks=[]), "its checks do not"),
+        (lambda data: data.pop("checks"), "its checks do not"),
+        (lambda data: data["checks"][0].update(passed=False), "its checks do not"),
+        (lambda data: data["overruled"].append("an axis leaves its travel"), "its checks do not"),
+        (lambda data: data["files"][0].update(what="program\nall the same"), "is nothing that a post writes"),
+        (lambda data: data["inputs"].update(cl=[]), "it names no CL file"),
+    ],
+)
+def test_a_manifest_from_which_something_was_taken_is_told(
+    folder: Path, tmp_path: Path, edit: Callable[[dict[str, Any]], object], words: str
+) -> None:
+    data = json.loads((folder / "job.json").read_text(encoding="utf-8"))
+    path = tmp_path / "job.json"
+    path.write_text(json.dumps(data), encoding="utf-8")
+    trunnion.verify_manifest(path)
+    edit(data)
+    path.write_text(json.dumps(data), encoding="utf-8")
+    with pytest.raises(InputError, match=words):
+        trunnion.verify_manifest(path)
+
+
+def test_cl_files_that_are_not_compared_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    cl = [tmp_path / "part.cls", tmp_path / "second.cls"]
+    cl[0].write_text(CL, encoding="utf-8")
+    cl[1].write_text(CL.replace("500.0", "501.0"), encoding="utf-8")
+    manifest = tmp_path / "job.json"
+    trunnion.post(cl, machine="yl569", output=tmp_path / "job.mpf", manifest=manifest)
+    assert trunnion.verify_manifest(manifest).not_compared == ("part.cls", "second.cls")
+    assert trunnion.verify_manifest(manifest, cl=cl).not_compared == ()
+    assert main(["verify", str(manifest), "--cl", str(cl[0])]) == 0
+    assert "second.cls: not compared" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("data", [b"", b"\xff\xfe", b"[]", b"{}", b"[" * 100_000, b'{"files": 1'])

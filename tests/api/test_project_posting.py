@@ -45,8 +45,9 @@ def test_the_library_gives_programs_and_their_proofs(tmp_path: Path) -> None:
 
 
 def test_one_program_that_must_not_run_leaves_all_as_they_were(tmp_path: Path, capsys: Capture) -> None:
-    path = project(tmp_path, SETUPS, top=OUT_OF_REACH)
-    (tmp_path / "bottom.mpf").write_text("OLD")
+    path = project(tmp_path, SETUPS)
+    trunnion.post_project(path)
+    path = project(tmp_path, SETUPS, top=OUT_OF_REACH, bottom=TWO)
     before = contents(tmp_path)
     assert main(["post", str(path)]) == 1
     assert contents(tmp_path) == before
@@ -140,6 +141,20 @@ def test_settings_are_told_where_the_project_states_them(tmp_path: Path) -> None
         trunnion.post_project(project(tmp_path), settings={"pole": "no"})
 
 
+@pytest.mark.parametrize("value", ["[]", "[1, 2]", "nan", "inf", "07:32:00", "{ a = 1 }"])
+def test_a_setting_is_a_text_or_a_number(tmp_path: Path, value: str) -> None:
+    (found,) = problems(project(tmp_path, PROJECT.replace('"TOP"', value)))
+    assert found.startswith(f"{tmp_path / 'part.toml'}:4: error: ")
+    assert "write a text or a number" in found
+
+
+def test_characters_that_nobody_sees_are_told_with_a_cure_that_helps(tmp_path: Path) -> None:
+    path = project(tmp_path, PROJECT.replace('"TOP"', '"TO\\u202eP"'))
+    (warned,) = [each for each in trunnion.post_project(path).results[0].problems if "nobody sees" in each.what]
+    assert warned.cure == "rename it without them"
+    assert ";TOP" in path.with_name("top.mpf").read_text()
+
+
 def test_two_set_ups_do_not_write_one_file_nor_over_one_that_is_read(tmp_path: Path) -> None:
     path = project(tmp_path, SETUPS.replace("bottom.mpf", "top.mpf"))
     assert "would be written twice" in problems(path)[0]
@@ -148,6 +163,78 @@ def test_two_set_ups_do_not_write_one_file_nor_over_one_that_is_read(tmp_path: P
         before = contents(tmp_path)
         assert "although it is read" in problems(path)[0]
         assert contents(tmp_path) == before
+
+
+def test_a_project_is_not_written_over_what_it_extends(tmp_path: Path) -> None:
+    (tmp_path / "base.toml").write_text('extends = "yl569"\nname = "overruled"\n')
+    (tmp_path / "own.toml").write_text('extends = "./base.toml"\nname = "own"\n')
+    (tmp_path / "shared.toml").write_text('output = "overruled.mpf"\n')
+    for name in ("base.toml", "shared.toml"):
+        text = 'extends = "./shared.toml"\n' + PROJECT.replace("yl569", "own.toml").replace("top.mpf", name)
+        path = project(tmp_path, text)
+        before = contents(tmp_path)
+        assert "although it is read" in problems(path)[0]
+        assert contents(tmp_path) == before
+    text = PROJECT.replace('["top.cls"]', '["top.cls", ""]')
+    assert f'{tmp_path / "part.toml"}:2: error: cl names ""' in problems(project(tmp_path, text))[0]
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        (".bashrc", '".bashrc" begins with a point'),
+        ("sub/.hooks/x", "in a folder that is not there"),
+        (".git/pre-commit", '".git" begins with a point'),
+        ("link.mpf", '".profile" begins with a point'),
+        ("links/x.mpf", '".git" begins with a point'),
+        ("nul", "is a device of Windows"),
+        ("COM1.mpf", "is a device of Windows"),
+        ("CONIN$", "is a device of Windows"),
+        ("x.mpf.", "ends in one or in a point"),
+        ("x.mpf ", "ends in one or in a point"),
+        ("x?.mpf", "is no part of a name"),
+        ("x\u202empf", "nobody sees"),
+        ("x\u200b.mpf", "nobody sees"),
+        ("x\ufe0f.mpf", "nobody sees"),
+        ("ä" * 90 + ".mpf", "is too long"),
+        ("TOP.CLS", "although it is read"),
+    ],
+)
+def test_a_project_names_what_it_writes_so_that_every_system_takes_it(tmp_path: Path, name: str, words: str) -> None:
+    (tmp_path / ".git").mkdir()
+    (tmp_path / "link.mpf").symlink_to(".profile")
+    (tmp_path / "links").symlink_to(".git")
+    for text in (PROJECT.replace("top.mpf", name), PROJECT + f'listing = "{name}"\n'):
+        path = project(tmp_path, text)
+        before = contents(tmp_path)
+        (found,) = problems(path)
+        assert words in found
+        assert "part.toml:" in found or name == "TOP.CLS"
+        assert contents(tmp_path) == before
+
+
+def test_a_project_replaces_only_what_posts_have_written(tmp_path: Path) -> None:
+    """The author of a project names files of the user, or a program that was edited since."""
+    (tmp_path / "doc").mkdir()
+    papers = 'report = "doc/top.json"\nlisting = "top.txt"\n'
+    path = project(tmp_path, PROJECT + papers)
+    written = [tmp_path / name for name in ("top.mpf", "doc/top.json", "top.txt")]
+    (tmp_path / "top.mpf").touch()  # an empty file is nobody's work
+    trunnion.post_project(path)
+    trunnion.post_project(path)
+    path.with_name("top.cls").write_text(OUT_OF_REACH)
+    for _ in range(2):  # the report of a refusal is ours as well
+        problems(path, trunnion.RefusedError)
+    path.with_name("top.cls").write_text(TWO)
+    trunnion.post_project(path)
+    for file in written:
+        before = file.read_bytes()
+        file.write_text("MINE")
+        (found,) = problems(path)
+        assert found.startswith(f"{file}: error: would be replaced, although no post has written it as it is")
+        assert file.read_text() == "MINE"
+        file.write_bytes(before)
+    trunnion.post_project(path)
 
 
 def test_links_in_a_project_lead_nowhere_else(tmp_path: Path) -> None:

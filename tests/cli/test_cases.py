@@ -6,7 +6,8 @@ import pytest
 
 import trunnion
 from tests.support.locations import ROOT
-from tests.support.projects import PROJECT, contents, operation, project
+from tests.support.projects import PROJECT, TWO, contents, operation, project
+from trunnion.api.cases import posted_case
 from trunnion.cli import main
 
 Capture = pytest.CaptureFixture[str]
@@ -117,11 +118,73 @@ def test_programs_of_operations_that_are_gone_fail(tmp_path: Path, capsys: Captu
     path = project(tmp_path, PROJECT + 'divide = "operations"\n')
     trunnion.post_project(path)
     path.with_name("top.cls").write_text(operation("FACE"))
+    path.with_name("top_3_MINE.mpf").write_text("M30\n")
+    assert tried(capsys, path)[0] == 1
     code, out, _ = tried(capsys, path, "--accept")
-    assert code == 1
+    assert (code, out.splitlines()[-1]) == (1, "1 case: 1 different")
     assert f"{path}: GONE: top_2_SLOT_2.mpf" in out
-    path.with_name("top_2_SLOT_2.mpf").unlink()
+    assert f"{path}: removed: top_2_SLOT_2.mpf" in out
+    assert sorted(file.name for file in tmp_path.glob("*.mpf")) == ["top_1_FACE.mpf", "top_3_MINE.mpf"]
+    path.with_name("top_3_MINE.mpf").unlink()
     assert tried(capsys, path)[0] == 0
+
+
+def test_accepting_a_renamed_operation_leaves_nothing_to_cure(tmp_path: Path, capsys: Capture) -> None:
+    path = project(tmp_path, PROJECT + 'divide = "operations"\n')
+    trunnion.post_project(path)
+    path.with_name("top.cls").write_text(operation("FACE") + operation("POCKET", start=""))
+    code, out, _ = tried(capsys, path, "--accept")
+    assert (code, out.splitlines()[-1]) == (0, "1 case: 1 accepted")
+    assert sorted(file.name for file in tmp_path.glob("*.mpf")) == ["top_1_FACE.mpf", "top_2_POCKET.mpf"]
+    assert tried(capsys, path)[0] == 0
+
+
+PAPERS = 'manifest = "m.json"\nlisting = "top.txt"\nsheet = "sheet.json"\nreport = "top.html"\n'
+
+
+def test_papers_are_compared_and_accepted_with_their_program(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = project(tmp_path, PROJECT + PAPERS)
+    trunnion.post_project(path)
+    before = contents(tmp_path)
+    monkeypatch.chdir(tmp_path)  # how files are called is nothing of the papers
+    assert tried(capsys, path.name)[0] == 0
+    for name in ("m.json", "top.txt", "sheet.json", "top.html"):
+        for change in (path.with_name(name).unlink, lambda name=name: path.with_name(name).write_text("{}\n")):
+            change()
+            code, out, _ = tried(capsys, path)
+            assert (code, f"{path}: PAPER: {name} " in out) == (1, True)
+            assert tried(capsys, path, "--accept")[0] == 0
+            assert contents(tmp_path) == before
+    path.with_name("top.cls").write_text(TWO.replace("10.0,0.0,5.0", "10.0,0.0,4.0"))
+    assert tried(capsys, path, "--accept")[0] == 0
+    assert trunnion.verify_manifest(tmp_path / "m.json").passed
+    now = contents(tmp_path)
+    assert all(now[name] != before[name] for name in ("m.json", "top.txt", "sheet.json", "top.html", "top.mpf"))
+    trunnion.post_project(path)  # papers count as what the project has written
+    assert contents(tmp_path) == now
+
+
+def test_what_changes_after_the_comparison_is_not_accepted(tmp_path: Path) -> None:
+    path = project(tmp_path)
+    with posted_case(path) as case:
+        path.with_name("top.cls").write_text(TWO.replace("10.0,0.0,5.0", "10.0,0.0,4.0"))
+        before = contents(tmp_path)
+        with pytest.raises(trunnion.InputError, match="has changed since it was compared"):
+            case.accept()
+    assert contents(tmp_path) == before
+
+
+def test_a_huge_file_in_place_of_a_program_is_not_read(case: Path, capsys: Capture) -> None:
+    with case.with_name("top.mpf").open("r+b") as file:
+        file.truncate(1 << 25)
+    code, out, _ = tried(capsys, case)
+    assert code == 1
+    assert "33554432 bytes are there" in out
+    assert "motion DIFFERS: not compared: top.mpf is far larger" in out
+    with pytest.raises(trunnion.InputError, match="no post has written it"):
+        trunnion.post_project(case)
 
 
 def test_a_link_to_a_file_elsewhere_is_not_read(case: Path, tmp_path: Path, capsys: Capture) -> None:
@@ -173,7 +236,7 @@ def test_accepting_makes_the_programs_of_a_clone_those_of_the_project(tmp_path: 
     clone = project(tmp_path / "clone", first.read_text())
     for program in (*first.parent.glob("*.mpf"), *first.parent.glob("*.spf")):
         clone.with_name(program.name).write_bytes(program.read_bytes())
-    with pytest.raises(trunnion.InputError, match=r"would be replaced, although top\.mpf has not written it"):
+    with pytest.raises(trunnion.InputError, match=r"top\.mpf: error: would be replaced, although no post"):
         trunnion.post_project(clone)
     code, out, _ = tried(capsys, clone, "--accept")
     assert (code, "accepted" in out) == (0, False)

@@ -79,6 +79,7 @@ def test_a_new_definition_can_be_posted_with_and_says_what_it_has_from_its_base(
         (["new", "ours", "--like", "./yl569.toml"], "there is no shipped machine of this name"),
         (["new", "con", "--like", "yl569"], "con: error: is no name for a file on every system"),
         (["new", "a:b", "--like", "yl569"], "is no name for a file"),
+        (["new", ".ours", "--like", "yl569"], "is no name for a file"),
         (["new", "", "--like", "yl569"], "is no name for a file"),
         (["new", "no/ours", "--like", "yl569"], "there is no folder"),
         (["machines", "--resolved"], "--resolved: error: wants a machine"),
@@ -102,7 +103,8 @@ def plain(table: Any) -> Any:
 
 @pytest.mark.parametrize("name", [*shipped_machines(), "ours.toml"])
 def test_a_resolved_definition_says_the_same_with_the_place_of_each_value(name: str, capfd: Capture) -> None:
-    own = 'extends = "yl569"\nname = "Ours \\"2\\""\n[[axis]]\nname = "B"\nlimits_deg = [-5, 95]\n'
+    own = 'extends = "yl569"\nname = "Ours \\"2\\""\n'
+    own += 'description = "a\\u202eb\\U000e0041轮 ä\\tc"\n[[axis]]\nname = "B"\nlimits_deg = [-5, 95]\n'
     own += '[control.known]\n"G65 P9810" = "comes back"\n'
     Path("ours.toml").write_text(own, encoding="utf-8")
     assert main(["machines", name, "--resolved"]) == 0
@@ -114,9 +116,9 @@ def test_a_resolved_definition_says_the_same_with_the_place_of_each_value(name: 
     assert same_machine(load_machine("resolved.toml"), load_machine(name))
     for line in text.splitlines():
         if line.startswith("limits_deg = [-5, 95]"):
-            assert line.endswith("# ours.toml:5")
+            assert line.endswith("# ours.toml:6")
     if name == "ours.toml":
-        assert '"G65 P9810" = "comes back"  # ours.toml:7\n' in text
+        assert '"G65 P9810" = "comes back"  # ours.toml:8\n' in text
         assert "limits_deg = [-5, 95]" in text
 
 

@@ -78,6 +78,7 @@ def test_a_project_is_posted_again_when_one_of_its_files_changes(tmp_path: Path,
     )  # fmt: skip
     rounds, err = watched(capsys, script, path)
     assert rounds == [f"{path}: posted: {program}"] * 3
+    assert script.watched == {path.name, "top.cls", "yl569.toml", "sinumerik_840d.toml"}
     assert ["F400." in text for text in seen] == [False, True, True, True]
     assert [";TITLE" in text for text in seen] == [False, False, False, True]
     assert {"part.toml", "top.cls"} <= script.watched

@@ -8,19 +8,22 @@ Out:    for each of them how the programs that are posted now differ from those 
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final
 
+from trunnion.api.case_papers import StalePaper, stale_papers
 from trunnion.api.comparing import diff
 from trunnion.api.dividing import programs_of_operations
 from trunnion.api.observer import SILENT
+from trunnion.api.paper_files import NO_PAPERS
 from trunnion.api.post_result import PostResult
 from trunnion.api.project import Division, PostedSetup, Project
-from trunnion.api.project_file import load_project
-from trunnion.api.project_posting import ProjectResult, check_within, files_of, post_into, project_inputs
+from trunnion.api.project_file import load_project, project_inputs
+from trunnion.api.project_posting import ProjectResult, check_within, files_of, post_into
 from trunnion.api.text_difference import TextDifference, text_difference
+from trunnion.api.watching import State, state_of
 from trunnion.api.writing import named_run
 from trunnion.errors import InputError, Problem, TrunnionError
 from trunnion.files import EarlierJob, output_group, resolve_output
@@ -31,6 +34,11 @@ _ENDING: Final = ".case.toml"
 
 #: Cases that a folder may have.
 _MOST_CASES: Final = 10_000
+
+
+#: Bytes that a program may have had, and how many times those that it has now; of more it is not read.
+_MOST_BYTES: Final = 10 << 20
+_MOST_TIMES: Final = 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +74,7 @@ class Case:
     path      of its project
     same      files that are as they were
     changed   programs that are not
+    papers    papers that are not of the programs as they are now
     gone      files of operations that there are no more
     warnings  what the checks of the project warn of
     error     why nothing was posted; None: it was
@@ -74,40 +83,67 @@ class Case:
     path: Path
     same: tuple[Path, ...] = ()
     changed: tuple[ChangedProgram, ...] = ()
+    papers: tuple[StalePaper, ...] = ()
     gone: tuple[Path, ...] = ()
     warnings: tuple[Problem, ...] = ()
     error: TrunnionError | None = None
-    _new: tuple[tuple[Path, Path], ...] = ()
+    _project: Project | None = None
     _programs: tuple[tuple[Path, ...], ...] = ()
-    _inputs: tuple[str, ...] = ()
+    _state: State = field(default_factory=dict)
 
     @property
     def passed(self) -> bool:
         """Whether everything is as it was."""
-        return self.error is None and not self.changed and not self.gone
+        return self.error is None and not (self.changed or self.papers or self.gone)
 
-    def accept(self) -> list[Path]:
-        """Write the programs as they are now, all or none of them; returns the files that changed.
+    def accept(self) -> "Accepted":
+        """Write programs and papers as they are now, all or none of them, and remove programs that are gone.
 
-        They count then as what this project has posted, as after a clone of somebody else's.
+        They count then as what this project has posted, as after a clone of somebody else's. Programs that are gone
+        are removed only if they are as a post has written them.
 
         Raises
         ------
-        InputError
-            If a file cannot be written.
+        TrunnionError
+            If a file cannot be written, or one that is read has changed since.
         """
+        project = self._project
         assert self.error is None, "what must not run is never accepted"
+        assert project is not None
         changed = {each.file for differing in self.changed for each in differing.files}
-        with output_group(remembers=False) as group:
-            for new, place in self._new:
-                if place in changed:
-                    with group.open(resolve_output(place), inputs=self._inputs) as files, new.open("rb") as source:
-                        while piece := source.read(1 << 20):
-                            files.main.write(piece)
-        for program in self._programs:
-            places = [resolve_output(file).path for file in program]
+        changed |= {each.file for each in self.papers}
+        if changed:
+            changed.update(paper for each in project.setups for paper in each.papers.by_name().values())
+            with output_group(remembers=False) as group:
+                result = post_into(
+                    group, project, settings=None, strict=False, explain=False, observer=SILENT, replaces=True
+                )
+                if state_of(list(self._state)) != self._state:
+                    what, cure = "has changed since it was compared", "test it again"
+                    raise InputError(Problem(str(self.path), 0, what, cure, code="PRJ160"))
+            self._remember([files_of(program) for program in result.results])
+        else:
+            self._remember([list(program) for program in self._programs])
+        removed = [file for file in self.gone if EarlierJob(resolve_output(file).path).wrote(resolve_output(file).path)]
+        for file in removed:
+            file.unlink()
+        return Accepted(tuple(sorted(changed)), tuple(removed))
+
+    def _remember(self, programs: Sequence[Sequence[Path]]) -> None:
+        """Record programs, and papers with the first file of theirs, as what posts have written."""
+        papers = {} if self._project is None else {each.output: each.papers for each in self._project.setups}
+        for program in programs:
+            named = papers.get(program[0], NO_PAPERS).by_name().values()
+            places = [resolve_output(file).path for file in (*program, *named)]
             EarlierJob(places[0]).remember(places)
-        return sorted(changed)
+
+
+@dataclass(frozen=True, slots=True)
+class Accepted:
+    """What became of a case: files that are new, and those that were removed."""
+
+    written: tuple[Path, ...]
+    removed: tuple[Path, ...]
 
 
 def find_cases(place: Path) -> list[Path]:
@@ -156,10 +192,11 @@ def posted_case(path: Path) -> Iterator[Case]:
 
 def _compared(path: Path, folder: Path) -> Case:
     project = load_project(path)
-    inputs = tuple(map(str, project_inputs(project)))
+    state = state_of(sorted(map(str, project_inputs(project))))
     aside = project.writing_to(folder)
     for setup in aside.setups:
-        setup.output.parent.mkdir(parents=True, exist_ok=True)
+        for file in (setup.output, *setup.papers.by_name().values()):
+            file.parent.mkdir(parents=True, exist_ok=True)
     with output_group(remembers=False) as group:
         result = post_into(group, aside, settings=None, strict=False, explain=False, observer=SILENT)
     places = {file: aside.place_of(file) for file in result.files}
@@ -168,9 +205,11 @@ def _compared(path: Path, folder: Path) -> Case:
     differing = {each.file for program in changed if program for each in program.files}
     same = tuple(place for place in places.values() if place not in differing)
     gone = tuple(_gone(project, result, places))
+    pairs = zip(project.setups, aside.setups, strict=True)
+    papers = tuple(stale for old, new in pairs for stale in stale_papers(old.papers, new.papers))
     programs = tuple(tuple(places[file] for file in files_of(program)) for program in result.results)
     return Case(
-        path, same, tuple(filter(None, changed)), gone, result.problems, None, tuple(places.items()), programs, inputs
+        path, same, tuple(filter(None, changed)), papers, gone, result.problems, None, project, programs, state
     )  # fmt: skip
 
 
@@ -180,16 +219,29 @@ def _changed(program: PostResult, setup: PostedSetup, places: dict[Path, Path]) 
     changed = []
     for file in files_of(program):
         there = places[file].is_file()
-        difference = text_difference(places[file], file) if there else None
+        difference = _difference(places[file], file) if there else None
         if difference is not None or not there:
             changed.append(ChangedFile(places[file], difference))
     if not changed:
         return None
     if not places[program.output].is_file():
         return ChangedProgram(tuple(changed))
+    if large := next((places[file] for file in files_of(program) if _is_large(places[file], file)), None):
+        return ChangedProgram(tuple(changed), (f"not compared: {large.name} is far larger than what comes out",))
     beside = [places[file] for file in program.subprograms if places[file].is_file()]
     moves, lines = _motion(places[program.output], program, [*beside, *map(Path, setup.subprograms)])
     return ChangedProgram(tuple(changed), tuple(lines), moves)
+
+
+def _is_large(there: Path, now: Path) -> bool:
+    """Whether a file is so much larger than what comes out that it is no earlier state of it, and is not read."""
+    return there.is_file() and there.stat().st_size > _MOST_BYTES + _MOST_TIMES * now.stat().st_size
+
+
+def _difference(there: Path, now: Path) -> TextDifference | None:
+    if _is_large(there, now):
+        return TextDifference(f"{there.stat().st_size} bytes are there, and {now.stat().st_size} come out")
+    return text_difference(there, now)
 
 
 def _motion(there: Path, program: PostResult, beside: Sequence[Path]) -> tuple[bool, list[str]]:

@@ -12,7 +12,7 @@ from trunnion import conversion, readers
 from trunnion.api import kernels
 from trunnion.api.arguments import check_choice, check_observer, check_path, check_paths, is_stream
 from trunnion.api.converting_cl import convert_cl, write_and_prove
-from trunnion.api.input_files import definition_files
+from trunnion.api.input_files import machine_files
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.post_result import PostResult
@@ -158,7 +158,7 @@ def convert(
     control = load_control(source.control)
     job = prepare(target_machine, settings, force=force)
     _check_settings(job, to_cl)
-    definitions = [*definition_files(machine, source), *definition_files(to_machine or target_machine, target_machine)]
+    definitions = [*machine_files(machine, source), *machine_files(to_machine or target_machine, target_machine)]
     source = set_up_machine(source, zero, tool_length)
     with open_target(output, inputs=[program, *others, *definitions]) as target:
         compile_ahead(readers.KERNELS if to_cl else kernels.CONVERTING)

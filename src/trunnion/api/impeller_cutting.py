@@ -14,7 +14,7 @@ from trunnion.api.impeller_files import ImpellerFiles, output_folder
 from trunnion.api.impeller_settings import operation_settings, program_settings
 from trunnion.api.impeller_windings import winding_problems
 from trunnion.api.impellers import load_impeller, model_impeller
-from trunnion.api.input_files import definition_files
+from trunnion.api.input_files import machine_files
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.paper_files import PaperFiles
@@ -181,7 +181,7 @@ def cut_impeller(
     stem = file_stem(definition.name)
     own = program_settings(control, definition.name, stem)
     job = prepare(loaded, {**own, **(settings or {})}, columns=True)
-    read = [definition.file, *(table.file for table in definition.sections), *definition_files(machine, loaded)]
+    read = [*definition.files, *machine_files(machine, loaded)]
     with output_folder(output) as folder:
         files = ImpellerFiles(folder, stem, control.extension)
         files.check_own()

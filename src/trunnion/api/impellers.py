@@ -1,7 +1,6 @@
 """Impellers: from a definition and measured points to surfaces, a closed mesh, and a STEP file."""
 
 import math
-from pathlib import Path
 
 from trunnion.api.arguments import check_path, wrong_argument
 from trunnion.api.reading import FilePath
@@ -111,8 +110,7 @@ def write_impeller_step(impeller: Impeller | FilePath, output: FilePath, *, tole
     found = _loaded(impeller)
     definition = found.definition
     solid = impeller_solid(found, wanted)
-    points = {Path(table.file) for table in definition.sections}
-    with atomic_file(path, inputs=[definition.file, *points]) as stream:
+    with atomic_file(path, inputs=definition.files) as stream:
         stream.write(solid.step)
     return solid
 

@@ -2,12 +2,13 @@
 
 import os
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike
 from trunnion.controls import control_library
 from trunnion.definitions import resolve_extends
 from trunnion.files import file_on_disk
-from trunnion.machines import Machine
+from trunnion.machines import BodyFile, Machine
 from trunnion.model.toolpath import Toolpath
 from trunnion.verification import Verification
 
@@ -25,14 +26,20 @@ def cl_files(cl: ToolpathLike | Iterable[ToolpathLike]) -> list[FilePath]:
 
 
 def definition_files(machine: MachineLike, loaded: Machine) -> list[FilePath]:
-    """The files of a machine's definition and of its control's."""
+    """The files of a machine's definition and of its control's, with all that they extend."""
     named = [machine] if isinstance(machine, str | os.PathLike) and os.fspath(machine).endswith(".toml") else []
     control = resolve_extends(loaded.control.unread_copy(), control_library())
     return [*named, *loaded.files, *control.files()]
+
+
+def machine_files(machine: MachineLike, loaded: Machine) -> list[FilePath]:
+    """The files of a machine: those of its definition, and the meshes of its bodies, which only a simulation opens."""
+    meshes = [body.shape for body in loaded.bodies if isinstance(body.shape, BodyFile)]
+    return [*definition_files(machine, loaded), *(Path(mesh.of).parent / mesh.file for mesh in meshes)]
 
 
 def verified_files(verification: Verification) -> list[FilePath]:
     """The files that a verification is about."""
     run = verification.run
     cl = {file_on_disk(operation.cl_file) for operation in verification.operations}
-    return [verification.program, *run.files, *cl, *definition_files(run.machine, run.machine)]
+    return [verification.program, *run.files, *cl, *machine_files(run.machine, run.machine)]

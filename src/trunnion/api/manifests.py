@@ -35,6 +35,12 @@ SCHEMA: Final = 1
 #: A longer manifest is none.
 _MOST_BYTES: Final = 64 << 20
 
+#: What files of a post are, but for the manifest itself.
+_WHATS: Final = ("program", "subprogram", "report", "sheet", "listing")
+
+#: Bytes of a name that file systems take.
+_LONGEST_NAME: Final = 255
+
 _NO_MANIFEST: Final = "is no manifest of a post"
 
 
@@ -60,11 +66,13 @@ class ManifestFile:
 class ManifestCheck:
     """Whether the files of a post are those of which its manifest tells.
 
-    proven  the post passed its proof
+    proven        the post passed its proof
+    not_compared  names of CL files from which the program was made, and that nobody gave to compare
     """
 
     files: tuple[ManifestFile, ...]
     proven: bool
+    not_compared: tuple[str, ...] = ()
 
     @property
     def passed(self) -> bool:
@@ -212,14 +220,34 @@ def verify_manifest(manifest: FilePath, *, cl: Sequence[FilePath] = ()) -> Manif
     found = [_checked(path, entry) for entry in _entries(path, data, "files")]
     if not found:
         raise _fault(path, "it names no file")
+    _check_whole(path, data, found)
     inputs = data.get("inputs")
     stated = _entries(path, inputs if isinstance(inputs, dict) else {}, "cl")
-    sums = {entry.get("sha256") for entry in stated}
+    if not stated:
+        raise _fault(path, "it names no CL file")
+    sums = {entry.get("sha256"): clean(str(entry.get("name"))) for entry in stated}
+    given = set[str]()
     for file in check_paths("cl", cl):
         _check_file(file, "a CL file")
-        fault = "" if _sum_of(file) in sums else "is not what the program was made from"
+        given.add(own := _sum_of(file))
+        fault = "" if own in sums else "is not what the program was made from"
         found.append(ManifestFile(clean(file.name), "cl", fault))
-    return ManifestCheck(tuple(found), data.get("may_run") is True)
+    others = tuple(name for known, name in sums.items() if known not in given)
+    return ManifestCheck(tuple(found), data.get("may_run") is True, others)
+
+
+def _check_whole(path: Path, data: dict[str, Any], files: Sequence[ManifestFile]) -> None:
+    """Raise ``InputError`` for a manifest from which something was taken, or that contradicts itself."""
+    programs = [file.name for file in files if file.what == "program"]
+    if programs != [data.get("program")]:
+        raise _fault(path, "its program is not the one among its files")
+    names = [file.name.casefold() for file in files]
+    if twice := next((file.name for k, file in enumerate(files) if names[k] in names[:k]), ""):
+        raise _fault(path, f"it names {twice} twice")
+    checks = _entries(path, data, "checks")
+    sound = bool(checks) and all(each.get("passed") is True for each in checks) and data.get("overruled") == []
+    if data.get("may_run") is True and not sound:
+        raise _fault(path, "it says that the program may run, and its checks do not")
 
 
 def _read(path: Path) -> dict[str, Any]:
@@ -249,8 +277,10 @@ def _entries(path: Path, data: dict[str, Any], key: str) -> list[dict[str, Any]]
 def _checked(manifest: Path, entry: dict[str, Any]) -> ManifestFile:
     """One file of the post, which is beside the manifest."""
     name, what, size = entry.get("name"), entry.get("what"), entry.get("bytes")
-    if not isinstance(name, str) or not isinstance(what, str) or not _is_plain(name):
+    if not isinstance(name, str) or not _is_plain(name):
         raise _fault(manifest, f"{name!r:.80} is no name of a file beside it")
+    if what not in _WHATS:
+        raise _fault(manifest, f"{what!r:.80} is nothing that a post writes")
     file = manifest.with_name(name)
     if not file.is_file():
         fault = "is missing"
@@ -263,7 +293,12 @@ def _checked(manifest: Path, entry: dict[str, Any]) -> ManifestFile:
 
 def _is_plain(name: str) -> bool:
     """Whether a name leads to no other folder, on no system."""
-    return name not in ("", ".", "..") and not any(letter in "/\\:\0" or ord(letter) < 32 for letter in name)
+    if name in ("", ".", "..") or any(letter in "/\\:\0" or ord(letter) < 32 for letter in name):
+        return False
+    try:
+        return len(name.encode("utf-8")) <= _LONGEST_NAME
+    except UnicodeEncodeError:
+        return False
 
 
 def _check_file(path: Path, what: str) -> None:

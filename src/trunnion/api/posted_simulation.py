@@ -13,7 +13,7 @@ from typing import Any, Final, TypeAlias
 
 from trunnion.api.arguments import check_path
 from trunnion.api.observer import Observer
-from trunnion.api.project_file import is_project, project_files, read_project
+from trunnion.api.project_file import is_project, library_files, project_files, read_project
 from trunnion.api.reading import FilePath, as_machine
 from trunnion.api.simulation_result import SimulationFinding, SimulationResult
 from trunnion.api.simulation_setups import SetupInput, SimulationInput
@@ -27,7 +27,7 @@ from trunnion.model.toolpath import Toolpath
 from trunnion.simulation.findings import What
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
 from trunnion.simulation.meshes.primitives import box_mesh, cylinder_mesh
-from trunnion.simulation.stock.solids import stock_shape
+from trunnion.simulation.stock.solids import is_mesh, stock_shape
 from trunnion.verification import Check, Place
 from trunnion.wording import counted
 
@@ -68,7 +68,7 @@ def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput
         raise InputError(
             argument_problem("stock", "is missing", "give it, or a project file that states it", code="SIM110")
         )
-    if not _is_mesh(found.stock):
+    if isinstance(found.stock, str) and not is_mesh(found.stock):
         stock_shape(found.stock)  # what cannot be is told before any work
     return found
 
@@ -88,10 +88,6 @@ def simulated_bodies(given: SimulationInput) -> Iterator[tuple[str, TriangleMesh
     for kind, meshes in (("part", [] if setup.part is None else [setup.part]), ("fixture", setup.fixtures)):
         for mesh in meshes:
             yield kind, mesh if isinstance(mesh, TriangleMesh) else load_mesh(mesh)
-
-
-def _is_mesh(stock: object) -> bool:
-    return not (isinstance(stock, str) and stock.startswith(("box:", "cylinder:")))
 
 
 def _of_project(path: Path, machine: Machine, stated: Mapping[str, Any]) -> SimulationInput:
@@ -130,7 +126,8 @@ def simulation_files(given: SimulationLike) -> list[FilePath]:
         for name in ("stock", "part", "fixtures", "libraries"):
             value = given.get(name)
             several = [value] if isinstance(value, str | os.PathLike) or not isinstance(value, Iterable) else value
-            named += [each for each in several if isinstance(each, str | os.PathLike)]
+            files = [each for each in several if isinstance(each, str | os.PathLike)]
+            named += library_files(files) if name == "libraries" else files
     return named
 
 

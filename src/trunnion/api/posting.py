@@ -15,7 +15,7 @@ from trunnion.api.arguments import check_observer, check_paths
 from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.forcing import Proof, Untold, write_forced
 from trunnion.api.hooks import Hooks, load_hooks
-from trunnion.api.input_files import cl_files, definition_files
+from trunnion.api.input_files import cl_files, machine_files
 from trunnion.api.job import FORCING, PostJob, prepare
 from trunnion.api.machining_times import operation_times, prints_times, write_times
 from trunnion.api.observer import SILENT, Observer
@@ -173,7 +173,7 @@ def post_beside(
     existing = check_paths("subprograms", subprograms)
     job = replace(job, beside=tuple(existing), forcing=forcing)
     hook_files = check_paths("hooks", hooks)
-    inputs = [*cl_files(cl), *definition_files(machine, loaded), *existing, *hook_files, *others]
+    inputs = [*cl_files(cl), *machine_files(machine, loaded), *existing, *hook_files, *others]
     if simulation is not None:
         from trunnion.api.posted_simulation import simulation_files, simulation_input
 
@@ -230,6 +230,7 @@ def post_toolpaths(
     except TrunnionError as error:
         if job.papers.report is not None:
             write_refusal(error.problems, job.machine, target.name, job.papers.report)
+            target.files.remember_alone(job.papers.report)
         raise
     columns = job.columns or program.has_time_tokens
 
@@ -260,6 +261,7 @@ def post_toolpaths(
     if proof.failed and not job.force:
         if job.papers.report is not None:
             result.write_report(job.papers.report)
+            target.files.remember_alone(job.papers.report)
         raise _proof_failed(result, job.forcing)
     if program.has_time_tokens:
         write_times(target.files, program, times)

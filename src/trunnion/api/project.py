@@ -83,6 +83,7 @@ class Project:
     checks      what is judged after the posts
     hooks       files of hooks, in their order
     strict      unknown CL statements are errors
+    files       of the project itself, and of what it extends
     into        folder that takes its programs, as they lie in its own; None: that is it
     """
 
@@ -92,6 +93,7 @@ class Project:
     checks: ProjectChecks = ProjectChecks()
     hooks: tuple[str, ...] = ()
     strict: bool = False
+    files: tuple[str, ...] = ()
     into: Path | None = None
 
     @property
@@ -109,9 +111,18 @@ class Project:
         return output if self.into is None else self.folder / output.relative_to(self.into)
 
     def writing_to(self, folder: Path) -> "Project":
-        """The same project with its programs in another folder, where they lie as in its own; without papers."""
+        """The same project with all that it writes in another folder, where it lies as in its own."""
+
+        def moved(file: Path) -> Path:
+            return folder / file.relative_to(self.folder)
+
         posted = [
-            each and replace(each, output=folder / each.output.relative_to(self.folder), papers=NO_PAPERS)
+            each
+            and replace(
+                each,
+                output=moved(each.output),
+                papers=PaperFiles(**{name: moved(paper) for name, paper in each.papers.by_name().items()}),
+            )
             for each in self.posted
         ]
         return replace(self, posted=tuple(posted), into=folder)

@@ -14,9 +14,11 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from importlib.resources import files
+from itertools import chain
 from pathlib import Path
-from typing import Any, Final
+from typing import Any, Final, TypeGuard
 
+from trunnion.api.input_files import machine_files
 from trunnion.api.paper_files import NO_PAPERS, PAPERS, PaperFiles, paper_files
 from trunnion.api.project import Division, Judgement, PostedSetup, Project, ProjectChecks
 from trunnion.api.project_paths import ProjectPaths, is_file
@@ -29,8 +31,9 @@ from trunnion.definitions.extends import MAX_FILE_BYTES
 from trunnion.errors import ArgumentName, InputError, Problem, unusable_file
 from trunnion.machines import shipped_machines
 from trunnion.model.toolpath import Toolpath
-from trunnion.simulation.stock.solids import stock_shape
+from trunnion.simulation.stock.solids import is_mesh, stock_shape
 from trunnion.simulation.stock.turning import Pose
+from trunnion.simulation.tools.library.toml_library import library_table
 from trunnion.simulation.tools.text import parse_tool
 
 #: A line that begins the table of a simulation: no control has one like it.
@@ -83,18 +86,43 @@ def project_files(given: Iterable[FilePath], elsewhere: Collection[str] = ()) ->
         _read(Path(each), ("machine", "stock", *elsewhere), is_posted=False) for each in given if is_project(Path(each))
     ]
     outputs = [str(setup.output) for each in projects for setup in each.setups]
-    return [*outputs, *(name for each in projects for name in named_files(each))]
+    return [*outputs, *(name for each in projects for name in project_inputs(each))]
 
 
-def named_files(project: Project) -> list[FilePath]:
-    """All files that a project names and that are read, but for programs that it posts itself."""
+def project_inputs(project: Project) -> list[FilePath]:
+    """All files that a project leads to and that are read, but for programs that it posts itself: those that it
+    extends, those that it names, and what its machines and tool libraries lead to.
+
+    Raises
+    ------
+    InputError
+        If a machine or a library cannot be read.
+    """
     setups = [
         replace(each, programs=() if posted else each.programs)
         for each, posted in zip(project.simulation.setups, project.posted, strict=True)
     ]
     released = [name for each in project.setups for name in each.released]
-    named = [name for each in setups for name in _named_files(each)]
-    return [*named, str(project.simulation.stock), *released, *project.hooks]
+    named = [*project.files, *(name for each in setups for name in _named_files(each))]
+    named += library_files(dict.fromkeys(file for each in setups for file in each.libraries if _is_path(file)))
+    for machine in dict.fromkeys(each.machine for each in setups if each.machine):
+        named += machine_files(machine, as_machine(machine))
+    stock = project.simulation.stock
+    named += [stock] if isinstance(stock, str) and stock and is_mesh(stock) else []
+    return [*named, *released, *project.hooks]
+
+
+def library_files(libraries: Iterable[FilePath]) -> list[FilePath]:
+    """The files of tool libraries, with all that those in TOML extend.
+
+    Raises
+    ------
+    InputError
+        If one in TOML cannot be read.
+    """
+    named = list(libraries)
+    extended = (library_table(Path(each)).files() for each in named if str(each).lower().endswith(".toml"))
+    return [*named, *chain.from_iterable(extended)]
 
 
 def simulated_files(project: Project, number: int) -> list[FilePath]:
@@ -106,10 +134,12 @@ def simulated_files(project: Project, number: int) -> list[FilePath]:
 
 def _named_files(setup: SetupInput) -> Iterator[FilePath]:
     several: tuple[Iterable[object], ...] = setup.programs, setup.subprograms, setup.fixtures, setup.libraries
-    for names in (*several, listed("cl", setup.cl, Toolpath), (setup.part,)):
-        yield from (name for name in names if isinstance(name, str | os.PathLike))
-    if isinstance(setup.machine, str) and setup.machine.endswith(".toml"):
-        yield setup.machine
+    for names in (*several, listed("cl", setup.cl, Toolpath), (setup.part or None,)):
+        yield from (name for name in names if _is_path(name))
+
+
+def _is_path(name: object) -> TypeGuard[FilePath]:
+    return isinstance(name, str | os.PathLike)
 
 
 def read_project(path: Path, elsewhere: Collection[str] = ()) -> SimulationInput:
@@ -153,7 +183,7 @@ def read_project_table(root: Table, path: Path, elsewhere: Collection[str] = (),
         raise InputError(
             Problem(str(path), 0, what, "give the path of a project, or name the files themselves", code="SIM112")
         )
-    found = _Reader(path, elsewhere, is_posted).project(root.table("simulation") if "simulation" in root else root)
+    found = _Reader(path, elsewhere, is_posted).project(root)
     root.report_unread_keys()
     root.raise_problems()
     return found
@@ -166,8 +196,9 @@ class _Reader:
         self._path, self._paths = path, ProjectPaths(path.parent)
         self._elsewhere, self._is_posted = elsewhere, is_posted
 
-    def project(self, table: Table) -> Project:
-        """All of it."""
+    def project(self, root: Table) -> Project:
+        """All of it; its keys stand at the top, or in one table."""
+        table = root.table("simulation") if "simulation" in root else root
         checks = self._checks(table.table("checks"))
         hooks = self._paths.files(table, "hooks")
         strict = table.flag("strict", False)
@@ -207,7 +238,7 @@ class _Reader:
             table.add_problem("", "posts nothing: no set-up has an output", 'write output = "NAME.mpf" beside its cl')
         table.report_unread_keys()
         simulation = SimulationInput(stock=stock, setups=simulated, places=_places(table), **found)
-        return Project(self._path, simulation, posted, checks, hooks, strict)
+        return Project(self._path, simulation, posted, checks, hooks, strict, files=tuple(root.files()))
 
     def _checks(self, table: Table) -> ProjectChecks:
         """What is judged after the posts."""
@@ -225,7 +256,7 @@ class _Reader:
         stock = table.text("stock") if is_needed else table.text("stock", "")
         if "stock" in table and stock == "" and not table.problems:
             table.add_problem("stock", 'is ""', "state a box, a cylinder or a mesh")
-        elif stock and not stock.startswith(("box:", "cylinder:")):
+        elif stock and is_mesh(stock):
             stock = self._paths.file(table, "stock", stock)
         elif stock and "stock" not in self._elsewhere:
             _try(table, stock_shape, stock)

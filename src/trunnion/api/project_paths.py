@@ -8,6 +8,7 @@ from typing import Final
 from trunnion.definitions import Table
 from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem
+from trunnion.files import name_fault
 
 #: Files that one key may name, and a project.
 _MOST_FILES: Final = 1000
@@ -40,14 +41,29 @@ class ProjectPaths:
             if key in table and table.text(key, None) is not None:
                 table.add_problem(key, 'is ""', "name a file in the folder of the project or below it")
             return None
+        told = len(table.problems)
         location = self._located(table, key, name)
+        if len(table.problems) > told:
+            return location
         if name.endswith("/") or _answer(Path.is_dir, location):
             table.add_problem(key, f'"{name[:100]}" is a folder', "name a file in it")
+        elif not _answer(Path.is_dir, location.parent):
+            table.add_problem(key, f'"{name[:100]}" is in a folder that is not there', "make it first", code="FIL220")
+        elif fault := name_fault(PurePosixPath(name)) or name_fault(self._behind_links(location)):
+            table.add_problem(
+                key, f"cannot be written: {fault}", "write letters, digits and _, such as top.mpf", code="FIL340"
+            )
         return location
+
+    def _behind_links(self, location: Path) -> PurePosixPath:
+        """Where a file of the folder is in it, behind all links."""
+        return PurePosixPath(location.resolve().relative_to(self._folder.resolve()).as_posix())
 
     def file(self, table: Table, key: str, name: str) -> str:
         """The path of a file that is read; it lies beside the project or below."""
         if not name:
+            if key in table:
+                table.add_problem(key, 'names ""', _WITHIN)
             return ""
         told = len(table.problems)
         location = self._located(table, key, name)

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 from trunnion.api.arguments import check_observer, check_path
 from trunnion.api.dividing import check_tools, operation_programs, programs_of_operations
-from trunnion.api.input_files import definition_files
 from trunnion.api.job import prepare
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.paper_files import NO_PAPERS, PaperFiles
@@ -21,7 +20,7 @@ from trunnion.api.post_result import PostResult
 from trunnion.api.posting import post_beside
 from trunnion.api.project import Division, PostedSetup, Project
 from trunnion.api.project_checks import SetupFindings, check_project
-from trunnion.api.project_file import load_project, named_files, told_by_keys
+from trunnion.api.project_file import load_project, project_inputs, told_by_keys
 from trunnion.api.project_settings import told_in_project
 from trunnion.api.reading import FilePath, ToolpathLike, as_machine
 from trunnion.api.settings import Settings, SettingValue
@@ -107,32 +106,24 @@ def post_project(
         return post_into(group, loaded, settings=settings, strict=strict, explain=explain, observer=observer)
 
 
-def project_inputs(project: Project) -> list[FilePath]:
-    """All files that posting a project reads, those of its machines' definitions too.
-
-    Raises
-    ------
-    InputError
-        If a machine cannot be loaded.
-    """
-    named = [project.path, *named_files(project)]
-    for machine in dict.fromkeys(each.machine for each in project.setups):
-        named += definition_files(machine, as_machine(machine))
-    return named
-
-
 def post_into(
-    group: OutputGroup, project: Project, *, settings: Settings | None, strict: bool, explain: bool, observer: Observer
-) -> ProjectResult:
+    group: OutputGroup, project: Project, *, settings: Settings | None, strict: bool, explain: bool,
+    observer: Observer, replaces: bool = False,
+) -> ProjectResult:  # fmt: skip
     """Post a project; its files appear with those of the ``group``. Errors are those of ``post_project``.
 
-    A set-up that is refused does not hide what is wrong with the next ones.
+    A set-up that is refused does not hide what is wrong with the next ones. ``replaces``: also files that no post has
+    written, because the user has seen what becomes of them.
     """
     inputs = project_inputs(project)
     papers = [paper for each in project.setups for paper in each.papers.by_name().values()]
     check_outputs([*(each.output for each in project.setups), *papers], inputs)
+    if not replaces:
+        _check_replaced(project)
     observer.problems(_running_hooks(project))
-    post = _SetupPost(group, project, inputs, dict(settings or {}), strict or project.strict, explain, observer)
+    post = _SetupPost(
+        group, project, inputs, dict(settings or {}), strict or project.strict, explain, observer, replaces
+    )
     posted, errors = list[tuple[PostedSetup, tuple[PostResult, ...]]](), list[TrunnionError]()
     for setup in project.setups:
         try:
@@ -194,6 +185,7 @@ class _SetupPost:
     strict: bool
     explain: bool
     observer: Observer
+    replaces: bool
     #: Papers that wait for the checks of the project.
     later: list[PostPapers] = field(default_factory=list)
 
@@ -210,7 +202,8 @@ class _SetupPost:
         toolpaths = load_toolpaths(setup.cl, job, self.strict, Observer())
         motions: list[Motion] = []
         for each in operation_programs(toolpaths, job, setup.output):
-            _check_unnamed(each.output)
+            if not self.replaces and (found := _replaced(each.output, each.output)):
+                raise InputError(found)
             result = self._program(setup, machine, each.toolpath, each.settings, each.output, NO_PAPERS)
             motions += result.motions
             yield result
@@ -233,20 +226,28 @@ class _SetupPost:
         )  # fmt: skip
 
 
-def _check_unnamed(output: Path) -> None:
-    """Raise ``InputError`` if a file whose name nobody chose is there, and is not as a post has written it."""
-    place = resolve_output(output).path
-    if place.exists() and not EarlierJob(place).wrote(place):
-        what = "would be replaced, although no post has written it as it is"
-        raise InputError(
-            Problem(
-                str(output),
-                0,
-                what,
-                "remove it, or take the new one over with trunnion test",
-                code="FIL250",
-            )
-        )
+def _check_replaced(project: Project) -> None:
+    """Raise ``InputError`` for files that would be replaced, and that are not as posts have written them.
+
+    The author of a project has named them, who may be anyone: not the user, whose files they are.
+    """
+    found: list[Problem] = []
+    for setup in project.setups:
+        named = [] if setup.division is Division.OPERATIONS else [setup.output]
+        for file in (*named, *setup.papers.by_name().values()):
+            found += _replaced(file, setup.output)
+    if found:
+        raise InputError(found)
+
+
+def _replaced(file: Path, first: Path) -> list[Problem]:
+    """The problem of a file that is there, is not empty, and is not as posts of the ``first`` have written it."""
+    place = resolve_output(file).path
+    if not place.exists() or not place.stat().st_size or EarlierJob(resolve_output(first).path).wrote(place):
+        return []
+    what = "would be replaced, although no post has written it as it is"
+    cure = "remove it, or take the new one over with trunnion test"
+    return [Problem(str(file), 0, what, cure, code="FIL250")]
 
 
 def _left_over(posted: Sequence[tuple[PostedSetup, tuple[PostResult, ...]]]) -> list[Problem]:

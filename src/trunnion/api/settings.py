@@ -73,8 +73,10 @@ def _as_text(key: str, value: object) -> str | None:
     if isinstance(value, str | int | np.integer | datetime.date):
         return str(value)
     if isinstance(value, float | np.floating):
-        return np.format_float_positional(value, trim="-")
-    if isinstance(value, bytes | Mapping) or not isinstance(value, Iterable):
+        return np.format_float_positional(value, trim="-") if np.isfinite(value) else None
+    # Several numbers are for the few settings that have them; a text of numbers that nobody wrote is none.
+    several = key in RUN_SETTINGS and "," in RUN_SETTINGS[key].form
+    if not several or isinstance(value, bytes | Mapping) or not isinstance(value, Iterable):
         return None
     parts = list(value)
     numbers = [part for part in parts if isinstance(part, int | float | np.number) and not isinstance(part, bool)]

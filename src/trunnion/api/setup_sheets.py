@@ -87,7 +87,7 @@ def _operations(
             method=clean(program.method_of(motions[0].operation)),
             mode=", ".join(dict.fromkeys(motion.mode.value for motion in motions)),
             tool=clean(call),
-            cl_file=clean(own.cl_file),
+            cl_file=clean(Path(own.cl_file).name),
             seconds=usage.seconds,
             cutting_seconds=usage.cutting_seconds,
             box=_box(motions),

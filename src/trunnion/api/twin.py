@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from trunnion.api.arguments import check_path, check_paths, wrong_argument
+from trunnion.api.input_files import machine_files
 from trunnion.api.reading import FilePath, MachineLike, as_machine, as_run
 from trunnion.api.settings import set_up_machine
 from trunnion.api.targets import check_output_name
@@ -144,7 +145,8 @@ def write_device_xml(
     """
     place = check_output_name("output", output, (".xml",), "a device model is XML")
     program = twin_program(nc, machine=machine, subprograms=subprograms, zero=zero, tool_length=tool_length)
-    with atomic_file(place, inputs=[Path(file) for file in program.run.files]) as sink:
+    read = [*program.run.files, *machine_files(machine, program.run.machine)]
+    with atomic_file(place, inputs=read) as sink:
         sink.write(device_xml(program).encode())
 
 

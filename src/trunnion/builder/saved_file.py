@@ -5,18 +5,16 @@ Out:    the file as it is, and the file as it is saved: with its byte order mark
 """
 
 import difflib
-import re
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from typing import Final
 
 from trunnion.builder.draft import MOST_LETTERS
 from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem, unusable_file
+from trunnion.files import name_fault
 
-#: A name that files have on every system: no folder, no device, nothing that Windows has no letter for.
-_FILE_NAME: Final = re.compile(
-    r"(?!(?:con|prn|aux|nul|com\d|lpt\d)\.)[^\x00-\x1f\x7f<>:\"/\\|?*]{1,120}\.toml", re.IGNORECASE
-)
+#: Letters that the name of a definition may have.
+_LONGEST: Final = 120
 
 _MARK: Final = "\ufeff"
 
@@ -26,7 +24,8 @@ _MOST_COMPARED: Final = 5_000
 
 def is_file_name(name: str) -> bool:
     """Return whether a definition can have this name, on any system."""
-    return name.endswith(".toml") and _FILE_NAME.fullmatch(name) is not None
+    path = PurePosixPath(name)
+    return name.endswith(".toml") and len(name) <= _LONGEST and path.parts == (name,) and not name_fault(path)
 
 
 def check_place(file: Path) -> None:

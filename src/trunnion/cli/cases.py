@@ -41,10 +41,15 @@ def _test(path: Path, *, accept: bool) -> tuple[str, int]:
             accepted = case.accept()
         except TrunnionError as error:
             return _tell_error(case, error)
-        if not accepted:
-            return outcome, 0 if case.passed else 1
-        print_result(one_line(f"{path}: accepted: {', '.join(file.name for file in accepted)}"))
-        return "accepted", 1 if case.gone else 0
+        left = len(case.gone) - len(accepted.removed)
+        if accepted.written:
+            print_result(one_line(f"{path}: accepted: {', '.join(file.name for file in accepted.written)}"))
+        if accepted.removed:
+            names = ", ".join(file.name for file in accepted.removed)
+            print_result(one_line(f"{path}: removed: {names}; remove it from the control, too"))
+        if left or case.passed:
+            return outcome, 1 if left else 0
+        return "accepted", 0
 
 
 def _tell_error(case: Case, error: TrunnionError) -> tuple[str, int]:
@@ -59,7 +64,7 @@ def _tell_error(case: Case, error: TrunnionError) -> tuple[str, int]:
 def _outcome(case: Case) -> str:
     if any(each.text for program in case.changed for each in program.files):
         return "different"
-    return "new" if case.changed else "different" if case.gone else "same"
+    return "new" if case.changed else "different" if case.papers or case.gone else "same"
 
 
 def _lines(case: Case, outcome: str) -> Iterator[str]:
@@ -81,8 +86,10 @@ def _lines(case: Case, outcome: str) -> Iterator[str]:
                 yield from (f"  {line}" for line in each.text.lines)
                 if each.text.is_cut:
                     yield "  and so on"
+    for paper in case.papers:
+        yield f"{case.path}: PAPER: {paper.file.name} {paper.why}"
     for file in case.gone:
-        yield f"{case.path}: GONE: {file.name} is of an operation that there is no more; remove it"
+        yield f"{case.path}: GONE: {file.name} is of an operation that there is no more"
 
 
 def _of_files(program: ChangedProgram) -> Iterator[str]:

@@ -48,11 +48,9 @@ def model(arguments: argparse.Namespace) -> int:
     tolerance = _TOLERANCE if arguments.tolerance is None else arguments.tolerance
     impeller = load_impeller(arguments.file)
     Terminal().problems(impeller.remarks)
-    definition = impeller.definition
     found = model_impeller(impeller, tolerance=tolerance)
     if arguments.output is not None:
-        points = {Path(table.file) for table in definition.sections}
-        save_mesh(found.mesh, arguments.output, inputs=[arguments.file, *points])
+        save_mesh(found.mesh, arguments.output, inputs=impeller.definition.files)
     facets = len(found.mesh.faces)
     if arguments.json:
         print_result(as_json(_model_data(impeller, found.volume, {"facets": facets}, found.deviation, found.mesh)))

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from itertools import chain, islice
 from pathlib import Path
 
-from trunnion.api.input_files import definition_files
+from trunnion.api.input_files import machine_files
 from trunnion.api.observer import Observer
 from trunnion.api.paper_files import PAPERS, paper_files
 from trunnion.api.post_result import PostResult
@@ -39,7 +39,7 @@ def post(
         if len(targets) > 1:
             what = f"one {PAPERS[name]} for {len(targets)} programs"
             raise InputError(Problem(file, 0, what, f"post them one at a time, or leave --{name} out", code="ARG130"))
-    read = [*named_files(arguments.files), *definition_files(arguments.machine, machine), *arguments.hooks]
+    read = [*named_files(arguments.files), *machine_files(arguments.machine, machine), *arguments.hooks]
     check_outputs([*(target for target in targets if target != "-"), *papers.values()], read)
     if output_folder(arguments.output) is not None:
         for target in targets:

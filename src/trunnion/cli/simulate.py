@@ -4,7 +4,9 @@ import argparse
 from collections.abc import Iterator
 from typing import Final
 
-from trunnion.api.project_file import project_files
+from trunnion.api.input_files import machine_files
+from trunnion.api.project_file import library_files, project_files
+from trunnion.api.reading import load_machine
 from trunnion.api.reports import check_report_name
 from trunnion.api.simulating import simulate
 from trunnion.api.simulation_data import simulation_data
@@ -26,9 +28,11 @@ _MOST: Final = 20
 
 def run(arguments: argparse.Namespace) -> int:
     """Simulate programs; 0 if nothing was found, else 1."""
-    read = [*arguments.files, *named_files(arguments.cl), *arguments.libraries, *arguments.subprograms]
+    read = [*arguments.files, *named_files(arguments.cl), *library_files(arguments.libraries), *arguments.subprograms]
     read += [mesh for mesh in (arguments.part, arguments.stock, *arguments.fixtures) if mesh is not None]
     read += project_files(arguments.files)
+    if arguments.machine is not None:
+        read += machine_files(arguments.machine, load_machine(arguments.machine))
     if arguments.save_stock is not None:
         check_mesh_name(arguments.save_stock)
     if arguments.report is not None:

@@ -5,6 +5,8 @@ import getpass
 import sys
 from typing import TYPE_CHECKING
 
+from trunnion.api.input_files import machine_files
+from trunnion.api.reading import load_machine
 from trunnion.api.twin import add_twin_user, is_loopback, serve_twin, write_device_xml
 from trunnion.cli.results import print_result
 from trunnion.errors import InputError, Problem, argument_problem
@@ -31,7 +33,8 @@ def run(arguments: argparse.Namespace) -> int:
             ]
         )
     if arguments.device_xml is not None:
-        check_outputs([arguments.device_xml], [arguments.file, *arguments.subprograms])
+        definition = machine_files(arguments.machine, load_machine(arguments.machine))
+        check_outputs([arguments.device_xml], [arguments.file, *arguments.subprograms, *definition])
         write_device_xml(
             arguments.file, machine=arguments.machine, output=arguments.device_xml,
             subprograms=arguments.subprograms, zero=arguments.zero or None, tool_length=arguments.tool_length or None,

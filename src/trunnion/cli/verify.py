@@ -3,7 +3,7 @@
 import argparse
 from typing import Final
 
-from trunnion.api.input_files import definition_files
+from trunnion.api.input_files import machine_files
 from trunnion.api.manifests import verify_manifest
 from trunnion.api.reading import load_machine
 from trunnion.api.reports import check_report, write_report
@@ -32,7 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.report is not None:
         read = [arguments.file, *named_files(arguments.cl), *arguments.subprograms]
         read += [] if arguments.recorded is None else [arguments.recorded]
-        check_report(arguments.report, [*read, *definition_files(arguments.machine, machine)])
+        check_report(arguments.report, [*read, *machine_files(arguments.machine, machine)])
     verification = verify(
         arguments.file,
         machine=machine,
@@ -86,6 +86,8 @@ def _run_manifest(arguments: argparse.Namespace) -> int:
             raise InputError(argument_problem(name, what, cure, code="ARG130"))
     found = verify_manifest(arguments.file, cl=arguments.cl)
     print_result(*(one_line(str(file)) for file in found.files))
+    for name in found.not_compared:
+        tell(one_line(f"{name}: not compared, and the program was made from it: --cl FILE compares it"))
     if not found.proven:
         tell(f"{arguments.file}: the program was written by force, and must not run as it is")
     return 0 if found.passed else 1

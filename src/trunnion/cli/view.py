@@ -5,7 +5,9 @@ import sys
 from functools import partial
 from typing import Any
 
-from trunnion.api.project_file import project_files
+from trunnion.api.input_files import machine_files
+from trunnion.api.project_file import library_files, project_files
+from trunnion.api.reading import load_machine
 from trunnion.api.recording import machine_feed
 from trunnion.api.viewing import check_view_name, prepare_view, write_view
 from trunnion.api.viewing_live import LiveMachine, machine_content
@@ -31,7 +33,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.live is not None and arguments.output is not None:
         raise InputError(argument_problem("live", "is for a page that is served", "leave --output out", code="ARG130"))
     read = [*files, *project_files(files, ("machine", "stock")), *arguments.subprograms, *named_files(arguments.cl)]
-    read += [*arguments.libraries, *arguments.fixtures]
+    read += [*library_files(arguments.libraries), *arguments.fixtures]
     read += [file for file in (arguments.part, arguments.stock, arguments.against) if file is not None]
     given = {
         "machine": arguments.machine, "against": arguments.against, "against_machine": arguments.against_machine,
@@ -43,6 +45,8 @@ def run(arguments: argparse.Namespace) -> int:
     }  # fmt: skip
     if arguments.output is not None:
         check_view_name(arguments.output)
+        for machine in filter(None, (arguments.machine, arguments.against_machine)):
+            read += machine_files(machine, load_machine(machine))
         check_outputs([arguments.output], read)
         write_view(files, output=arguments.output, observer=Terminal(), **given)
         print_result(f"{arguments.output}: written")

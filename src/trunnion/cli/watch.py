@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Protocol
 
 from trunnion.api.dividing import programs_of_operations
-from trunnion.api.input_files import definition_files
+from trunnion.api.input_files import machine_files
 from trunnion.api.observer import Observer
 from trunnion.api.posted_simulation import simulation_files
 from trunnion.api.project import Division, Project
-from trunnion.api.project_file import load_project
-from trunnion.api.project_posting import post_into, project_inputs
+from trunnion.api.project_file import load_project, project_inputs
+from trunnion.api.project_posting import post_into
 from trunnion.api.reading import load_machine
 from trunnion.api.watching import FolderNotices, Waiting, mentioned_files, watch
 from trunnion.cli.post import files_by_target, simulation_of
@@ -182,7 +182,7 @@ class _FilesWork:
         given = self._arguments
         named = {*map(file_on_disk, given.files), *given.subprograms, *given.hooks, *_of_definition(given.machine)}
         try:
-            found = definition_files(given.machine, load_machine(given.machine))
+            found = machine_files(given.machine, load_machine(given.machine))
             self._definitions = {str(file) for file in found}
         except (TrunnionError, OSError):  # those that it had before stay
             pass
@@ -190,6 +190,7 @@ class _FilesWork:
             named |= {str(file) for file in simulation_files(simulation_of(given) or {})}
         except (TrunnionError, OSError):  # a project that is broken; posting will tell
             named |= {given.project, *mentioned_files(Path(given.project))} if given.project else set()
+            named |= {*given.libraries, *given.fixtures, *filter(None, (given.part, given.stock))}
         return named | self._definitions
 
     def post(self, group: OutputGroup) -> tuple[bool, list[str]]:

@@ -212,11 +212,11 @@ def _identity(source: _DefinitionFile) -> object:
 
 def _merge_ancestors(
     root: LocatedValue, source: _DefinitionFile, library: Library, problems: list[Problem]
-) -> LocatedValue:
-    """Merge a table onto everything that it extends, directly or through others."""
+) -> tuple[LocatedValue, tuple[str, ...]]:
+    """Merge a table onto everything that it extends, directly or through others; and the files of those."""
     tables = [root]
     seen = [_identity(source)]
-    labels = [_file_name(source.label)]
+    labels, files = [_file_name(source.label)], list[str]()
     while True:
         table = tables[-1]
         assert isinstance(table.value, dict)
@@ -231,10 +231,11 @@ def _merge_ancestors(
             raise InputError(Problem(extends.file, extends.line, what, "remove one extends", code="DEF220"))
         seen.append(_identity(source))
         tables.append(_read(source))
+        files.append(source.label)
     merged = tables.pop()
     while tables:
         merged = merge(merged, tables.pop(), "", problems)
-    return merged
+    return merged, tuple(files)
 
 
 def _file_name(label: str) -> str:
@@ -285,10 +286,10 @@ def load_table(
             cure += f"write the path of a .toml file, or one of {', '.join(names)}"
             raise InputError(Problem(text, 0, f"there is no shipped {kind} of this name", cure, code="DEF110"))
     problems: list[Problem] = []
-    root = _merge_ancestors(_read(source, kind), source, library, problems)
+    root, extended = _merge_ancestors(_read(source, kind), source, library, problems)
     if overrides:
         root = merge(root, locate_values(dict(overrides), "overrides", {}), "", problems)
-    return Table(root, "", problems)
+    return Table(root, "", problems, sources=(source.label, *extended))
 
 
 def load_draft(text: str, path: Path, library: Library) -> Table:
@@ -310,7 +311,8 @@ def load_draft(text: str, path: Path, library: Library) -> Table:
     """
     source = _DefinitionFile(_Draft(text.encode()), str(path), path.parent)
     problems: list[Problem] = []
-    return Table(_merge_ancestors(_read(source), source, library, problems), "", problems)
+    root, extended = _merge_ancestors(_read(source), source, library, problems)
+    return Table(root, "", problems, sources=(source.label, *extended))
 
 
 def own_keys(path: Path) -> frozenset[str]:
@@ -359,5 +361,5 @@ def resolve_extends(table: Table, library: Library) -> Table:
     problems: list[Problem] = []
     own = LocatedValue(dict(table.content.value), table.content.file, table.content.line)
     source = _DefinitionFile(folder / f"{Path(file).name}", f"{file} [{table.path}]", folder)
-    merged = _merge_ancestors(own, source, library, problems)
-    return table.other(merged, problems)
+    merged, extended = _merge_ancestors(own, source, library, problems)
+    return replace(table.other(merged, problems), sources=(*table.sources, *extended))

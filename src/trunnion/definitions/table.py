@@ -58,6 +58,7 @@ class Table:
     read_keys  keys that a getter has been called for
     children   tables that getters have returned
     questions  takes what getters ask for, if it is there; shared with all tables that are made of this one
+    sources    files that were read for the definition, also those of which no value counts
     """
 
     content: LocatedValue
@@ -66,6 +67,7 @@ class Table:
     read_keys: dict[str, None] = field(default_factory=dict)
     children: list["Table"] = field(default_factory=list)
     questions: list[Question] | None = None
+    sources: tuple[str, ...] = ()
 
     # Locations
 
@@ -109,7 +111,9 @@ class Table:
 
     def other(self, content: LocatedValue, problems: list[Problem], path: str | None = None) -> "Table":
         """An unread table that notes what is asked where this one does; its path is this one's unless it is given."""
-        return Table(content, self.path if path is None else path, problems, questions=self.questions)
+        return Table(
+            content, self.path if path is None else path, problems, questions=self.questions, sources=self.sources
+        )
 
     def names(self) -> list[str]:
         """Every key of a table whose keys the definition chooses itself, in order: none of them is unknown."""
@@ -117,8 +121,8 @@ class Table:
         return list(self._values)
 
     def files(self) -> list[str]:
-        """Every file that a value of this table comes from, sorted."""
-        found: set[str] = set()
+        """Every file that was read for this table, also where others overrule all of its values; sorted."""
+        found = set(self.sources)
         _add_files(self.content, found)
         return sorted(found)
 

@@ -4,6 +4,8 @@ import json
 import re
 from typing import Final
 
+from trunnion.transliteration import is_seen
+
 _BARE_KEY: Final = re.compile(r"[A-Za-z0-9_-]+")
 
 #: Of a text of several lines: what cannot stand in it as it is.
@@ -32,7 +34,18 @@ def written_key(step: object) -> str:
 
 
 def _quoted(text: str) -> str:
-    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+    return _visible(json.dumps(text, ensure_ascii=False))
+
+
+def _visible(text: str) -> str:
+    """A text with an escape for each character that nobody sees, or that a terminal obeys; line ends and tabs stay."""
+    if text.isprintable():
+        return text
+    return "".join(letter if is_seen(letter) or letter in "\n\t" else _escape(letter) for letter in text)
+
+
+def _escape(letter: str) -> str:
+    return f"\\u{ord(letter):04x}" if ord(letter) < 0x10000 else f"\\U{ord(letter):08x}"
 
 
 def _lines(text: str) -> str:
@@ -40,5 +53,5 @@ def _lines(text: str) -> str:
         found = match.group()
         return '""\\"' if found == '"""' else "\\\\" if found == "\\" else f"\\u{ord(found):04x}"
 
-    escaped = _ESCAPES.sub(escape, text)
+    escaped = _visible(_ESCAPES.sub(escape, text))
     return f'"""\n{escaped}"""' if not escaped.endswith('"') else f'"""\n{escaped[:-1]}\\""""'

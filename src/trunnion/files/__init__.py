@@ -1,6 +1,7 @@
 """Output files: settled before any work, complete or not there at all, alone or several together."""
 
 from trunnion.files.earlier_job import EarlierJob
+from trunnion.files.names import name_fault
 from trunnion.files.output import OutputFiles, OutputGroup, atomic_file, atomic_output, output_group
 from trunnion.files.places import OutputPlace, check_outputs, file_on_disk, resolve_output
 from trunnion.files.streams import check_stream
@@ -18,6 +19,7 @@ __all__ = [
     "check_outputs",
     "check_stream",
     "file_on_disk",
+    "name_fault",
     "output_group",
     "resolve_output",
 ]

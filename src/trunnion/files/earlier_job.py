@@ -32,16 +32,28 @@ class EarlierJob:
 
     def wrote(self, file: Path) -> bool:
         """Whether a file that exists is as one of these jobs has written it."""
+        if file.parent != self._folder:
+            return EarlierJob(file).wrote(file)
         known = self._digests.get(os.path.normcase(file.name))
-        return known is not None and file.parent == self._folder and _digest(file) == known
+        if known is None:
+            return False
+        size, _, digest = known.rpartition(":")
+        # The size first: a file that is somebody else's may be endless.
+        return size in ("", str(file.stat().st_size)) and _digest(file) == digest
 
     def remember(self, files: Iterable[Path]) -> None:
-        """Record files of the same folder that have been written; it does no harm where that is not possible."""
+        """Record files that have been written; it does no harm where that is not possible."""
         if self._record is None:
             return
+        given = list(files)
+        files = [file for file in given if file.parent == self._folder]
+        for other in (file for file in given if file.parent != self._folder):
+            EarlierJob(other).remember([other])
         digests = {name: known for name, known in self._digests.items() if (self._folder / name).exists()}
-        digests |= {os.path.normcase(file.name): _digest(file) for file in files}
-        text = json.dumps({name: known for name, known in digests.items() if known})
+        for file in files:
+            if digest := _digest(file):
+                digests[os.path.normcase(file.name)] = f"{file.stat().st_size}:{digest}"
+        text = json.dumps(digests)
         part = self._record.with_suffix(f".{os.getpid()}")
         with suppress(OSError):
             self._record.parent.mkdir(parents=True, exist_ok=True)
@@ -54,7 +66,7 @@ class EarlierJob:
             found = json.loads(b"" if self._record is None else self._record.read_bytes())
         except (OSError, ValueError, RecursionError):
             return {}
-        return found if isinstance(found, dict) else {}
+        return {name: text for name, text in found.items() if isinstance(text, str)} if isinstance(found, dict) else {}
 
 
 def _digest(file: Path) -> str:

@@ -197,7 +197,14 @@ class OutputFiles:
     def remember(self) -> None:
         """Record what has been written, once it is in its places, for later jobs of the same first file."""
         if self._earlier is not None:
-            self._earlier.remember(place.path for _, place in self._program_files())
+            written = [*self._program_files(), *self.papers]
+            self._earlier.remember(place.path for _, place in written if not place.is_stream)
+
+    def remember_alone(self, paper: Path) -> None:
+        """Record a paper that was written although the program is not."""
+        place = resolve_output(paper)
+        if self._earlier is not None and not place.is_stream:
+            self._earlier.remember([place.path])
 
     def _program_files(self, *, main: bool = True) -> list[tuple[Path, OutputPlace]]:
         files = [(path, place) for path, (_, place) in self._subprograms.items()]

@@ -29,7 +29,7 @@ class OutputPlace:
     @property
     def entry(self) -> Hashable:
         """The same for two names of one place in one folder."""
-        return file_identity(self.path.parent), self.path.name.casefold()
+        return _entry(self.path)
 
 
 def resolve_output(file: object) -> OutputPlace:
@@ -144,6 +144,11 @@ def file_identity(path: str | os.PathLike[str]) -> Hashable:
         return os.fspath(path)
 
 
+def _entry(path: Path) -> Hashable:
+    """The same for two names of one place in one folder, also where small letters are other ones than capitals."""
+    return file_identity(path.parent), path.name.casefold()
+
+
 class Claims:
     """The files that are read and those that are written: none may be two of them."""
 
@@ -159,7 +164,9 @@ class Claims:
         InputError
             If one of them is going to be written.
         """
-        self._read.update(map(file_identity, files))
+        named = list(files)
+        self._read.update(map(file_identity, named))
+        self._read.update(map(_entry, map(Path, named)))
         for place in self._written.values():
             self._check_input(place)
 
@@ -186,7 +193,7 @@ class Claims:
         self._written.pop(place.entry, None)
 
     def _check_input(self, place: OutputPlace) -> None:
-        if file_identity(place.path) in self._read:
+        if not self._read.isdisjoint((file_identity(place.path), place.entry)):
             what = "would be written over, although it is read or has just been written"
             raise InputError(Problem(place.name, 0, what, _OTHER, code="FIL240"))
 

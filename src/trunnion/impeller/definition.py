@@ -58,6 +58,7 @@ class ImpellerDefinition:
     tools, steps      with which it is machined, in their order; none where the definition has none
     premachined       what was made elsewhere before these steps
     places            file and line of each key, by its path, such as ``stock.height_mm``
+    files             all that were read: the definition, what it extends, tables of points
     """
 
     file: str
@@ -75,6 +76,7 @@ class ImpellerDefinition:
     steps: tuple[MachiningStep, ...] = ()
     premachined: tuple[StepKind, ...] = ()
     places: Mapping[str, tuple[str, int]] = field(default_factory=dict)
+    files: tuple[str, ...] = ()
 
     def problem(self, key: str, what: str, cure: str, *, code: str) -> Problem:
         """A mistake that a key makes; it is told at the line of its table where the key is not written."""
@@ -116,6 +118,7 @@ def read_impeller_table(root: Table, path: Path) -> ImpellerDefinition:
         steps=read_steps(root, tools),
         premachined=_premachined(stock),
         places=_places(root, blade, hub, stock),
+        files=(*root.files(), *(table.file for table in sections)),
     )
     for table in (root, blade, hub, stock):
         table.report_unread_keys()

@@ -18,7 +18,8 @@ def text_problems(program: Program) -> list[Problem]:
         written = spelled(text, encoding)
         if written != text and text not in found:
             why = f"is written {written!r}: {_missing(program, text)}"
-            found[text] = Problem(file, line, f"{what} {text!r} {why}", _cure(program), Severity.WARNING, code="CTL810")
+            cure = _cure(program, text)
+            found[text] = Problem(file, line, f"{what} {text!r} {why}", cure, Severity.WARNING, code="CTL810")
     return [*found.values(), *_called(program), *_inserted(program)]
 
 
@@ -28,7 +29,10 @@ def _missing(program: Program, text: str) -> str:
     return f"{encoding} has no {letter!r}" if letter else "it has characters that nobody sees"
 
 
-def _cure(program: Program) -> str:
+def _cure(program: Program, text: str) -> str:
+    """Another encoding helps only where this one lacks a letter, and the control takes others."""
+    if not lacking(text, program.text_form.encoding):
+        return "rename it without them"
     family_only = program.control.family.SETTING_CHOICES.get("encoding")
     return "rename it if it must not be" if family_only else "rename it, or write setting encoding=utf-8"
 

@@ -63,6 +63,11 @@ class StockShape:
         return cylinder_spans(lattice, bundle) if self.is_cylinder else box_spans(lattice, bundle)
 
 
+def is_mesh(text: str) -> bool:
+    """Whether a text names a file with a mesh; else it states a box or a cylinder."""
+    return not text.startswith(("box:", "cylinder:"))
+
+
 def stock_shape(
     text: str | Path | TriangleMesh, warn: Callable[[Problem], None] | None = None, deviation: float = DEVIATION
 ) -> StockShape:

@@ -33,7 +33,18 @@ def read_toml_library(path: Path) -> ToolLibrary:
     InputError
         If it cannot be read, with every mistake in it and its line.
     """
-    return read_library_table(load_table(path, files(__package__), kind="tool library"), path)
+    return read_library_table(library_table(path), path)
+
+
+def library_table(path: Path) -> Table:
+    """The table of a library and of all that it extends, unread.
+
+    Raises
+    ------
+    InputError
+        If a file is no TOML, or cannot be read.
+    """
+    return load_table(path, files(__package__), kind="tool library")
 
 
 def read_library_table(root: Table, path: Path) -> ToolLibrary:
