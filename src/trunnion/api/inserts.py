@@ -25,6 +25,7 @@ from trunnion.model.toolpath import Arcs, Event, Insert, Kind, LoadTool, Spindle
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
 from trunnion.output.said_words import said_words
+from trunnion.readers.control.row_recorder import SPINDLE_SENSES
 from trunnion.readers.program.known_words import HOME, begins_with
 
 #: Columns of a run that a text must leave as they are, and what each of them is.
@@ -215,9 +216,11 @@ def _difference(without: Run, with_text: Run, declared: Sequence[readers.KnownWo
         return "it ends the program"
     more = {
         "where the machine is" if kind == "known" else kind
-        for kind, text in _events(with_text) - _events(without)
+        for kind, text, _ in _events(with_text, without) - _events(without, without)
         if not (kind == "known" and begins_with(declared, text))
     }
+    if "spindle" in more:
+        return _COLUMNS["spindle"]
     return f"it changes {', '.join(sorted(more))}" if more else ""
 
 
@@ -234,5 +237,18 @@ def _first_change(without: Run, with_text: Run) -> str:
     return found
 
 
-def _events(run: Run) -> set[tuple[str, str]]:
-    return {(event.kind, str(event.value)) for event in run.events if event.kind not in _HARMLESS_EVENTS}
+def _events(run: Run, without: Run) -> set[tuple[str, str, int]]:
+    """What happens in a run besides motion: kind, value, and for the spindle the row.
+
+    A text may stop and start the spindle within its lines, which no row shows. A spindle that is told to turn as it
+    does ``without`` the text, or stands behind the last row, is none of these.
+    """
+    found: set[tuple[str, str, int]] = set()
+    for event in run.events:
+        kind, value, row = event.kind, str(event.value), event.before_row
+        if kind == "spindle":
+            if row < len(without) and SPINDLE_SENSES.get(value) != int(without.spindle[row]):
+                found.add((kind, value, row))
+        elif kind not in _HARMLESS_EVENTS:
+            found.add((kind, value, -1))
+    return found
