@@ -262,3 +262,24 @@ def test_shipped_definitions_start_without_the_template_language() -> None:
     code = "import sys, trunnion; trunnion.describe_control('sinumerik_840d'); print('jinja2' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "False\n"
+
+
+@pytest.mark.parametrize("extends", ["yl569", "dmu65", "matsuura_mx330"])
+def test_a_text_that_stops_and_starts_the_spindle_in_the_cut_is_refused(tmp_path: Path, extends: str) -> None:
+    problem = refusal(tmp_path, 'event_PPRINT = "M5\\nM3"', extends=extends)
+    assert "it switches the spindle" in problem.what
+    program(tmp_path, 'event_PPRINT = "M3"', extends=extends)
+
+
+def test_a_subprogram_without_its_return_is_not_proven(tmp_path: Path) -> None:
+    (tmp_path / "part.cls").write_text(SHOP, encoding="utf-8")
+    for foot in ("%", "(END)"):
+        ours = machine(tmp_path, f'subprogram_end = "{foot}"', extends="matsuura_mx330")
+        settings = {"programs": "operations"}
+        with pytest.raises(trunnion.RefusedError, match="without M99"):
+            trunnion.post(tmp_path / "part.cls", machine=ours, output=tmp_path / "out.nc", settings=settings)
+
+
+def test_a_tool_that_cannot_be_called_is_told_also_where_a_text_prints_it(tmp_path: Path) -> None:
+    cl = "\n".join(line for line in SHOP.splitlines() if not line.startswith("LOAD/TOOL")) + "\n"
+    assert refusal(tmp_path, "event_PPRINT = '{# #}'", cl, extends="matsuura_mx330").code == "CTL130"

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.controls.definition import Control
-from trunnion.controls.family_writer import FamilyWriter
+from trunnion.controls.family_writer import FamilyWriter, UnsupportedFeatureError
 from trunnion.controls.setting_rules import tool_number
 from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import OFFSETS_DIFFER, PLANES_USED, TCP_USED
@@ -273,15 +273,15 @@ class TemplateValues:
         number, name = self._program.effective_setting("tool", operation), operation.tool.name
         own = self._program.own_settings.get(operation.name, {}).get("tool")
         if own:
-            return self._tool_setting(own)
+            return self._tool_setting(own, operation)
         if loaded.call and not loads and name == loaded.name:
             return loaded.call
         if name and (self._program.effective_setting("tool_call", operation) == "name" or not (number or loads)):
-            return self._family.tool_call(0, name, by_name=True)
+            return self._family_call(0, name, operation)
         if number:
-            return self._tool_setting(number)
+            return self._tool_setting(number, operation)
         if loads:
-            return self._family.tool_call(loads[-1].number, "", by_name=False)
+            return self._family_call(loads[-1].number, "", operation)
         what = f"operation {operation.name} has no LOAD/TOOL, and its tool has no name"
         raise InputError(
             Problem(self._program.file_of(operation), operation.line, what, "write setting tool=NUMBER", code="CTL140")
@@ -310,9 +310,18 @@ class TemplateValues:
             return loaded.register
         return 0 if self._program.effective_setting("tool", operation) else loads[-1].adjust
 
-    def _tool_setting(self, text: str) -> str:
+    def _tool_setting(self, text: str, operation: Operation) -> str:
         """The tool of the run's setting: a number as it is written, a name as the control takes names."""
-        return text if tool_number(text) is not None else self._family.tool_call(0, text.strip('"'), by_name=True)
+        return text if tool_number(text) is not None else self._family_call(0, text.strip('"'), operation)
+
+    def _family_call(self, number: int, name: str, operation: Operation) -> str:
+        """A tool as the control's family calls it: by its name if there is one."""
+        try:
+            return self._family.tool_call(number, name, by_name=bool(name))
+        except UnsupportedFeatureError as why:
+            what = f"{self._program.control.name}: {why.what}"
+            place = self._program.file_of(operation), operation.line
+            raise InputError(Problem(*place, what, why.cure, code=why.code)) from None
 
 
 def plain_text(control: Control, text: str) -> str:
