@@ -99,6 +99,16 @@ def test_changed_motion_is_what_the_program_is_proven_against_and_its_head_says_
     assert "title=" not in back
 
 
+def test_what_a_hook_prints_is_no_part_of_the_program(part: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    noisy = hook(part, "print('LOADED')\ndef on_operation(operation, context):\n    print('CALLED')\n")
+    result = posted(part, noisy)
+    assert result.text == posted(part).text
+    out, err = capsys.readouterr()
+    assert not out
+    assert err.count("LOADED") == 1
+    assert err.count("CALLED") == 3
+
+
 def test_operations_can_be_left_out_and_multiplied(part: Path) -> None:
     file = hook(
         part,

@@ -7,8 +7,10 @@ Out:    toolpaths that are checked as strictly as those of CL files, with a rema
 
 import inspect
 import math
+import sys
 import types
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import redirect_stdout
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Final, TypeVar
@@ -185,7 +187,8 @@ class _Caller:
             types.MappingProxyType({**job.settings}),
         )
         try:
-            return self._file.functions[name](given, context)
+            with redirect_stdout(sys.stderr):  # the program may go to standard output
+                return self._file.functions[name](given, context)
         except (Exception, SystemExit) as error:
             raise InputError(
                 _failure(self._file.path, error, f"{name} fails for operation {operation.name}")
@@ -334,7 +337,8 @@ def _load(path: Path) -> HookFile:
     module = types.ModuleType(_MODULE)
     module.__file__ = str(path)
     try:
-        exec(compile(path.read_text(encoding="utf-8-sig"), str(path), "exec"), module.__dict__)
+        with redirect_stdout(sys.stderr):
+            exec(compile(path.read_text(encoding="utf-8-sig"), str(path), "exec"), module.__dict__)
     except (Exception, SystemExit) as error:
         raise InputError(_failure(path, error, "the file of hooks fails")) from error
     named = {name: value for name, value in vars(module).items() if name.startswith("on_") and callable(value)}
