@@ -272,12 +272,13 @@ def _plain_operation(call: _Caller, before: Operation, operation: Operation) -> 
     """An operation that a hook has returned, checked as a reader's is by the way it is made."""
     if operation is before:
         return operation
-    parts = {"moves": Moves, "arcs": Arcs, "tool": Tool, "frame": Frame, "events": (tuple, list)}
+    parts: dict[str, type | tuple[type, ...]] = {"moves": Moves, "arcs": Arcs, "tool": Tool, "frame": Frame, "events": (tuple, list)}
     for name, kind in parts.items():
-        if not isinstance(getattr(operation, name), kind):
+        part = getattr(operation, name)
+        if not isinstance(part, kind):
             cure = f"keep the {name} of the operation, or make others of the classes in trunnion.hooks"
             raise call.refuse(
-                "on_operation", f"an operation with {name} of the type {type(getattr(operation, name)).__name__}", cure
+                "on_operation", f"an operation with {name} of the type {type(part).__name__}", cure
             )
     moves, rows = operation.moves, len(operation.moves)
     fault = operation_fault(operation)
