@@ -28,6 +28,7 @@ FORMAT: Final = "number format"
 EACH: Final = "passes of a loop"
 RANGE: Final = "whole numbers"
 JOINED: Final = "texts one after the other"
+COMPARED: Final = "side of a comparison"
 
 _LONGEST_RANGE: Final = 10_000
 _FARTHEST: Final = 10**12
@@ -210,6 +211,35 @@ _OWN: Final[Mapping[str, Callable[..., Any]]] = {
     "join": _join,
 }
 
-ALL: Final[Mapping[str, Callable[..., Any]]] = {
-    **_OWN, FORMAT: _format, EACH: _each, RANGE: _range, JOINED: _joined,
+#: Letters that take as long as one step: those of a text that is looked through, and that are taken apart.
+_LETTERS_A_STEP: Final = 8
+_SLOW: Final = frozenset({"ascii"})
+
+
+def _priced(name: str, change: Callable[..., Any]) -> Callable[..., Any]:
+    """A filter that is paid for by the letters of its texts, as loops are by their passes."""
+    a_step = 1 if name in _SLOW else _LETTERS_A_STEP
+    takes_context = hasattr(change, "jinja_pass_arg")
+
+    @pass_context
+    def priced(context: Context, *arguments: object) -> object:
+        rendering = rendering_of(context)
+        rendering.charge(sum(len(each) for each in arguments if isinstance(each, str)) // a_step)
+        changed = change(context, *arguments) if takes_context else change(*arguments)
+        if isinstance(changed, str):
+            rendering.charge(len(changed) // a_step)
+        return changed
+
+    return priced
+
+
+def _compared(value: object) -> object:
+    """One side of a comparison."""
+    return value
+
+
+_MADE: Final[Mapping[str, Callable[..., Any]]] = {
+    **_OWN, FORMAT: _format, EACH: _each, RANGE: _range, JOINED: _joined, COMPARED: _compared,
 }  # fmt: skip
+
+ALL: Final[Mapping[str, Callable[..., Any]]] = {name: _priced(name, change) for name, change in _MADE.items()}
