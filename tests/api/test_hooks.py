@@ -210,6 +210,24 @@ def test_what_a_hook_does_wrong_is_told_at_its_line(part: Path, text: str, line:
     assert not list(part.parent.glob("*.mpf"))
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "def on_operation(o, c):\n    o.moves.tip.setflags(write=True)\n    o.moves.tip[2, 0] += 5.0\n",
+        "def on_operation(o, c):\n    o.moves.tip.setflags(write=True)\n    o.moves.tip[2, 0] += 5.0\n    return o\n",
+        "def on_event(e, c):\n    m = c.operation.moves\n    m.feed.setflags(write=True)\n    m.feed[-1] = 9000.0\n",
+        "def on_block(b, c):\n    m = c.operation.moves\n    m.kind.setflags(write=True)\n    m.kind[2] = 0\n",
+        "def on_operation(o, c):\n    object.__setattr__(o, 'name', 'OTHER')\n",
+        "def on_event(e, c):\n    object.__setattr__(e, 'row', 1)\n",
+        "def on_operation(o, c):\n    object.__setattr__(o.tool, 'diameter', 3.0)\n    return replace(o)\n",
+    ],
+)
+def test_what_a_hook_changes_in_place_is_refused(part: Path, text: str) -> None:
+    problem = refusal(part, text)
+    assert (problem.line, problem.code) == (3, "HOK130")
+    assert "in place" in problem.what
+
+
 def test_raw_text_of_a_hook_is_tried_as_that_of_a_cl_file(part: Path) -> None:
     problem = refusal(part, "def on_block(block, context):\n    return Insert(block.row, 0, 'G91')\n")
     assert problem.what.startswith("INSERT/G91: ")

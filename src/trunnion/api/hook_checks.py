@@ -4,9 +4,10 @@ In:     events and operations that a hook has made.
 Out:    what is wrong with them, in words for a message; empty if nothing is.
 """
 
+import hashlib
 import math
 import types
-from dataclasses import fields
+from dataclasses import fields, is_dataclass
 from functools import cache
 from typing import Final, get_args, get_type_hints
 
@@ -33,6 +34,26 @@ def operation_fault(operation: Operation) -> str:
     if not fault and not (isinstance(name, str) and name and _is_plain(name)):
         fault = "has no name, or one with control characters"
     return fault or _header_fault(operation)
+
+
+def fingerprint(operation: Operation) -> bytes:
+    """Return what tells an operation from another one with any other value; columns may be millions of rows."""
+    digest = hashlib.blake2b()
+    waiting: list[object] = [operation]
+    while waiting:
+        value = waiting.pop()
+        if isinstance(value, np.ndarray):
+            digest.update(f"{value.dtype}{value.shape}".encode())
+            digest.update(np.ascontiguousarray(value).tobytes())
+        elif is_dataclass(value) and not isinstance(value, type):
+            digest.update(f"{type(value).__qualname__}(".encode())
+            waiting += [getattr(value, each.name) for each in fields(value)]
+        elif isinstance(value, tuple | list):
+            digest.update(f"[{len(value)}".encode())
+            waiting += value
+        else:
+            digest.update(f"{value!r}\0".encode("utf-8", "surrogatepass"))
+    return digest.digest()
 
 
 def _header_fault(operation: Operation) -> str:

@@ -16,7 +16,7 @@ from typing import Final, TypeVar
 
 import numpy as np
 
-from trunnion.api.hook_checks import operation_fault, value_fault
+from trunnion.api.hook_checks import fingerprint, operation_fault, value_fault
 from trunnion.api.job import PostJob
 from trunnion.cl import unknown_statement_remarks
 from trunnion.controls.vocabulary import HOOKS_NOTICE
@@ -125,14 +125,19 @@ class Hooks:
 
     def _run(self, file: HookFile, cl_file: str, operation: Operation, number: int) -> list[Operation]:
         call = _Caller(file, cl_file, self._job, number)
+        call.watch(operation)
         found = [operation]
         if "on_operation" in file.functions:
             returned = call("on_operation", operation, operation)
             found = [operation] if returned is None else call.listed("on_operation", returned, Operation)
+            call.refuse_changes("on_operation")
             found = [_plain_operation(call, operation, each) for each in found]
         for name, change in (("on_event", call.events), ("on_block", call.block_events)):
             if name in file.functions:
+                for each in found:
+                    call.watch(each)
                 found = [replace(each, events=change(each)) for each in found]
+                call.refuse_changes(name)
         return found
 
     def _remarks(self, file: HookFile, before: Operation, after: Sequence[Operation]) -> list[Problem]:
@@ -181,6 +186,18 @@ class _Caller:
 
     def __init__(self, file: HookFile, cl_file: str, job: PostJob, number: int) -> None:
         self._file, self._cl_file, self._job, self._number = file, cl_file, job, number
+        self._watched: list[tuple[Operation, bytes]] = []
+
+    def watch(self, operation: Operation) -> None:
+        """Keep in mind what an operation is, before a function gets it."""
+        self._watched.append((operation, fingerprint(operation)))
+
+    def refuse_changes(self, name: str) -> None:
+        """Refuse what a function has changed without returning it: nobody would be told, and nothing would check it."""
+        if any(fingerprint(operation) != before for operation, before in self._watched):
+            what = f"{name} changes an operation in place"
+            cure = "return a changed copy: replace(operation, moves=replace(operation.moves, feed=…))"
+            raise InputError(Problem(str(self._file.path), self._file.line_of(name), what, cure, code="HOK130"))
 
     def __call__(self, name: str, given: object, operation: Operation) -> object:
         """Call a function with an operation, an event or a block."""
@@ -272,14 +289,18 @@ def _plain_operation(call: _Caller, before: Operation, operation: Operation) -> 
     """An operation that a hook has returned, checked as a reader's is by the way it is made."""
     if operation is before:
         return operation
-    parts: dict[str, type | tuple[type, ...]] = {"moves": Moves, "arcs": Arcs, "tool": Tool, "frame": Frame, "events": (tuple, list)}
+    parts: dict[str, type | tuple[type, ...]] = {
+        "moves": Moves,
+        "arcs": Arcs,
+        "tool": Tool,
+        "frame": Frame,
+        "events": (tuple, list),
+    }
     for name, kind in parts.items():
         part = getattr(operation, name)
         if not isinstance(part, kind):
             cure = f"keep the {name} of the operation, or make others of the classes in trunnion.hooks"
-            raise call.refuse(
-                "on_operation", f"an operation with {name} of the type {type(part).__name__}", cure
-            )
+            raise call.refuse("on_operation", f"an operation with {name} of the type {type(part).__name__}", cure)
     moves, rows = operation.moves, len(operation.moves)
     fault = operation_fault(operation)
     if fault:
