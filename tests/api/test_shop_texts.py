@@ -283,3 +283,10 @@ def test_a_subprogram_without_its_return_is_not_proven(tmp_path: Path) -> None:
 def test_a_tool_that_cannot_be_called_is_told_also_where_a_text_prints_it(tmp_path: Path) -> None:
     cl = "\n".join(line for line in SHOP.splitlines() if not line.startswith("LOAD/TOOL")) + "\n"
     assert refusal(tmp_path, "event_PPRINT = '{# #}'", cl, extends="matsuura_mx330").code == "CTL130"
+
+
+@pytest.mark.parametrize("place", ["event_PPRINT", "first_cut", "before_operation", "after_approach"])
+@pytest.mark.parametrize("text", ["; WATCH ~", "* - WATCH ~"])
+def test_a_comment_that_takes_the_next_line_into_its_block_is_refused(tmp_path: Path, place: str, text: str) -> None:
+    with pytest.raises(trunnion.TrunnionError, match="~"):
+        program(tmp_path, f'{place} = "{text}"', extends="dmu65")
