@@ -290,3 +290,12 @@ def test_a_tool_that_cannot_be_called_is_told_also_where_a_text_prints_it(tmp_pa
 def test_a_comment_that_takes_the_next_line_into_its_block_is_refused(tmp_path: Path, place: str, text: str) -> None:
     with pytest.raises(trunnion.TrunnionError, match="~"):
         program(tmp_path, f'{place} = "{text}"', extends="dmu65")
+
+
+@pytest.mark.parametrize("extends", ["yl569", "dmu65"])
+@pytest.mark.parametrize("encoding", ["utf-8", "latin-1"])
+def test_the_text_of_a_stop_ends_no_line(tmp_path: Path, extends: str, encoding: str) -> None:
+    cl = SHOP.replace("STOP/turn the part", "STOP/A\u0085M30\u2028M30\u202eB")
+    assert cl != SHOP
+    lines = program(tmp_path, 'stop = ";STOPS: {text}\\nM{number}"', cl, extends=extends, encoding=encoding)
+    assert [line[line.index("A") :] for line in lines if "STOPS" in line] == ["A M30 M30B"]

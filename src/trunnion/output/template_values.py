@@ -11,7 +11,6 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.controls.definition import Control
 from trunnion.controls.family_writer import FamilyWriter, UnsupportedFeatureError
 from trunnion.controls.setting_rules import tool_number
 from trunnion.controls.template import Value
@@ -324,9 +323,12 @@ class TemplateValues:
             raise InputError(Problem(*place, what, why.cure, code=why.code)) from None
 
 
-def plain_text(control: Control, text: str) -> str:
-    """Return a text of a CL file that ends neither a comment of a template nor a text in quotation marks."""
-    return control.family.escape_comment(text).replace('"', "'")
+def plain_text(program: Program, text: str) -> str:
+    """Return a text of a CL file in letters of the program.
+
+    It ends neither a line, nor a comment of a template, nor a text in quotation marks.
+    """
+    return program.control.family.escape_comment(program.spelled(text)).replace('"', "'")
 
 
 def prints_times(program: Program) -> bool:
