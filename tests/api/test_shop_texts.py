@@ -299,3 +299,16 @@ def test_the_text_of_a_stop_ends_no_line(tmp_path: Path, extends: str, encoding:
     assert cl != SHOP
     lines = program(tmp_path, 'stop = ";STOPS: {text}\\nM{number}"', cl, extends=extends, encoding=encoding)
     assert [line[line.index("A") :] for line in lines if "STOPS" in line] == ["A M30 M30B"]
+
+
+def test_a_rotation_that_is_left_on_at_the_end_is_refused(tmp_path: Path) -> None:
+    turned, back = "after_operation = 'G68 X0 Y0 R5.'\n", "before_operation = 'G69'\n"
+    with pytest.raises(trunnion.RefusedError, match="ends with G68 on"):
+        program(tmp_path, turned + back, extends="matsuura_mx330")
+
+
+@pytest.mark.parametrize("time", ["time", "operation.time", "total_time", "(time ~ ' long')", "(time | default('-'))"])
+@pytest.mark.parametrize("use", [" | cut(5)", " | lower", " | replace('s', '')", " == '4 s'", " in ['4 s']"])
+def test_a_machining_time_can_only_be_printed(tmp_path: Path, time: str, use: str) -> None:
+    problem = refusal(tmp_path, f'''before_operation = ";A {{{{ {time} ~ '' }}}} {{{{ 1 if {time}{use} else 2 }}}}"''')
+    assert (problem.code, "machining time" in problem.what) == ("DEF510", True)

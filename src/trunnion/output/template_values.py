@@ -13,7 +13,7 @@ import numpy as np
 
 from trunnion.controls.family_writer import FamilyWriter, UnsupportedFeatureError
 from trunnion.controls.setting_rules import tool_number
-from trunnion.controls.template import Value
+from trunnion.controls.template import PrintedText, Value
 from trunnion.controls.vocabulary import OFFSETS_DIFFER, PLANES_USED, TCP_USED
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Axis, inverse
@@ -112,10 +112,13 @@ class TemplateValues:
             "tool": (tool := self.tool_call(operation, loaded)),
             "length_number": str(self.length_register(operation, loaded) or tool),
         }
-        return {
-            name: self._family.escape_comment(self._program.spelled(value)) if isinstance(value, str) else value
-            for name, value in found.items()
-        }
+        return {name: self._escaped(value) for name, value in found.items()}
+
+    def _escaped(self, value: Value) -> Value:
+        if not isinstance(value, str):
+            return value
+        text = self._family.escape_comment(self._program.spelled(value))
+        return PrintedText(text) if isinstance(value, PrintedText) else text
 
     def _setting_values(self, motion: Motion) -> dict[str, Value]:
         """Settings, with the values that the family makes of them and the defaults that depend on the operation."""
@@ -193,12 +196,12 @@ class TemplateValues:
         shown = prints_times(self._program)
         return [self._time_text(number) if shown else None for number in range(1, count + 1)]
 
-    def _time_text(self, number: int) -> str:
+    def _time_text(self, number: int) -> PrintedText:
         """The machining time of an operation, counted from 1, or of the program (0); or what stands for it."""
         if self._program.has_time_tokens:
-            return _time_token(number)
+            return PrintedText(_time_token(number))
         self._seconds = self._seconds or estimated_seconds(self._program)
-        return format_duration(self._seconds[number - 1] if number else sum(self._seconds))
+        return PrintedText(format_duration(self._seconds[number - 1] if number else sum(self._seconds)))
 
     def _plane_values(self, motion: Motion) -> dict[str, Value]:
         """The origin of a tilted plane, and which of the two rotary positions the machine takes there.
