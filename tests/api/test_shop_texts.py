@@ -312,3 +312,22 @@ def test_a_rotation_that_is_left_on_at_the_end_is_refused(tmp_path: Path) -> Non
 def test_a_machining_time_can_only_be_printed(tmp_path: Path, time: str, use: str) -> None:
     problem = refusal(tmp_path, f'''before_operation = ";A {{{{ {time} ~ '' }}}} {{{{ 1 if {time}{use} else 2 }}}}"''')
     assert (problem.code, "machining time" in problem.what) == ("DEF510", True)
+
+
+@pytest.mark.parametrize(
+    ("extends", "text", "word"),
+    [
+        ("yl569", "ORIMKS", "ORIMKS"), ("yl569", "CYCLE832()", "CYCLE832"), ("yl569", "M61 G642", "G642"),
+        ("yl569", "COMPCAD", "COMPCAD"), ("matsuura_mx330", "G05.1 Q0", "G5.1"), ("matsuura_mx330", "G64", "G64"),
+    ],
+)  # fmt: skip
+def test_a_mode_behind_the_approach_is_refused(tmp_path: Path, extends: str, text: str, word: str) -> None:
+    problem = refusal(tmp_path, f'after_approach = """\n;LOOK\n{text} ;NOTE\n"""' if extends == "yl569" else
+                      f'after_approach = "{text}"', more=KNOWN, extends=extends)  # fmt: skip
+    assert (problem.code, problem.file) == ("CTL455", str(tmp_path / "ours.toml"))
+    assert f"writes {word}," in problem.what
+
+
+def test_comments_and_declared_words_behind_the_approach_are_written(tmp_path: Path) -> None:
+    lines = program(tmp_path, 'after_approach = ";G64 IS ON\\nM61"', more=KNOWN)
+    assert lines.count("M61") == lines.count(";G64 IS ON") == 3

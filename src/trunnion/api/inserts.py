@@ -5,6 +5,7 @@ Out:    problems at the lines of the INSERT statements, before the program is wr
 """
 
 import math
+import re
 import tempfile
 from collections.abc import Sequence
 from dataclasses import replace
@@ -16,6 +17,7 @@ import numpy as np
 
 from trunnion import readers
 from trunnion.arrays import Floats, Ints
+from trunnion.controls.inches import without_comments
 from trunnion.errors import InputError, Problem
 from trunnion.model.deviations import Deviations
 from trunnion.model.motion import Motion
@@ -56,6 +58,13 @@ _SWITCHES: Final = (LoadTool, SpindleOn, SpindleOff)
 #: Blocks that jumps and loops of a text may execute.
 _STEP_LIMIT: Final = 20_000
 
+#: The template whose text stands behind the words of an approach.
+_APPROACHED: Final = "after_approach"
+
+#: Words of a text, and those of which the path shows nothing either although readers follow them.
+_WORD: Final = re.compile(r"(?<![A-Z0-9_.])([A-Z_]+)([0-9]*(?:\.[0-9]+)?)")
+_SMOOTHS: Final = re.compile(r"ORI[A-Z]+|CYCLE832")
+
 _MOST_LISTED: Final = 20
 _TEMPLATE_CURE: Final = (
     "write what moves nothing and changes no mode, and declare words of the machine's builder under [control.known]"
@@ -67,7 +76,7 @@ def insert_problems(program: Program) -> list[Problem]:
     """What is wrong with the raw texts of a program; empty where its control has no reader."""
     if not readers.can_read(program.machine):
         return []
-    problems: list[Problem] = []
+    problems = _modes_behind_approaches(program)
     harmless: set[object] = set()
     with tempfile.TemporaryDirectory() as folder:
         for motion in program.motions:
@@ -91,6 +100,27 @@ def insert_problems(program: Program) -> list[Problem]:
                     return problems
             if len(problems) == before:
                 harmless.add(alike)
+    return problems
+
+
+def _modes_behind_approaches(program: Program) -> list[Problem]:
+    """Words behind approaches that change how the control smooths or turns: the operation does not say its own again.
+
+    The path does not show them, so that no proof does.
+    """
+    template = program.control.templates.get(_APPROACHED)
+    reader, problems = readers.reader_of(program.machine), list[Problem]()
+    for k, line in enumerate(template.plain_lines() if template else ()):
+        words = without_comments(program.control, line.replace("\0", "1")).upper()
+        if not reader.raw_words.not_known(words, program.machine):
+            continue
+        found = (match[1] + match[2].lstrip("0") for match in _WORD.finditer(words))
+        word = next((each for each in found if each in reader.words_without_path or _SMOOTHS.match(each)), "")
+        if word:
+            assert template is not None
+            what = f"template {_APPROACHED} writes {word}, and the operation does not say its own mode again behind it"
+            cure = "leave it out, or write it into the template of the approach, in place of the mode there"
+            problems.append(Problem(*template.place_of(k), what, cure, code="CTL455"))
     return problems
 
 
