@@ -99,6 +99,16 @@ def test_changed_motion_is_what_the_program_is_proven_against_and_its_head_says_
     assert "title=" not in back
 
 
+def test_what_a_hook_prints_is_no_part_of_the_program(part: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    noisy = hook(part, "print('LOADED')\ndef on_operation(operation, context):\n    print('CALLED')\n")
+    result = posted(part, noisy)
+    assert result.text == posted(part).text
+    out, err = capsys.readouterr()
+    assert not out
+    assert err.count("LOADED") == 1
+    assert err.count("CALLED") == 3
+
+
 def test_operations_can_be_left_out_and_multiplied(part: Path) -> None:
     file = hook(
         part,
@@ -170,6 +180,19 @@ def test_files_of_hooks_are_called_one_after_the_other(part: Path) -> None:
         ("def on_event(event, context):\n    return Insert(0, 0, 'M1\\nM30')\n", 3, "text"),
         ("def on_event(event, context):\n    return Insert(0, 0, 5)\n", 3, "text"),
         ("def on_event(event, context):\n    return Dwell(0, 0, float('nan'))\n", 3, "amount"),
+        ("def on_event(event, context):\n    return SpindleOn(0, 0, 500.0, 'CLW')\n", 3, "sense"),
+        ("def on_event(event, context):\n    return Stop(0, 0, 1)\n", 3, "optional"),
+        ("def on_event(event, context):\n    return CycleOn(0, 0, ('DRILL',), (('RAPTO', 3.0),))\n", 3, "values"),
+        ("def on_block(block, context):\n    return Message(True, 'x', 7)\n", 3, "row = True"),
+        ("def on_block(block, context):\n    return Message(block.row, 'x', 7)\n", 3, "line = 'x'"),
+        ("def on_operation(o, c):\n    return replace(o, events=(Message('1', 0, 'A'),))\n", 3, "row = '1'"),
+        ("def on_operation(o, c):\n    return replace(o, tool=replace(o.tool, diameter=-1))\n", 3, "diameter = -1"),
+        ("def on_operation(o, c):\n    return replace(o, tool=replace(o.tool, length=float('inf')))\n", 3, "length"),
+        ("def on_operation(o, c):\n    return replace(o, tool=replace(o.tool, kind='SAW'))\n", 3, "SAW"),
+        ("def on_operation(o, c):\n    return replace(o, tool=None)\n", 3, "tool"),
+        ("def on_operation(o, c):\n    return replace(o, events=None)\n", 3, "events"),
+        ("def on_operation(o, c):\n    return replace(o, intol=-1.0)\n", 3, "intol"),
+        ("def on_operation(o, c):\n    return replace(o, frame=replace(o.frame, x=(2.0, 0.0, 0.0)))\n", 3, "unit"),
         ("def on_block(block, context):\n    return Insert(block.row + 2, 0, 'M61')\n", 3, "row"),
         ("def on_operation(o, c):\n    return replace(o, moves=replace(o.moves, feed=o.moves.feed[1:]))\n", 3, "feed"),
         ("def on_operation(o, c):\n    return replace(o, moves=replace(o.moves, axis=-2 * o.moves.axis))\n", 3, "unit"),
@@ -185,6 +208,24 @@ def test_what_a_hook_does_wrong_is_told_at_its_line(part: Path, text: str, line:
     assert (Path(problem.file).name, problem.line) == ("shop.py", line)
     assert what in problem.what
     assert not list(part.parent.glob("*.mpf"))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "def on_operation(o, c):\n    o.moves.tip.setflags(write=True)\n    o.moves.tip[2, 0] += 5.0\n",
+        "def on_operation(o, c):\n    o.moves.tip.setflags(write=True)\n    o.moves.tip[2, 0] += 5.0\n    return o\n",
+        "def on_event(e, c):\n    m = c.operation.moves\n    m.feed.setflags(write=True)\n    m.feed[-1] = 9000.0\n",
+        "def on_block(b, c):\n    m = c.operation.moves\n    m.kind.setflags(write=True)\n    m.kind[2] = 0\n",
+        "def on_operation(o, c):\n    object.__setattr__(o, 'name', 'OTHER')\n",
+        "def on_event(e, c):\n    object.__setattr__(e, 'row', 1)\n",
+        "def on_operation(o, c):\n    object.__setattr__(o.tool, 'diameter', 3.0)\n    return replace(o)\n",
+    ],
+)
+def test_what_a_hook_changes_in_place_is_refused(part: Path, text: str) -> None:
+    problem = refusal(part, text)
+    assert (problem.line, problem.code) == (3, "HOK130")
+    assert "in place" in problem.what
 
 
 def test_raw_text_of_a_hook_is_tried_as_that_of_a_cl_file(part: Path) -> None:

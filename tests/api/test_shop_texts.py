@@ -262,3 +262,72 @@ def test_shipped_definitions_start_without_the_template_language() -> None:
     code = "import sys, trunnion; trunnion.describe_control('sinumerik_840d'); print('jinja2' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "False\n"
+
+
+@pytest.mark.parametrize("extends", ["yl569", "dmu65", "matsuura_mx330"])
+def test_a_text_that_stops_and_starts_the_spindle_in_the_cut_is_refused(tmp_path: Path, extends: str) -> None:
+    problem = refusal(tmp_path, 'event_PPRINT = "M5\\nM3"', extends=extends)
+    assert "it switches the spindle" in problem.what
+    program(tmp_path, 'event_PPRINT = "M3"', extends=extends)
+
+
+def test_a_subprogram_without_its_return_is_not_proven(tmp_path: Path) -> None:
+    (tmp_path / "part.cls").write_text(SHOP, encoding="utf-8")
+    for foot in ("%", "(END)"):
+        ours = machine(tmp_path, f'subprogram_end = "{foot}"', extends="matsuura_mx330")
+        settings = {"programs": "operations"}
+        with pytest.raises(trunnion.RefusedError, match="without M99"):
+            trunnion.post(tmp_path / "part.cls", machine=ours, output=tmp_path / "out.nc", settings=settings)
+
+
+def test_a_tool_that_cannot_be_called_is_told_also_where_a_text_prints_it(tmp_path: Path) -> None:
+    cl = "\n".join(line for line in SHOP.splitlines() if not line.startswith("LOAD/TOOL")) + "\n"
+    assert refusal(tmp_path, "event_PPRINT = '{# #}'", cl, extends="matsuura_mx330").code == "CTL130"
+
+
+@pytest.mark.parametrize("place", ["event_PPRINT", "first_cut", "before_operation", "after_approach"])
+@pytest.mark.parametrize("text", ["; WATCH ~", "* - WATCH ~"])
+def test_a_comment_that_takes_the_next_line_into_its_block_is_refused(tmp_path: Path, place: str, text: str) -> None:
+    with pytest.raises(trunnion.TrunnionError, match="~"):
+        program(tmp_path, f'{place} = "{text}"', extends="dmu65")
+
+
+@pytest.mark.parametrize("extends", ["yl569", "dmu65"])
+@pytest.mark.parametrize("encoding", ["utf-8", "latin-1"])
+def test_the_text_of_a_stop_ends_no_line(tmp_path: Path, extends: str, encoding: str) -> None:
+    cl = SHOP.replace("STOP/turn the part", "STOP/A\u0085M30\u2028M30\u202eB")
+    assert cl != SHOP
+    lines = program(tmp_path, 'stop = ";STOPS: {text}\\nM{number}"', cl, extends=extends, encoding=encoding)
+    assert [line[line.index("A") :] for line in lines if "STOPS" in line] == ["A M30 M30B"]
+
+
+def test_a_rotation_that_is_left_on_at_the_end_is_refused(tmp_path: Path) -> None:
+    turned, back = "after_operation = 'G68 X0 Y0 R5.'\n", "before_operation = 'G69'\n"
+    with pytest.raises(trunnion.RefusedError, match="ends with G68 on"):
+        program(tmp_path, turned + back, extends="matsuura_mx330")
+
+
+@pytest.mark.parametrize("time", ["time", "operation.time", "total_time", "(time ~ ' long')", "(time | default('-'))"])
+@pytest.mark.parametrize("use", [" | cut(5)", " | lower", " | replace('s', '')", " == '4 s'", " in ['4 s']"])
+def test_a_machining_time_can_only_be_printed(tmp_path: Path, time: str, use: str) -> None:
+    problem = refusal(tmp_path, f'''before_operation = ";A {{{{ {time} ~ '' }}}} {{{{ 1 if {time}{use} else 2 }}}}"''')
+    assert (problem.code, "machining time" in problem.what) == ("DEF510", True)
+
+
+@pytest.mark.parametrize(
+    ("extends", "text", "word"),
+    [
+        ("yl569", "ORIMKS", "ORIMKS"), ("yl569", "CYCLE832()", "CYCLE832"), ("yl569", "M61 G642", "G642"),
+        ("yl569", "COMPCAD", "COMPCAD"), ("matsuura_mx330", "G05.1 Q0", "G5.1"), ("matsuura_mx330", "G64", "G64"),
+    ],
+)  # fmt: skip
+def test_a_mode_behind_the_approach_is_refused(tmp_path: Path, extends: str, text: str, word: str) -> None:
+    problem = refusal(tmp_path, f'after_approach = """\n;LOOK\n{text} ;NOTE\n"""' if extends == "yl569" else
+                      f'after_approach = "{text}"', more=KNOWN, extends=extends)  # fmt: skip
+    assert (problem.code, problem.file) == ("CTL455", str(tmp_path / "ours.toml"))
+    assert f"writes {word}," in problem.what
+
+
+def test_comments_and_declared_words_behind_the_approach_are_written(tmp_path: Path) -> None:
+    lines = program(tmp_path, 'after_approach = ";G64 IS ON\\nM61"', more=KNOWN)
+    assert lines.count("M61") == lines.count(";G64 IS ON") == 3

@@ -6,15 +6,17 @@ Out:    toolpaths that are checked as strictly as those of CL files, with a rema
 """
 
 import inspect
-import math
+import sys
 import types
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, fields, replace
+from contextlib import redirect_stdout
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final, TypeVar
 
 import numpy as np
 
+from trunnion.api.hook_checks import fingerprint, operation_fault, value_fault
 from trunnion.api.job import PostJob
 from trunnion.cl import unknown_statement_remarks
 from trunnion.controls.vocabulary import HOOKS_NOTICE
@@ -23,7 +25,19 @@ from trunnion.errors import InputError, Problem, Severity, unusable_file
 from trunnion.hooks import Block, Context
 from trunnion.model.motion import Decision, DecisionTopic
 from trunnion.model.splines import Splines
-from trunnion.model.toolpath import Arcs, Event, Insert, Kind, Moves, Operation, Phase, ShopStatement, Toolpath
+from trunnion.model.toolpath import (
+    Arcs,
+    Event,
+    Frame,
+    Insert,
+    Kind,
+    Moves,
+    Operation,
+    Phase,
+    ShopStatement,
+    Tool,
+    Toolpath,
+)
 from trunnion.wording import counted
 
 #: The functions that a file of hooks may have, and what each is called with.
@@ -35,11 +49,6 @@ _FUNCTIONS: Final = {
 
 _Kind = TypeVar("_Kind", Operation, Event)
 
-#: What values of events may be, by how their records declare them.
-_TYPES: Final[dict[str, type | tuple[type, ...]]] = {"str": str, "int": int, "float": (int, float), "bool": bool}
-
-_FARTHEST: Final = 1e6  # mm
-_LONGEST_TEXT: Final = 1000
 _MODULE: Final = "trunnion_hooks"
 
 
@@ -116,14 +125,19 @@ class Hooks:
 
     def _run(self, file: HookFile, cl_file: str, operation: Operation, number: int) -> list[Operation]:
         call = _Caller(file, cl_file, self._job, number)
+        call.watch(operation)
         found = [operation]
         if "on_operation" in file.functions:
             returned = call("on_operation", operation, operation)
             found = [operation] if returned is None else call.listed("on_operation", returned, Operation)
+            call.refuse_changes("on_operation")
             found = [_plain_operation(call, operation, each) for each in found]
         for name, change in (("on_event", call.events), ("on_block", call.block_events)):
             if name in file.functions:
+                for each in found:
+                    call.watch(each)
                 found = [replace(each, events=change(each)) for each in found]
+                call.refuse_changes(name)
         return found
 
     def _remarks(self, file: HookFile, before: Operation, after: Sequence[Operation]) -> list[Problem]:
@@ -172,6 +186,18 @@ class _Caller:
 
     def __init__(self, file: HookFile, cl_file: str, job: PostJob, number: int) -> None:
         self._file, self._cl_file, self._job, self._number = file, cl_file, job, number
+        self._watched: list[tuple[Operation, bytes]] = []
+
+    def watch(self, operation: Operation) -> None:
+        """Keep in mind what an operation is, before a function gets it."""
+        self._watched.append((operation, fingerprint(operation)))
+
+    def refuse_changes(self, name: str) -> None:
+        """Refuse what a function has changed without returning it: nobody would be told, and nothing would check it."""
+        if any(fingerprint(operation) != before for operation, before in self._watched):
+            what = f"{name} changes an operation in place"
+            cure = "return a changed copy: replace(operation, moves=replace(operation.moves, feed=…))"
+            raise InputError(Problem(str(self._file.path), self._file.line_of(name), what, cure, code="HOK130"))
 
     def __call__(self, name: str, given: object, operation: Operation) -> object:
         """Call a function with an operation, an event or a block."""
@@ -185,7 +211,8 @@ class _Caller:
             types.MappingProxyType({**job.settings}),
         )
         try:
-            return self._file.functions[name](given, context)
+            with redirect_stdout(sys.stderr):  # the program may go to standard output
+                return self._file.functions[name](given, context)
         except (Exception, SystemExit) as error:
             raise InputError(
                 _failure(self._file.path, error, f"{name} fails for operation {operation.name}")
@@ -216,6 +243,7 @@ class _Caller:
                 continue
             for new in self.listed("on_event", returned, Event):
                 if new is not event:
+                    self._check_types("on_event", new)
                     new = self._checked("on_event", replace(new, row=event.row, line=event.line), len(operation.moves))
                 found.append(new)
         return tuple(found)
@@ -226,6 +254,7 @@ class _Caller:
         for block in _blocks(operation.moves):
             returned = self("on_block", block, operation)
             for new in [] if returned is None else self.listed("on_block", returned, Event):
+                self._check_types("on_block", new)
                 if new.row not in (block.row, block.row + 1):
                     cure = "make events with row=block.row, or row=block.row + 1 for behind it"
                     raise self.refuse("on_block", f"an event at row {new.row} for the block of row {block.row}", cure)
@@ -235,20 +264,24 @@ class _Caller:
 
     def checked_events(self, events: Iterable[Event], rows: int) -> tuple[Event, ...]:
         """The events of an operation that ``on_operation`` has returned."""
-        found = [self._checked("on_operation", event, rows) for event in events]
+        found = []
+        for event in events:
+            self._check_types("on_operation", event)
+            found.append(self._checked("on_operation", event, rows))
         return tuple(sorted(found, key=lambda event: event.row))
 
-    def _checked(self, name: str, event: Event, rows: int) -> Event:
+    def _check_types(self, name: str, event: Event) -> None:
+        """Refuse an event of which no CL file could have made the values."""
         if not isinstance(event, Event) or type(event) in (Event, ShopStatement):
             raise self.refuse(name, "what is no event", "make events of the classes in trunnion.hooks")
+        fault = value_fault(event)
+        if fault:
+            cure = "texts are of one line, and numbers are finite; help(trunnion.hooks) has the values of each event"
+            raise self.refuse(name, f"{type(event).__name__} with {fault}", cure)
+
+    def _checked(self, name: str, event: Event, rows: int) -> Event:
         if not 0 <= event.row <= rows:
             raise self.refuse(name, f"an event at row {event.row}", f"its operation has the rows 0 to {rows}")
-        hints = {field.name: getattr(field.type, "__name__", field.type) for field in fields(event)}
-        for field in fields(event):
-            value = getattr(event, field.name)
-            if not _is_plain(value) or not isinstance(value, _TYPES.get(str(hints[field.name]), object)):
-                cure = "texts are of one line, and numbers are finite"
-                raise self.refuse(name, f"{type(event).__name__} with {field.name} = {value!r:.60}", cure)
         return replace(event, template="") if isinstance(event, Insert) and event.template else event
 
 
@@ -256,10 +289,20 @@ def _plain_operation(call: _Caller, before: Operation, operation: Operation) -> 
     """An operation that a hook has returned, checked as a reader's is by the way it is made."""
     if operation is before:
         return operation
-    moves, rows, arcs = operation.moves, len(operation.moves), operation.arcs
-    fault = _column_fault(moves) or _arc_fault(moves, arcs)
-    if not fault and not (isinstance(operation.name, str) and operation.name and _is_plain(operation.name)):
-        fault = "has no name, or one with control characters"
+    parts: dict[str, type | tuple[type, ...]] = {
+        "moves": Moves,
+        "arcs": Arcs,
+        "tool": Tool,
+        "frame": Frame,
+        "events": (tuple, list),
+    }
+    for name, kind in parts.items():
+        part = getattr(operation, name)
+        if not isinstance(part, kind):
+            cure = f"keep the {name} of the operation, or make others of the classes in trunnion.hooks"
+            raise call.refuse("on_operation", f"an operation with {name} of the type {type(part).__name__}", cure)
+    moves, rows = operation.moves, len(operation.moves)
+    fault = operation_fault(operation)
     if fault:
         cure = "change copies of the columns: replace(operation, moves=replace(operation.moves, feed=…))"
         raise call.refuse("on_operation", f"an operation {operation.name!r:.60} that {fault}", cure)
@@ -269,50 +312,6 @@ def _plain_operation(call: _Caller, before: Operation, operation: Operation) -> 
     if events is not before.events or rows != len(before.moves):
         events = call.checked_events(events, rows)
     return replace(operation, events=events, splines=splines, file=before.file)
-
-
-def _column_fault(moves: Moves) -> str:
-    n = len(moves.tip)
-    shapes = {"tip": (n, 3), "axis": (n, 3)} | dict.fromkeys(("kind", "phase", "feed", "per_rev", "line"), (n,))
-    for name, shape in shapes.items():
-        column = getattr(moves, name)
-        if not isinstance(column, np.ndarray) or column.shape != shape:
-            return f"has a column {name} of another shape than {shape}"
-    if n == 0:
-        return "has no points"
-    types_ = {"tip": np.float64, "axis": np.float64, "feed": np.float64, "kind": np.uint8, "phase": np.uint8,
-              "per_rev": np.bool_, "line": np.int32}  # fmt: skip
-    for name, wanted in types_.items():
-        if getattr(moves, name).dtype != wanted:
-            return f"has a column {name} that is no {np.dtype(wanted).name}"
-    if not (np.abs(moves.tip) <= _FARTHEST).all():
-        return f"has a point that is none, or beyond {_FARTHEST:g} mm"
-    if not (np.abs(np.linalg.norm(moves.axis, axis=1) - 1.0) <= 1e-6).all():
-        return "has a tool axis that is no unit vector"
-    if not ((moves.kind <= max(Kind)) & (moves.phase <= max(Phase))).all():
-        return "has a kind or a phase that is none"
-    if (moves.feed < 0.0).any() or np.isinf(moves.feed).any():
-        return "has a feed that is none"
-    return "has normals of another shape" if moves.normal is not None and moves.normal.shape != (n, 3) else ""
-
-
-def _arc_fault(moves: Moves, arcs: Arcs) -> str:
-    rows = np.flatnonzero(moves.kind == Kind.ARC)
-    if not np.array_equal(rows, arcs.row):
-        return "has other arcs than its rows of kind ARC"
-    m = len(rows)
-    shapes_fit = arcs.centre.shape == (m, 3) == arcs.normal.shape and arcs.radius.shape == (m,) == arcs.full_turns.shape
-    values = (arcs.centre, arcs.normal, arcs.radius)
-    return "" if shapes_fit and all(np.isfinite(each).all() for each in values) else "has an arc that is none"
-
-
-def _is_plain(value: object) -> bool:
-    """Whether a value of an event could come from a CL file."""
-    if isinstance(value, str):
-        return len(value) <= _LONGEST_TEXT and value.isprintable()
-    if isinstance(value, tuple):
-        return len(value) <= _LONGEST_TEXT and all(map(_is_plain, value))
-    return isinstance(value, bool) or (isinstance(value, int | float) and math.isfinite(value) and abs(value) <= 1e9)
 
 
 def _blocks(moves: Moves) -> Iterable[Block]:
@@ -334,7 +333,8 @@ def _load(path: Path) -> HookFile:
     module = types.ModuleType(_MODULE)
     module.__file__ = str(path)
     try:
-        exec(compile(path.read_text(encoding="utf-8-sig"), str(path), "exec"), module.__dict__)
+        with redirect_stdout(sys.stderr):
+            exec(compile(path.read_text(encoding="utf-8-sig"), str(path), "exec"), module.__dict__)
     except (Exception, SystemExit) as error:
         raise InputError(_failure(path, error, "the file of hooks fails")) from error
     named = {name: value for name, value in vars(module).items() if name.startswith("on_") and callable(value)}

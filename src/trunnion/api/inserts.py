@@ -5,6 +5,7 @@ Out:    problems at the lines of the INSERT statements, before the program is wr
 """
 
 import math
+import re
 import tempfile
 from collections.abc import Sequence
 from dataclasses import replace
@@ -16,6 +17,7 @@ import numpy as np
 
 from trunnion import readers
 from trunnion.arrays import Floats, Ints
+from trunnion.controls.inches import without_comments
 from trunnion.errors import InputError, Problem
 from trunnion.model.deviations import Deviations
 from trunnion.model.motion import Motion
@@ -25,6 +27,7 @@ from trunnion.model.toolpath import Arcs, Event, Insert, Kind, LoadTool, Spindle
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
 from trunnion.output.said_words import said_words
+from trunnion.readers.control.row_recorder import SPINDLE_SENSES
 from trunnion.readers.program.known_words import HOME, begins_with
 
 #: Columns of a run that a text must leave as they are, and what each of them is.
@@ -55,6 +58,13 @@ _SWITCHES: Final = (LoadTool, SpindleOn, SpindleOff)
 #: Blocks that jumps and loops of a text may execute.
 _STEP_LIMIT: Final = 20_000
 
+#: The template whose text stands behind the words of an approach.
+_APPROACHED: Final = "after_approach"
+
+#: Words of a text, and those of which the path shows nothing either although readers follow them.
+_WORD: Final = re.compile(r"(?<![A-Z0-9_.])([A-Z_]+)([0-9]*(?:\.[0-9]+)?)")
+_SMOOTHS: Final = re.compile(r"ORI[A-Z]+|CYCLE832")
+
 _MOST_LISTED: Final = 20
 _TEMPLATE_CURE: Final = (
     "write what moves nothing and changes no mode, and declare words of the machine's builder under [control.known]"
@@ -66,7 +76,7 @@ def insert_problems(program: Program) -> list[Problem]:
     """What is wrong with the raw texts of a program; empty where its control has no reader."""
     if not readers.can_read(program.machine):
         return []
-    problems: list[Problem] = []
+    problems = _modes_behind_approaches(program)
     harmless: set[object] = set()
     with tempfile.TemporaryDirectory() as folder:
         for motion in program.motions:
@@ -90,6 +100,27 @@ def insert_problems(program: Program) -> list[Problem]:
                     return problems
             if len(problems) == before:
                 harmless.add(alike)
+    return problems
+
+
+def _modes_behind_approaches(program: Program) -> list[Problem]:
+    """Words behind approaches that change how the control smooths or turns: the operation does not say its own again.
+
+    The path does not show them, so that no proof does.
+    """
+    template = program.control.templates.get(_APPROACHED)
+    reader, problems = readers.reader_of(program.machine), list[Problem]()
+    for k, line in enumerate(template.plain_lines() if template else ()):
+        words = without_comments(program.control, line.replace("\0", "1")).upper()
+        if not reader.raw_words.not_known(words, program.machine):
+            continue
+        found = (match[1] + match[2].lstrip("0") for match in _WORD.finditer(words))
+        word = next((each for each in found if each in reader.words_without_path or _SMOOTHS.match(each)), "")
+        if word:
+            assert template is not None
+            what = f"template {_APPROACHED} writes {word}, and the operation does not say its own mode again behind it"
+            cure = "leave it out, or write it into the template of the approach, in place of the mode there"
+            problems.append(Problem(*template.place_of(k), what, cure, code="CTL455"))
     return problems
 
 
@@ -215,9 +246,11 @@ def _difference(without: Run, with_text: Run, declared: Sequence[readers.KnownWo
         return "it ends the program"
     more = {
         "where the machine is" if kind == "known" else kind
-        for kind, text in _events(with_text) - _events(without)
+        for kind, text, _ in _events(with_text, without) - _events(without, without)
         if not (kind == "known" and begins_with(declared, text))
     }
+    if "spindle" in more:
+        return _COLUMNS["spindle"]
     return f"it changes {', '.join(sorted(more))}" if more else ""
 
 
@@ -234,5 +267,18 @@ def _first_change(without: Run, with_text: Run) -> str:
     return found
 
 
-def _events(run: Run) -> set[tuple[str, str]]:
-    return {(event.kind, str(event.value)) for event in run.events if event.kind not in _HARMLESS_EVENTS}
+def _events(run: Run, without: Run) -> set[tuple[str, str, int]]:
+    """What happens in a run besides motion: kind, value, and for the spindle the row.
+
+    A text may stop and start the spindle within its lines, which no row shows. A spindle that is told to turn as it
+    does ``without`` the text, or stands behind the last row, is none of these.
+    """
+    found: set[tuple[str, str, int]] = set()
+    for event in run.events:
+        kind, value, row = event.kind, str(event.value), event.before_row
+        if kind == "spindle":
+            if row < len(without) and SPINDLE_SENSES.get(value) != int(without.spindle[row]):
+                found.add((kind, value, row))
+        elif kind not in _HARMLESS_EVENTS:
+            found.add((kind, value, -1))
+    return found

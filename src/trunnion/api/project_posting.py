@@ -234,6 +234,9 @@ def _check_replaced(project: Project) -> None:
     found: list[Problem] = []
     for setup in project.setups:
         named = [] if setup.division is Division.OPERATIONS else [setup.output]
+        extension = load_control(as_machine(setup.machine).control).extension
+        # A program is replaced by a program, as after a clone; all else only if it is ours.
+        named = [file for file in named if file.suffix.lower() != extension.lower()]
         for file in (*named, *setup.papers.by_name().values()):
             found += _replaced(file, setup.output)
     if found:

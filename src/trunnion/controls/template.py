@@ -19,6 +19,13 @@ from trunnion.errors import InputError, Problem
 
 Value = str | float | None
 
+
+class PrintedText(str):
+    """A text that is not known before the program is proven: a template prints it, and asks nothing of it."""
+
+    __slots__ = ()
+
+
 #: Operations of a template language that the texts of one program may take, and characters that they may have.
 _MOST_STEPS: Final = 50_000_000
 _MOST_CHARACTERS: Final = 64_000_000

@@ -240,7 +240,7 @@ class EventWriter:
         if STOP_PLACE not in self._control.templates:
             return self._family.stop(event, self._control.codes)
         code = self._control.codes["optional_stop" if event.optional else "stop"]
-        values = {**self._values, "text": plain_text(self._control, event.text), "number": code}
+        values = {**self._values, "text": plain_text(self._program, event.text), "number": code}
         lines = self._templates.lines(STOP_PLACE, values, self._motion)
         word = re.compile(rf"(?<![A-Za-z0-9.])M0*{code}(?![0-9.])")
         if not any(word.search(without_comments(self._control, line)) for line in lines):

@@ -44,7 +44,7 @@ class _Places:
 
     def __init__(self, program: Program) -> None:
         self._program, self._templates = program, program.control.templates
-        self._escape = partial(plain_text, program.control)
+        self._escape = partial(plain_text, program)
         self._values = TemplateValues(program)
         self._printing = TemplatePrinting(program, self._values)
         self._loaded, self._spindle = LoadedTool(), list[SpindleOn]()

@@ -60,7 +60,7 @@ class TemplateRecords:
 
     def _text(self, text: str) -> str | None:
         """A text of the CL file that ends no comment and no other text; None for an empty one."""
-        return plain_text(self._program.control, text) or None
+        return plain_text(self._program, text) or None
 
     def _tool(self, call: str, tool: Tool, operations: int) -> Record:
         known = tool.kind != "UNKNOWN"

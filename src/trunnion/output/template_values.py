@@ -11,10 +11,9 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.controls.definition import Control
-from trunnion.controls.family_writer import FamilyWriter
+from trunnion.controls.family_writer import FamilyWriter, UnsupportedFeatureError
 from trunnion.controls.setting_rules import tool_number
-from trunnion.controls.template import Value
+from trunnion.controls.template import PrintedText, Value
 from trunnion.controls.vocabulary import OFFSETS_DIFFER, PLANES_USED, TCP_USED
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Axis, inverse
@@ -113,10 +112,13 @@ class TemplateValues:
             "tool": (tool := self.tool_call(operation, loaded)),
             "length_number": str(self.length_register(operation, loaded) or tool),
         }
-        return {
-            name: self._family.escape_comment(self._program.spelled(value)) if isinstance(value, str) else value
-            for name, value in found.items()
-        }
+        return {name: self._escaped(value) for name, value in found.items()}
+
+    def _escaped(self, value: Value) -> Value:
+        if not isinstance(value, str):
+            return value
+        text = self._family.escape_comment(self._program.spelled(value))
+        return PrintedText(text) if isinstance(value, PrintedText) else text
 
     def _setting_values(self, motion: Motion) -> dict[str, Value]:
         """Settings, with the values that the family makes of them and the defaults that depend on the operation."""
@@ -194,12 +196,12 @@ class TemplateValues:
         shown = prints_times(self._program)
         return [self._time_text(number) if shown else None for number in range(1, count + 1)]
 
-    def _time_text(self, number: int) -> str:
+    def _time_text(self, number: int) -> PrintedText:
         """The machining time of an operation, counted from 1, or of the program (0); or what stands for it."""
         if self._program.has_time_tokens:
-            return _time_token(number)
+            return PrintedText(_time_token(number))
         self._seconds = self._seconds or estimated_seconds(self._program)
-        return format_duration(self._seconds[number - 1] if number else sum(self._seconds))
+        return PrintedText(format_duration(self._seconds[number - 1] if number else sum(self._seconds)))
 
     def _plane_values(self, motion: Motion) -> dict[str, Value]:
         """The origin of a tilted plane, and which of the two rotary positions the machine takes there.
@@ -273,15 +275,15 @@ class TemplateValues:
         number, name = self._program.effective_setting("tool", operation), operation.tool.name
         own = self._program.own_settings.get(operation.name, {}).get("tool")
         if own:
-            return self._tool_setting(own)
+            return self._tool_setting(own, operation)
         if loaded.call and not loads and name == loaded.name:
             return loaded.call
         if name and (self._program.effective_setting("tool_call", operation) == "name" or not (number or loads)):
-            return self._family.tool_call(0, name, by_name=True)
+            return self._family_call(0, name, operation)
         if number:
-            return self._tool_setting(number)
+            return self._tool_setting(number, operation)
         if loads:
-            return self._family.tool_call(loads[-1].number, "", by_name=False)
+            return self._family_call(loads[-1].number, "", operation)
         what = f"operation {operation.name} has no LOAD/TOOL, and its tool has no name"
         raise InputError(
             Problem(self._program.file_of(operation), operation.line, what, "write setting tool=NUMBER", code="CTL140")
@@ -310,14 +312,26 @@ class TemplateValues:
             return loaded.register
         return 0 if self._program.effective_setting("tool", operation) else loads[-1].adjust
 
-    def _tool_setting(self, text: str) -> str:
+    def _tool_setting(self, text: str, operation: Operation) -> str:
         """The tool of the run's setting: a number as it is written, a name as the control takes names."""
-        return text if tool_number(text) is not None else self._family.tool_call(0, text.strip('"'), by_name=True)
+        return text if tool_number(text) is not None else self._family_call(0, text.strip('"'), operation)
+
+    def _family_call(self, number: int, name: str, operation: Operation) -> str:
+        """A tool as the control's family calls it: by its name if there is one."""
+        try:
+            return self._family.tool_call(number, name, by_name=bool(name))
+        except UnsupportedFeatureError as why:
+            what = f"{self._program.control.name}: {why.what}"
+            place = self._program.file_of(operation), operation.line
+            raise InputError(Problem(*place, what, why.cure, code=why.code)) from None
 
 
-def plain_text(control: Control, text: str) -> str:
-    """Return a text of a CL file that ends neither a comment of a template nor a text in quotation marks."""
-    return control.family.escape_comment(text).replace('"', "'")
+def plain_text(program: Program, text: str) -> str:
+    """Return a text of a CL file in letters of the program.
+
+    It ends neither a line, nor a comment of a template, nor a text in quotation marks.
+    """
+    return program.control.family.escape_comment(program.spelled(text)).replace('"', "'")
 
 
 def prints_times(program: Program) -> bool:

@@ -153,6 +153,23 @@ def test_a_program_has_a_budget_for_all_its_texts() -> None:
         template.expand(VALUES, printing(budget=Budget(characters=100)))
 
 
+@pytest.mark.parametrize(
+    "work", ["s | upper", "s | ascii", "s | trim", "s ~ s", "s | replace('q', 'p')", "s == s", "'q' in s", "s | number"]
+)
+def test_long_texts_cost_more_than_short_ones(work: str) -> None:
+    def cost(letters: int, what: str) -> int:
+        text = f"{{% set s = 'x' | pad({letters}) %}}{{% set s = s ~ s ~ s ~ s %}}{{% if {what} %}}A{{% endif %}}"
+        template, fault = text_template("program_end", text, "ours.toml", 7)
+        assert fault is None
+        budget = Budget()
+        before = budget.steps
+        template.expand(VALUES, printing(budget=budget))
+        return before - budget.steps
+
+    of_making_it = cost(200, "title") - cost(1, "title")
+    assert cost(200, work) - cost(1, work) >= of_making_it + 800 // 8 - 1
+
+
 def test_a_fault_is_told_at_its_line() -> None:
     template, fault = text_template(
         "program_end", "\n;A\n;B\n{% if title < 3 %}\n;C\n{% endif %}\n".lstrip("\n"), "a.toml", 7

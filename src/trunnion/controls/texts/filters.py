@@ -7,7 +7,7 @@ from typing import Any, Final
 from jinja2 import pass_context
 from jinja2.runtime import Context
 
-from trunnion.controls.template import number_text
+from trunnion.controls.template import PrintedText, number_text
 from trunnion.controls.texts.values import (
     LONGEST_TEXT,
     Fault,
@@ -28,6 +28,7 @@ FORMAT: Final = "number format"
 EACH: Final = "passes of a loop"
 RANGE: Final = "whole numbers"
 JOINED: Final = "texts one after the other"
+COMPARED: Final = "a comparison"
 
 _LONGEST_RANGE: Final = 10_000
 _FARTHEST: Final = 10**12
@@ -210,6 +211,42 @@ _OWN: Final[Mapping[str, Callable[..., Any]]] = {
     "join": _join,
 }
 
-ALL: Final[Mapping[str, Callable[..., Any]]] = {
-    **_OWN, FORMAT: _format, EACH: _each, RANGE: _range, JOINED: _joined,
+#: Letters that take as long as one step: those of a text that is looked through, and that are taken apart.
+_LETTERS_A_STEP: Final = 8
+_SLOW: Final = frozenset({"ascii"})
+
+#: Filters that print a text as it is.
+_PRINTING: Final = frozenset({"default", JOINED})
+
+
+def _priced(name: str, change: Callable[..., Any]) -> Callable[..., Any]:
+    """A filter that is paid for by the letters of its texts, as loops are by their passes."""
+    a_step = 1 if name in _SLOW else _LETTERS_A_STEP
+    takes_context = hasattr(change, "jinja_pass_arg")
+
+    @pass_context
+    def priced(context: Context, *arguments: object) -> object:
+        rendering = rendering_of(context)
+        printed_only = any(isinstance(each, PrintedText) for each in arguments)
+        if printed_only and name not in _PRINTING:
+            what = f"has a machining time where {name} wants a value"
+            raise Fault(what, "print it as it is: times are known when the program is proven")
+        rendering.charge(sum(len(each) for each in arguments if isinstance(each, str)) // a_step)
+        changed = change(context, *arguments) if takes_context else change(*arguments)
+        if isinstance(changed, str):
+            rendering.charge(len(changed) // a_step)
+        return PrintedText(changed) if printed_only and isinstance(changed, str) else changed
+
+    return priced
+
+
+def _compared(value: object) -> object:
+    """One side of a comparison."""
+    return value
+
+
+_MADE: Final[Mapping[str, Callable[..., Any]]] = {
+    **_OWN, FORMAT: _format, EACH: _each, RANGE: _range, JOINED: _joined, COMPARED: _compared,
 }  # fmt: skip
+
+ALL: Final[Mapping[str, Callable[..., Any]]] = {name: _priced(name, change) for name, change in _MADE.items()}

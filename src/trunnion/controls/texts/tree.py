@@ -81,6 +81,10 @@ def for_compiler(tree: nodes.Template, formats: Iterable[str]) -> int:
         if node.name in names:
             node.args, node.name = [nodes.Const(node.name, lineno=node.lineno)], filters.FORMAT
     _replace_concatenations(tree)
+    for comparison in tree.find_all(nodes.Compare):
+        comparison.expr = _compared(comparison.expr)
+        for operand in comparison.ops:
+            operand.expr = _compared(operand.expr)
     for loop in tree.find_all(nodes.For):
         price = nodes.Const(_size(loop), lineno=loop.lineno)
         loop.iter = nodes.Filter(loop.iter, filters.EACH, [price], [], None, None, lineno=loop.lineno)
@@ -209,6 +213,13 @@ def _replace_concatenations(tree: nodes.Template) -> None:
         return nodes.Filter(first, filters.JOINED, others, [], None, None, lineno=node.lineno)
 
     _replace(tree, replaced)
+
+
+def _compared(side: nodes.Expr) -> nodes.Expr:
+    """One side of a comparison, which is paid for by its letters."""
+    if isinstance(side, nodes.Const) and not isinstance(side.value, str):
+        return side
+    return nodes.Filter(side, filters.COMPARED, [], [], None, None, lineno=side.lineno)
 
 
 def _replace(tree: nodes.Node, replaced: Callable[[nodes.Node], nodes.Node]) -> None:

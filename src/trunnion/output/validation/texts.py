@@ -3,7 +3,6 @@
 from collections.abc import Iterator
 from contextlib import suppress
 
-from trunnion.controls.family_writer import UnsupportedFeatureError
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.model.toolpath import Insert, Message, Operation, Stop
 from trunnion.output.program import Program
@@ -72,7 +71,7 @@ def _printed(program: Program) -> set[str]:
 def _called(program: Program) -> Iterator[Problem]:
     """Tools that are called by a name which would be another one."""
     calls: dict[str, Operation] = {}
-    with suppress(InputError, UnsupportedFeatureError):  # what a tool is called by is another check
+    with suppress(InputError):  # what a tool is called by is another check
         calls = {call: operation for call, _, operation in reversed(TemplateValues(program).tool_calls)}
     for call, operation in calls.items():
         if program.spelled(call) != call:

@@ -29,6 +29,11 @@ class AffineMap:
         return np.asarray(np.linalg.solve(self.linear, point - self.shift), np.float64)
 
     @property
+    def is_identity(self) -> bool:
+        """Whether it changes nothing."""
+        return bool(np.allclose(self.linear, np.eye(3), rtol=0.0, atol=1e-12) and not self.shift.any())
+
+    @property
     def keeps_lengths(self) -> bool:
         """Whether lengths stay the same; mirroring keeps them too."""
         return bool(np.allclose(self.linear.T @ self.linear, np.eye(3), rtol=0.0, atol=1e-12))

@@ -170,7 +170,7 @@ class Interpreter(ABC, Generic[A]):
             active = self._stack[-1]
             source = active.source
             if not source.fill():
-                self._leave_program()
+                self._end_of_source()
                 continue
             if self._lines_without_scan:
                 self._lines_without_scan -= 1
@@ -279,6 +279,10 @@ class Interpreter(ABC, Generic[A]):
         source.first_row = self.control.row
         self.control.modal.file.set(self.control.row, file)
         return source, file
+
+    def _end_of_source(self) -> None:
+        """End or repeat the active program, whose file has no more blocks."""
+        self._leave_program()
 
     def _leave_program(self) -> None:
         """End or repeat the active program; raises ``ProgramEnd`` at the end of the main program."""

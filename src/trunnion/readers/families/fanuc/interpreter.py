@@ -103,7 +103,7 @@ class FanucInterpreter(CycleInterpreter):
             raise BlockError(f"no program number: {text[:40]!r}")
         if active.begun and active.line != line:
             self._note("the program runs into the next one: it ends here", Severity.ERROR, "NC160")
-            self._end_of_file(active)
+            self._break_off()
         active.begun = True
 
     def _leave_program(self) -> None:
@@ -111,6 +111,19 @@ class FanucInterpreter(CycleInterpreter):
         super()._leave_program()
 
     def _end_of_file(self, active: ActiveProgram) -> None:
+        self._check_return()
+        self._break_off()
+
+    def _end_of_source(self) -> None:
+        self._check_return()
+        super()._end_of_source()
+
+    def _check_return(self) -> None:
+        if len(self._stack) > 1:
+            self._note("the subprogram ends without M99: the control does not return from it", Severity.ERROR, "NC160")
+
+    def _break_off(self) -> None:
+        """End the active program where it stands."""
         self._nurbs.break_off()
         if len(self._stack) < 2:
             raise ProgramEnd
@@ -266,6 +279,8 @@ class FanucInterpreter(CycleInterpreter):
             self._spindle_stands = ""
         elif code == words.RIGID_TAP and self.motion_code not in cycles.THREADS:
             self._spindle_stands = "M29 has stopped it for a thread"
+        if code in iso_m_codes.PROGRAM_ENDS and not self.control.rotation.is_identity:
+            self._note("ends with G68 on: the next program begins turned", Severity.ERROR, "NC351")
         if not self._common_m_code(code):
             self.control.add_event("m", float(code))
 

@@ -123,6 +123,9 @@ class HeidenhainInterpreter(FlowInterpreter):
         if parts.statement:
             self._block_parts.append(parts.statement)
             self._block_length += len(parts.statement)
+        elif parts.continues and not self._block_parts:
+            what = "a ~ ends a line without words: it takes the next line into this block"
+            self._note(what, Severity.ERROR, "NC210")
         try:
             if not (parts.continues and self._block_parts):
                 self._finish_block(active)

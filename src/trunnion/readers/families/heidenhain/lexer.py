@@ -73,7 +73,7 @@ def split_line(raw: str) -> Line:
         rest = rest.rstrip()[:-1].rstrip()
     comment = None
     if rest.startswith("*"):
-        return Line(number, bool(head.group(1) or head.group(3)), "", rest[1:].strip("\r"), False)
+        return Line(number, bool(head.group(1) or head.group(3)), "", rest[1:].strip("\r"), continues)
     if ";" in rest:
         words = _COMMENT.match(rest)
         assert words is not None
