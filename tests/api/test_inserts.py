@@ -41,6 +41,7 @@ BENDING = {
         "M2": "ends the program", "G91": "elsewhere", "X99": "moves the machine", "G20": "", "G92 X0": "",
         "o100 call": "", "G43 H9": "", "M19": "spindle", "G10 L1 P5 Z0": "G10", "G10 L10 P5 Z0": "G10", "M50 P0": "M50",
         "G64 P5": "", "#<_hal[x]>=1": "", "(PROBEOPEN,x)": "PROBEOPEN", "(ABORT,x)": "ABORT",
+        "(LOGCLOSE)": "LOGCLOSE", "(PROBEOPEN x)": "PROBEOPEN",
     },
 }  # fmt: skip
 HARMLESS = {

@@ -177,7 +177,10 @@ class MotionBlockWriter:
         """
         lines = lines if as_they_are else self._spelled(lines)
         room = self.control.longest_line - BLOCK_NUMBER_BYTES
-        lines = [piece for line in lines for piece in divided_comment(line, room, self.family.LINE_COMMENTS)]
+        family = self.family
+        lines = [
+            piece for line in lines for piece in divided_comment(line, room, family.LINE_COMMENTS, family.escape_comment)
+        ]
         for line in lines:
             if len(line.encode()) > room:
                 what = f"a line has more than the {self.control.longest_line} bytes that {self.control.name} reads"

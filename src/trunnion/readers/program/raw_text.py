@@ -13,9 +13,9 @@ from trunnion.machines import Machine
 from trunnion.readers.program.known_words import begins_with, known_words
 
 #: Parts of words: a number, what a variable may become, and comments of languages of the RS274 kind. A comment that
-#: begins with a name and a comma may be a command.
+#: begins with a name and a comma may be a command, and some are one without a comma.
 NUMBER: Final = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
-RS274_COMMENT: Final = r"\((?![ \t]*[A-Z_]+[ \t]*,)[^()]*\)"
+RS274_COMMENT: Final = r"\((?!\s*(?:[A-Z_]+\s*,|(?:LOG|PROBE)(?:OPEN|APPEND|CLOSE)|ACTIVE_))[^()]*\)"
 RS274_VALUE: Final = rf"(?:{NUMBER}|[-+]?#[0-9]+|\[[^\[\]]*\])"
 
 _SHORT: Final = 40

@@ -9,6 +9,7 @@ from tests.support.linuxcnc.posting import post as post
 from tests.support.posting import HEAD, LEANING
 from trunnion.cli import main
 from trunnion.families import FAMILIES
+from trunnion.output.families.linuxcnc.writer import comment
 
 TILTED = HEAD.replace("50.0,0.0,0.0,1.0", "50.0,0.0,0.5,0.8660254037844386")
 
@@ -157,3 +158,26 @@ def test_a_program_that_nobody_can_read_back_is_written_by_force_only_and_says_s
     assert code == 1
     assert lines[0].startswith("; MUST NOT RUN AS IT IS, written by --force: programs for LinuxCNC cannot be read back")
     assert "nothing has been checked" in err
+
+
+#: Texts that LinuxCNC would execute as the beginning of a comment.
+EXECUTED = ["py,import os", "PyRun , x.py", "logopen,x.txt", "LOGCLOSE", "probeopen x", "abort,now", "print,#1", "axis,stop"]
+
+
+@pytest.mark.parametrize("text", EXECUTED)
+def test_no_text_of_a_cl_file_is_a_comment_that_is_executed(text: str, post: Post) -> None:
+    lines = post(HEAD.replace("OP1", text) + f"PPRINT/{text}\n" + FOOT, "--set", f"title={text}")
+    assert [line for line in lines if line.startswith("; -")] == [f"; - {text}"] * 3
+
+
+def test_a_comment_that_goes_on_in_the_next_line_is_not_executed_there(post: Post) -> None:
+    assert comment("x" * 200 + "py,import os") == ["; " + "x" * 200, "; - py,import os"]
+    rooms = range(225, 255)  # one of them is what a line of a template has room for
+    for room in rooms:
+        lines = post(HEAD + FOOT, "--set", "title=" + "x" * room + "py,import os" * 3)
+        assert not [line for line in lines if line.startswith("; py,")]
+
+
+@pytest.mark.parametrize("text", ["printed in red", "logo", "Python", "message, shown", "log", "- py,import os"])
+def test_other_comments_stay_as_they_are(text: str) -> None:
+    assert comment(text) == [f"; {text}"]

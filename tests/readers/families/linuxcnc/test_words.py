@@ -18,6 +18,12 @@ def test_form(run: Runner) -> None:
     assert run(text, skip=True).tip[:, 0].tolist() == [1.5, 1.5, 7]
 
 
+@pytest.mark.parametrize("comment", ["(py, import os)", "; PyRun,x.py", "( abort ,now)"])
+def test_comments_that_are_executed_are_errors(comment: str, run: Runner) -> None:
+    found = run(f"G0 X1 {comment}\nG0 X2 (python, logged)")
+    assert [(error.line, error.code) for error in found.errors] == [(1, "NC220")]
+
+
 @pytest.mark.parametrize(
     ("text", "value"),
     [

@@ -39,18 +39,25 @@ COMMENTS: re.Pattern[str] = re.compile(r"(;.*|\([^)]*\))")
 BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 
+#: How a comment begins that LinuxCNC executes, after a semicolon as in brackets: it shows or logs texts, opens files,
+#: ends the program or runs Python; its screens draw or stop by others.
+_EXECUTED: Final = re.compile(
+    r"\s*(?:(?:msg|debug|print|log|py|pyrun|abort|axis|preview)\s*,|logopen|logappend|logclose|probeopen|probeclose|active_)",
+    re.IGNORECASE,
+)
+
 #: Bytes of a text in one line: a line has room for 255, with the block number and what surrounds the text.
 _TEXT_BYTES: Final = 200
 
 
 def comment(text: str) -> list[str]:
     """Return lines that start with a semicolon and a blank."""
-    return [f"; {part}" for part in split_text(text, _TEXT_BYTES)]
+    return [f"; {part}" for part in split_text(text, _TEXT_BYTES, escape_comment)]
 
 
 def escape_comment(text: str) -> str:
-    """Return the text itself: after a semicolon every character is allowed."""
-    return text
+    """Return the text, after a dash where LinuxCNC would execute it; every character is allowed after a semicolon."""
+    return f"- {text}" if _EXECUTED.match(text) else text
 
 
 def tool_call(number: int, name: str, by_name: bool) -> str:

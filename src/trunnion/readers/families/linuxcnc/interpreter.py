@@ -23,6 +23,9 @@ from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS
 #: Comments that are messages to the operator.
 _MESSAGE: Final = re.compile(r"[ \t]*(?:MSG|DEBUG|PRINT),(.*)", re.IGNORECASE | re.DOTALL)
 
+#: Comments that run Python, or end the program.
+_PROGRAM: Final = re.compile(r"\s*(PY|PYRUN|ABORT)\s*,", re.IGNORECASE)
+
 #: M codes that act after the motion of their block.
 _AFTER_MOTION: Final = frozenset({0, 1, 2, 30, 60})
 
@@ -86,6 +89,9 @@ class LinuxcncInterpreter(CycleInterpreter):
         raise BlockError(f"{letter} is written twice", code="NC212")
 
     def _handle_comment(self, comment: str) -> None:
+        if (program := _PROGRAM.match(comment)) is not None:
+            what = f"the comment {program.group(1).lower()}, is executed, and what it does is not simulated"
+            self._note(what, Severity.ERROR, "NC220")
         match = _MESSAGE.match(comment)
         if match is not None:
             self.control.add_event("message", match.group(1))
