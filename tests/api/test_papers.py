@@ -102,12 +102,34 @@ def test_the_data_of_a_sheet(folder: Path) -> None:
     assert first["seconds"] > first["cutting_seconds"] > 0
     assert second["mode"] in ("TCP", "tilted plane")
     assert second["rotary"].keys() == {"B", "C"}
-    assert second["start"]["file"]
+    assert second["start"]["file"] == data["files"][2]["name"]
     assert sum(each["seconds"] for each in data["operations"]) == pytest.approx(data["seconds"])
     assert {axis["name"] for axis in data["axes"]} == {"X", "Y", "Z", "B", "C"}
     assert all(check["passed"] for check in data["checks"])
     assert data["files"][0]["name"] == "job.mpf"
     assert len(data["files"]) == 3
+
+
+@pytest.mark.parametrize(
+    "settings", [{"restart": "on"}, {"numbers": "operations"}, {"programs": "operations", "split": "20480"}]
+)
+def test_an_operation_begins_where_its_blocks_do(settings: dict[str, str], tmp_path: Path) -> None:
+    plate = Path(trunnion.__file__).parents[2] / "examples" / "project" / "plate_top.cls"
+    sheet, listing = tmp_path / "a.json", tmp_path / "a.lpt"
+    output = tmp_path / "a.mpf"
+    trunnion.post(plate, machine="yl569", output=output, settings=settings, sheet=sheet, listing=listing)
+    start = json.loads(sheet.read_text(encoding="utf-8"))["operations"][1]["start"]
+    name = start["file"] or "a.mpf"
+    assert (name == "a.mpf") == ("programs" not in settings)
+    lines = (tmp_path / name).read_text(encoding="utf-8").splitlines()
+    first, *more = lines[start["nc_line"] - 1 :]
+    assert re.match(rf"N{start['number']} ", first)
+    assert "Operation : SLOT" in "".join(more[:20])  # its head, and not the end of the operation before
+    rows = listing.read_text(encoding="utf-8").split("operation 2: SLOT\n")[1].splitlines()
+    assert int(next(row for row in rows if row[0] != ";").split()[0]) > start["nc_line"]
+    # Where the operation before goes home, its own listing tells so.
+    before = listing.read_text(encoding="utf-8").split("operation 2: SLOT\n")[0]
+    assert before.count("machine\n") > 2 + 1
 
 
 @needs_browser

@@ -15,6 +15,7 @@ from trunnion.api.observer import Observer
 from trunnion.api.targets import Target
 from trunnion.api.writing import write
 from trunnion.controls.vocabulary import FORCED_NOTICE
+from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 from trunnion.output.program import Program
 from trunnion.output.subprograms import SubprogramOutput
@@ -54,7 +55,7 @@ class Untold(Observer):
 def write_forced(
     program: Program,
     proof: Proof,
-    prove: Callable[[Run | None], Proof],
+    prove: Callable[[Run | None, Sequence[OperationStart]], Proof],
     job: PostJob,
     target: Target,
     subprograms: SubprogramOutput | None,
@@ -66,11 +67,11 @@ def write_forced(
     """
     notices = _notices(proof)
     for _ in range(_MOST_WRITINGS):
-        _write(program, notices, target, subprograms)
+        starts = _write(program, notices, target, subprograms)
         files = target.files
         others = [*files.other_paths, *job.beside]
         run = readers.run_program(files.path, job.machine, subprograms=others, encoding=job.encoding)
-        proof = prove(run)
+        proof = prove(run, starts)
         before, notices = notices, _notices(proof)
         if _line_count(program, notices) == _line_count(program, before):
             if notices != before:
@@ -83,9 +84,11 @@ def _notices(proof: Proof) -> list[str]:
     return [f"{FORCED_NOTICE}, written by --force: {check.title}: {check.summary}" for check in proof.failed]
 
 
-def _write(program: Program, notices: Sequence[str], target: Target, subprograms: SubprogramOutput | None) -> None:
+def _write(
+    program: Program, notices: Sequence[str], target: Target, subprograms: SubprogramOutput | None
+) -> tuple[OperationStart, ...]:
     target.files.restart()
-    write(replace(program, notices=[*program.notices, *notices]), target.files.main, subprograms=subprograms)
+    return write(replace(program, notices=[*program.notices, *notices]), target.files.main, subprograms=subprograms)
 
 
 def _line_count(program: Program, notices: Sequence[str]) -> int:

@@ -31,9 +31,10 @@ from trunnion.api.writing import read_back_while_writing, write
 from trunnion.errors import Problem, Severity, TrunnionError
 from trunnion.files import OutputGroup, file_on_disk
 from trunnion.jit import compile_ahead
+from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
-from trunnion.verification import Verification, verify, without_columns
+from trunnion.verification import Verification, rows_from_starts, verify, without_columns
 
 if TYPE_CHECKING:  # imported where a program is simulated: others start sooner
     from trunnion.api.posted_simulation import SimulationLike
@@ -207,7 +208,7 @@ def post_toolpaths(
         with reading() as (progress, running):
             program, planned, problems = plan_program(toolpaths, job, observer)
             program = replace(program, has_time_tokens=prints_times(program))
-            write(program, target.files.main, progress, subprograms, observer)
+            starts = write(program, target.files.main, progress, subprograms, observer)
         run = running.result()
         if job.options.fastest_feed:
             from trunnion.api.fastest_feeds import (
@@ -224,7 +225,7 @@ def post_toolpaths(
             del run, running
             target.files.restart()
             with reading() as (progress, running):
-                write(program, target.files.main, progress, subprograms, observer)
+                starts = write(program, target.files.main, progress, subprograms, observer)
             run = running.result()
         expected = expectation(program, job.options)
     except TrunnionError as error:
@@ -234,13 +235,13 @@ def post_toolpaths(
         raise
     columns = job.columns or program.has_time_tokens
 
-    def prove(run: Run | None) -> Proof:
-        verification = _prove(run, toolpaths, expected, target, columns=columns)
+    def prove(run: Run | None, starts: Sequence[OperationStart]) -> Proof:
+        verification = _prove(run, toolpaths, expected, target, starts, columns=columns)
         # What may get notices in its head is told when lines are those of the file that stays.
         quiet = Untold(observer) if job.force else observer
         return _with_simulation(job, run, target.name, toolpaths, verification, quiet)
 
-    proof = prove(run)
+    proof = prove(run, starts)
     if job.force and proof.failed:
         proof = write_forced(program, proof, prove, job, target, subprograms)
     verification, simulated = proof.verification, proof.simulation
@@ -296,13 +297,19 @@ def _with_simulation(
 
 
 def _prove(
-    run: Run | None, toolpaths: Sequence[Toolpath], expected: Expectation, target: Target, *, columns: bool
+    run: Run | None,
+    toolpaths: Sequence[Toolpath],
+    expected: Expectation,
+    target: Target,
+    starts: Sequence[OperationStart],
+    *,
+    columns: bool,
 ) -> Verification | None:
     """What the proof of a program finds; None without its run."""
     if run is None:
         return None
     found = verify(run, toolpaths, tolerances=expected.tolerances, settings=expected.settings, columns=columns)
-    return replace(found, program=target.name)
+    return replace(found, program=target.name, operations=rows_from_starts(run, found.operations, starts))
 
 
 def _nothing_checked(job: PostJob, target: Target) -> Problem:

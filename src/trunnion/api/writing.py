@@ -15,6 +15,7 @@ from trunnion import readers
 from trunnion.api.observer import SILENT, Observer
 from trunnion.files import OutputFiles, WriteProgress
 from trunnion.machines import Machine
+from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
@@ -87,8 +88,8 @@ def write(
     progress: WriteProgress | None = None,
     subprograms: SubprogramOutput | None = None,
     observer: Observer = SILENT,
-) -> None:
-    """Write a program.
+) -> tuple[OperationStart, ...]:
+    """Write a program, and return where its operations begin.
 
     Parameters
     ----------
@@ -114,8 +115,9 @@ def write(
                 sink.flush()
                 progress.advance(sink.tell(), sink.tell() * rows // done)
 
-        write_program(program, sink, written, subprograms)
+        starts = write_program(program, sink, written, subprograms)
     sink.flush()
+    return starts
 
 
 def named_run(run: Run, name: str) -> Run:

@@ -16,6 +16,7 @@ from trunnion.controls.vocabulary import DRAW_BACK
 from trunnion.controls.words import WordRangeError
 from trunnion.machines import SweptPart
 from trunnion.model.motion import Motion
+from trunnion.model.operation_start import OperationStart
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation, SpindleOn
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
 from trunnion.output.coordinates.plane_from_pose import tip_after_turn, with_plane_inside_limits, with_plane_of_pose
@@ -37,8 +38,8 @@ def write_program(
     sink: BinaryIO,
     progress: Callable[[int], None] | None = None,
     subprograms: SubprogramOutput | None = None,
-) -> None:
-    """Write a whole program.
+) -> tuple[OperationStart, ...]:
+    """Write a whole program, and return where its operations begin.
 
     Parameters
     ----------
@@ -58,7 +59,7 @@ def write_program(
     WordRangeError
         If a number is beyond the limits of its word's format; an ``InputError`` with the line of the CL file.
     """
-    _ProgramWriter(program, sink, progress or (lambda _: None), subprograms).write()
+    return _ProgramWriter(program, sink, progress or (lambda _: None), subprograms).write()
 
 
 def _with_printed_planes(program: Program) -> Program:
@@ -102,8 +103,8 @@ class _ProgramWriter:
             number = program.effective_setting("program")
             self._files = SubprogramFiles(subprograms, naming, sink, number, operations)
 
-    def write(self) -> None:
-        """Write the program."""
+    def write(self) -> tuple[OperationStart, ...]:
+        """Write the program, and return where its operations begin."""
         motions = self._program.motions
         values = self._values(motions[0], 0)
         head = [*self._notices, *self._tool_list(values), *self._operation_list()]
@@ -123,6 +124,9 @@ class _ProgramWriter:
                     self._templates.write_place("after_operation", self._values(motion, k), motion)
                 self._end_operation_file(motion, k)
         self._templates.write("program_end", self._values(motions[-1], -1), motions[-1])
+        names = {} if self._files is None else self._files.names
+        starts = self._blocks.writer.operation_starts
+        return tuple(OperationStart(names.get(sink, ""), line, number) for sink, line, number in starts)
 
     def _values(self, motion: Motion, number: int) -> dict[str, Value]:
         """The values that templates may print for a motion."""

@@ -104,6 +104,7 @@ class SubprogramFiles:
     main_sink     of the main program
     current_name  of the subprogram that was opened last
     max_bytes     bytes up to which rows may fill a subprogram; None: no limit
+    names         names of the files by their sinks
     """
 
     def __init__(
@@ -116,6 +117,7 @@ class SubprogramFiles:
     ) -> None:
         self.main_sink = main_sink
         self.current_name = ""
+        self.names: dict[BinaryIO, str] = {}
         self.max_bytes = None if output.max_bytes is None else output.max_bytes - END_RESERVE_BYTES
         self._output, self._naming = output, naming
         number = f"{int(program):04d}" if program.isascii() and program.isdecimal() else program
@@ -135,4 +137,7 @@ class SubprogramFiles:
 
     def _open(self, name: str) -> BinaryIO:
         self.current_name = name
-        return self._output.open_file(self._naming.prefix + name + self._naming.extension)
+        file = self._naming.prefix + name + self._naming.extension
+        sink = self._output.open_file(file)
+        self.names[sink] = file
+        return sink

@@ -149,8 +149,15 @@ def cut_ranges(run: Run, operation: OperationRows) -> CutRanges:
         feed=_range(feed, cuts & (mode == 94)),
         feed_per_rev=_range(feed, cuts & (mode == 95)),
         coolant=clean(", ".join(dict.fromkeys(each for each in coolants if each != "off"))),
-        start=block_reference(run, operation.first) if operation.end > operation.first else None,
+        start=_start(run, operation),
     )
+
+
+def _start(run: Run, operation: OperationRows) -> BlockReference | None:
+    """Where an operation begins: its first block, or its first motion where that is not known."""
+    if operation.start is not None:
+        return BlockReference(operation.start.line, operation.start.number, clean(operation.start.file))
+    return block_reference(run, operation.first) if operation.end > operation.first else None
 
 
 def _range(values: Floats, chosen: Flags) -> Range | None:

@@ -183,7 +183,7 @@ def _tool(tool: SheetTool) -> str:
 
 def _operations(sheet: SetupSheet) -> str:
     rows = [_operation(each, sheet.rotary) for each in sheet.operations]
-    heads = ("No.", "Operation", "Tool", "#First motion", "#Time", "#In cuts", "Cuts from … to, mm and °",
+    heads = ("No.", "Operation", "Tool", "#Begins at", "#Time", "#In cuts", "Cuts from … to, mm and °",
              "#F mm/min", "#S rev/min", "Coolant")  # fmt: skip
     return _section("Operations", _table(heads, rows))
 

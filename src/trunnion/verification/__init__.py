@@ -9,7 +9,15 @@ from trunnion.verification.expected.printed_planes import PrintedDigits, toleran
 from trunnion.verification.expected.tolerances import Tolerances
 from trunnion.verification.kinematics.axis_motion_kernel import axis_motion_rows
 from trunnion.verification.kinematics.rapid_feeds import restore_rapids
-from trunnion.verification.results import Check, OperationRows, Place, Verification, durations, without_columns
+from trunnion.verification.results import (
+    Check,
+    OperationRows,
+    Place,
+    Verification,
+    durations,
+    rows_from_starts,
+    without_columns,
+)
 from trunnion.verification.text import check_lines, failures, place_line, place_lines, time_lines
 from trunnion.verification.verifier import reachable_feeds, verify, with_recording
 
@@ -35,6 +43,7 @@ __all__ = [
     "restore_rapids",
     "time_lines",
     "tolerances_in_planes",
+    "rows_from_starts",
     "verify",
     "with_recording",
     "without_columns",

@@ -1,12 +1,15 @@
 """The results of a verification, as values; text, HTML and JSON are made from them elsewhere."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Lines
 from trunnion.machines import Machine
+from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 
 if TYPE_CHECKING:  # most verifications have no recording
@@ -82,7 +85,8 @@ class Check:
 class OperationRows:
     """The rows ``first`` to ``end`` (exclusive) of a run that belong to one operation of a CL file.
 
-    They include what leads to the operation: home, tool change, positioning. The last operation includes the way home.
+    They include what leads to the operation: home, tool change, positioning. The last operation includes the way home,
+    and so do all where it is known where the program begins them (``start``).
     """
 
     name: str
@@ -90,6 +94,7 @@ class OperationRows:
     cl_file: str
     first: int
     end: int
+    start: OperationStart | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -146,3 +151,29 @@ def without_columns(verification: Verification) -> Verification:
     """Return a verification as if its columns had not been asked for."""
     no_rows = np.zeros(0)
     return replace(verification, seconds=no_rows, waiting=no_rows, tip_feed=no_rows, cl_line=np.zeros(0, np.int32))
+
+
+def rows_from_starts(
+    run: Run, operations: Sequence[OperationRows], starts: Sequence[OperationStart]
+) -> tuple[OperationRows, ...]:
+    """Divide rows where the program begins its operations: what ends one is not of the next, as far as that is known.
+
+    operations   as their CL points divide the rows
+    starts       of all of them, or none
+    """
+    if len(starts) != len(operations):
+        return tuple(operations)
+    firsts = [_row_of(run, each, start) for each, start in zip(operations, starts, strict=True)]
+    firsts[:1] = [each.first for each in operations[:1]]
+    ends = [*firsts[1:], *(each.end for each in operations[-1:])]
+    parts = zip(operations, starts, firsts, ends, strict=True)
+    return tuple(replace(each, first=first, end=end, start=start) for each, start, first, end in parts)
+
+
+def _row_of(run: Run, operation: OperationRows, start: OperationStart) -> int:
+    """The first row of an operation behind its start; if there is none, the first that its points give it."""
+    rows = slice(operation.first, operation.end)
+    names = [Path(file).name for file in run.files]
+    is_here = np.array([k == 0 if not start.file else k > 0 and name == start.file for k, name in enumerate(names)])
+    found = np.flatnonzero(is_here[run.file[rows]] & (run.line[rows] >= start.line))
+    return operation.first + (int(found[0]) if len(found) else 0)

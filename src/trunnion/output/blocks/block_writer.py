@@ -1,5 +1,6 @@
 """The block writer: columns of words and lines of text in, the bytes of numbered blocks out."""
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import BinaryIO, Final, NamedTuple
 
@@ -17,6 +18,8 @@ CHUNK: Final = 16384
 BLOCK_NUMBER_BYTES: Final = 12
 
 _WORD_BYTES: Final = DIGITS + LETTERS + 2
+
+_LF: Final = ord("\n")
 
 _PLAIN_FORM: Final = TextForm()
 
@@ -43,7 +46,8 @@ class BlockWriter:
     A block has its words in the order in which they are given. Only the writer knows the modal state; a line of text
     does not change it unless the caller calls ``remember`` or ``forget``.
 
-    size  bytes written to the present sink since ``switch_file``
+    size              bytes written to the present sink since ``switch_file``
+    operation_starts  the sinks, lines and block numbers at which operations begin; -1 for no number
     """
 
     def __init__(
@@ -52,6 +56,9 @@ class BlockWriter:
         self._numbers, self._form = numbers, form
         self._line_end = np.frombuffer(form.line_end, np.uint8)
         self._next_numbers: dict[BinaryIO, Ints] = {}
+        self._line_counts: dict[BinaryIO, int] = {}
+        self.operation_starts: list[tuple[BinaryIO, int, int]] = []
+        self._begins = False
         self.switch_file(sink)
         self._letter = np.frombuffer(numbers.letter.encode(), np.uint8)
         self._skip = np.zeros(0, np.uint8)
@@ -85,6 +92,8 @@ class BlockWriter:
 
     def begin_operation(self) -> None:
         """Number the next block, where operations have the numbers."""
+        self.operation_starts.append((self._sink, self._line_counts.get(self._sink, 0) + 1, -1))
+        self._begins = True
         if self._numbers.numbered and self._numbers.at_operations:
             self._number[WAIT] = 0
 
@@ -231,6 +240,21 @@ class BlockWriter:
         )
         self._sink.write(out[:written].data)
         self.size += written
+        self._line_counts[self._sink] = self._line_counts.get(self._sink, 0) + int(np.count_nonzero(out[:written] == _LF))
+        if self._begins and written:
+            self._note_number(out[:written].tobytes())
+
+    def _note_number(self, data: bytes) -> None:
+        """Find the number of an operation's first block; comments without numbers may stand above it."""
+        letter, unnumbered = self._numbers.letter.encode(), tuple(sign.encode() for sign in self._numbers.unnumbered)
+        block = next((line for line in data.splitlines() if not (unnumbered and line.startswith(unnumbered))), None)
+        if block is None:
+            return
+        self._begins = False
+        match = re.match(rb"/?" + re.escape(letter) + rb"(\d+) ", block)
+        if match is not None and self._numbers.numbered:
+            sink, line, _ = self.operation_starts[-1]
+            self.operation_starts[-1] = sink, line, int(match[1])
 
 
 def _first_wait(numbers: BlockNumbers) -> tuple[int, int]:
