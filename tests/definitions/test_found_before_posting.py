@@ -88,6 +88,24 @@ def test_numbers_want_a_letter_where_the_language_has_one() -> None:
     assert told(without.replace("true", "false")) == []
 
 
+@pytest.mark.parametrize(
+    ("base", "text", "found"),
+    [
+        ("dmu65", "start = 100\nstep = 10\nhighest = 500", ["start: write 0", "step: write 1"]),
+        ("dmu65", "start = 100\nnumbered = false", []),
+        ("matsuura_mx330", "start = 900000\nhighest = 99999999", ["highest: write 99999 or less"]),
+        ("haas_umc750", "highest = 100000", ["highest: write 99999 or less"]),
+        ("linuxcnc_5axis", "highest = 100000", ["highest: write 99999 or less"]),
+        ("linuxcnc_5axis", "highest = 99999", []),
+        ("matsuura_mx330", 'unnumbered = "("', ['unnumbered: write "%O" with what else has none']),
+        ("matsuura_mx330", 'unnumbered = "%O"', []),
+    ],
+)
+def test_block_numbers_are_those_that_the_control_takes(base: str, text: str, found: list[str]) -> None:
+    problems = told(f"[control.block_numbers]\n{text}\n", base)
+    assert problems == [f"control.block_numbers.{each}" for each in found]
+
+
 @pytest.mark.parametrize("key", shipped_controls())
 def test_shipped_controls_number_blocks_by_letters_of_their_family(key: str) -> None:
     control = load_control(load_control_table(key))

@@ -145,6 +145,14 @@ def test_capitals_that_an_encoding_lacks_stay_small(tmp_path: Path) -> None:
     assert "MAß µ ÿ É" in latin
 
 
+def test_no_line_of_klartext_ends_in_a_byte_that_continues_it(tmp_path: Path) -> None:
+    assert "\u769b".encode("gbk").endswith(b"~")
+    posted(tmp_path, "dmu65", with_name("A\u769b", "turn\u769b"), encoding="gbk", title="B\u769b")
+    lines = (tmp_path / "dmu65.nc").read_bytes().splitlines()
+    assert not [line for line in lines if line.endswith(b"~") and not line.decode("gbk").endswith("~")]
+    assert sum(line.endswith(b"\xb0~.") for line in lines) >= 3
+
+
 def test_a_tool_is_never_called_by_another_name(tmp_path: Path) -> None:
     cl = with_name("OP1").replace("TOOL,D10", "TOOL,FRÄSER")
     (problem,) = problems_of(tmp_path, cl, encoding="ascii", tool_call="name")

@@ -71,6 +71,8 @@ class FamilyWriter(Protocol):
     COMMENTS          group 1 is a comment within a line, or a message to the operator; what else matches has none
     TEMPLATE_FIELDS   values that its templates may print besides the common ones: the keys of ``template_values``
     BLOCK_NUMBER_LETTERS  what may stand before a block number; empty among them: numbers without a letter, or none
+    HIGHEST_BLOCK_NUMBER  the highest that the control takes
+    NEVER_NUMBERED    signs with which lines begin that can have no block number
     """
 
     WORDS: tuple[str, ...]
@@ -84,6 +86,8 @@ class FamilyWriter(Protocol):
     LINE_COMMENTS: tuple[str, ...]
     COMMENTS: re.Pattern[str]
     BLOCK_NUMBER_LETTERS: tuple[str, ...]
+    HIGHEST_BLOCK_NUMBER: int
+    NEVER_NUMBERED: str
 
     def comment(self, text: str) -> list[str]:
         """Return a text as comment lines, whatever characters are in it."""

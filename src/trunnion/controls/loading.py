@@ -227,8 +227,24 @@ def _read_block_numbers(table: Table, family: FamilyWriter) -> BlockNumbers:
     if numbers.highest < numbers.start:
         what = f"is {numbers.highest}, but the numbers start at {numbers.start}"
         table.add_problem("highest", what, "write a greater one", code="DEF330")
+    if numbers.numbered:
+        _check_numbers(table, numbers, family)
     table.report_unread_keys()
     return numbers
+
+
+def _check_numbers(table: Table, numbers: BlockNumbers, family: FamilyWriter) -> None:
+    """Report numbers that the control does not take, or not in that place."""
+    if numbers.highest > family.HIGHEST_BLOCK_NUMBER:
+        what = f"is {numbers.highest}, and the control takes no block number above {family.HIGHEST_BLOCK_NUMBER}"
+        table.add_problem("highest", what, f"write {family.HIGHEST_BLOCK_NUMBER} or less", code="DEF330")
+    for key, found, only in (("start", numbers.start, 0), ("step", numbers.step, 1)):
+        if family.BLOCK_NUMBER_LETTERS == ("",) and found != only:
+            what = f"is {found}, and the control counts all blocks from 0 by 1"
+            table.add_problem(key, what, f"write {only}", code="DEF330")
+    if missing := "".join(sign for sign in family.NEVER_NUMBERED if sign not in numbers.unnumbered):
+        what = f"lacks {missing}: lines that begin so can have no block number"
+        table.add_problem("unnumbered", what, f'write "{family.NEVER_NUMBERED}" with what else has none', code="DEF330")
 
 
 def _read_integers(table: Table, names: tuple[str, ...], complete: bool = True) -> dict[str, int]:

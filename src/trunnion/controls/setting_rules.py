@@ -137,7 +137,7 @@ class SettingRule:
             case SettingKind.CHOICE:
                 return f"write {' or '.join(self.one_of)}{nothing}"
             case SettingKind.TOOL:
-                most = "" if self.at_most is None else f" and at most {self.at_most:g}"
+                most = "" if self.at_most is None else f" and at most {self.at_most:.10g}"
                 return f"write the tool's number, such as 5, without zeros before it{most}"
             case SettingKind.TEXT:
                 return f"write a text of one line{some}"
@@ -146,7 +146,7 @@ class SettingRule:
 
     def _bounds(self) -> str:
         parts = (("above", self.above), ("of at least", self.at_least), ("of at most", self.at_most))
-        text = " and ".join(f"{words} {value:g}" for words, value in parts if value is not None)
+        text = " and ".join(f"{words} {value:.10g}" for words, value in parts if value is not None)
         return f" {text}" if text else ""
 
 

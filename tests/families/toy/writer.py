@@ -24,6 +24,8 @@ SETTING_MEANINGS: Mapping[str, str] = {}
 LINE_COMMENTS: tuple[str, ...] = ("; ",)
 COMMENTS: re.Pattern[str] = re.compile(r"(;.*)")
 BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
+HIGHEST_BLOCK_NUMBER = 99999999
+NEVER_NUMBERED = ""
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 
 

@@ -181,6 +181,7 @@ class MotionBlockWriter:
         lines = [
             piece for line in lines for piece in divided_comment(line, room, family.LINE_COMMENTS, family.escape_comment)
         ]
+        lines = [self._ended(line) for line in lines]
         for line in lines:
             if len(line.encode()) > room:
                 what = f"a line has more than the {self.control.longest_line} bytes that {self.control.name} reads"
@@ -190,6 +191,13 @@ class MotionBlockWriter:
             blocks[len(blocks) - continues :] = [f"{blocks[-1]}\n{line}" if continues else line]
             continues = bool(sign) and line.endswith(sign)
         self.writer.write_lines(blocks)
+
+    def _ended(self, line: str) -> str:
+        """A line, with a point behind a character whose last byte the control would take for the continuation sign."""
+        sign = self.control.continued
+        if not sign or line.isascii() or line.endswith(sign):
+            return line
+        return f"{line}." if line.encode(self._encoding).endswith(sign.encode(self._encoding)) else line
 
     def _spelled(self, lines: Sequence[str]) -> list[str]:
         """Lines of a definition, with values that are spelled already, as the program has them."""

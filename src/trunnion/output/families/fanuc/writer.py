@@ -58,6 +58,8 @@ SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {"contour": ("contour_on", "cont
 LINE_COMMENTS: tuple[str, ...] = ()
 COMMENTS: re.Pattern[str] = re.compile(r"(\([^)]*\))")
 BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
+HIGHEST_BLOCK_NUMBER = 99999
+NEVER_NUMBERED = "%O"
 TEMPLATE_FIELDS: frozenset[str] = frozenset(
     {*_PLANE_FIELDS, "contour_on", "contour_off", "call_word", "call_arguments"}
 )

@@ -43,6 +43,8 @@ SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {SAFE_START_SETTING: _CANCELLING
 LINE_COMMENTS: tuple[str, ...] = ()
 COMMENTS: re.Pattern[str] = re.compile(r"(\([^)]*\))")
 BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
+HIGHEST_BLOCK_NUMBER = 99999999
+NEVER_NUMBERED = ""
 TEMPLATE_FIELDS: frozenset[str] = frozenset(_CANCELLING_FIELDS)
 
 #: Words that switch TCP on and off: for a table with both rotary axes, and for a head.

@@ -81,6 +81,8 @@ SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {
 LINE_COMMENTS: tuple[str, ...] = ("; ", "* - ")
 COMMENTS: re.Pattern[str] = re.compile(r'(;.*|^\* - .*)|"[^"]*"')
 BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("",)
+HIGHEST_BLOCK_NUMBER = 99999999
+NEVER_NUMBERED = ""
 TEMPLATE_FIELDS: frozenset[str] = frozenset(
     {
         "tcp_on", "tcp_off", "feed_at_tip", "feed_in_degrees", "retract_along", "positioning", "blank_low",

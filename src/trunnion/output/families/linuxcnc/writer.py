@@ -37,6 +37,8 @@ SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {}
 LINE_COMMENTS: tuple[str, ...] = ("; ",)
 COMMENTS: re.Pattern[str] = re.compile(r"(;.*|\([^)]*\))")
 BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
+HIGHEST_BLOCK_NUMBER = 99999
+NEVER_NUMBERED = ""
 TEMPLATE_FIELDS: frozenset[str] = frozenset()
 
 #: How a comment begins that LinuxCNC executes, after a semicolon as in brackets: it shows or logs texts, opens files,

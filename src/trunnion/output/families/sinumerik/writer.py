@@ -77,6 +77,8 @@ SETTING_FIELDS: Mapping[str, tuple[str, ...]] = {
 LINE_COMMENTS: tuple[str, ...] = (";",)
 COMMENTS: re.Pattern[str] = re.compile(r'(MSG\("[^"]*"\)|;.*)|"[^"]*"')
 BLOCK_NUMBER_LETTERS: tuple[str, ...] = ("N", "")
+HIGHEST_BLOCK_NUMBER = 99999999
+NEVER_NUMBERED = ""
 TEMPLATE_FIELDS: frozenset[str] = frozenset({*_PLANE_FIELDS, *_CANCELLING_FIELDS, _OFFSET_FIELD, "interpolation"})
 
 #: _ST of CYCLE800 with 0 as its ones digit: a new plane, not one that is added.
