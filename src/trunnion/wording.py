@@ -33,13 +33,19 @@ def counted(count: int, thing: str) -> str:
     return f"{count} {thing}" + ("" if count == 1 else "s")
 
 
-def format_duration(seconds: float) -> str:
+def format_duration(seconds: float, colons: bool = True) -> str:
     """A time as people read it.
 
     >>> format_duration(4.26), format_duration(75), format_duration(7384)
     ('4.3 s', '1:15 min', '2:03:04 h')
+    >>> format_duration(75, colons=False), format_duration(7384, colons=False)
+    ('1 min 15 s', '2 h 3 min')
+
+    colons   write them between the numbers; some controls have none in their comments
     """
     if round(seconds, 1) < 60.0:
         return f"{seconds:.1f} s"
     minutes, rest = divmod(round(seconds), 60)
+    if not colons:
+        return f"{minutes} min {rest} s" if minutes < 60 else f"{minutes // 60} h {minutes % 60} min"
     return f"{minutes}:{rest:02d} min" if minutes < 60 else f"{minutes // 60}:{minutes % 60:02d}:{rest:02d} h"

@@ -132,6 +132,19 @@ def test_an_operation_begins_where_its_blocks_do(settings: dict[str, str], tmp_p
     assert before.count("machine\n") > 2 + 1
 
 
+def test_rotary_positions_are_those_that_the_display_shows(tmp_path: Path) -> None:
+    flange = Path(__file__).parents[1] / "golden" / "fanuc" / "flange.cls"
+    sheet, listing, output = tmp_path / "a.json", tmp_path / "a.lpt", tmp_path / "a.nc"
+    trunnion.post(flange, machine="matsuura_mx330", output=output, sheet=sheet, listing=listing)
+    programmed = set(re.findall(r" C(\d+)\.", output.read_text(encoding="ascii")))
+    rows = [line.split() for line in listing.read_text(encoding="utf-8").splitlines() if line[:1] == " "]
+    shown = {row[6] for row in rows if len(row) > 8} & {"240.0000", "120.0000", "-120.0000", "-240.0000", "-720.0000"}
+    assert programmed == {"0", "120", "240"}
+    assert shown == {"120.0000", "240.0000"}
+    (turned,) = (axis for axis in json.loads(sheet.read_text(encoding="utf-8"))["axes"] if axis["name"] == "C")
+    assert turned["used"] == [0.0, 360.0]
+
+
 @needs_browser
 def test_the_sheet_prints_on_a4(folder: Path, browser: Any) -> None:
     page = browser.new_page()

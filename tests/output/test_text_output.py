@@ -8,6 +8,8 @@ import pytest
 import trunnion
 from tests.support.posting import FOOT, HEAD
 from trunnion.errors import InputError, Problem, Severity
+from trunnion.model.toolpath import Tool
+from trunnion.output.template_values import tool_text
 from trunnion.transliteration import spelled
 
 MACHINES = ["yl569", "dmu65", "matsuura_mx330", "xyzac_trt", "hs664rt"]
@@ -298,3 +300,7 @@ def test_a_list_in_inches_counts_in_inches(tmp_path: Path) -> None:
     assert text is not None
     assert "(X0 TO 1, Y0, Z0.1969 TO 1.9685)" in text
     assert "F19.68503937" in text
+
+
+def test_the_length_of_flutes_is_no_number_of_flutes() -> None:
+    assert tool_text("5", Tool(name="D10", kind="MILL", diameter=10.0, flute_length=60.0)).endswith("flute length 60")

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Final
 
 from trunnion.definitions import Table
-from trunnion.definitions.marks import ASSUMED, MARKS, marked_values
-from trunnion.errors import InputError
+from trunnion.definitions.marked import marked_in
+from trunnion.definitions.marks import ASSUMED, MARKS
 from trunnion.machines import Axis, Machine
 from trunnion.machines.loading import machine_library
 
@@ -39,27 +39,13 @@ def assumptions(machine: Machine, table: Table | None) -> tuple[str, ...]:
 
 def _marked(table: Table) -> Iterator[str]:
     """Values whose comments say that they are none of the machine's."""
-    for file in sorted(table.files(), key=lambda each: each.startswith(str(machine_library()))):
-        try:
-            text = Path(file).read_text(encoding="utf-8-sig").replace("\r\n", "\n")
-        except (OSError, ValueError, InputError):
-            continue
-        name = Path(file).name
-        for begins, what in ((MARKS, "still to enter"), (ASSUMED, "assumed by the shipped definition")):
-            found = (_owner(table, key.rpartition(".")[2], file, line) for key, line, _ in marked_values(text, begins))
-            places = [f"{key} ({name}:{line})" for key, line in filter(None, found)]
-            if places:
-                yield f"{what[0].upper()}{what[1:]}: {', '.join(places)}."
-
-
-def _owner(table: Table, key: str, file: str, line: int) -> tuple[str, int] | None:
-    """A key with its axis or table, ``C point_mm``, and its line; None where another value counts."""
-    parts = {name: table.table(name) for name in ("spindle", "workpiece", "facts")}
-    axes = {axis.text("name"): axis for axis in table.tables("axis")}
-    for name, part in {"": table, **parts, **axes}.items():
-        if key in part and part.location(key) == (file, line):
-            return f"{name} {key}".strip(), line
-    return None
+    library = str(machine_library())
+    for begins, what in ((MARKS, "Still to enter"), (ASSUMED, "Assumed by the shipped definition")):
+        found: dict[str, list[str]] = {}
+        for value in marked_in(table.content, begins):
+            found.setdefault(value.file, []).append(str(value))
+        for file in sorted(found, key=lambda each: each.startswith(library)):
+            yield f"{what}: {', '.join(found[file])}."
 
 
 def _inherited(table: Table) -> Iterator[str]:

@@ -40,7 +40,9 @@ def write_times(files: OutputFiles, program: Program, seconds: Sequence[float]) 
     """
     times = [sum(seconds), *seconds]
     capitals = program.effective_setting("comments") == "capitals"
-    shown = [program.control.family.escape_comment(format_duration(time)) for time in times]
+    family = program.control.family
+    colons = family.escape_comment(":") == ":"
+    shown = [family.escape_comment(format_duration(time, colons)) for time in times]
     texts = [(text.upper() if capitals else text).encode() for text in shown]
     for sink in files.sinks():
         _replace_tokens(sink, texts)

@@ -19,7 +19,14 @@ from trunnion.output.program import Program
 from trunnion.output.template_values import TemplateValues
 from trunnion.reporting.content import collect_content
 from trunnion.reporting.path_drawing import DrawnBody, path_drawing
-from trunnion.reporting.setup_sheet import SetupSheet, SheetFile, SheetOperation, SheetTool, cut_ranges
+from trunnion.reporting.setup_sheet import (
+    SetupSheet,
+    SheetFile,
+    SheetOperation,
+    SheetTool,
+    cut_ranges,
+    displayed_extent,
+)
 from trunnion.reporting.text import clean
 from trunnion.reporting.usage import OperationUsage
 from trunnion.verification import Verification
@@ -40,6 +47,8 @@ def setup_sheet(
     """The sheet of a program that was posted and proven; ``bodies`` are drawn with its path."""
     run, machine = verification.run, program.machine
     content = collect_content(replace(verification, program=Path(verification.program).name), program.control.name)
+    shown = tuple(displayed_extent(*each) for each in zip(machine.axes, content.axes, strict=True))
+    content = replace(content, axes=shown)
     calls = TemplateValues(program).tool_calls
     operations = tuple(_operations(program, verification, content.operations, [call for call, *_ in calls]))
     rotary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
@@ -150,8 +159,9 @@ def _start(program: Program, run: Run, operations: Sequence[SheetOperation], rot
     cuts = np.flatnonzero(run.kind != Kind.RAPID)
     if len(cuts):
         joints = run.positions(cuts[:1]).joints[0]
-        axes = zip(rotary, (run.machine.primary, run.machine.secondary), strict=True)
-        turned = ", ".join(f"{name} {joints[k] + 0.0:.3f}°" for name, k in axes)
+        axes = list(zip(rotary, (run.machine.primary, run.machine.secondary), strict=True))
+        shown = {k: float(run.machine.axes[k].displayed(joints[k : k + 1], 3)[0]) for _, k in axes}
+        turned = ", ".join(f"{name} {shown[k] + 0.0:.3f}°" for name, k in axes)
         yield f"The rotary axes stand at {turned} where the first cut ends."
     if program.effective_setting("restart") == "on":
         yield "Every operation calls its tool and its speed: the program can be entered where an operation begins."

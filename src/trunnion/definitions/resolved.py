@@ -3,6 +3,8 @@
 from collections.abc import Iterator, Mapping
 from pathlib import PurePath
 
+from trunnion.definitions.marked import marked_in
+from trunnion.definitions.marks import ASSUMED, MARKS
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.definitions.toml_text import written, written_key
 
@@ -10,11 +12,13 @@ from trunnion.definitions.toml_text import written, written_key
 def resolved_text(root: LocatedValue) -> str:
     """Return a merged definition as TOML that says the same; what it extends is in it, and not named.
 
-    A comment behind each value names file and line; the files are listed at the top, with their folders.
+    A comment behind each value names file and line, after the mark of a value that is still to be measured or assumed;
+    the files are listed at the top, with their folders.
     """
     names = _short_names(sorted(set(_files(root))))
+    marks = {(each.file, each.line): f"{each.mark}; " for each in marked_in(root, (*MARKS, *ASSUMED))}
     head = "".join(f"# {name}: {file}\n" for file, name in names.items())
-    lines = "\n".join(_table(root, (), names))
+    lines = "\n".join(_table(root, (), names, marks))
     return f"# Where each value comes from:\n{head}\n{lines}\n"
 
 
@@ -40,19 +44,22 @@ def _is_tables(value: LocatedValue) -> bool:
     return isinstance(value.value, list) and bool(value.value) and isinstance(value.value[0], LocatedValue)
 
 
-def _table(table: LocatedValue, path: tuple[str, ...], names: Mapping[str, str]) -> Iterator[str]:
+def _table(
+    table: LocatedValue, path: tuple[str, ...], names: Mapping[str, str], marks: Mapping[tuple[str, int], str]
+) -> Iterator[str]:
     """The lines of a table: values first, then the tables in it."""
     content = table.value if isinstance(table.value, dict) else {}
     for key, item in content.items():
         if not isinstance(item.value, dict) and not _is_tables(item) and key != "extends":
-            yield f"{written_key(key)} = {written(item.value)}  # {names[item.file]}:{item.line}"
+            mark = marks.get((item.file, item.line), "")
+            yield f"{written_key(key)} = {written(item.value)}  # {mark}{names[item.file]}:{item.line}"
     for key, item in content.items():
         below = (*path, key)
         dotted = ".".join(map(written_key, below))
         if isinstance(item.value, dict):
             yield from ("", f"[{dotted}]")
-            yield from _table(item, below, names)
+            yield from _table(item, below, names, marks)
         elif _is_tables(item) and isinstance(item.value, list):
             for each in item.value:
                 yield from ("", f"[[{dotted}]]")
-                yield from _table(each, below, names)
+                yield from _table(each, below, names, marks)

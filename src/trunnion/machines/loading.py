@@ -12,6 +12,8 @@ from pathlib import Path, PurePath
 from typing import Final, NamedTuple
 
 from trunnion.definitions import Table, definition_names, load_table
+from trunnion.definitions.marked import marked_in
+from trunnion.definitions.marks import MARKS
 from trunnion.definitions.messages import did_you_mean
 from trunnion.definitions.twin_keys import report_twins, statement_form
 from trunnion.errors import InputError, Problem
@@ -125,6 +127,7 @@ def read_machine(table: Table, key: str) -> Machine:
         cl_words=cl_words,
         bodies=bodies,
         spindle_point_is_stated="gauge_point_mm" in spindle,
+        unmeasured=tuple(map(str, marked_in(table.content, MARKS))),
     )
 
 

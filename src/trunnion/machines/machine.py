@@ -119,6 +119,20 @@ class Axis:
         """Lower end of the turn in which the axis is displayed, deg; NaN if its turns add up."""
         return {AngleOutput.POSITIVE: 0.0, AngleOutput.SYMMETRIC: -180.0, AngleOutput.NONE: np.nan}[self.output]
 
+    def displayed(self, values: Floats, decimals: int) -> Floats:
+        """Return values, rounded, as the machine displays them: within one turn where it has only that."""
+        rounded = np.round(values, decimals)
+        if not self.endless or self.output is AngleOutput.NONE:
+            return rounded
+        return np.round(self.display_low + np.mod(rounded - self.display_low, 360.0), decimals) + 0.0
+
+    def displayed_range(self, low: float, high: float, decimals: int) -> tuple[float, float]:
+        """Return the least and the greatest value that the machine displays on the way from ``low`` to ``high``."""
+        first, last = self.displayed(np.array([low, high]), decimals).tolist()
+        if abs((high - low) - (last - first)) > 10.0**-decimals:  # it passes the end of the turn
+            return self.display_low, self.display_low + 360.0
+        return first, last
+
 
 @dataclass(frozen=True, slots=True)
 class MachineFacts:
@@ -157,6 +171,7 @@ class Machine:
     cl_words            words of the shop's own in its CL files, and the statements of CL files that they are
     bodies              the iron on its links, as the simulation sees it; nothing else looks at it
     spindle_point_is_stated  the definition states the gauge point; else it is assumed to be in the machine's zero
+    unmeasured          values that the definition marks as still to be measured or entered, with their places
     """
 
     key: str
@@ -174,6 +189,7 @@ class Machine:
     cl_words: Mapping[str, str] = field(default_factory=dict)
     bodies: tuple[MachineBody, ...] = ()
     spindle_point_is_stated: bool = True
+    unmeasured: tuple[str, ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:

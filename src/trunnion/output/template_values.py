@@ -201,7 +201,8 @@ class TemplateValues:
         if self._program.has_time_tokens:
             return PrintedText(_time_token(number))
         self._seconds = self._seconds or estimated_seconds(self._program)
-        return PrintedText(format_duration(self._seconds[number - 1] if number else sum(self._seconds)))
+        seconds = self._seconds[number - 1] if number else sum(self._seconds)
+        return PrintedText(format_duration(seconds, colons=self._family.escape_comment(":") == ":"))
 
     def _plane_values(self, motion: Motion) -> dict[str, Value]:
         """The origin of a tilted plane, and which of the two rotary positions the machine takes there.
@@ -366,7 +367,7 @@ def tool_text(call: str, tool: Tool, unit: float = 1.0) -> str:
         ("upper corner", tool.upper_radius / unit),
         ("taper", tool.taper_angle),
         ("tip", tool.tip_angle),
-        ("flutes", tool.flute_length / unit),
+        ("flute length", tool.flute_length / unit),
         ("stands out", tool.extension / unit),
         ("in the spindle", tool.set_length / unit),
     )

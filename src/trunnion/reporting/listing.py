@@ -96,7 +96,8 @@ def listing(
         columns += [Column(np.where(is_known, poses.tip[1:, k], np.nan), _POSITION_DECIMALS) for k in range(3)]
         for k in joints:
             shown = is_known | placed | (k in run.machine.rotary)
-            columns.append(Column(np.where(shown, poses.joints[1:, k] - zero[k], np.nan), _POSITION_DECIMALS))
+            positions = run.machine.axes[k].displayed(poses.joints[1:, k] - zero[k], _POSITION_DECIMALS)
+            columns.append(Column(np.where(shown, positions, np.nan), _POSITION_DECIMALS))
         columns += [Column(speed, _SPEED_DECIMALS, _SPEED_WIDTH), Column(feed, _FEED_DECIMALS)]
         unit = np.where(np.isfinite(feed), state.feed_mode.part(first, end).astype(np.int64) - _LEAST_FEED_MODE, 0)
         in_machine = state.machine_frame.part(first, end).astype(np.int64)

@@ -8,17 +8,22 @@ Text from outside is cleaned here of characters that no file can hold.
 """
 
 from bisect import bisect_left
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats
+from trunnion.machines import Axis
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.reporting.content import ReportContent
-from trunnion.reporting.extents import BlockReference, block_reference
+from trunnion.reporting.extents import AxisExtent, BlockReference, block_reference
 from trunnion.reporting.text import clean
 from trunnion.verification.results import OperationRows
+
+#: Decimals of angles.
+_DECIMALS: Final = 3
 
 #: A lowest and a highest value.
 Range = tuple[float, float]
@@ -143,7 +148,7 @@ def cut_ranges(run: Run, operation: OperationRows) -> CutRanges:
     end = bisect_left(run.events, operation.end, key=lambda event: event.before_row)
     coolants = [str(event.value) for event in run.events[first:end] if event.kind == "coolant"]
     return CutRanges(
-        rotary=(_range(joints[:, run.machine.primary], cuts), _range(joints[:, run.machine.secondary], cuts)),
+        rotary=(_turns(run, joints, run.machine.primary, cuts), _turns(run, joints, run.machine.secondary, cuts)),
         rpm=_range(run.rpm[rows], cuts & (run.spindle[rows] != 0)),
         sense=", ".join(senses),
         feed=_range(feed, cuts & (mode == 94)),
@@ -151,6 +156,20 @@ def cut_ranges(run: Run, operation: OperationRows) -> CutRanges:
         coolant=clean(", ".join(dict.fromkeys(each for each in coolants if each != "off"))),
         start=_start(run, operation),
     )
+
+
+def displayed_extent(axis: Axis, extent: AxisExtent) -> AxisExtent:
+    """The extent of an axis as the machine displays it; turns add up nowhere on an endless axis that shows one."""
+    if extent.extremes is None or not axis.endless:
+        return extent
+    low, high = axis.displayed_range(extent.extremes.low, extent.extremes.high, _DECIMALS)
+    return replace(extent, extremes=replace(extent.extremes, low=low, high=high))
+
+
+def _turns(run: Run, joints: Floats, k: int, chosen: Flags) -> Range | None:
+    """The range of a rotary axis as the machine displays it."""
+    found = _range(joints[:, k], chosen)
+    return None if found is None else run.machine.axes[k].displayed_range(*found, _DECIMALS)
 
 
 def _start(run: Run, operation: OperationRows) -> BlockReference | None:

@@ -1,0 +1,69 @@
+"""Values that count in a merged definition and have a mark behind them (``trunnion.definitions.marks``)."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from trunnion.definitions.marks import marked_values
+from trunnion.definitions.source_lines import LocatedValue
+
+
+@dataclass(frozen=True, slots=True)
+class MarkedValue:
+    """A value with a mark.
+
+    name        its key with the name of its table, such as ``C point_mm``
+    file, line  where it stands
+    mark        the comment, without its sign
+    """
+
+    name: str
+    file: str
+    line: int
+    mark: str
+
+    def __str__(self) -> str:
+        """Return it with its place."""
+        return f"{self.name} ({Path(self.file).name}:{self.line})"
+
+
+def marked_in(content: LocatedValue, begins: tuple[str, ...]) -> Iterator[MarkedValue]:
+    """Yield the marked values of a definition, in its order; values that another file replaces are none of them."""
+    marks: dict[str, dict[int, str]] = {}
+    for name, value in _leaves(content, ""):
+        if value.file not in marks:
+            text = _text_of(value.file)  # finding the places of all its values takes a while
+            found = marked_values(text, begins) if any(begin in text for begin in begins) else []
+            marks[value.file] = {line: mark for _, line, mark in found}
+        if (mark := marks[value.file].get(value.line)) is not None:
+            yield MarkedValue(name, value.file, value.line, mark)
+
+
+def _leaves(value: LocatedValue, name: str) -> Iterator[tuple[str, LocatedValue]]:
+    """Values that are no tables, each with its key and the name of its table."""
+    inner = value.value
+    if isinstance(inner, dict):
+        own = inner.get("name")
+        table = str(own.value) if isinstance(own, LocatedValue) and name else name
+        for key, item in inner.items():
+            below = isinstance(item.value, dict | list) and not _is_plain(item)
+            yield from _leaves(item, key if below else f"{table} {key}".strip())
+    elif not _is_plain(value) and isinstance(inner, list):
+        for item in inner:
+            yield from _leaves(item, name)
+    else:
+        yield name, value
+
+
+def _is_plain(value: LocatedValue) -> bool:
+    """Whether a value is none with values in it that have places of their own."""
+    inner = value.value
+    return not isinstance(inner, dict) and not (isinstance(inner, list) and inner and isinstance(inner[0], LocatedValue))
+
+
+def _text_of(file: str) -> str:
+    """The text of a definition; empty for what is in no file."""
+    try:
+        return Path(file).read_text(encoding="utf-8-sig").replace("\r\n", "\n")
+    except (OSError, ValueError):
+        return ""
