@@ -145,6 +145,32 @@ def test_rotary_positions_are_those_that_the_display_shows(tmp_path: Path) -> No
     assert turned["used"] == [0.0, 360.0]
 
 
+def test_a_sheet_tells_what_its_numbers_lack(tmp_path: Path) -> None:
+    flange = Path(__file__).parents[1] / "golden" / "fanuc" / "flange.cls"
+    trunnion.post(flange, machine="matsuura_mx330", output=tmp_path / "a.nc", sheet=tmp_path / "a.html")
+    text = " ".join(_Tags((tmp_path / "a.html").read_text(encoding="utf-8")).text.split())
+    assert "Not in these times rapids, speeding up and slowing down, tool changes: the machine" in text
+    assert "no known zero: only the length counts" in text
+    assert "the workpiece zero: only" not in text
+    assert not re.search(r"TAP_SIDES[^.]*(ROUGH|FINISH)", text)
+
+
+def test_a_refused_post_tells_of_the_files_that_are_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    cl = tmp_path / "part.cls"
+    cl.write_text(HEAD + FOOT, encoding="utf-8")
+    old, sheet = tmp_path / "a.mpf", tmp_path / "a.html"
+    arguments = ["post", str(cl), "--machine", "yl569", "--output", str(old), "--sheet", str(sheet)]
+    assert main(arguments) == 0
+    assert "of before this change" not in capsys.readouterr().err
+    cl.write_text((HEAD + FOOT).replace("0.0,0.0,1.0", "0.0,0.7071068,-0.7071068"), encoding="utf-8")
+    assert main(arguments) == 1
+    assert f"{old}, {sheet}: warning: of before this change: do not run" in capsys.readouterr().err
+    sheet.unlink()
+    old.unlink()
+    assert main(arguments) == 1
+    assert "of before this change" not in capsys.readouterr().err
+
+
 @needs_browser
 def test_the_sheet_prints_on_a4(folder: Path, browser: Any) -> None:
     page = browser.new_page()

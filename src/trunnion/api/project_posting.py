@@ -5,7 +5,7 @@ Out:    its programs, what the checks of the project found, and an error where o
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -131,6 +131,8 @@ def post_into(
             with told_in_project(setup, settings or {}):
                 posted.append((setup, tuple(post.programs(setup))))
         except TrunnionError as error:
+            if len(project.setups) > 1 and setup.name:  # they are told together, and may be of one CL file
+                error.problems = tuple(_of_setup(problem, setup) for problem in error.problems)
             errors.append(error)
     if errors:
         raise _joined(errors)
@@ -269,6 +271,11 @@ def _left_over(posted: Sequence[tuple[PostedSetup, tuple[PostResult, ...]]]) -> 
                     )
                 )
     return found
+
+
+def _of_setup(problem: Problem, setup: PostedSetup) -> Problem:
+    """A problem that says in which set-up it is."""
+    return replace(problem, what=f"{problem.what} (set-up {setup.name})")
 
 
 def _joined(errors: Sequence[TrunnionError]) -> TrunnionError:

@@ -11,9 +11,10 @@ from trunnion.api.job import PostJob
 from trunnion.api.papers import MADE_BY
 from trunnion.api.post_result import PostResult
 from trunnion.errors import Severity
+from trunnion.machines import Machine
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.run import NO_OFFSET, Run
-from trunnion.model.toolpath import Insert, Kind, Operation, Tool
+from trunnion.model.toolpath import CycleOn, Insert, Kind, Operation, Tool
 from trunnion.output.coordinates.extents import cut_box
 from trunnion.output.program import Program
 from trunnion.output.template_values import TemplateValues
@@ -69,7 +70,19 @@ def setup_sheet(
         to_check=tuple(clean(one_line(text)) for text in _to_check(program, job, result, run)),
         files=tuple(replace(file, name=clean(file.name)) for file in files),
         picture=path_drawing(run, bodies),
+        untimed=_untimed(machine),
     )
+
+
+def _untimed(machine: Machine) -> str:
+    """What times leave out because the definition does not state it."""
+    left_out = (
+        ("rapids", any(axis.rapid is None for axis in machine.axes)),
+        ("speeding up and slowing down", any(axis.acceleration is None for axis in machine.axes)),
+        ("tool changes", machine.facts.tool_change_s is None),
+    )
+    names = [what for what, is_left_out in left_out if is_left_out]
+    return f"{', '.join(names)}: the machine's definition states none" if names else ""
 
 
 def _offsets(run: Run) -> tuple[str, ...]:
@@ -93,7 +106,7 @@ def _operations(
         yield SheetOperation(
             number=number,
             name=clean(own.name),
-            method=clean(program.method_of(motions[0].operation)),
+            method="" if _is_of_holes(motions) else clean(program.method_of(motions[0].operation)),
             mode=", ".join(dict.fromkeys(motion.mode.value for motion in motions)),
             tool=clean(call),
             cl_file=clean(Path(own.cl_file).name),
@@ -102,6 +115,11 @@ def _operations(
             box=_box(motions),
             cuts=cut_ranges(verification.run, own),
         )
+
+
+def _is_of_holes(motions: Sequence[Motion]) -> bool:
+    """Whether an operation makes holes, which are neither roughed nor finished."""
+    return any(isinstance(event, CycleOn) for motion in motions for event in motion.operation.events)
 
 
 def _box(motions: Sequence[Motion]) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:

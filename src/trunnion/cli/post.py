@@ -2,6 +2,7 @@
 
 import argparse
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from itertools import chain, islice
 from pathlib import Path
 
@@ -13,9 +14,9 @@ from trunnion.api.posting import post_beside
 from trunnion.api.reading import load_machine
 from trunnion.cli.cl_files import named_files, result_stem
 from trunnion.cli.results import tell
-from trunnion.cli.terminal import Terminal, check_unnamed, output_folder, output_place
+from trunnion.cli.terminal import Terminal, check_unnamed, output_folder, output_place, warn_of_old
 from trunnion.controls import load_control
-from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.errors import InputError, Problem, TrunnionError, argument_problem
 from trunnion.files import OutputGroup, check_outputs
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Toolpath
@@ -48,29 +49,42 @@ def post(
     written: list[Path] = []
     passed = True
     for target, files in targets.items():
-        result = post_beside(
-            chain.from_iterable(islice(toolpaths, len(files))),
-            read if group is not None else [*read, *written],  # a group knows what its jobs write
-            machine=machine,
-            output=output_place(target),
-            settings=dict(arguments.settings),
-            strict=arguments.strict,
-            force=arguments.force,
-            explain=arguments.explain,
-            papers=paper_files(**{name: papers.get(name) for name in PAPERS}, output=output_place(target)),
-            columns=False,
-            subprograms=arguments.subprograms,
-            simulation=simulation_of(arguments),
-            hooks=arguments.hooks,
-            observer=observer
-            or Terminal(explain=arguments.explain, recorded=arguments.explain or bool(arguments.report)),
-            group=group,
-        )
+        old = [target, *(file for name, file in papers.items() if name != "report")]  # a refusal writes its report
+        with old_files_told(old if observer is None else []):
+            result = post_beside(
+                chain.from_iterable(islice(toolpaths, len(files))),
+                read if group is not None else [*read, *written],  # a group knows what its jobs write
+                machine=machine,
+                output=output_place(target),
+                settings=dict(arguments.settings),
+                strict=arguments.strict,
+                force=arguments.force,
+                explain=arguments.explain,
+                papers=paper_files(**{name: papers.get(name) for name in PAPERS}, output=output_place(target)),
+                columns=False,
+                subprograms=arguments.subprograms,
+                simulation=simulation_of(arguments),
+                hooks=arguments.hooks,
+                observer=observer
+                or Terminal(explain=arguments.explain, recorded=arguments.explain or bool(arguments.report)),
+                group=group,
+            )
         written += [*result.subprograms, *([] if result.output is None else [result.output])]
         passed = passed and result.passed
         if observer is None:
             print_summary(target, result)
     return 0 if passed else 1
+
+
+@contextmanager
+def old_files_told(names: Sequence[str]) -> Iterator[None]:
+    """Where a post fails, say that files which are there are not of it; not where a name or an argument is wrong."""
+    try:
+        yield
+    except TrunnionError as error:
+        if not any(problem.code.startswith(("FIL", "ARG")) for problem in error.problems):
+            warn_of_old(names)
+        raise
 
 
 def simulation_of(arguments: argparse.Namespace) -> dict[str, object] | None:

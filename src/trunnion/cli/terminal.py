@@ -2,7 +2,7 @@
 
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import BinaryIO
@@ -86,6 +86,13 @@ def output_place(output: str) -> str | BinaryIO:
         return output
     sys.stdout.flush()
     return sys.stdout.buffer
+
+
+def warn_of_old(names: Iterable[str]) -> None:
+    """Say of programs and papers that are there that they are not those of a post that has just failed."""
+    old = [name for name in names if name != "-" and Path(name).is_file()]
+    if old:
+        tell(f"{', '.join(old)}: warning: of before this change: do not run until it is posted again")
 
 
 def check_unnamed(target: str, *, alone: bool = True) -> None:

@@ -20,8 +20,10 @@ from trunnion.cli.post import files_by_target, simulation_of
 from trunnion.cli.post_arguments import names_project
 from trunnion.cli.process import Ended
 from trunnion.cli.progress import progress
+from trunnion.cli.project import outputs_of
 from trunnion.cli.results import print_result, tell
 from trunnion.cli.startup import post_files
+from trunnion.cli.terminal import warn_of_old
 from trunnion.cli.wording import problem_line
 from trunnion.errors import InputError, Problem, RefusedError, TrunnionError
 from trunnion.files import OutputGroup, file_on_disk, output_group
@@ -105,9 +107,7 @@ class _Told:
 
     def _warn_of_old_programs(self) -> None:
         """Say that programs which are there are not those of the files as they are now."""
-        old = [name for name in self._work.outputs() if Path(name).is_file()]
-        if old:
-            tell(f"{', '.join(old)}: warning: of before this change: do not run until it is posted again")
+        warn_of_old(self._work.outputs())
 
 
 class _ChangedError(InputError):
@@ -160,13 +160,7 @@ class _ProjectWork:
 
     def outputs(self) -> list[str]:
         """Programs of the project as it was last read."""
-        found: list[str] = []
-        for setup in [] if self._project is None else self._project.setups:
-            if setup.division is not Division.OPERATIONS:
-                found.append(str(setup.output))
-            else:
-                found += map(str, programs_of_operations(setup.output))
-        return found
+        return [] if self._project is None else outputs_of(self._project)
 
 
 class _FilesWork:

@@ -116,6 +116,7 @@ class SetupSheet:
     to_check    what the proof cannot see, in sentences
     rotary      names of the primary and of the secondary rotary axis
     picture     SVG of the set-up; empty: there is none
+    untimed     what the times leave out, in words; empty: nothing
     """
 
     content: ReportContent
@@ -134,6 +135,7 @@ class SetupSheet:
     to_check: tuple[str, ...]
     files: tuple[SheetFile, ...]
     picture: str
+    untimed: str = ""
 
 
 def cut_ranges(run: Run, operation: OperationRows) -> CutRanges:

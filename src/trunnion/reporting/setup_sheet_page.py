@@ -72,6 +72,7 @@ def sheet_json(sheet: SetupSheet) -> bytes:
         "coordinates": sheet.system,
         "seconds": content.seconds,
         "cutting_seconds": content.cutting_seconds,
+        "not_in_times": sheet.untimed or None,
         "tools": [asdict(tool) for tool in sheet.tools],
         "operations": [_operation_data(each, sheet.rotary) for each in sheet.operations],
         "axes": [_axis_data(axis) for axis in content.axes],
@@ -139,6 +140,7 @@ def _title(sheet: SetupSheet) -> str:
         ("Program counts from", sheet.system),
         ("Machining time", format_duration(content.seconds)),
         ("of which in cuts", format_duration(content.cutting_seconds)),
+        ("Not in these times", sheet.untimed),
         ("Lengths in the program", " and ".join(content.units)),
     ]
     if sheet.tool_length is not None:
@@ -229,7 +231,7 @@ def _axes(sheet: SetupSheet) -> str:
         )
         left = "" if axis.margin is None else format_fixed(axis.margin)
         bad = ' class="bad"' if axis.margin is not None and axis.margin < 0.0 else ""
-        counted_from = "the machine's zero" if axis.zero_known else "the workpiece zero"
+        counted_from = "the machine's zero" if axis.zero_known else "no known zero: only the length counts"
         rows.append(
             f"<tr{bad}><th scope=row>{escape(axis.name)} <small>{axis.unit}</small></th><td class=n>{used[0]}</td>"
             f"<td class=n>{used[1]}</td><td class=n>{limits}</td><td class=n>{left}</td><td>{counted_from}</td></tr>"
