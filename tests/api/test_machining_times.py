@@ -73,7 +73,9 @@ def test_a_program_in_memory_has_its_times(tmp_path: Path) -> None:
 def test_a_control_without_colons_in_comments_has_words_for_times(tmp_path: Path) -> None:
     cl = tmp_path / "part.cls"
     cl.write_text(OPERATION.format(name="OP1", tool=1, rows=CUT.replace("2.5", "75.5")), encoding="utf-8")
-    text = trunnion.post(cl, machine="haas_umc750", settings={"times": "on", "operation_list": "on"}, columns=False).text
+    text = trunnion.post(
+        cl, machine="haas_umc750", settings={"times": "on", "operation_list": "on"}, columns=False
+    ).text
     assert text is not None
     assert re.search(r"\(MACHINING TIME 1 MIN \d+ S OF 1 MIN \d+ S\)", text)
     assert re.search(r"\(1 MIN \d+ S, S1000, F200\)", text)

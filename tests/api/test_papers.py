@@ -155,6 +155,23 @@ def test_a_sheet_tells_what_its_numbers_lack(tmp_path: Path) -> None:
     assert not re.search(r"TAP_SIDES[^.]*(ROUGH|FINISH)", text)
 
 
+def test_a_sheet_tells_of_compensation_pitches_angles_and_stops(tmp_path: Path) -> None:
+    cl = tmp_path / "part.cls"
+    drill = HEAD.replace("OP1", "TAPPING").replace("TOOL,1,ADJUST,1", "TOOL,2,ADJUST,2")
+    drill = re.sub("TLDATA.*", "TLDATA/DRILL,MILL,10.0000,0.0000,60.0000,118.0000,8.0000", drill)
+    holes = "CYCLE/TAP,RAPTO,3,FEDTO,-10,MMPR,1.25\nGOTO/0.0,0.0,0.0\nCYCLE/OFF\nGOTO/0.0,0.0,50.0\n"
+    stop = "OPSTOP\n" + holes
+    cl.write_text(HEAD + FOOT + drill + stop + FOOT, encoding="utf-8")
+    sheet = tmp_path / "a.json"
+    trunnion.post(cl, machine="matsuura_mx330", output=tmp_path / "a.nc", sheet=sheet)
+    data = json.loads(sheet.read_text(encoding="utf-8"))
+    first, second = data["operations"]
+    assert first["notes"] == []
+    assert second["notes"] == ["optional stop (M1)", "pitch 1.25 mm"]
+    assert second["method"] == ""
+    assert any(tool["kind"] == "drill, tip 118°" for tool in data["tools"]), data["tools"]
+
+
 def test_a_refused_post_tells_of_the_files_that_are_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     cl = tmp_path / "part.cls"
     cl.write_text(HEAD + FOOT, encoding="utf-8")

@@ -10,15 +10,17 @@ import numpy as np
 from trunnion.api.job import PostJob
 from trunnion.api.papers import MADE_BY
 from trunnion.api.post_result import PostResult
+from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD
 from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.run import NO_OFFSET, Run
-from trunnion.model.toolpath import CycleOn, Insert, Kind, Operation, Tool
+from trunnion.model.toolpath import CutterComp, CycleOn, Insert, Kind, Operation, SpindleOn, Stop, Tool
 from trunnion.output.coordinates.extents import cut_box
 from trunnion.output.program import Program
 from trunnion.output.template_values import TemplateValues
 from trunnion.reporting.content import collect_content
+from trunnion.reporting.html_text import format_number
 from trunnion.reporting.path_drawing import DrawnBody, path_drawing
 from trunnion.reporting.setup_sheet import (
     SetupSheet,
@@ -102,6 +104,7 @@ def _operations(
     starts = [k for k, motion in enumerate(program.motions) if motion.starts_operation]
     groups = [program.motions[first:end] for first, end in pairwise([*starts, len(program.motions)])]
     rows = zip(groups, verification.operations, usages, calls, strict=True)
+    names_radius = RADIUS_NUMBER_WORD in program.control.family.WORDS
     for number, (motions, own, usage, call) in enumerate(rows, 1):
         yield SheetOperation(
             number=number,
@@ -114,7 +117,27 @@ def _operations(
             cutting_seconds=usage.cutting_seconds,
             box=_box(motions),
             cuts=cut_ranges(verification.run, own),
+            notes=tuple(dict.fromkeys(_notes(motions, names_radius=names_radius))),
         )
+
+
+def _notes(motions: Sequence[Motion], *, names_radius: bool) -> Iterator[str]:
+    """What a setter must know of an operation: compensation with its register, pitches, and where it stops."""
+    rpm = 0.0
+    for event in (event for motion in motions for event in motion.operation.events):
+        match event:
+            case SpindleOn():
+                rpm = event.rpm
+            case CutterComp() if event.side != "OFF":
+                register = f"D{event.register}" if event.register and names_radius else "the radius of the tool"
+                yield f"radius compensation with {register}"
+            case Stop():
+                yield "optional stop (M1)" if event.optional else "stop (M0)"
+            case CycleOn() if event.mode[:1] == ("TAP",):
+                values = dict(event.values)
+                per_minute = values.get("MMPM", (0.0,))[0] / rpm if rpm else 0.0
+                if pitch := values.get("MMPR", (per_minute,))[0]:
+                    yield f"pitch {format_number(pitch)} mm"
 
 
 def _is_of_holes(motions: Sequence[Motion]) -> bool:
@@ -162,7 +185,8 @@ def _kind(tool: Tool) -> str:
     if tool.kind == "MILL" and tool.diameter > 0.0 and abs(2.0 * tool.corner_radius - tool.diameter) < 1e-6:
         return "ball mill"
     words = {"MILL": "mill", "TCUTTER": "T-cutter", "BARREL": "barrel cutter", "DRILL": "drill"}
-    return words.get(tool.kind, "")
+    angle = f", tip {format_number(tool.tip_angle)}°" if tool.kind == "DRILL" and tool.tip_angle else ""
+    return words.get(tool.kind, "") + angle
 
 
 def _start(program: Program, run: Run, operations: Sequence[SheetOperation], rotary: Sequence[str]) -> Iterator[str]:

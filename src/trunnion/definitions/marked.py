@@ -58,7 +58,9 @@ def _leaves(value: LocatedValue, name: str) -> Iterator[tuple[str, LocatedValue]
 def _is_plain(value: LocatedValue) -> bool:
     """Whether a value is none with values in it that have places of their own."""
     inner = value.value
-    return not isinstance(inner, dict) and not (isinstance(inner, list) and inner and isinstance(inner[0], LocatedValue))
+    return not isinstance(inner, dict) and not (
+        isinstance(inner, list) and inner and isinstance(inner[0], LocatedValue)
+    )
 
 
 def _text_of(file: str) -> str:

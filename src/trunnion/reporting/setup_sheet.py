@@ -78,6 +78,7 @@ class SheetOperation:
     """An operation: ``box`` has the lower and the upper corner of what the tip cuts, None if nothing.
 
     mode     such as ``three-axis``; several where it has several
+    notes    radius compensation, pitches of taps, programmed stops, in words
     seconds  with what leads to it; ``cutting_seconds`` in cuts
     """
 
@@ -91,6 +92,7 @@ class SheetOperation:
     cutting_seconds: float
     box: tuple[tuple[float, float, float], tuple[float, float, float]] | None
     cuts: CutRanges
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -191,7 +191,7 @@ def _operations(sheet: SetupSheet) -> str:
 
 
 def _operation(each: SheetOperation, names: Sequence[str]) -> str:
-    facts = ", ".join(escape(text) for text in (each.mode, each.method) if text)
+    facts = ", ".join(escape(text) for text in (each.mode, each.method, *each.notes) if text)
     box = (
         []
         if each.box is None

@@ -240,7 +240,9 @@ class BlockWriter:
         )
         self._sink.write(out[:written].data)
         self.size += written
-        self._line_counts[self._sink] = self._line_counts.get(self._sink, 0) + int(np.count_nonzero(out[:written] == _LF))
+        self._line_counts[self._sink] = self._line_counts.get(self._sink, 0) + int(
+            np.count_nonzero(out[:written] == _LF)
+        )
         if self._begins and written:
             self._note_number(out[:written].tobytes())
 

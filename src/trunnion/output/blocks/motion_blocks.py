@@ -179,7 +179,9 @@ class MotionBlockWriter:
         room = self.control.longest_line - BLOCK_NUMBER_BYTES
         family = self.family
         lines = [
-            piece for line in lines for piece in divided_comment(line, room, family.LINE_COMMENTS, family.escape_comment)
+            piece
+            for line in lines
+            for piece in divided_comment(line, room, family.LINE_COMMENTS, family.escape_comment)
         ]
         lines = [self._ended(line) for line in lines]
         for line in lines:

@@ -161,7 +161,16 @@ def test_a_program_that_nobody_can_read_back_is_written_by_force_only_and_says_s
 
 
 #: Texts that LinuxCNC would execute as the beginning of a comment.
-EXECUTED = ["py,import os", "PyRun , x.py", "logopen,x.txt", "LOGCLOSE", "probeopen x", "abort,now", "print,#1", "axis,stop"]
+EXECUTED = [
+    "py,import os",
+    "PyRun , x.py",
+    "logopen,x.txt",
+    "LOGCLOSE",
+    "probeopen x",
+    "abort,now",
+    "print,#1",
+    "axis,stop",
+]
 
 
 @pytest.mark.parametrize("text", EXECUTED)
