@@ -35,7 +35,7 @@ def same_machine(one: Machine, other: Machine) -> bool:
     """Whether two machines are alike but for what they are called and where they come from."""
     bodies = [[replace(body, place=("", 0)) for body in machine.bodies] for machine in (one, other)]
     plain = [
-        replace(machine, key="", name="", files=(), control=one.control, bodies=tuple(own))
+        replace(machine, key="", name="", files=(), unmeasured=(), control=one.control, bodies=tuple(own))
         for machine, own in zip((one, other), bodies, strict=True)
     ]
     return all(getattr(plain[0], name) == getattr(plain[1], name) for name in Machine.__slots__ if name != "control")
@@ -180,3 +180,12 @@ def test_an_editor_finds_the_schema_and_its_mistakes() -> None:
     assert code == 1
     assert '"off" is not valid' in told
     assert "tool_pokets" in told
+
+
+def test_a_definition_of_ones_own_has_no_name_of_a_shipped_machine(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "yl569", "--like", "yl569"]) == 2
+    assert "is the name of a shipped machine" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())

@@ -10,7 +10,7 @@ from trunnion.definitions.marks import marked_values
 from trunnion.errors import InputError, Problem
 from trunnion.files import atomic_file
 from trunnion.machines import load_machine
-from trunnion.machines.loading import check_is_shipped
+from trunnion.machines.loading import check_is_shipped, shipped_machines
 from trunnion.schemas import put_beside, schema_text
 from trunnion.wording import counted
 
@@ -24,6 +24,9 @@ def new(arguments: argparse.Namespace) -> int:
         raise InputError(
             Problem(arguments.name, 0, what, "write letters, digits and _, such as our_mill", code="FIL340")
         )
+    if file.stem in shipped_machines():
+        what = "is the name of a shipped machine, which --machine would go on taking"
+        raise InputError(Problem(arguments.name, 0, what, f"write another, such as our_{file.stem}", code="FIL340"))
     if file.exists() or file.is_symlink():
         raise InputError(
             Problem(str(file), 0, "is there already", "choose another name, or edit that file", code="FIL250")
