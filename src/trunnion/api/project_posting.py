@@ -24,6 +24,7 @@ from trunnion.api.project_file import load_project, project_inputs, told_by_keys
 from trunnion.api.project_settings import told_in_project
 from trunnion.api.reading import FilePath, ToolpathLike, as_machine
 from trunnion.api.settings import Settings, SettingValue
+from trunnion.controls import load_control
 from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem, RefusedError, Severity, TrunnionError
 from trunnion.files import EarlierJob, OutputGroup, check_outputs, output_group, resolve_output

@@ -7,11 +7,10 @@ from datetime import datetime
 from pathlib import Path
 from typing import Protocol
 
-from trunnion.api.dividing import programs_of_operations
 from trunnion.api.input_files import machine_files
 from trunnion.api.observer import Observer
 from trunnion.api.posted_simulation import simulation_files
-from trunnion.api.project import Division, Project
+from trunnion.api.project import Project
 from trunnion.api.project_file import load_project, project_inputs
 from trunnion.api.project_posting import post_into
 from trunnion.api.reading import load_machine

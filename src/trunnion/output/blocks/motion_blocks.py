@@ -215,7 +215,7 @@ class MotionBlockWriter:
         """A comment without small letters, but those whose capital is two letters or is lacking in the encoding."""
         if comment[1] is None:
             return comment[0]
-        capitals = ((each, each.upper()) for each in comment[0])
+        capitals = ((each, each if each in "µμ" else each.upper()) for each in comment[0])  # M is another unit
         return "".join(big if len(big) == 1 and not lacking(big, self._encoding) else small for small, big in capitals)
 
     def write_block(self, words: Mapping[str, int]) -> None:
