@@ -217,7 +217,7 @@ def test_a_project_names_what_it_writes_so_that_every_system_takes_it(tmp_path: 
 
 
 def test_a_project_replaces_only_what_posts_have_written(tmp_path: Path) -> None:
-    """The author of a project names files of the user, or a program that was edited since."""
+    """The author of a project names files of the user."""
     (tmp_path / "doc").mkdir()
     papers = 'report = "doc/top.json"\nlisting = "top.txt"\n'
     path = project(tmp_path, PROJECT + papers)
@@ -230,14 +230,18 @@ def test_a_project_replaces_only_what_posts_have_written(tmp_path: Path) -> None
         problems(path, trunnion.RefusedError)
     path.with_name("top.cls").write_text(TWO)
     trunnion.post_project(path)
-    for file in written:
+    for file in written[1:]:
         before = file.read_bytes()
         file.write_text("MINE")
         (found,) = problems(path)
         assert found.startswith(f"{file}: error: would be replaced, although no post has written it as it is")
         assert file.read_text() == "MINE"
         file.write_bytes(before)
-    trunnion.post_project(path)
+    written[0].write_text("OF A CLONE")  # a program is replaced by a program, wherever it comes from
+    assert "OF A CLONE" not in trunnion.post_project(path).files[0].read_text()
+    path.write_text((PROJECT + papers).replace("top.mpf", "notes.txt"))
+    (tmp_path / "notes.txt").write_text("MINE")
+    assert "notes.txt: error: would be replaced" in problems(path)[0]
 
 
 def test_links_in_a_project_lead_nowhere_else(tmp_path: Path) -> None:

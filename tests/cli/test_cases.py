@@ -183,8 +183,6 @@ def test_a_huge_file_in_place_of_a_program_is_not_read(case: Path, capsys: Captu
     assert code == 1
     assert "33554432 bytes are there" in out
     assert "motion DIFFERS: not compared: top.mpf is far larger" in out
-    with pytest.raises(trunnion.InputError, match="no post has written it"):
-        trunnion.post_project(case)
 
 
 def test_a_link_to_a_file_elsewhere_is_not_read(case: Path, tmp_path: Path, capsys: Capture) -> None:
@@ -236,7 +234,7 @@ def test_accepting_makes_the_programs_of_a_clone_those_of_the_project(tmp_path: 
     clone = project(tmp_path / "clone", first.read_text())
     for program in (*first.parent.glob("*.mpf"), *first.parent.glob("*.spf")):
         clone.with_name(program.name).write_bytes(program.read_bytes())
-    with pytest.raises(trunnion.InputError, match=r"top\.mpf: error: would be replaced, although no post"):
+    with pytest.raises(trunnion.InputError, match=r"FACE\.spf: error: would be replaced, although top\.mpf"):
         trunnion.post_project(clone)
     code, out, _ = tried(capsys, clone, "--accept")
     assert (code, "accepted" in out) == (0, False)
