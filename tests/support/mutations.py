@@ -273,7 +273,9 @@ def outside_work(run: Run, lines: tuple[str, ...]) -> dict[str, object]:
     changes = [event.before_row for event in run.events if event.kind == "tool_change"]
     found = [(bits, sum(k <= row for k in changes), int(run.kind[row])) for row, bits in enumerate(firsts) if bits]
     cycles = [(int(rows[e.before_row]), e.value) for e in run.events if e.kind == "cycle832"]
-    silent = {"tool", "tool_change", "spindle", "speed", "coolant", "message", "cycle832", "tolerance", "end", "offset"}
+    # Exact stops are those of G words, which are among the drives, and of CYCLE832, which smooths.
+    silent = {"tool", "tool_change", "spindle", "speed", "coolant", "message", "end", "offset"}
+    silent |= {"cycle832", "tolerance", "exact_stop"}
     return {
         START: found,
         HOME: state.tolist(),
