@@ -85,8 +85,8 @@ def test_what_a_control_cannot_make_is_told_line_by_line_and_warnings_apart(tmp_
 def test_the_error_of_a_failed_proof_says_what_was_found(monkeypatch: pytest.MonkeyPatch) -> None:
     written = writing.write
 
-    def spoiled(program: Any, sink: Any, *more: Any, **named: Any) -> None:
-        written(replace(program, settings={**program.settings, "work_offset": "G55"}), sink, *more, **named)
+    def spoiled(program: Any, sink: Any, *more: Any, **named: Any) -> Any:
+        return written(replace(program, settings={**program.settings, "work_offset": "G55"}), sink, *more, **named)
 
     monkeypatch.setattr(posting, "write", spoiled)
     with pytest.raises(trunnion.RefusedError, match=r"fails its proof: .*in G55, not in G54.*\(offset\)"):

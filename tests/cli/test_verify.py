@@ -13,6 +13,7 @@ import pytest
 from tests.support.locations import YL569
 from tests.support.machines import machine_without_tcp
 from trunnion.cli import main
+from trunnion.model.operation_start import OperationStart
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
 from trunnion.output.subprograms import SubprogramOutput
@@ -157,13 +158,14 @@ def spoil(monkeypatch: pytest.MonkeyPatch, change: Callable[[bytes], bytes]) -> 
         sink: BinaryIO,
         advance: Callable[[int], None] | None = None,
         subprograms: SubprogramOutput | None = None,
-    ) -> None:
+    ) -> tuple[OperationStart, ...]:
         assert subprograms is None
         whole = BytesIO()
-        write_program(program, whole, advance)
+        starts = write_program(program, whole, advance)
         changed = change(whole.getvalue())
         assert changed != whole.getvalue()
         sink.write(changed)
+        return starts
 
     monkeypatch.setattr("trunnion.api.writing.write_program", wrong)
 
