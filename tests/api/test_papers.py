@@ -150,7 +150,7 @@ def test_a_sheet_tells_what_its_numbers_lack(tmp_path: Path) -> None:
     trunnion.post(flange, machine="matsuura_mx330", output=tmp_path / "a.nc", sheet=tmp_path / "a.html")
     text = " ".join(_Tags((tmp_path / "a.html").read_text(encoding="utf-8")).text.split())
     assert "Not in these times rapids, speeding up and slowing down, tool changes: the machine" in text
-    assert "no known zero: only the length counts" in text
+    assert "the workpiece zero" in text
     assert "the workpiece zero: only" not in text
     assert not re.search(r"TAP_SIDES[^.]*(ROUGH|FINISH)", text)
 

@@ -231,7 +231,7 @@ def _axes(sheet: SetupSheet) -> str:
         )
         left = "" if axis.margin is None else format_fixed(axis.margin)
         bad = ' class="bad"' if axis.margin is not None and axis.margin < 0.0 else ""
-        counted_from = "the machine's zero" if axis.zero_known else "no known zero: only the length counts"
+        counted_from = "the machine's zero" if axis.zero_known else "the workpiece zero"
         rows.append(
             f"<tr{bad}><th scope=row>{escape(axis.name)} <small>{axis.unit}</small></th><td class=n>{used[0]}</td>"
             f"<td class=n>{used[1]}</td><td class=n>{limits}</td><td class=n>{left}</td><td>{counted_from}</td></tr>"
