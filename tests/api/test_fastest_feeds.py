@@ -145,7 +145,7 @@ def test_a_program_can_be_proven_again_without_its_post(name: str, settings: Set
 
     def failed(feed: str = "fastest") -> set[str]:
         limited = {"feed_limit": limit} if feed == "fastest" else {}
-        found = trunnion.verify(target, machine=able(name), cl=source, feed=feed, **limited)  # type: ignore
+        found = trunnion.verify(target, machine=able(name), cl=source, feed=feed, **limited)  # type: ignore[arg-type]
         return {check.key for check in found.checks if not check.passed}
 
     assert not failed() & {"feed", "reach"}
