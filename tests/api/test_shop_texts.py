@@ -13,6 +13,7 @@ from tests.support.locations import TESTS
 from tests.support.posting import FOOT, HEAD
 
 SHOP = (TESTS / "data" / "shop.cls").read_text(encoding="utf-8").replace("BORHED/40.5,DEEP\n", "")
+LEVEL_ONLY = SHOP.partition("END-OF-PATH\n")[0] + "END-OF-PATH\n"
 KNOWN = '[control.known]\nM61 = "no effect"\nM88 = "no effect"\n'
 
 
@@ -326,6 +327,60 @@ def test_a_mode_behind_the_approach_is_refused(tmp_path: Path, extends: str, tex
                       f'after_approach = "{text}"', more=KNOWN, extends=extends)  # fmt: skip
     assert (problem.code, problem.file) == ("CTL455", str(tmp_path / "ours.toml"))
     assert f"writes {word}," in problem.what
+
+
+@pytest.mark.parametrize("place", ["same_tool", "preselect", "stop"])
+@pytest.mark.parametrize(
+    ("extends", "text", "word"),
+    [
+        ("yl569", "SOFT", "SOFT"), ("dmu65", "M120 LA10", "M120"), ("linuxcnc_5axis", "G61", "G61"),
+        ("dmu65", "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1 T0.05", "CYCL DEF 32"), ("matsuura_mx330", "G61", "G61"),
+    ],
+)  # fmt: skip
+def test_a_mode_at_places_behind_those_of_the_operation_is_refused(
+    tmp_path: Path, place: str, extends: str, text: str, word: str
+) -> None:
+    stop = "\nM{number}" if place == "stop" else ""
+    problem = refusal(tmp_path, f"{place} = '''\n{text}{stop}\n'''", LEVEL_ONLY, extends=extends)
+    assert (problem.code, f"{place} writes {word}," in problem.what) == ("CTL455", True)
+
+
+@pytest.mark.parametrize(
+    ("extends", "text"),
+    [
+        ("yl569", "AROT Z5"), ("yl569", "TRANS X1"), ("yl569", "MIRROR X0"), ("yl569", "SCALE X2"),
+        ("dmu65", "PLANE SPATIAL SPA+0 SPB+5 SPC+0 STAY"), ("dmu65", "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+1"),
+        ("dmu65", "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+5"), ("dmu65", "CYCL DEF 8.0 MIRROR\nCYCL DEF 8.1 X"),
+        ("dmu65", "CYCL DEF 11.0 SCALING\nCYCL DEF 11.1 SCL 0.99"), ("matsuura_mx330", "G68.2 X0 Y0 Z0 I0 J5. K0"),
+        ("dmu65", "CYCL DEF 26.0 AXIS-SPEC. SCALING\nCYCL DEF 26.1 X0.9 Y0.9"), ("haas_umc750", "G254"),
+        ("matsuura_mx330", "G52 X1."), ("matsuura_mx330", "G92 X1."), ("xyzbc_trt", "G52 X1."),
+        ("xyzbc_trt", "G92 X1."), ("xyzbc_trt", "G10 L2 P1 R5"),
+    ],
+)  # fmt: skip
+def test_what_is_left_to_the_next_program_is_refused(tmp_path: Path, extends: str, text: str) -> None:
+    with pytest.raises(trunnion.RefusedError, match=r"ends (the program )?with|ends the program in"):
+        program(tmp_path, f"after_operation = '''\n{text}\n'''", LEVEL_ONLY, extends=extends)
+
+
+@pytest.mark.parametrize(
+    ("extends", "text"),
+    [
+        ("yl569", "M17"), ("yl569", "RET"), ("yl569", "M30"), ("matsuura_mx330", "M99"), ("matsuura_mx330", "M30"),
+        ("haas_umc750", "M99"), ("xyzbc_trt", "O1 return\nM9"), ("xyzbc_trt", "M2"), ("dmu65", "M30"),
+        ("dmu65", "END PGM ROUGH_TOP MM"),
+    ],
+)  # fmt: skip
+def test_a_subprogram_that_ends_too_early_is_refused(tmp_path: Path, extends: str, text: str) -> None:
+    (tmp_path / "part.cls").write_text(LEVEL_ONLY, encoding="utf-8")
+    ours = machine(tmp_path, f"after_operation = '''\n{text}\n'''", extends=extends)
+    with pytest.raises(trunnion.RefusedError, match="never runs"):
+        trunnion.post(tmp_path / "part.cls", machine=ours, output=tmp_path / "out", settings={"programs": "operations"})
+
+
+@pytest.mark.parametrize("text", ["M2", "STOP M30"])
+def test_blocks_behind_the_end_of_a_klartext_program_are_refused(tmp_path: Path, text: str) -> None:
+    with pytest.raises(trunnion.RefusedError, match="never runs"):
+        program(tmp_path, f"after_operation = '{text}'", LEVEL_ONLY, extends="dmu65")
 
 
 def test_comments_and_declared_words_behind_the_approach_are_written(tmp_path: Path) -> None:

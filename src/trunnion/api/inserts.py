@@ -28,6 +28,7 @@ from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
 from trunnion.output.said_words import said_words
 from trunnion.readers.control.row_recorder import SPINDLE_SENSES
+from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.known_words import HOME, begins_with
 
 #: Columns of a run that a text must leave as they are, and what each of them is.
@@ -58,12 +59,13 @@ _SWITCHES: Final = (LoadTool, SpindleOn, SpindleOff)
 #: Blocks that jumps and loops of a text may execute.
 _STEP_LIMIT: Final = 20_000
 
-#: The template whose text stands behind the words of an approach.
-_APPROACHED: Final = "after_approach"
+#: Places behind the words with which an operation chooses its modes, at which no text is tried.
+_BEHIND_MODES: Final = ("same_tool", "preselect", "after_approach", "between_planes", "stop")
 
 #: Words of a text, and those of which the path shows nothing either although readers follow them.
 _WORD: Final = re.compile(r"(?<![A-Z0-9_.])([A-Z_]+)([0-9]*(?:\.[0-9]+)?)")
 _SMOOTHS: Final = re.compile(r"ORI[A-Z]+|CYCLE832")
+_SMOOTHING_CYCLE: Final = re.compile(r"CYCL[ \t]+DEF[ \t]+32(?![0-9])")
 
 _MOST_LISTED: Final = 20
 _TEMPLATE_CURE: Final = (
@@ -76,7 +78,7 @@ def insert_problems(program: Program) -> list[Problem]:
     """What is wrong with the raw texts of a program; empty where its control has no reader."""
     if not readers.can_read(program.machine):
         return []
-    problems = _modes_behind_approaches(program)
+    problems = [problem for name in _BEHIND_MODES for problem in _modes_at(name, program)]
     harmless: set[object] = set()
     with tempfile.TemporaryDirectory() as folder:
         for motion in program.motions:
@@ -103,25 +105,31 @@ def insert_problems(program: Program) -> list[Problem]:
     return problems
 
 
-def _modes_behind_approaches(program: Program) -> list[Problem]:
-    """Words behind approaches that change how the control smooths or turns: the operation does not say its own again.
+def _modes_at(name: str, program: Program) -> list[Problem]:
+    """Words of a template that change how the control smooths or turns: the operation does not say its own again.
 
     The path does not show them, so that no proof does.
     """
-    template = program.control.templates.get(_APPROACHED)
+    template = program.control.templates.get(name)
     reader, problems = readers.reader_of(program.machine), list[Problem]()
     for k, line in enumerate(template.plain_lines() if template else ()):
         words = without_comments(program.control, line.replace("\0", "1")).upper()
-        if not reader.raw_words.not_known(words, program.machine):
-            continue
-        found = (match[1] + match[2].lstrip("0") for match in _WORD.finditer(words))
-        word = next((each for each in found if each in reader.words_without_path or _SMOOTHS.match(each)), "")
+        word = _mode_in(words, reader) if reader.raw_words.not_known(words, program.machine) else ""
         if word:
             assert template is not None
-            what = f"template {_APPROACHED} writes {word}, and the operation does not say its own mode again behind it"
+            what = f"template {name} writes {word}, and the operation does not say its own mode again behind it"
             cure = "leave it out, or write it into the template of the approach, in place of the mode there"
             problems.append(Problem(*template.place_of(k), what, cure, code="CTL455"))
     return problems
+
+
+def _mode_in(words: str, reader: FamilyReader) -> str:
+    """The first word of a block that changes a mode which the path does not show; empty if there is none."""
+    cycle = _SMOOTHING_CYCLE.search(words)
+    if cycle:
+        return cycle[0]
+    found = (match[1] + match[2].lstrip("0") for match in _WORD.finditer(words))
+    return next((each for each in found if each in reader.words_without_path or _SMOOTHS.match(each)), "")
 
 
 def _is_remark(event: Insert, program: Program) -> bool:

@@ -47,6 +47,7 @@ class CoordinateControl(RowRecorder):
         self.feed_unit = 1.0
         self.tcp = False
         self.tilted = False
+        self._tilted_from = self._shifted_from = -1
         self._plane = AffineMap()
         self._program = AffineMap()
         # Programmed values of axes that incremental words still count from after a frame change, by axis.
@@ -143,6 +144,24 @@ class CoordinateControl(RowRecorder):
             self._plane = plane or AffineMap()
             self._program = program or AffineMap()
             self.tilted = plane is not None
+        self._tilted_from = self.row
+
+    @property
+    def in_unused_plane(self) -> bool:
+        """Whether the working plane is tilted and nothing has moved since."""
+        return self.tilted and self.row == self._tilted_from
+
+    def note_shift(self) -> None:
+        """Remember where a shift, a rotation, a mirror image or a scale was set."""
+        self._shifted_from = self.row
+
+    @property
+    def unused_shift(self) -> bool:
+        """Whether nothing has moved since a shift was set: what it does is left to the next program.
+
+        Others may be left on: many sound programs begin with one and never cancel it.
+        """
+        return self.row == self._shifted_from
 
     # Modes
 

@@ -4,6 +4,7 @@ A program is read in chunks of its file, and plain motion blocks are executed by
 loaded as soon as a jump, a loop or a subprogram needs it.
 """
 
+import re
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from pathlib import Path
@@ -31,6 +32,7 @@ from trunnion.readers.program.limits import (
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.program.subprograms import Subprograms
+from trunnion.readers.program.unreached import UnreachedBlocks
 from trunnion.readers.scan.buffers import ScanSettings
 
 #: Rows that are reserved before a scan if fewer than ``_MIN_FREE_ROWS`` are free.
@@ -72,6 +74,9 @@ class Interpreter(ABC, Generic[A]):
     suffixes: tuple[str, ...] = ()
     prefix = ""
 
+    #: Words with which blocks of this language run in another order than they stand in.
+    jump_words: re.Pattern[bytes] = re.compile(rb"(?!)")
+
     control: VirtualControl
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
@@ -91,6 +96,8 @@ class Interpreter(ABC, Generic[A]):
         self._files = [str(path)]
         self._stack: list[A] = []
         self._lines_without_scan = 0
+        self._raw = ""
+        self._unreached = UnreachedBlocks(self.jump_words, self._has_words)
         self.control = self._make_control()
         self._known = KnownWords(machine, self.control)
 
@@ -129,8 +136,10 @@ class Interpreter(ABC, Generic[A]):
             self._stack.append(self._main_program(main))
             self._execute()
         except ProgramEnd:
-            if len(self._stack) <= 1:  # the end is in the main program
+            if len(self._stack) <= 1:
                 self._check_rest(main)
+            else:
+                self._check_behind_end(self._stack[0])
         finally:
             main.close()
             for source, _ in self._sources.values():
@@ -147,6 +156,9 @@ class Interpreter(ABC, Generic[A]):
         while not main.whole and main.fill():
             self.control.line = main.line
             if self._has_words(main.next_line()):
+                main.load()
+                if main.search(self.jump_words):
+                    return
                 text = "stands behind the end of the program: it never runs; another program needs a file of its own"
                 self._note(text, Severity.ERROR, "NC161")
                 return
@@ -180,7 +192,7 @@ class Interpreter(ABC, Generic[A]):
                     continue
             line = source.line
             control.line, control.block_number = line, -1
-            raw = source.next_line()
+            self._raw = raw = source.next_line()
             self._counter.count_blocks(1, len(raw))
             self._execute_known(active, line, raw) if self._known.any else self._execute_line(active, line, raw)
             if source.jumps_back > MOST_JUMPS_WITHOUT_CHOICE:
@@ -279,6 +291,30 @@ class Interpreter(ABC, Generic[A]):
         source.first_row = self.control.row
         self.control.modal.file.set(self.control.row, file)
         return source, file
+
+    def _lines_of(self, active: A) -> tuple[int, int | None]:
+        """Return the first line of a program in its file, and the line behind its last; None: the end of the file."""
+        return 1, None
+
+    def _check_behind_return(self, active: A) -> None:
+        """Report blocks of a subprogram behind its return, which is in the present line, that never run."""
+        if len(self._stack) > 1:
+            self._note_unreached(active, self._raw, "the return of the subprogram")
+
+    def _check_behind_end(self, main: A) -> None:
+        """Report blocks of the main program that never run, as the end of the program is in a subprogram."""
+        if any(active.source.search(self.jump_words) for active in self._stack):
+            return
+        self.control.modal.file.set(self.control.row, main.file)
+        self._note_unreached(main, "", "the call of a subprogram that ends the program")
+
+    def _note_unreached(self, active: A, raw: str, what: str) -> None:
+        here = self.control.line
+        line = self._unreached.behind(active.source, raw, *self._lines_of(active))
+        if line:
+            self.control.line = line
+            self._note(f"stands behind {what}: it never runs", Severity.ERROR, "NC161")
+            self.control.line = here
 
     def _end_of_source(self) -> None:
         """End or repeat the active program, whose file has no more blocks."""

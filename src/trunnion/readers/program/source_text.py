@@ -5,6 +5,7 @@ Lines count from 1. Buffers always hold whole lines: the last one ends in a line
 
 import codecs
 import os
+import re
 from copy import copy
 from pathlib import Path
 from typing import Final, Self
@@ -223,6 +224,13 @@ class SourceText:
         """Return the bytes of the whole program."""
         self.load()
         return self.buffer.tobytes()
+
+    def search(self, pattern: re.Pattern[bytes], first: int = 1, end: int | None = None) -> re.Match[bytes] | None:
+        """Search the buffer; in a program that is loaded from one line to another, which no longer counts."""
+        if not self.whole:
+            return pattern.search(self.buffer.data)
+        last = self.lines if end is None else end - 1
+        return pattern.search(self.buffer.data, int(self.starts[first - 1]), int(self.starts[last]))
 
     @property
     def known_lines(self) -> int:

@@ -34,6 +34,10 @@ class Rs274Control(VirtualControl):
         if unit:
             self.set_units(unit == "inch", True)
 
+    def left_on(self) -> str:
+        """Return what the end of the program leaves on, so that the next one begins with it; empty if nothing."""
+        return ""
+
     @property
     def _length_offset(self) -> Floats:
         return np.array([0.0, 0.0, self.machine.tool_length or 0.0]) if self.length_active else np.zeros(3)

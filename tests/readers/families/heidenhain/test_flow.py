@@ -129,7 +129,7 @@ def test_a_program_calls_another_that_is_named(run: Runner) -> None:
     files = {"SUB.H": "0 BEGIN PGM SUB MM\n1 L X+Q1\n2 Q2 = 8\n3 QL1 = 9\n4 END PGM SUB MM\nL X+77\n"}
     found = run("Q1 = 4\nCALL PGM TNC:\\PARTS\\sub.h\nL X+Q2\nCALL PGM SUB\nL X+QL1", files=files)
     assert xs(found) == [4, 8, 4]
-    assert [f.line for f in found.errors] == [5]
+    assert [(f.code, f.line) for f in found.errors] == [("NC161", 6), ("NC223", 5)]
     assert [Path(name).name for name in found.files] == ["MAIN.H", "SUB.H"]
     assert found.file.tolist() == [1, 0, 1]
     assert found.line.tolist() == [2, 3, 2]

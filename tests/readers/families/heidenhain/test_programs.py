@@ -31,7 +31,8 @@ def ran(text: str, factory: pytest.TempPathFactory) -> Run:
 @given(program=naive.programs())
 def test_blocks_lead_where_the_twin_says(program: naive.Program, tmp_path_factory: pytest.TempPathFactory) -> None:
     run = ran("\n".join(program.lines), tmp_path_factory)
-    assert run.diagnostics == ()
+    # A shift behind the last motion is left to the next program.
+    assert all(found.code == "NC351" and any(program.shift) for found in run.diagnostics)
     assert len(run) == len(program.rows)
     if not len(run):
         return

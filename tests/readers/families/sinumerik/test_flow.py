@@ -77,8 +77,10 @@ SUB = {
     "sub_1.spf": "PROC SUB_1(REAL _A, INT _B=5)\nX=_A Y=_B\nM17",
     "_N_OTHER_SPF": "X7\nM17",
     "OP20.MPF": "X20\nM17",
-    "MAIN2.MPF": "X2\nM30\nX3",
-    "MAIN3.MPF": "X3\nM2\nX4",
+    "MAIN2.MPF": "X2\nM30",
+    "MAIN3.MPF": "X3\nM2",
+    "EARLY.SPF": "X3\nM17\n;ONLY THIS\nX4",
+    "CHOICE.SPF": "IF R1==1 GOTOF ON\nX5\nRET\nON: X6\nRET",
     "LOCAL.SPF": "DEF REAL _MINE\n_MINE=3\nR5=8\nX=_MINE\nRET",
 }
 
@@ -104,6 +106,14 @@ def test_subprograms_that_are_named(run: Runner, text: str, expected: list[float
     result = run(text, files=SUB)
     assert result.diagnostics == ()
     assert xs(result) == expected
+
+
+def test_blocks_behind_a_return_that_no_jump_reaches_are_told(run: Runner) -> None:
+    result = run("EARLY\nEARLY\n/EARLY P2\nX9", files=SUB)
+    assert xs(result) == [3, 3, 3, 3, 9]
+    assert [(error.code, error.line, Path(error.file).name) for error in result.errors] == [("NC161", 4, "EARLY.SPF")]
+    assert xs(run("CHOICE\nR1=1\nCHOICE", files=SUB)) == [5, 6]
+    assert run("CHOICE\nR1=1\nCHOICE", files=SUB).errors == ()
 
 
 def test_variables_of_a_subprogram_are_its_own(run: Runner) -> None:

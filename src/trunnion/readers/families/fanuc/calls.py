@@ -1,5 +1,6 @@
 """Subprograms and macros of a Fanuc program."""
 
+import re
 from abc import abstractmethod
 from pathlib import Path
 from typing import Final
@@ -32,11 +33,15 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
 
     source_type = FanucText
     suffixes = SUFFIXES
+    jump_words = re.compile(rb"GOTO|IF[ \t]*\[|WHILE|M97(?![0-9])", re.IGNORECASE)
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         super().__init__(path, machine, options)
         self._variables = Variables(self._system_value)
         self._flow = Flow(self._note, self._variables)
+
+    def _lines_of(self, active: ActiveProgram) -> tuple[int, int | None]:
+        return active.source.program_lines(max(active.source.line - 1, active.line))
 
     def _make_control(self) -> FanucControl:
         settings = settings_of(self._machine)
@@ -133,6 +138,7 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
             )
             raise ProgramEnd
         depth = len(self._stack)
+        self._check_behind_return(active)
         self._leave_program()
         if target is not None and len(self._stack) < depth:
             caller = self._stack[-1]

@@ -89,6 +89,15 @@ class FanucControl(Rs274Control):
     def _shift(self) -> Floats:
         return np.asarray(self.offset_of(self.system) - self.zero + self.preset + self.local)
 
+    def left_on(self) -> str:
+        """Return the word of a rotation, or of a shift without use, that the end of the program leaves on."""
+        if self.plane_of_pose and self.in_unused_plane:
+            return "the plane of the rotary position"
+        shifts = {"G52": self.local.any(), "G92": self.preset.any()}
+        if not self.rotation.is_identity:
+            return "G68"
+        return next((word for word, on in shifts.items() if on and self.unused_shift), "")
+
     def update_frame(self) -> None:
         """Put offsets and rotations into effect; the axes stay."""
         if self.tilted:

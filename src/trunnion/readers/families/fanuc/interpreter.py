@@ -279,8 +279,6 @@ class FanucInterpreter(CycleInterpreter):
             self._spindle_stands = ""
         elif code == words.RIGID_TAP and self.motion_code not in cycles.THREADS:
             self._spindle_stands = "M29 has stopped it for a thread"
-        if code in iso_m_codes.PROGRAM_ENDS and not self.control.rotation.is_identity:
-            self._note("ends with G68 on: the next program begins turned", Severity.ERROR, "NC351")
         if not self._common_m_code(code):
             self.control.add_event("m", float(code))
 

@@ -54,6 +54,7 @@ class OffsetInterpreter(CallInterpreter):
                 self._go_home(code, block)
             case words.LOCAL:
                 control.local = _changed(control.local, self._shifted(block))
+                control.note_shift()
                 control.update_frame()
             case words.PRESET:
                 self._preset(block)
@@ -107,6 +108,7 @@ class OffsetInterpreter(CallInterpreter):
         for axis, value in enumerate(self._shifted(block)):
             if value is not None:
                 control.preset[axis] += float(control.programmed_position[axis]) - value
+        control.note_shift()
         rotation = control.rotation
         if control.tilted or not rotation.keeps_lengths or not np.allclose(rotation.linear, np.eye(3)):
             self._note("G92 in a turned frame is not simulated", Severity.ERROR, "NC220")

@@ -53,7 +53,7 @@ class FanucText(SourceText):
             self._jump_targets.programs = found
         return self._jump_targets.programs
 
-    def _program_lines(self, line: int) -> tuple[int, int]:
+    def program_lines(self, line: int) -> tuple[int, int]:
         """Return the first line of the O program of a line, and the line after its last."""
         begins = self._jump_targets.begins
         if begins is None:
@@ -68,7 +68,7 @@ class FanucText(SourceText):
             for match in _N_NUMBER.finditer(self.whole_bytes()):
                 numbers.setdefault(int(match.group(1)), []).append(self.line_of(match.start(1)))
             self._jump_targets.numbers = numbers
-        first, end = self._program_lines(here)
+        first, end = self.program_lines(here)
         lines = self._jump_targets.numbers.get(number, [])
         for at in (bisect_right(lines, here), bisect_left(lines, first)):
             if at < len(lines) and first <= lines[at] < end:

@@ -87,8 +87,11 @@ class HeidenhainControl(PlaneControl):
         """Note every M126 that was left on.
 
         The manuals say that the end of a program cancels it, so that programs without any M127 are sound; one
-        that cancels it elsewhere has lost a block.
+        that cancels it elsewhere has lost a block. What cycles 7, 8, 10, 11 and 26 have set ends with it on some
+        controls only, and so does a tilted plane.
         """
+        if left := self.left_on():
+            self.note(f"ends with {left} on: the next program may begin with it", Severity.ERROR, "NC351")
         if self.shortest_path and not self._cancels_shortest_path:
             self.note("ends with M126 on: taken to end with the program; M127 says so", Severity.WARNING, "NC363")
         elif self._cancels_shortest_path:

@@ -45,6 +45,7 @@ class FlowInterpreter(Interpreter[ActiveProgram]):
 
     source_type = KlartextText
     suffixes = SUFFIXES
+    jump_words = re.compile(rb"LBL|GOTO", re.IGNORECASE)
 
     control: HeidenhainControl
 

@@ -166,7 +166,7 @@ class HeidenhainInterpreter(FlowInterpreter):
             self.control.line = main.line - 1
             self._note(text, severity, code)
 
-        program_frame.check_rest(self._main, main, note)
+        program_frame.check_rest(self._main, main, note, self._raw)
         program_frame.check_end_of_file(self._main, note)
 
     def _has_words(self, raw: str) -> bool:
@@ -227,6 +227,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         program_frame.end(active, rest.split(), self._note)
         if len(self._stack) == 1:
             self.control.end_program()
+        self._check_behind_return(active)
         self._leave_program()
 
     def _stop(self, active: ActiveProgram, rest: str) -> None:

@@ -66,6 +66,7 @@ class PlaneControl(VirtualControl):
         incremental  they count from their values before
         """
         frame = datum.frame(self.plane_axis)
+        self.note_shift()
         self.set_program_frame(frame, keep_base=False)
         if self.program_frame is not frame:
             return
@@ -74,6 +75,13 @@ class PlaneControl(VirtualControl):
         else:
             self._datums.set_base(datum, frozenset() if incremental else parts)
         self._require_settled_datum()
+
+    def left_on(self) -> str:
+        """Return a plane or a datum without use that the end of the program leaves on."""
+        if self.in_unused_plane:
+            return "a tilted plane"
+        unused = self.unused_shift and not self.datum.frame(self.plane_axis).is_identity
+        return "a datum of cycles 7, 8, 10, 11 or 26" if unused else ""
 
     def _require_settled_datum(self) -> None:
         """Let no motion depend on a datum that is unsettled."""

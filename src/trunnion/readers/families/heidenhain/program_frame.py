@@ -10,6 +10,8 @@ from trunnion.readers.families.heidenhain.lexer import split_line
 from trunnion.readers.program.source_text import SourceText
 
 _UNITS: Final = ("MM", "INCH")
+_LABEL: Final = re.compile(r"[ \t]*(?:/[ \t]*)?(?:[0-9]+[ \t]*)?LBL(?![A-Z])", re.IGNORECASE)
+_SKIPPED: Final = re.compile(r"[ \t]*(?:[0-9]+[ \t]*)?/")
 _END: Final = re.compile(r"[ \t]*(?:[0-9]+[ \t]*)?END[ \t]+PGM(?![A-Z])", re.IGNORECASE)
 
 
@@ -37,12 +39,18 @@ def check_end_of_file(active: ActiveProgram, note: Note) -> None:
         note("the program has no END PGM: no control loads it", Severity.ERROR, "NC160")
 
 
-def check_rest(active: ActiveProgram, source: SourceText, note: Note) -> None:
-    """Look for END PGM behind the block that has ended the run, and report blocks behind it."""
+def check_rest(active: ActiveProgram, source: SourceText, note: Note, end: str) -> None:
+    """Look for END PGM behind the block ``end`` of the run; report blocks before it, up to a label, and behind it."""
+    reachable = _SKIPPED.match(end) is not None
     while source.fill():
         raw = source.next_line()
         if active.name is not None and not active.ended:
             active.ended = _END.match(raw) is not None
+            if active.ended or reachable or not split_line(raw).statement:
+                continue
+            reachable = True
+            if not _LABEL.match(raw):
+                note("stands behind the end of the program: it never runs", Severity.ERROR, "NC161")
         elif active.ended and split_line(raw).statement:
             note("stands behind END PGM: another program needs a file of its own", Severity.ERROR, "NC161")
             return

@@ -69,6 +69,14 @@ class LinuxcncControl(Rs274Control):
         unit, self.own_words = settings_of(machine)
         self.count_in(unit)
 
+    def left_on(self) -> str:
+        """Return an offset or a rotation without use that the end of the program leaves on."""
+        if not self.unused_shift:
+            return ""
+        if self.axis_offset_active and self.axis_offset.any():
+            return "an offset of G92 or G52"
+        return "a rotation of G10" if self.offset_of(self.system).rotation else ""
+
     def takes_shortest_path(self, axis: Axis) -> bool:
         """Never: rotary axes take the number as it is."""
         return False

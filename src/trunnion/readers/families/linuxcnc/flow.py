@@ -59,6 +59,7 @@ class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
 
     source_type = LinuxcncText
     suffixes = SUFFIXES
+    jump_words = re.compile(rb"\bO[ \t]*(?:<[^<>\n]*>|[0-9]+)[ \t]*(?:IF|WHILE|DO|REPEAT)", re.IGNORECASE)
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         super().__init__(path, machine, options)
@@ -67,7 +68,7 @@ class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
         self._handlers: dict[str, Callable[[OWord], None]] = {
             "SUB": lambda word: word.jump(word.structure.end + 1),
             "ENDSUB": self._return,
-            "RETURN": self._return,
+            "RETURN": self._early_return,
             "CALL": self._call,
             "IF": self._if,
             "ELSEIF": self._end_branch,
@@ -132,6 +133,14 @@ class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
         if not word.reader.ended:
             self._returned = word.reader.bracket_value()
         self._leave_program()
+
+    def _early_return(self, word: OWord) -> None:
+        """Return before the end; from here to the next O word nothing runs."""
+        self._check_behind_return(word.active)
+        self._return(word)
+
+    def _lines_of(self, active: ActiveProgram) -> tuple[int, int | None]:
+        return active.source.line, active.source.next_o_word(active.source.line)
 
     def _leave_program(self) -> None:
         depth = len(self._stack)

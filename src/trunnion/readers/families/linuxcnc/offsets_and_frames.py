@@ -82,6 +82,7 @@ class OffsetInterpreter(OWordInterpreter):
             raise BlockError("an offset is larger than any machine", code="NC215")
         control.axis_offset, control.axis_offset_active = offset, True
         control.axis_offset_known = True
+        control.note_shift()
         control.update_frame()
 
     def _set_data(self, block: Block) -> None:
@@ -111,6 +112,7 @@ class OffsetInterpreter(OWordInterpreter):
             offset.values += self._offset_change(offset, block)
         if float(np.abs(offset.values).max()) > MAX_POSITION or abs(offset.rotation) > MAX_POSITION:
             raise BlockError("an offset is larger than any machine", code="NC215")
+        control.note_shift()
         control.set_values(number, offset)
 
     def _offset_change(self, offset: Offset, block: Block) -> Floats:

@@ -62,6 +62,11 @@ class LinuxcncText(SourceText):
         """Return a subprogram of this file, or None."""
         return self._structures()[0].get(label)
 
+    def next_o_word(self, line: int) -> int | None:
+        """Return the first line from one on that has an O word; None if there is none."""
+        match = self.search(_O_WORD, line)
+        return None if match is None else self.line_of(match.start(1))
+
     def structure(self, line: int) -> Structure:
         """Return the structure that the O word of a line belongs to."""
         try:

@@ -1,5 +1,6 @@
 """Subprograms of a Sinumerik program: calls, modal calls and returns."""
 
+import re
 from collections.abc import Sequence
 from typing import Final
 
@@ -23,6 +24,9 @@ class CallInterpreter(Interpreter[ActiveProgram]):
     source_type = SinumerikText
     suffixes = SUFFIXES
     prefix = _PREFIX
+    jump_words = re.compile(
+        rb"(?<![A-Z0-9_])(?:GOTO[FBCS]?|IF|CASE|FOR|WHILE|LOOP|REPEATB?)(?![A-Z0-9_])", re.IGNORECASE
+    )
 
     control: SinumerikControl
 
@@ -64,6 +68,7 @@ class CallInterpreter(Interpreter[ActiveProgram]):
         self._stack.append(ActiveProgram(source, file, call.repeats, variables=variables))
 
     def _return(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:
+        self._check_behind_return(active)
         self._leave_program()
 
     def _modal_call(self, reader: ExpressionReader, active: ActiveProgram, line: int) -> None:

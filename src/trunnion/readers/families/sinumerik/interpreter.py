@@ -350,6 +350,7 @@ class SinumerikInterpreter(CallInterpreter):
         elif code == TOOL_CHANGE:
             control.change_tool()
         elif code == M_RETURN or (code in PROGRAM_ENDS and len(self._stack) > 1):
+            self._check_behind_return(self._stack[-1])
             self._leave_program()  # M2 and M30 of a program that another one has called end only itself
         elif code in PROGRAM_ENDS:
             control.add_event("end", f"M{code}")
