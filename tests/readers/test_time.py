@@ -87,6 +87,36 @@ def test_long_lines_without_motion_are_not_in_circles(tmp_path: Path, monkeypatc
     assert len(run_program(path, load_machine("xyzac_trt"))) == 1
 
 
+HOLES = {
+    "yl569": ("G0 X0 Y0 Z50 F100\nMCALL CYCLE81(10,0,2,-5)", "X{0}", "MCALL\nM30"),
+    "dmu65": (
+        "BEGIN PGM A MM\nTOOL CALL 1 Z S100 F100\nCYCL DEF 200 DRILLING Q200=+2 Q201=-5 Q206=+100 Q202=+5 Q210=+0"
+        " Q203=+0 Q204=+10 Q211=+0",
+        "L X+{0} FMAX M99",
+        "M30\nEND PGM A MM",
+    ),
+    "matsuura_mx330": ("G21 G0 X0. Y0. Z50.\nG81 X0. R2. Z-5. F100", "X{0}.", "G80\nM30"),
+    "linuxcnc_5axis": ("G21 G0 X0 Y0 Z50\nG81 X0 R2 Z-5 F100", "X{0}", "G80\nM2"),
+}
+
+
+@pytest.mark.parametrize("machine", HOLES)
+def test_a_program_of_many_holes_is_not_taken_for_a_loop(machine: str, tmp_path: Path) -> None:
+    begin, hole, end = HOLES[machine]
+    path = tmp_path / ("A.H" if machine == "dmu65" else "A.MPF" if machine == "yl569" else "A.NC")
+    path.write_text("\n".join([begin, *(hole.format(k % 100) for k in range(1000)), end]), encoding="utf-8")
+    run = run_program(path, load_machine(machine), step_limit=100)
+    assert len(run) >= 3000
+
+
+def test_holes_of_a_loop_are_bounded_by_its_lines(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(limits, "MOTIONS_PER_LINE", 20)
+    path = tmp_path / "A.NC"
+    path.write_text("%\nO1\nG21 G0 X0. Y0. Z50.\nG91 G81 X1. R-2. Z-5. F100. K500\nG80\nM30\n", encoding="utf-8")
+    with pytest.raises(InputError, match="more than 220 motions in cycles"):
+        run_program(path, load_machine("matsuura_mx330"), step_limit=100)
+
+
 def test_the_limit_is_a_few_seconds_of_blocks() -> None:
     # An interpreter executes 20,000 to 50,000 blocks a second.
     assert DEFAULT_STEP_LIMIT <= 50_000

@@ -24,6 +24,11 @@ SCANNED_BLOCKS_PER_STEP: Final = 16
 BLOCKS_PER_RESOLUTION: Final = 16
 RESOLUTIONS_PER_LINE: Final = 4
 
+#: Motions of cycles, curves and ways home that a program may make for each line of its files, besides as many as it may
+#: execute blocks, and how many that may be: they take memory.
+MOTIONS_PER_LINE: Final = 250
+MOST_MOTIONS: Final = 10_000_000
+
 #: A program that goes in circles: so many blocks, after its files have been gone through once, without a position at
 #: which it has not been before with this tool and work offset. It is looked at after so many blocks each time.
 MOST_BLOCKS_IN_CIRCLES: Final = 15_000
@@ -69,6 +74,7 @@ class StepCounter:
         self._look_at = _LOOKED_AT_AFTER
         self._in_circles = 0
         self._blocks = 0
+        self._motions = 0
         self._records = 0
         self._events = 0
 
@@ -81,6 +87,16 @@ class StepCounter:
             return
         if self._blocks > self._limit + self._blocks_of_files():
             raise self._fail(f"executes more than {self._limit} blocks")
+
+    def count_motions(self, motions: int) -> None:
+        """Count motions that have no block of their own: a program of many holes has a line for each, and ends."""
+        self._motions += motions
+        if self._motions <= self._limit:
+            return
+        lines = sum(source.known_lines for source in self._sources())
+        most = self._limit + min(MOTIONS_PER_LINE * lines, MOST_MOTIONS)
+        if self._motions > most:
+            raise self._fail(f"makes more than {most} motions in cycles and curves")
 
     def _blocks_of_files(self) -> int:
         """The blocks of going once through each file."""

@@ -166,9 +166,9 @@ def test_programs_without_end_are_stopped(run: Runner, text: str) -> None:
         run(text, files=SUB, step_limit=5000)
 
 
-def test_cycles_count_as_blocks(run: Runner) -> None:
+def test_motions_of_cycles_are_bounded(run: Runner) -> None:
     text = "MCALL CYCLE83(50,0,2,-20,,-.03,,0)\n" + "X1\nX2\n" * 500
-    with pytest.raises(InputError, match="executes more than"):
+    with pytest.raises(InputError, match="more than 7000 motions in cycles"):
         run(text, step_limit=5000)
 
 

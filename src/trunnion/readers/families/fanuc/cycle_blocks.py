@@ -82,7 +82,7 @@ class CycleInterpreter(OffsetInterpreter):
         in_plane = {name: word for name, word in axes.items() if name in "XYZ" and name != along}
         motion = control.motion
         for _ in range(holes):
-            self._counter.count_blocks(len(motions) + 1)
+            self._counter.count_motions(len(motions) + 1)
             control.motion = RAPID
             control.move(in_plane, None)
             control.drill(motions, work)

@@ -93,7 +93,7 @@ class FanucInterpreter(CycleInterpreter):
         self.motion_code = words.NURBS
         self._scale_words(block)
         self._feed_and_speed(block)
-        self._counter.count_blocks(self._nurbs.add(block))
+        self._counter.count_motions(self._nurbs.add(block))
         self._report_unused_words(block)
 
     def _program_number(self, active: ActiveProgram, line: int, text: str) -> None:

@@ -158,7 +158,7 @@ class OffsetInterpreter(CallInterpreter):
         if code == words.OTHER_HOME:
             which = block.take("P")
             self._note(f"G30 P{which or 2:g}: taken as the reference position of G28", Severity.WARNING, "NC224")
-        self._counter.count_blocks(1)
+        self._counter.count_motions(1)
         motion, control.motion = control.motion, RAPID
         before = control.programmed_position.copy()
         moving = {name: word for name, word in axes.items() if control.absolute or word[0] != 0.0}
@@ -210,7 +210,7 @@ class OffsetInterpreter(CallInterpreter):
     def _align_with_plane(self, block: Block) -> None:
         """G53.1: turn the rotary axes to the tilted plane."""
         block.take("P")
-        self._counter.count_blocks(1)
+        self._counter.count_motions(1)
         self.control.align_with_plane()
 
 

@@ -152,7 +152,7 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
         if code == words.TOOL:
             control.change_tool()
         elif code == words.RETRACT:
-            self._counter.count_blocks(1)
+            self._counter.count_motions(1)
             control.retract()
         elif not self._common_m_code(code):
             control.add_event("m", float(code))
@@ -201,7 +201,7 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
         motions = self._cycle_motions(
             lambda: cycles.cycle_motions(self.motion_code, self._modal_words, 1.0 / control.length_unit)
         )
-        self._counter.count_blocks(len(motions) + 2)
+        self._counter.count_motions(len(motions) + 2)
         self._drill({name: word for name, word in axes.items() if name in "XY"}, motions)
 
     def _drill(self, place: dict[str, AxisWord], motions: list[HoleMotion]) -> None:

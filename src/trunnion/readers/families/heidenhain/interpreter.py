@@ -362,7 +362,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         except CycleExecutionError as error:
             self._note(f"the cycle {error}: it is not executed", Severity.ERROR, error.code)
             return
-        self._counter.count_blocks(len(motions))
+        self._counter.count_motions(len(motions))
         self.control.drill(motions, self._definitions.spindle_work())
 
     # Planes

@@ -52,7 +52,7 @@ class CycleInterpreter(OffsetInterpreter):
         feed = self._feed_of_pitch(abs(pitch) * control.length_unit, length)
         u, v = (control.plane_axis + 1) % 3, (control.plane_axis + 2) % 3
         lateral = float(end[u] - start[u]), float(end[v] - start[v])
-        self._counter.count_blocks(2)
+        self._counter.count_motions(2)
         control.drill(
             [
                 HoleMotion(False, float(end[control.plane_axis]), feed, lateral=lateral),
@@ -112,7 +112,7 @@ class CycleInterpreter(OffsetInterpreter):
         if retract < bottom:
             raise BlockError("R of the cycle lies below its depth")
         if initial < retract:
-            self._counter.count_blocks(1)
+            self._counter.count_motions(1)
             control.drill([HoleMotion(True, retract)])
             initial = height = retract
         clear = initial if self._to_initial else retract
@@ -132,7 +132,7 @@ class CycleInterpreter(OffsetInterpreter):
                     place[axis] = value if control.absolute else place[axis] + value
                     bits |= 1 << axis
             above = height if count == 0 and height > hole.retract else hole.clear
-            self._counter.count_blocks(len(motions) + 2)
+            self._counter.count_motions(len(motions) + 2)
             place[along] = above * unit
             if not control.add_row(Kind.RAPID, place, bits=bits):
                 return

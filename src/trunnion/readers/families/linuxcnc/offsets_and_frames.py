@@ -150,7 +150,7 @@ class OffsetInterpreter(OWordInterpreter):
         control = self.control
         axes = self._with_rotary_offsets(self._axis_words(block))
         motion, control.motion = control.motion, RAPID
-        self._counter.count_blocks(1)
+        self._counter.count_motions(1)
         control.move(axes, None)
         names = axes or dict.fromkeys((*"XYZ", *control.rotary_names))
         stored = self._stored_positions[code]

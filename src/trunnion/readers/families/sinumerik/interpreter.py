@@ -226,7 +226,7 @@ class SinumerikInterpreter(CallInterpreter):
             self._frame(frame_words, block)
             return False
         if block.polynomials or block.interval is not None or (control.motion == POLYNOMIAL and block.params):
-            move_along_polynomials(control, block, self._counter.count_blocks)
+            move_along_polynomials(control, block, self._counter.count_motions)
             return True
         has_motion = block.axes or block.vector or (block.params and control.motion > LINEAR)
         if not has_motion or G_NO_MOTION.intersection(block.g):
@@ -412,7 +412,7 @@ class SinumerikInterpreter(CallInterpreter):
         except CycleExecutionError as error:
             self._note(f"{call.name} {error}: it is not executed", Severity.ERROR, error.code)
             return
-        self._counter.count_blocks(len(motions))
+        self._counter.count_motions(len(motions))
         control.drill([motion.with_lengths_in(control.length_unit) for motion in motions], work)
         if work is not None and work.after is not None:
             control.leave_spindle(work.after)
