@@ -238,7 +238,14 @@ def test_words_of_a_cycle_hold_until_it_ends(run: Runner) -> None:
     got = fanuc(run, "G90 G0 Z20.\nG99 G81 X1. Z-10. R2. F100.\nX2.\nZ-5.\nG91 X1. K3\nG90 G80\nX0.\n")
     drilled = got.kind == int(Kind.LINEAR)
     close(slides(got)[drilled][:, [0, 2]][:3], [[1, -10], [2, -10], [2, -5]])
+    # How often a cycle drills is no length, though K has no point.
+    close(slides(got)[drilled][:, 0], [1, 2, 2, 3, 4, 5])
     assert got.diagnostics == ()
+
+
+def test_a_repeat_without_a_point_is_no_length(run: Runner) -> None:
+    got = fanuc(run, "G90 G0 X0. Z20.\nG91 G99 G81 X1. Z-10. R-2. F100. K2\nG80\nG81 X1. Z-10. R-2. K0\nG80\n")
+    close(slides(got)[got.kind == int(Kind.LINEAR)][:, 0], [1, 2])
 
 
 def test_cycles_that_lack_something_are_named(run: Runner) -> None:

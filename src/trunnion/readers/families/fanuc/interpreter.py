@@ -178,6 +178,8 @@ class FanucInterpreter(CycleInterpreter):
             angles = "IJKR" if words.TILT in block.g else ""
             mode, inches = control.modal.feed_mode.current, control.length_unit != 1.0
             plain = {letter for code, letter in words.VALUES if code in block.g}
+            if self.motion_code in cycles.CYCLES or not cycles.CYCLES.isdisjoint(block.g):
+                plain.add(control.settings.repeat_letter)
             control.settings.scale(block, mode, inches, angles=angles, plain=plain)
 
     def _g_codes(self, block: Block) -> int | None:
