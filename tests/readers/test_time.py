@@ -113,7 +113,7 @@ def test_holes_of_a_loop_are_bounded_by_its_lines(tmp_path: Path, monkeypatch: p
     monkeypatch.setattr(limits, "MOTIONS_PER_LINE", 20)
     path = tmp_path / "A.NC"
     path.write_text("%\nO1\nG21 G0 X0. Y0. Z50.\nG91 G81 X1. R-2. Z-5. F100. K500\nG80\nM30\n", encoding="utf-8")
-    with pytest.raises(InputError, match="more than 220 motions in cycles"):
+    with pytest.raises(InputError, match="more than 200 motions in cycles"):
         run_program(path, load_machine("matsuura_mx330"), step_limit=100)
 
 
