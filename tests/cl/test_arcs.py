@@ -95,3 +95,12 @@ def test_an_arc_that_does_not_fit_is_refused_with_its_line(
 def test_the_helix_of_a_ramp_may_leave_its_plane(body: Body) -> None:
     end = f"GOTO/{5 * math.cos(1):.5f},{5 * math.sin(1):.5f},-7"
     assert body("GOTO/5,0,9", "CIRCLE/0,0,-7,0,0,1,5,TIMES,2", end).arcs.full_turns.tolist() == [1]
+
+
+def test_a_file_has_no_more_turns_than_anybody_cuts(body: Body, body_fails: Fail) -> None:
+    helix = "CIRCLE/0,0,{0},0,0,1,10,0.01,0.5,6,0,TIMES,{1}\nGOTO/10,0,{0}"
+    sound = ["GOTO/10,0,0", *(helix.format(-k - 1, 50) for k in range(1000))]
+    assert len(body(*sound).arcs.row) == 1000
+    (problem,) = body_fails("GOTO/10,0,0", *(helix.format(-k - 1, 9_000) for k in range(9)))
+    # TOOL PATH, TLDATA and the first GOTO stand before: the sixth CIRCLE is in line 14.
+    assert (problem.code, problem.line) == ("CL575", 14)

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from trunnion.arrays import Floats
+from trunnion.errors import InputError
 from trunnion.model.toolpath import Arcs, Dwell, Frame, Kind, Moves, Operation, Tool
 from trunnion.planning.linearization.arc_chords import arc_sweeps, arcs_a_control_takes, lines_for_arcs
 
@@ -103,3 +104,12 @@ def test_an_arc_is_kept_in_the_three_planes_and_with_a_constant_tool_axis_only()
     tilt = np.degrees(np.arctan2(turned[:-1, 1], turned[:-1, 2]))
     assert np.allclose(np.diff(tilt), np.diff(tilt)[0], atol=1e-9), "the tool axis turns evenly along the arc"
     assert tilt[-1] == pytest.approx(np.degrees(np.arctan2(0.6, 0.8)))
+
+
+def test_arcs_that_would_become_too_many_lines_are_refused() -> None:
+    start, end, up = np.array([1000.0, 0.0, 0.0]), np.array([1000.0, 0.0, 50.0]), np.array([0.0, 0.0, 1.0])
+    operation = arc_operation(start, end, np.zeros(3), up, turns=9_999)
+    # A chord of a radius of a metre that leaves it by 1e-6 mm spans 2 sqrt(2e-9) rad: 70,248 in a turn.
+    with pytest.raises(InputError, match="become 70[0-9]{7} lines") as raised:
+        lines_for_arcs(operation, np.zeros(1, np.bool_), 1e-6)
+    assert raised.value.problems[0].code == "PLN550"

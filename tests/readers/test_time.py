@@ -117,6 +117,18 @@ def test_holes_of_a_loop_are_bounded_by_its_lines(tmp_path: Path, monkeypatch: p
         run_program(path, load_machine("matsuura_mx330"), step_limit=100)
 
 
+def test_turns_of_helices_are_bounded_by_the_lines(tmp_path: Path) -> None:
+    path = tmp_path / "A.MPF"
+    begin = "G17 G90 G94 G710\nG0 X10 Y0 Z0\nF1000\n"
+    sound = begin + "".join(f"G2 X10 Y0 Z{-k} I-10 J0 TURN=50\n" for k in range(100)) + "M30\n"
+    path.write_text(sound, encoding="utf-8")
+    assert int(run_program(path, load_machine("yl569"), step_limit=100).arcs.full_turns.sum()) == 5000
+    path.write_text(sound.replace("TURN=50", "TURN=999"), encoding="utf-8")
+    with pytest.raises(InputError, match="turns in helices") as raised:
+        run_program(path, load_machine("yl569"), step_limit=100)
+    assert raised.value.problems[0].code == "NC140"
+
+
 def test_the_limit_is_a_few_seconds_of_blocks() -> None:
     # An interpreter executes 20,000 to 50,000 blocks a second.
     assert DEFAULT_STEP_LIMIT <= 50_000

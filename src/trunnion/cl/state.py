@@ -78,6 +78,7 @@ class ReaderState:
     no_axis          the tool axis of a point that gives none
     vectors          what points give behind their coordinates are tool axes
     direction        the INDIRV whose arc has not followed yet
+    turns            turns of all arcs so far
     clearance        height of the clearance plane
     system           the coordinate system of the points as the file gives it, empty if it gives none
     matrix           lines of a coordinate system in comments, while they are collected
@@ -118,6 +119,7 @@ class ReaderState:
     no_axis: NoAxis = NoAxis.MODAL
     vectors: bool = True
     direction: ArcDirection | None = None
+    turns: int = 0
     clearance: float | None = None
     system: tuple[float, ...] = ()
     matrix: list[str] | None = None

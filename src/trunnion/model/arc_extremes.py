@@ -37,6 +37,7 @@ _AT_A_TIME: Final = 65_536
 #: Around each sample above its neighbours it is searched again with eight times as narrow ones: four times make the
 #: angle exact to 2e-5.
 _FINER: Final = np.linspace(-1.0, 1.0, 17)
+_NARROWER: Final = (len(_FINER) - 1) // 2
 _ROUNDS: Final = 4
 
 
@@ -268,16 +269,33 @@ class _Search:
         before[self._firsts], after[self._firsts[1:] - 1] = -np.inf, -np.inf
         peaks = np.flatnonzero((values >= before) & (values >= after))
         arc, at, best = self._arc[peaks], self._shares[peaks], values[peaks]
-        width, every = self._step[arc], np.repeat(arc, len(_FINER))
-        for _ in range(_ROUNDS):
+        margin = self._margins(values, before, after)
+        for k in range(_ROUNDS):
+            # Helices have a peak each turn: only those that may still be the highest are searched.
+            highest = np.full(len(self._firsts), -np.inf)
+            np.maximum.at(highest, arc, best)
+            high = best >= (highest - margin / _NARROWER ** (2 * k))[arc]
+            arc, at = arc[high], at[high]
+            width, every = self._step[arc] / _NARROWER**k, np.repeat(arc, len(_FINER))
             shares = np.clip(at[:, None] + width[:, None] * _FINER, 0.0, 1.0)
             found = _numbers(sign * self._joints_at(every, shares.ravel())[:, column]).reshape(shares.shape)
             which = np.argmax(found, axis=1)[:, None]
             at, best = (np.take_along_axis(each, which, axis=1)[:, 0] for each in (shares, found))
-            width = width / (0.5 * (len(_FINER) - 1))
         greatest = np.full(len(self._firsts), -np.inf)
         np.maximum.at(greatest, arc, best)
         return greatest
+
+
+    def _margins(self, values: Floats, before: Floats, after: Floats) -> Floats:
+        """(m,): how far the highest sample beside a peak may be below it, inf if samples are missing.
+
+        A parabola rises above its samples by an eighth of their second difference at most; this is eight times that.
+        """
+        with np.errstate(invalid="ignore"):
+            bend = np.abs(before - 2.0 * values + after)
+        ends = np.append(self._firsts[1:], len(values)) - 1
+        bend[self._firsts] = bend[ends] = 0.0
+        return np.maximum.reduceat(np.where(np.isfinite(bend), bend, np.inf), self._firsts)
 
 
 def _numbers(values: Floats) -> Floats:

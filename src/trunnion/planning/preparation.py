@@ -18,6 +18,8 @@ from trunnion.model.toolpath import CycleOn, Frame, Kind, Operation, Phase
 from trunnion.planning.holes.cycles import HoleCycleError, SpindleState, SpindleStates
 from trunnion.planning.holes.operations import axis_change_rows, normalize_cycles, row_ranges, split_by_axis
 from trunnion.planning.linearization.arc_chords import (
+    FEWER_LINES,
+    MOST_LINES,
     arc_sweeps,
     arcs_a_control_takes,
     arcs_about_tool,
@@ -58,6 +60,7 @@ def prepare_operations(sources: Sequence[tuple[str, Operation]], request: PlanRe
     frame = Frame() if request.options.absolute_frame else sources[0][1].frame
     prepared: list[PreparedOperation] = []
     errors: list[Problem] = []
+    lines = 0
     spindle: SpindleState | None = None
     for file, original in sources:
         try:
@@ -66,6 +69,10 @@ def prepare_operations(sources: Sequence[tuple[str, Operation]], request: PlanRe
             prepared.append(_with_holes(_with_lines_for_arcs(_with_lines_for_splines(operation)), spindle))
         except HoleCycleError as error:
             errors.append(Problem(file, error.line, error.what, error.cure, code=error.code))
+        lines += max(len(prepared[-1].operation.moves) - len(original.moves), 0) if prepared else 0
+        if lines > MOST_LINES:
+            what = f"the arcs of the operations up to {original.name} become {lines} lines"
+            raise RefusedError([Problem(file, original.line, what, FEWER_LINES, code="PLN550")])
         spindle = SpindleStates(original.events, spindle).at(len(original.moves))
     if errors:
         raise RefusedError(errors)

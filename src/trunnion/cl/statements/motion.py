@@ -14,6 +14,11 @@ _SAME_POINT = 2e-3
 #: No helix has more turns; a larger TIMES is a mistake in the file.
 MAX_TURNS = 10000
 
+#: Turns of all arcs of a file: in any case, besides for each line, and how many the latter may be.
+TURNS_IN_ANY_CASE = 50_000
+TURNS_PER_LINE = 50
+MOST_TURNS = 2_000_000
+
 
 def rapid(state: ReaderState, statement: Statement) -> None:
     """Make the next row a rapid."""
@@ -107,6 +112,7 @@ def begin_circle(
     angle    degrees by which it turns, NaN if the file does not say
     """
     refuse_in_circle(state, "another CIRCLE")
+    _count_turns(state, turns)
     if state.cycle_line:
         what = f"CIRCLE within the cycle of line {state.cycle_line}, where each point is a hole"
         raise StatementError(what, "write CYCLE/OFF before it", code="CL620")
@@ -115,6 +121,15 @@ def begin_circle(
         if start is not None and not state.builder.starts:
             state.builder.starts.append(FromStatement(0, state.line, start, None))
     state.builder.circles.append(CircleStatement(state.operation_row, state.line, numbers, turns, may_go_on, angle))
+
+
+def _count_turns(state: ReaderState, turns: int) -> None:
+    """Refuse more turns than anybody cuts: every one of them is looked at."""
+    most = TURNS_IN_ANY_CASE + min(TURNS_PER_LINE * state.line, MOST_TURNS)
+    state.turns += turns
+    if state.turns > most >= state.turns - turns:
+        what = f"the arcs of the file have more than {most} turns so far"
+        raise StatementError(what, "split the file, or cut threads by cycles", code="CL575")
 
 
 def unsupported(state: ReaderState, statement: Statement) -> None:

@@ -10,9 +10,15 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
+from trunnion.errors import InputError, Problem
 from trunnion.model.arcs import CLOSED_ARC, FLAT_ARC, arc_gaps
 from trunnion.model.toolpath import Arcs, Kind, Operation
 from trunnion.planning.linearization.row_insertion import insert_rows
+
+#: Lines that arcs may become: more would take the memory of a computer, and no control would read them.
+MOST_LINES: Final = 10_000_000
+
+FEWER_LINES: Final = "split the file, choose a control or a mode that takes these arcs, or a coarser chord_tolerance"
 
 #: A direction is that of a coordinate axis within this sine; seven printed decimals give 1e-7.
 _PARALLEL_SINE: Final = 1e-6
@@ -160,12 +166,21 @@ def lines_for_arcs(operation: Operation, keep: Flags, chord_tolerance: float) ->
     -------
     Operation
         The tool axis turns evenly along an arc; new rows have the line number of the arc's end.
+
+    Raises
+    ------
+    InputError
+        If they become more than ``MOST_LINES``.
     """
     if bool(keep.all()):
         return operation
     moves, arcs = operation.moves, operation.arcs
     sweep = arc_sweeps(operation)
     copies = arc_piece_counts(operation, keep, chord_tolerance)
+    if int(copies.sum()) - len(moves) > MOST_LINES:
+        longest = int(np.argmax(copies))
+        what = f"the arcs of operation {operation.name} become {int(copies.sum())} lines, {int(copies[longest])} here"
+        raise InputError(Problem(operation.file, int(moves.line[longest]), what, FEWER_LINES, code="PLN550"))
     source = np.repeat(np.arange(len(moves)), copies)
     new_row = np.cumsum(copies) - 1  # the last copy of each row is the row itself
     tip, axis = moves.tip[source], moves.axis[source]

@@ -113,6 +113,8 @@ class RowRecorder:
         self._selected_tool = 0
         self._tool_deltas: dict[str, float] = {}
         self._arcs: list[tuple[int, Floats, Floats, float, int]] = []
+        #: Whole turns of all arcs so far.
+        self.turns = 0
         self._splines: list[SplineRows] = []
         self._spline_columns: list[Splines] = []
         self._spindle_holes: list[SpindleHole] = []
@@ -278,6 +280,7 @@ class RowRecorder:
     def add_arc(self, row: int, centre: Floats, normal: Floats, radius: float, turns: int) -> None:
         """Record the circle of a row of kind ``Kind.ARC``, in the workpiece frame."""
         self._arcs.append((row, centre, normal, radius, turns))
+        self.turns += turns
 
     def add_spline(self, rows: SplineRows) -> None:
         """Record the spline in the workpiece frame for which rows stand."""

@@ -199,6 +199,7 @@ class Interpreter(ABC, Generic[A]):
                 raise self._limit_error("jumps back again and again, and no condition ends it")
             self._counter.count_events(control.events)
             self._counter.check_resolutions(control.resolutions)
+            self._counter.check_turns(control.turns)
 
     def _execute_known(self, active: A, line: int, raw: str) -> None:
         """Execute a line with the words that the definition declares."""

@@ -29,6 +29,11 @@ RESOLUTIONS_PER_LINE: Final = 4
 MOTIONS_PER_LINE: Final = 250
 MOST_MOTIONS: Final = 10_000_000
 
+#: Whole turns of helices that a program may make for each line of its files, besides as many as it may execute blocks,
+#: and how many that may be: the checks look at every turn.
+TURNS_PER_LINE: Final = 50
+MOST_TURNS: Final = 2_000_000
+
 #: A program that goes in circles: so many blocks, after its files have been gone through once, without a position at
 #: which it has not been before with this tool and work offset. It is looked at after so many blocks each time.
 MOST_BLOCKS_IN_CIRCLES: Final = 15_000
@@ -97,6 +102,15 @@ class StepCounter:
         most = self._limit + min(MOTIONS_PER_LINE * lines, MOST_MOTIONS)
         if self._motions > most:
             raise self._fail(f"makes more than {most} motions in cycles and curves")
+
+    def check_turns(self, turns: int) -> None:
+        """Check how many whole turns the helices have."""
+        if turns <= self._limit:
+            return
+        lines = sum(source.known_lines for source in self._sources())
+        most = self._limit + min(TURNS_PER_LINE * lines, MOST_TURNS)
+        if turns > most:
+            raise self._fail(f"makes more than {most} turns in helices")
 
     def _blocks_of_files(self) -> int:
         """The blocks of going once through each file."""
