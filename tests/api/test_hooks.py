@@ -289,3 +289,35 @@ def test_the_hooks_of_the_page_do_what_it_says(part: Path) -> None:
     assert lines[0] == f";{shown}"
     assert lines.count(";cut begins at Z0") == 1
     assert float(result.motions[0].operation.moves.feed[-2]) == 400.0
+
+
+SHIFTED = (
+    "def on_operation(operation, context):\n"
+    "    if context.machine and context.control.startswith('Sinumerik'):\n"
+    "        moves = operation.moves\n"
+    "        return replace(operation, moves=replace(moves, tip=moves.tip + [0.5, 0.0, 0.0]))\n"
+)
+
+
+def test_a_program_is_verified_with_the_hooks_that_it_was_posted_with(
+    part: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file, program = hook(part, SHIFTED), part.parent / "part.mpf"
+    posted(part, file, output=program)
+    assert not trunnion.verify(program, machine="yl569", cl=part).passed
+    found = trunnion.verify(program, machine="yl569", cl=part, hooks=[file])
+    assert found.passed
+    command = ["verify", str(program), "--machine", "yl569", "--cl", str(part)]
+    assert main(command) == 1
+    assert main([*command, "--hooks", str(file)]) == 0
+    assert "changed" in capfd.readouterr().err
+    report = ["--report", str(file)]
+    assert main([*command, "--hooks", str(file), *report]) == 2
+    assert file.read_text(encoding="utf-8") == IMPORTS + SHIFTED
+
+
+def test_hooks_of_a_verification_need_cl_files(part: Path) -> None:
+    file, program = hook(part, "raise SystemExit\n"), part.parent / "part.mpf"
+    posted(part, output=program)
+    with pytest.raises(trunnion.InputError, match="change CL files, and there are none"):
+        trunnion.verify(program, machine="yl569", hooks=[file])

@@ -110,6 +110,6 @@ def test_arcs_that_would_become_too_many_lines_are_refused() -> None:
     start, end, up = np.array([1000.0, 0.0, 0.0]), np.array([1000.0, 0.0, 50.0]), np.array([0.0, 0.0, 1.0])
     operation = arc_operation(start, end, np.zeros(3), up, turns=9_999)
     # A chord of a radius of a metre that leaves it by 1e-6 mm spans 2 sqrt(2e-9) rad: 70,248 in a turn.
-    with pytest.raises(InputError, match="become 70[0-9]{7} lines") as raised:
+    with pytest.raises(InputError, match=r"become 70[0-9]{7} lines") as raised:
         lines_for_arcs(operation, np.zeros(1, np.bool_), 1e-6)
     assert raised.value.problems[0].code == "PLN550"

@@ -8,7 +8,7 @@ Out:    toolpaths that are checked as strictly as those of CL files, with a rema
 import inspect
 import sys
 import types
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import redirect_stdout
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -17,7 +17,6 @@ from typing import Final, TypeVar
 import numpy as np
 
 from trunnion.api.hook_checks import fingerprint, operation_fault, value_fault
-from trunnion.api.job import PostJob
 from trunnion.cl import unknown_statement_remarks
 from trunnion.controls.vocabulary import HOOKS_NOTICE
 from trunnion.definitions.messages import did_you_mean
@@ -76,15 +75,24 @@ def load_hooks(paths: Iterable[Path]) -> tuple[HookFile, ...]:
     return tuple(_load(path) for path in paths)
 
 
+@dataclass(frozen=True, slots=True)
+class _RunOf:
+    """Names of machine and control, and the settings, that hooks see."""
+
+    machine: str
+    control: str
+    settings: Mapping[str, str]
+
+
 class Hooks:
-    """Calls the functions of hook files for toolpaths.
+    """Calls the functions of hook files for toolpaths, with what ``Context`` says of the run.
 
     changed_motion  names of the operations whose motion is another one than in their CL file, in order
     decisions       what was changed, for reports
     """
 
-    def __init__(self, files: Sequence[HookFile], job: PostJob) -> None:
-        self._files, self._job = files, job
+    def __init__(self, files: Sequence[HookFile], machine: str, control: str, settings: Mapping[str, str]) -> None:
+        self._files, self._run_of = files, _RunOf(machine, control, types.MappingProxyType({**settings}))
         self.changed_motion: list[str] = []
         self.decisions: list[Decision] = []
 
@@ -124,7 +132,7 @@ class Hooks:
         return replace(new_toolpath, remarks=tuple(remarks))
 
     def _run(self, file: HookFile, cl_file: str, operation: Operation, number: int) -> list[Operation]:
-        call = _Caller(file, cl_file, self._job, number)
+        call = _Caller(file, cl_file, self._run_of, number)
         call.watch(operation)
         found = [operation]
         if "on_operation" in file.functions:
@@ -184,8 +192,8 @@ def _motion_change(before: Operation, after: Sequence[Operation]) -> list[str]:
 class _Caller:
     """Calls the functions of one file for one operation, and checks what they return."""
 
-    def __init__(self, file: HookFile, cl_file: str, job: PostJob, number: int) -> None:
-        self._file, self._cl_file, self._job, self._number = file, cl_file, job, number
+    def __init__(self, file: HookFile, cl_file: str, run: _RunOf, number: int) -> None:
+        self._file, self._cl_file, self._run, self._number = file, cl_file, run, number
         self._watched: list[tuple[Operation, bytes]] = []
 
     def watch(self, operation: Operation) -> None:
@@ -201,15 +209,8 @@ class _Caller:
 
     def __call__(self, name: str, given: object, operation: Operation) -> object:
         """Call a function with an operation, an event or a block."""
-        job = self._job
-        context = Context(
-            self._cl_file,
-            operation,
-            self._number,
-            job.machine.name,
-            job.control.name,
-            types.MappingProxyType({**job.settings}),
-        )
+        run = self._run
+        context = Context(self._cl_file, operation, self._number, run.machine, run.control, run.settings)
         try:
             with redirect_stdout(sys.stderr):  # the program may go to standard output
                 return self._file.functions[name](given, context)

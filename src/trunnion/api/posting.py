@@ -184,7 +184,7 @@ def post_beside(
     with open_target(output, papers=papers.by_name(), inputs=inputs, group=group) as target:
         compile_ahead(kernels.POSTING)
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
-        changes = Hooks(load_hooks(hook_files), job)
+        changes = Hooks(load_hooks(hook_files), job.machine.name, job.control.name, job.settings)
         toolpaths = load_toolpaths(cl, job, strict, observer, changes.change)
         job = replace(job, notices=changes.notices, decisions=tuple(changes.decisions) if job.options.explain else ())
         target.files.protect(file_on_disk(toolpath.file) for toolpath in toolpaths)

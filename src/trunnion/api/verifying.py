@@ -3,11 +3,12 @@
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Final, Literal
 
 from trunnion import readers, verification
 from trunnion.api import kernels
-from trunnion.api.arguments import check_choice, check_observer, check_whole, wrong_argument
+from trunnion.api.arguments import check_choice, check_observer, check_paths, check_whole, wrong_argument
 from trunnion.api.cl_statements import replace_unknown_statements
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
@@ -64,6 +65,7 @@ def verify(
     feed: Literal["programmed", "fastest"] = "programmed",
     feed_limit: float | None = None,
     columns: bool = True,
+    hooks: Sequence[FilePath] = (),
     observer: Observer = SILENT,
 ) -> Verification:
     """Verify an NC program: read it, run it, and compare it with the CL files that it was made from.
@@ -118,6 +120,9 @@ def verify(
     columns
         Work out the columns of the result, (n,) each: ``seconds``, ``tip_feed`` (mm/min) and ``cl_line``. A report
         needs them; without them a program of any length takes little memory.
+    hooks
+        The Python files that the program was posted with: they change the CL files as they did then. They are run:
+        name none that you have not read.
     observer
         Receives the progress of reading CL files, and warnings about them.
 
@@ -155,6 +160,10 @@ def verify(
     check_tolerance("span", span, optional=True)
     check_tolerance("span_tip", span_tip, optional=True)
     check_tolerance("recorded_tolerance", recorded_tolerance)
+    hook_files = check_paths("hooks", hooks)
+    if hook_files and isinstance(cl, tuple | list) and not cl:
+        what, cure = "change CL files, and there are none", "name them with cl"
+        raise InputError(argument_problem("hooks", what, cure, code="ARG130"))
     recording = None if recorded is None else as_recording(recorded)
     loaded = as_machine(machine)
     readers.reader_of(loaded)
@@ -163,14 +172,17 @@ def verify(
     control = written_control(loaded)
     defaults = default_settings(loaded)
     toolpaths = as_toolpaths(cl, units, False, observer, dialect)
-    toolpaths = replace_unknown_statements(toolpaths, control, loaded)
-    for toolpath in toolpaths:
-        observer.problems(toolpath.remarks)
     run = as_run(nc, loaded, subprograms)
     if len(run.normals):
         from trunnion.cl.surface_normals import with_normals
 
         toolpaths = [with_normals(toolpath) for toolpath in toolpaths]
+    if hook_files:
+        given = {"tool": tool, "work_offset": work_offset, "edge": edge, "cl_units": units, "dialect": dialect}
+        toolpaths = _changed_by_hooks(toolpaths, hook_files, loaded, control, given)
+    toolpaths = replace_unknown_statements(toolpaths, control, loaded)
+    for toolpath in toolpaths:
+        observer.problems(toolpath.remarks)
     if edge is None and toolpaths and "edge" in defaults:
         edge = int(defaults["edge"])
     offset, by_operation = _work_offsets(work_offset, loaded, control, toolpaths)
@@ -200,6 +212,20 @@ def verify(
         columns=columns,
     )
     return found if recording is None else verification.with_recording(found, recording, recorded_tolerance)
+
+
+def _changed_by_hooks(
+    toolpaths: list[Toolpath],
+    files: Sequence[Path],
+    machine: Machine,
+    control: Control | None,
+    settings: Mapping[str, str | int | None],
+) -> list[Toolpath]:
+    """What hooks make of toolpaths; they see the settings that are given."""
+    from trunnion.api.hooks import Hooks, load_hooks  # few verifications have hooks
+
+    texts = {name: str(value) for name, value in settings.items() if value not in (None, "")}
+    return Hooks(load_hooks(files), machine.name, control.name if control else "", texts).change(toolpaths)
 
 
 def _with_feed_digit(

@@ -252,6 +252,10 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
         help="CL file that it was made from; may be repeated, in the order in which they are cut",
     )  # fmt: skip
     parser.add_argument(
+        "--hooks", action="append", default=[], metavar="FILE.py",
+        help="Python file that it was posted with, which changes the CL files again; it is run; may be repeated",
+    )  # fmt: skip
+    parser.add_argument(
         "--tolerance", type=_tolerance, default=0.001, metavar="MM",
         help="how far a coordinate may be off, and in degrees a rotary axis; 0.001 (in inches 0.0013 mm)",
     )  # fmt: skip

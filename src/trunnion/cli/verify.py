@@ -30,7 +30,7 @@ def run(arguments: argparse.Namespace) -> int:
         )
     machine = load_machine(arguments.machine)
     if arguments.report is not None:
-        read = [arguments.file, *named_files(arguments.cl), *arguments.subprograms]
+        read = [arguments.file, *named_files(arguments.cl), *arguments.subprograms, *arguments.hooks]
         read += [] if arguments.recorded is None else [arguments.recorded]
         check_report(arguments.report, [*read, *machine_files(arguments.machine, machine)])
     verification = verify(
@@ -54,6 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
         feed=arguments.feed or "programmed",
         feed_limit=arguments.feed_limit,
         columns=arguments.report is not None,
+        hooks=arguments.hooks,
         observer=Terminal(),
     )
     if hint := _control_hint(verification):
@@ -69,6 +70,7 @@ def _run_manifest(arguments: argparse.Namespace) -> int:
     """Compare the files of a post with its manifest; 0 if all are the same and proven, else 1."""
     others = (
         "subprograms",
+        "hooks",
         "recorded",
         "report",
         "zero",

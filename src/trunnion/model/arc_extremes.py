@@ -285,7 +285,6 @@ class _Search:
         np.maximum.at(greatest, arc, best)
         return greatest
 
-
     def _margins(self, values: Floats, before: Floats, after: Floats) -> Floats:
         """(m,): how far the highest sample beside a peak may be below it, inf if samples are missing.
 
