@@ -24,6 +24,7 @@ from trunnion.model.feed_path import NO_ROTATION
 from trunnion.model.run import Orientation, PositionChunk, Run
 from trunnion.model.toolpath import Kind
 from trunnion.timing import RowFeeds, RunTimer
+from trunnion.verification.kinematics.arc_speeds import ArcSpeeds
 from trunnion.verification.kinematics.axis_motion_kernel import AxisLimits, ChunkRows, axis_motion_rows
 from trunnion.verification.kinematics.positioning_moves import approach_rows
 from trunnion.verification.kinematics.worst_rows import WorstRows
@@ -91,6 +92,7 @@ class AxisMotionAnalyzer:
         here = self._approach_rows[(self._approach_rows >= first) & (self._approach_rows < end)]
         machine_frame[here - first] = True
         feeds = self._feeds.part(first, end, positions)
+        arcs = ArcSpeeds.of(run, first, end, positions)
         rows = ChunkRows(
             positions.joints,
             positions.tip,
@@ -102,11 +104,15 @@ class AxisMotionAnalyzer:
             machine_frame,
             run.orientation_between(first, end) == Orientation.ANGLES,
             feeds,
+            arcs.rows - first,
+            arcs.begin,
+            arcs.end,
         )
         shares, deviation = np.empty((2, 5, count)), np.empty(count)
         axis_motion_rows(
             first, rows, self._limits, self._carry, motion.extremes, motion.extreme_rows, shares, deviation
         )
+        self._add_arc_shares(arcs, first, feeds, shares)
         self._add_arcs(first, end, positions, machine_frame)
         if self._timer is not None:
             self._timer.add(first, positions, feeds)
@@ -119,6 +125,17 @@ class AxisMotionAnalyzer:
         if not tcp.all():
             free = np.flatnonzero(self._turns(positions) & ~tcp & (kind == Kind.LINEAR))
             motion.tip_deviation.add(first, _tip_deviations(run.machine, positions, free, count))
+
+    def _add_arc_shares(self, arcs: ArcSpeeds, first: int, feeds: Floats, shares: Floats) -> None:
+        """Raise the shares of arcs, (2, 5, k), to the greatest ones on their way."""
+        at = arcs.rows - first
+        minutes = feeds[0, at] / feeds[1, at]
+        known = (minutes > 0.0) & np.isfinite(minutes)
+        at, minutes = at[known], minutes[known, None]
+        speed = arcs.most[known] / minutes / self._limits.rapid
+        acceleration = arcs.acceleration[known] / (60.0 * minutes) ** 2 / self._limits.acceleration
+        for share, values in zip(shares, (speed, acceleration), strict=True):
+            share[:, at] = np.maximum(share[:, at], values.T)
 
     def _add_arcs(self, first: int, end: int, positions: PositionChunk, machine_frame: Flags) -> None:
         """Widen the extremes of slides by what arcs reach between their ends."""

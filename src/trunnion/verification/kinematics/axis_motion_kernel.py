@@ -41,6 +41,8 @@ class ChunkRows(NamedTuple):
     half_way           (k, 3)      tool axis where every joint is half-way
     angles             (k,) bool   the control interpolates rotary angles, not the tool axis on a great circle
     feeds              (4, k)      as ``trunnion.timing.row_feeds`` has them
+    arcs               (m,)        the rows from the first that are arcs, in order
+    arc_begin, arc_end (m, 5)      what an axis would travel on the arc with its speed at the start or the end
     """
 
     joints: Floats2
@@ -53,6 +55,9 @@ class ChunkRows(NamedTuple):
     machine_frame: Flags
     angles: Flags
     feeds: Floats2
+    arcs: Ints
+    arc_begin: Floats2
+    arc_end: Floats2
 
 
 @inner
@@ -91,10 +96,12 @@ def axis_motion_rows(
     deviation  (k,) float64      written: how far the tool axis is off half-way in rows at feed, degrees
     """
     # Arrays are taken out of their tuples once: in the loop that would count references for every row.
-    joints, _, axis, half_way, kind, programmed, tcp, machine_frame, angles, feeds = rows
+    joints, _, axis, half_way, kind, programmed, tcp, machine_frame, angles, feeds, arcs, arc_begin, arc_end = rows
     rotary, rapid, acceleration = limits
     velocity = carry[1:]
     minutes_before = carry[0]
+    steps = np.empty((2, 5))
+    arc = 0
     for at in range(kind.shape[0]):
         row = first + at
         # Circles by their centre and motions of cycles name no axis (bits 0 to 5), and move slides.
@@ -106,7 +113,12 @@ def axis_motion_rows(
         at_feed = kind[at] != 0 and not machine_frame[at]
         if turned > NO_ROTATION and at_feed and (angles[at] or not tcp[at]):
             deviation[at] = half_way_deviation(axis, half_way, at)
-        _axis_shares(joints, at, rapid, acceleration, minutes, minutes_before, velocity, shares)
+        on_arc = arc < arcs.shape[0] and arcs[arc] == at
+        for k in range(5):
+            steps[0, k] = arc_begin[arc, k] if on_arc else joints[at + 1, k] - joints[at, k]
+            steps[1, k] = arc_end[arc, k] if on_arc else steps[0, k]
+        arc += on_arc
+        _axis_shares(steps, at, rapid, acceleration, minutes, minutes_before, velocity, shares)
         minutes_before = minutes
     carry[0] = minutes_before
 
@@ -136,7 +148,7 @@ def _axis_steps(
 
 @inlined
 def _axis_shares(
-    joints: Floats,
+    steps: Floats2,
     at: int,
     rapid: Floats,
     acceleration: Floats,
@@ -145,7 +157,10 @@ def _axis_shares(
     velocity: Floats,
     shares: Floats,
 ) -> None:
-    """Write the shares of a row; ``velocity`` (5,) holds the speeds in the row before and is updated."""
+    """Write the shares of a row; ``velocity`` (5,) holds the speeds at the end of the row before and is updated.
+
+    steps  (2, 5)  what the axes would travel with their speeds at the start and at the end of the row
+    """
     for k in range(5):
         stated = acceleration[k] < math.inf
         shares[0, k, at] = 0.0
@@ -153,9 +168,9 @@ def _axis_shares(
             shares[1, k, at] = 0.0
         if minutes <= 0.0:
             continue
-        now = (joints[at + 1, k] - joints[at, k]) / minutes
+        now = steps[0, k] / minutes
         shares[0, k, at] = abs(now) / rapid[k]
         if stated and minutes_before > 0.0:
             change = 2.0 * abs(now - velocity[k]) / (minutes + minutes_before)
             shares[1, k, at] = change / 3600.0 / acceleration[k]
-        velocity[k] = now
+        velocity[k] = steps[1, k] / minutes
