@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.support.linuxcnc.simulator import Bench, needs_simulator, rests, with_rests
+from tests.support.linuxcnc.simulator import Bench, needs_simulator, rests, rests_of, with_rests
 from trunnion.cli import main
 from trunnion.machines import load_machine, slide_positions
 
@@ -78,3 +78,15 @@ def test_with_tcp_and_without_the_machine_comes_to_the_same_joints_at_every_bloc
     tip, _ = points()
     ours = slide_positions(machine, tip, joints[-len(tip) - 2 : -2][:, list(machine.rotary)], LENGTH)
     np.testing.assert_allclose(joints[-len(tip) - 2 : -2], ours, atol=1e-4, rtol=0)
+
+
+def test_a_jump_of_the_tool_length_is_no_end_of_a_motion() -> None:
+    """Joints that a length under TCP has moved at once stand until the next block is read: longer under load."""
+    speed = np.concatenate((np.linspace(0.0, 0.3, 60), np.linspace(0.3, 0.0, 60)))
+    way = np.cumsum(speed)
+    jumped = way[-1] + np.array([2.6, 13.2, 15.9])
+    for stands in (3, 30):
+        one = np.concatenate((np.zeros(20), way, np.full(20, way[-1]), jumped, np.full(stands, jumped[-1])))
+        joint = np.concatenate((one, jumped[-1] + way, np.full(20, jumped[-1] + way[-1])))
+        found = rests_of(np.column_stack((joint, *np.zeros((4, len(joint))))))
+        np.testing.assert_allclose(found[:, 0], [0.0, way[-1], jumped[-1] + way[-1]])

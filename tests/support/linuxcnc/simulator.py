@@ -34,6 +34,11 @@ ACCELERATION = 5000.0
 #: A joint that moves by less than this in a millisecond rests, mm or degrees.
 _RESTS = 1e-9
 
+#: The step of a millisecond, mm or degrees, above which a joint has not slowed down to rest: ten times what its
+#: acceleration takes away in that time. A tool length that comes into force under TCP moves joints at once, and how long
+#: they stand there depends on when the next block is read.
+_SLOWED_DOWN = 10.0 * ACCELERATION * 1e-6
+
 #: How many samples the machine must rest; a dwell after each block provides them.
 _SAMPLES = 8
 
@@ -197,7 +202,7 @@ def rests(bench: Bench, programs: Sequence[str], seconds: float = 60.0) -> list[
     SimulatorError
         When LinuxCNC does not run a program to its end.
     """
-    return [_rests(joints) for joints in motions(bench, programs, seconds)]
+    return [rests_of(joints) for joints in motions(bench, programs, seconds)]
 
 
 def motions(bench: Bench, programs: Sequence[str], seconds: float = 60.0) -> list[Floats]:
@@ -312,11 +317,15 @@ def _read(samples: Path) -> Floats:
     return np.asarray(table[:, 1:])
 
 
-def _rests(joints: Floats) -> Floats:
-    """The places at which all joints rest for a while, without repeats."""
-    still = np.abs(np.diff(joints, axis=0)).max(axis=1) < _RESTS
-    edges = np.flatnonzero(np.diff(np.concatenate(([False], still, [False])).astype(np.int8)))
-    long = [int(first) for first, last in zip(edges[::2], edges[1::2], strict=True) if last - first >= _SAMPLES]
+def rests_of(joints: Floats) -> Floats:
+    """The places at which motions have ended and all joints rest for a while, without repeats."""
+    steps = np.abs(np.diff(joints, axis=0)).max(axis=1)
+    edges = np.flatnonzero(np.diff(np.concatenate(([False], steps < _RESTS, [False])).astype(np.int8)))
+    long = [
+        int(first)
+        for first, last in zip(edges[::2], edges[1::2], strict=True)
+        if last - first >= _SAMPLES and (first == 0 or steps[first - 1] < _SLOWED_DOWN)
+    ]
     found = joints[long]
     apart = np.abs(np.diff(found, axis=0)).max(axis=1) > 1e-6
     return np.asarray(found[np.concatenate(([True], apart))])
