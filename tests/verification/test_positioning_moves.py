@@ -1,5 +1,6 @@
 """Searches for motions that position the machine, against what a loop over the rows finds."""
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -8,6 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import trunnion
+from tests.support.posting import FOOT, HEAD
 from trunnion.model.run import ProgrammedWord
 from trunnion.model.toolpath import Kind
 from trunnion.readers.control.row_buffer import StepColumnBuilder
@@ -59,7 +62,8 @@ def test_the_first_position_in_workpiece_coordinates(
 @given(rows=ROWS)
 def test_an_approach_goes_across_at_rapid_and_down_next(rows: list[tuple[int, bool, bool, bool]]) -> None:
     after_frame = {row for row in range(1, len(rows)) if rows[row - 1][2] and not rows[row][2]}
-    wanted, retracted = [], False
+    # Where the tool is when the program begins, nobody knows.
+    wanted, retracted = [], True
     for row, (words, rapid, in_frame, retract) in enumerate(rows):
         retracted = retracted or retract or row in after_frame
         if not words & (X | Z) or in_frame:
@@ -70,3 +74,23 @@ def test_an_approach_goes_across_at_rapid_and_down_next(rows: list[tuple[int, bo
             wanted.append(row)
         retracted = False
     assert approach_rows(run_of(rows)).tolist() == wanted
+
+
+@pytest.mark.parametrize(
+    ("machine", "program"),
+    [
+        ("matsuura_mx330", "%\nO1\nG21 G17 G40 G80 G90 G94\nT1 M6\nS4000 M3\nG54 G0 X{0}. Y10.\nG43 H1 Z50.\n"
+         "G1 Z-5. F100.\nX50.\nG0 Z50.\nM5\nG91 G28 Z0.\nG28 X0. Y0.\nM30\n%\n"),
+        ("yl569", "G17 G40 G710 G90 G94 G54\nT=1\nM6\nD1\nS4000 M3\nG0 X{0} Y10\nG0 Z50\nG1 Z-5 F100\nX50\nG0 Z50\nM5\n"
+         "SUPA G0 Z0 D0\nSUPA G0 X0 Y0\nM30\n"),
+    ],
+)  # fmt: skip
+def test_a_program_may_begin_across_and_then_come_down(machine: str, program: str, tmp_path: Path) -> None:
+    """As it is written by hand: how high the tool is over the first position, nobody says."""
+    rows = "RAPID\nGOTO/10,10,50,0,0,1\nFEDRAT/MMPM,100\nGOTO/10,10,-5\nGOTO/50,10,-5\nRAPID\nGOTO/50,10,50\n"
+    (tmp_path / "a.cls").write_text(HEAD.partition("RAPID")[0] + rows + FOOT, encoding="utf-8")
+    for x, passes in ((10, True), (13, False)):
+        path = tmp_path / "A.MPF"
+        path.write_text(program.format(x), encoding="utf-8")
+        found = trunnion.verify(path, machine=machine, cl=tmp_path / "a.cls")
+        assert found.passed is passes, [check for check in found.checks if not check.passed]

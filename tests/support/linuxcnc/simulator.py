@@ -35,8 +35,8 @@ ACCELERATION = 5000.0
 _RESTS = 1e-9
 
 #: The step of a millisecond, mm or degrees, above which a joint has not slowed down to rest: ten times what its
-#: acceleration takes away in that time. A tool length that comes into force under TCP moves joints at once, and how long
-#: they stand there depends on when the next block is read.
+#: acceleration takes away in that time. A tool length that comes into force under TCP moves joints at once, and how
+#: long they stand there depends on when the next block is read.
 _SLOWED_DOWN = 10.0 * ACCELERATION * 1e-6
 
 #: How many samples the machine must rest; a dwell after each block provides them.

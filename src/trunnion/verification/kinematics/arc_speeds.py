@@ -1,8 +1,7 @@
 """How fast axes are on arcs: at their ends, and at most, where the way from end to end says little.
 
 In:     rows of a run that are arcs.
-Out:    speeds and accelerations of the axes by the share of the arc that is done, of which the time of the arc makes those
-        by time.
+Out:    speeds and accelerations of the axes by the share of the arc that is done: its time makes those by time of them.
 Units:  mm and degrees.
 
 A full circle ends where it begins, and its axes move all the same. While the rotary axes stand, slides are cosines of
@@ -24,8 +23,8 @@ from trunnion.model.subdivision import arc_frames, circle_points
 #: Places of a turn at which speeds are looked at: between two of them a cosine is 0.998 of its greatest value at least.
 _PER_TURN: Final = 48
 
-#: Places at most on an arc along which rotary axes turn; those of long ones are spread by the golden ratio, which repeats
-#: no angle.
+#: Places at most on an arc along which rotary axes turn; those of long ones are spread by the golden ratio, which
+#: repeats no angle.
 _MOST_PLACES: Final = 480
 _GOLDEN: Final = 0.6180339887498949
 

@@ -100,10 +100,10 @@ def comes_from_home(run: Run, row: int) -> bool:
 def approach_rows(run: Run) -> Ints:
     """Rows that are the first leg of an approach: X and Y at rapid, with Z alone in the next block, or down in a cycle.
 
-    The tool was retracted before, or comes from a machine position. How high it is then is not known where the
-    machine's travel is not known.
+    The tool was retracted before, comes from a machine position, or is where the operator has left it: a program may
+    begin so. How high it is then is not known where the machine's travel is not known.
     """
-    starts = {event.before_row for event in run.events if event.kind == "retract"}
+    starts = {0, *(event.before_row for event in run.events if event.kind == "retract")}
     starts.update(row for row in run.state.machine_frame.rows_changing_to(False) if row > 0)
     found = []
     for row in _rows_that_follow(run, starts):
