@@ -82,7 +82,7 @@ def test_a_program_of_more_pieces_than_are_kept_is_refused_before_they_are_made(
 
 def test_a_few_lines_that_make_a_flood_of_motion_are_refused_with_the_line(tmp_path: Path) -> None:
     program = tmp_path / "flood.mpf"
-    loop = f"FOR R1=1 TO {MOST_PIECES // 4096 + 1}\nG2 X0 Y=R1*0.00001 I=9000 J=0 TURN=100\nENDFOR\nM30\n"
+    loop = f"FOR R1=1 TO {MOST_PIECES // 4096 + 1}\nG2 X0 Y=R1*0.00001 I=9000 J=0 TURN=60\nENDFOR\nM30\n"
     program.write_text(f"G17 G54 G90 G94\nG1 X0 Y0 Z10 F1000\n{loop}", encoding="utf-8")
     with pytest.raises(InputError, match=r"flood\.mpf:4: error: is where the program makes more than 3000000 pieces"):
         twin_program(program, machine="yl569")
