@@ -52,7 +52,7 @@ def wait_for(process: subprocess.Popen[str], words: str) -> None:
 
 
 def wait_for_last_motion(journal: Path, recorder: subprocess.Popen[str]) -> None:
-    """Wait until the last motion has been written: what is not sent before server or recorder end, nobody can record."""
+    """Wait until the last motion has been written: what is not sent before the server ends, nobody can record."""
     last = float(read_program(BLADE_FINISH, machine="yl569").line[-1])
     while recorder.poll() is None:
         with journal.open(encoding="utf-8", newline="") as file:
