@@ -183,6 +183,19 @@ def test_an_editor_finds_the_schema_and_its_mistakes() -> None:
     assert "tool_pokets" in told
 
 
+@pytest.mark.skipif(TAPLO is None and "CI" not in os.environ, reason="taplo is not installed")
+def test_an_editor_finds_mistakes_in_a_project() -> None:
+    Path(file_name("project")).write_text(schema_text("project"), encoding="utf-8")
+    part = first_line("project") + 'machine = "yl569"\ncl = ["a.cls"]\noutput = "a.mpf"\n'
+    Path("ours.toml").write_text(part, encoding="utf-8")
+    assert linted()[0] == 0
+    Path("ours.toml").write_text(part + 'divide = "both"\nreports = "a.html"\n', encoding="utf-8")
+    code, told = linted()
+    assert code == 1
+    assert '"both" is not one of' in told
+    assert "reports" in told
+
+
 def test_a_definition_of_ones_own_has_no_name_of_a_shipped_machine(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
