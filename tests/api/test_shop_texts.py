@@ -311,7 +311,7 @@ def test_a_rotation_that_is_left_on_at_the_end_is_refused(tmp_path: Path) -> Non
 @pytest.mark.parametrize("use", [" | cut(5)", " | lower", " | replace('s', '')", " == '4 s'", " in ['4 s']"])
 def test_a_machining_time_can_only_be_printed(tmp_path: Path, time: str, use: str) -> None:
     problem = refusal(tmp_path, f'''before_operation = ";A {{{{ {time} ~ '' }}}} {{{{ 1 if {time}{use} else 2 }}}}"''')
-    assert (problem.code, "machining time" in problem.what) == ("DEF510", True)
+    assert (problem.code, "machining time" in problem.what) == ("DEF580", True)
 
 
 @pytest.mark.parametrize(
@@ -324,7 +324,7 @@ def test_a_machining_time_can_only_be_printed(tmp_path: Path, time: str, use: st
 def test_a_mode_behind_the_approach_is_refused(tmp_path: Path, extends: str, text: str, word: str) -> None:
     problem = refusal(tmp_path, f'after_approach = """\n;LOOK\n{text} ;NOTE\n"""' if extends == "yl569" else
                       f'after_approach = "{text}"', more=KNOWN, extends=extends)  # fmt: skip
-    assert (problem.code, problem.file) == ("CTL455", str(tmp_path / "ours.toml"))
+    assert (problem.code, problem.file) == ("CTL457", str(tmp_path / "ours.toml"))
     assert f"writes {word}," in problem.what
 
 

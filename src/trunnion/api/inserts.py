@@ -120,7 +120,7 @@ def _modes_behind_approaches(program: Program) -> list[Problem]:
             assert template is not None
             what = f"template {_APPROACHED} writes {word}, and the operation does not say its own mode again behind it"
             cure = "leave it out, or write it into the template of the approach, in place of the mode there"
-            problems.append(Problem(*template.place_of(k), what, cure, code="CTL455"))
+            problems.append(Problem(*template.place_of(k), what, cure, code="CTL457"))
     return problems
 
 
@@ -139,7 +139,7 @@ def _problem(program: Program, motion: Motion, event: Insert, effect: str) -> Pr
         return Problem(file, event.line, f"INSERT/{text}: {effect}", _CURE, code="CTL455")
     place = program.control.templates[event.template].place_of(0)
     what = f"template {event.template} writes {text} at {file}:{event.line}: {effect}"
-    return Problem(*place, what, _TEMPLATE_CURE, code="CTL455")
+    return Problem(*place, what, _TEMPLATE_CURE, code="CTL457")
 
 
 def _not_known(text: str, program: Program) -> str:

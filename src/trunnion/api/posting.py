@@ -14,7 +14,8 @@ from trunnion.api import kernels
 from trunnion.api.arguments import check_observer, check_paths
 from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.forcing import Proof, Untold, write_forced
-from trunnion.api.hooks import Hooks, load_hooks
+from trunnion.api.hook_files import load_hooks
+from trunnion.api.hooks import Hooks
 from trunnion.api.input_files import cl_files, machine_files
 from trunnion.api.job import FORCING, PostJob, prepare
 from trunnion.api.machining_times import operation_times, prints_times, write_times

@@ -287,7 +287,7 @@ class TemplateValues:
             return self._family_call(loads[-1].number, "", operation)
         what = f"operation {operation.name} has no LOAD/TOOL, and its tool has no name"
         raise InputError(
-            Problem(self._program.file_of(operation), operation.line, what, "write setting tool=NUMBER", code="CTL140")
+            Problem(self._program.file_of(operation), operation.line, what, "write setting tool=NUMBER", code="CTL145")
         )
 
     @cached_property
