@@ -19,7 +19,7 @@ from trunnion.api.hook_files import load_hooks
 from trunnion.api.hooks import Hooks
 from trunnion.api.input_files import cl_files, machine_files
 from trunnion.api.job import FORCING, PostJob, prepare
-from trunnion.api.machining_times import operation_times, prints_times, write_times
+from trunnion.api.machining_times import new_time_token, operation_times, prints_times, write_times
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.paper_files import PaperFiles, paper_files
 from trunnion.api.papers import PostPapers, post_papers
@@ -211,7 +211,7 @@ def post_toolpaths(
     try:
         with reading() as (progress, running):
             program, planned, problems = plan_program(toolpaths, job, observer)
-            program = replace(program, has_time_tokens=prints_times(program))
+            program = replace(program, time_token=new_time_token() if prints_times(program) else "")
             starts = write(program, target.files.main, progress, subprograms, observer, places.passages)
         run = _run_of(running, job, places)
         if job.options.fastest_feed:
@@ -237,7 +237,7 @@ def post_toolpaths(
             write_refusal(error.problems, job.machine, target.name, job.papers.report)
             target.files.remember_alone(job.papers.report)
         raise
-    columns = job.columns or program.has_time_tokens
+    columns = job.columns or bool(program.time_token)
 
     def prove(run: Run | None, starts: Sequence[OperationStart]) -> Proof:
         verification = _prove(run, toolpaths, expected, target, starts, job, columns=columns)
@@ -249,7 +249,7 @@ def post_toolpaths(
     if job.force and proof.failed:
         proof = write_forced(program, proof, prove, job, target, subprograms)
     verification, simulated = proof.verification, proof.simulation
-    times = operation_times(program, verification) if program.has_time_tokens else []
+    times = operation_times(program, verification) if program.time_token else []
     if verification is not None and not job.columns:
         verification = without_columns(verification)
     if verification is None:
@@ -270,7 +270,7 @@ def post_toolpaths(
             result.write_report(job.papers.report)
             target.files.remember_alone(job.papers.report)
         raise _proof_failed(result, job.forcing, places.cause(proof.failed, job.control))
-    if program.has_time_tokens:
+    if program.time_token:
         write_times(target.files, program, times)
     if target.papers:
         papers = post_papers(target, program, job, result, verification)
