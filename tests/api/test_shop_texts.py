@@ -338,6 +338,15 @@ def test_a_block_that_fails_the_proof_is_told_with_its_template(tmp_path: Path, 
     )
 
 
+@pytest.mark.parametrize("text", ["G81", "G83", "G98 G81"])
+def test_a_cycle_without_words_in_a_text_fails_the_proof(tmp_path: Path, text: str) -> None:
+    with pytest.raises(trunnion.ProofFailedError) as caught:
+        post_to_file(tmp_path, f'before_operation = "{text}"', "one")
+    (words,) = [check for check in caught.value.result.checks if not check.passed]
+    assert (words.key, words.places[0].code) == ("words", "NC218")
+    assert f"({text}: written by template before_operation" in words.places[0].text
+
+
 def test_what_a_text_breaks_further_down_is_told_with_the_template_above(tmp_path: Path) -> None:
     with pytest.raises(trunnion.ProofFailedError) as caught:
         post_to_file(tmp_path, 'before_operation = "G91"', "one")

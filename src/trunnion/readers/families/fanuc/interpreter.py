@@ -282,7 +282,7 @@ class FanucInterpreter(CycleInterpreter):
         if code in iso_m_codes.PROGRAM_ENDS and not self.control.rotation.is_identity:
             self._note("ends with G68 on: the next program begins turned", Severity.ERROR, "NC351")
         if not self._common_m_code(code):
-            self.control.add_event("m", float(code))
+            self.control.add_builders_word("M", float(code))
 
     def _m_code_after_motion(self, active: ActiveProgram, line: int, code: int, block: Block) -> None:
         if code == words.CALL:
