@@ -69,6 +69,7 @@ def test_a_new_definition_can_be_posted_with_and_says_what_it_has_from_its_base(
     assert "C point_mm (ours.toml" not in told
     assert "From yl569.toml, which is another machine" in told
     assert "rapid traverse (C, B, X, Y, Z)" in told
+    assert "which axes turn endlessly (C), how a program writes their angles (C)" in told
     assert "Acceleration of C, B, X, Y, Z: not stated" in told
 
 

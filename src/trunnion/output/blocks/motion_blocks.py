@@ -218,11 +218,14 @@ class MotionBlockWriter:
         return [self.family.COMMENTS.sub(self._in_capitals, line) for line in lines] if self._capitals else list(lines)
 
     def _in_capitals(self, comment: re.Match[str]) -> str:
-        """A comment without small letters, but those whose capital is two letters or is lacking in the encoding."""
+        """A comment without small letters, but those whose capital is lacking in the encoding; of ß it is SS."""
         if comment[1] is None:
             return comment[0]
         capitals = ((each, each if each in "µμ" else each.upper()) for each in comment[0])  # M is another unit
-        return "".join(big if len(big) == 1 and not lacking(big, self._encoding) else small for small, big in capitals)
+        return "".join(
+            big if big.isascii() or (len(big) == 1 and not lacking(big, self._encoding)) else small
+            for small, big in capitals
+        )
 
     def write_block(self, words: Mapping[str, int]) -> None:
         """Write one block of words, as counts; none if all of them are active."""
