@@ -224,8 +224,59 @@ def test_what_a_hook_does_wrong_is_told_at_its_line(part: Path, text: str, line:
 )
 def test_what_a_hook_changes_in_place_is_refused(part: Path, text: str) -> None:
     problem = refusal(part, text)
-    assert (problem.line, problem.code) == (3, "HOK130")
+    assert (problem.line, problem.code) == (3, "HOK135")
     assert "in place" in problem.what
+
+
+HALF = "    feed = o.moves.feed * 0.5\n    return replace(o, moves=replace(o.moves, feed=feed[:]))\n"
+
+
+@pytest.mark.parametrize(
+    ("honest", "keeping"),
+    [
+        (
+            "def on_operation(o, c):\n" + HALF,
+            "KEPT = []\ndef on_operation(o, c):\n    for each in KEPT: each[:] = 9000.0\n"
+            + HALF.replace("    return", "    KEPT.append(feed)\n    return"),
+        ),
+        (
+            "def on_event(e, c): return None\n",
+            "KEPT = []\ndef on_event(e, c):\n    for m in KEPT:\n        if m is not c.operation.moves:\n"
+            "            m.tip.setflags(write=True)\n            m.tip[:, 2] += 1.0\n"
+            "    KEPT.append(c.operation.moves)\n",
+        ),
+        (
+            "def on_event(e, c): return [e, Stop(0, 0, False, 'LOOK')]\n",
+            "KEPT = []\ndef on_event(e, c):\n    for each in KEPT: object.__setattr__(each, 'text', 'OTHER')\n"
+            "    KEPT.append(Stop(0, 0, False, 'LOOK'))\n    return [e, KEPT[-1]]\n",
+        ),
+        (
+            "def on_block(b, c): return Stop(b.row, 1, False, 'LOOK') if b.row == 2 else None\n",
+            "KEPT = []\ndef on_block(b, c):\n    for each in KEPT: object.__setattr__(each, 'text', 'OTHER')\n"
+            "    if b.row == 2:\n        KEPT.append(Stop(b.row, 1, False, 'LOOK'))\n        return KEPT[-1]\n",
+        ),
+    ],
+)
+def test_what_a_hook_keeps_and_changes_later_is_in_no_program(part: Path, honest: str, keeping: str) -> None:
+    wanted = posted(part, hook(part, honest)).text
+    assert posted(part, hook(part, keeping)).text == wanted
+    assert wanted != ""
+    assert "OTHER" not in (wanted or "")
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("def on_operation(o, c):\n    return 7\n", "HOK130"),
+        ("def on_operation(o, c):\n    return replace(o, name='A\\nM30')\n", "HOK132"),
+        ("def on_event(e, c):\n    return Stop(0, 0, False, 'A\\nB')\n", "HOK132"),
+        ("def on_block(b, c):\n    return Stop(b.row + 2, 0, False)\n", "HOK132"),
+        ("def on_operation(o, c):\n    return []\n", "HOK160"),
+    ],
+)
+def test_each_fault_of_a_hook_has_the_explanation_with_its_cure(part: Path, text: str, code: str) -> None:
+    problem = refusal(part, text)
+    assert (problem.line, problem.code) == (3, code)
 
 
 def test_raw_text_of_a_hook_is_tried_as_that_of_a_cl_file(part: Path) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import trunnion
+from trunnion.api.machining_times import new_time_token
 from trunnion.wording import format_duration
 
 OPERATION = """TOOL PATH/{name},TOOL,D10
@@ -45,6 +46,24 @@ def test_times_in_comments_agree_with_the_report(settings: dict[str, str], tmp_p
     assert found == [(format_duration(each), format_duration(sum(seconds))) for each in seconds]
     assert "ZZTIME" not in text
     assert min(seconds) > 10.0
+
+
+@pytest.mark.parametrize("machine", ["dmu65", "matsuura_mx330", "yl569", "xyzac_trt"])
+def test_no_name_of_a_cl_file_becomes_a_time(machine: str, tmp_path: Path) -> None:
+    names = "ZZTIME00000001", "ZZTIME00000000"
+    text = OPERATION.format(name=names[0], tool=1, rows=CUT).replace("TOOL,D10", f"TOOL,{names[1]}")
+    (tmp_path / "part.cls").write_text(text, encoding="utf-8")
+    settings = {"operation_list": "on", "tool_list": "on"}
+    found = trunnion.post(tmp_path / "part.cls", machine=machine, settings=settings).text
+    assert found is not None
+    assert all(found.count(name) >= 1 for name in names)
+    assert set(re.findall(r"[A-Z]{6,}\d{7,}", found)) == set(names), "every token has become a time"
+
+
+def test_tokens_of_two_programs_differ() -> None:
+    tokens = {new_time_token() for _ in range(50)}
+    assert len(tokens) == 50
+    assert all(re.fullmatch("[A-Z]{7}", each) for each in tokens)
 
 
 def test_a_dwell_at_the_end_of_an_operation_is_part_of_it(tmp_path: Path) -> None:

@@ -308,11 +308,74 @@ def test_a_rotation_that_is_left_on_at_the_end_is_refused(tmp_path: Path) -> Non
         program(tmp_path, turned + back, extends="matsuura_mx330")
 
 
+DIVIDED = pytest.mark.parametrize("programs", ["one", "operations"])
+
+
+@DIVIDED
+@pytest.mark.parametrize(("text", "code"), [("GOTO 10", "NC140"), ("WHILE [1 EQ 1] DO1", "NC142")])
+def test_a_text_that_cannot_be_followed_is_told_with_its_template(
+    tmp_path: Path, text: str, code: str, programs: str
+) -> None:
+    with pytest.raises(trunnion.InputError) as caught:
+        post_to_file(tmp_path, f'before_operation = """\n(HERE)\n{text}\n"""', programs)
+    (problem,) = caught.value.problems
+    definition = tmp_path / "ours.toml"
+    assert f"{text}: written by template before_operation ({definition}:7)" in problem.what
+    assert problem.code == code
+    name = str(tmp_path / "part.nc") if programs == "one" else "O1001.nc"
+    assert problem.file == name
+
+
+@DIVIDED
+def test_a_block_that_fails_the_proof_is_told_with_its_template(tmp_path: Path, programs: str) -> None:
+    with pytest.raises(trunnion.ProofFailedError) as caught:
+        post_to_file(tmp_path, 'before_operation = "G0 X55."', programs)
+    definition = tmp_path / "ours.toml"
+    assert f"N20 is written by template before_operation ({definition}:6)" in caught.value.problems[0].what
+    (order,) = [check for check in caught.value.result.checks if check.key == "order"]
+    assert "(G0 X55.: written by template before_operation" in order.places[0].text
+    assert {place.nc_file for place in order.places} == (
+        {""} if programs == "one" else {"O1001.nc", "O1002.nc", "O1003.nc"}
+    )
+
+
+@pytest.mark.parametrize("text", ["G81", "G83", "G98 G81"])
+def test_a_cycle_without_words_in_a_text_fails_the_proof(tmp_path: Path, text: str) -> None:
+    with pytest.raises(trunnion.ProofFailedError) as caught:
+        post_to_file(tmp_path, f'before_operation = "{text}"', "one")
+    (words,) = [check for check in caught.value.result.checks if not check.passed]
+    assert (words.key, words.places[0].code) == ("words", "NC218")
+    assert f"({text}: written by template before_operation" in words.places[0].text
+
+
+def test_what_a_text_breaks_further_down_is_told_with_the_template_above(tmp_path: Path) -> None:
+    with pytest.raises(trunnion.ProofFailedError) as caught:
+        post_to_file(tmp_path, 'before_operation = "G91"', "one")
+    told = caught.value.problems[0].what
+    assert f"is that of template before_operation ({tmp_path / 'ours.toml'}:6)" in told
+
+
+def post_to_file(folder: Path, templates: str, programs: str) -> None:
+    (folder / "part.cls").write_text(SHOP, encoding="utf-8")
+    definition = machine(folder, templates, extends="matsuura_mx330")
+    settings = {"programs": programs}
+    trunnion.post(folder / "part.cls", machine=definition, output=folder / "part.nc", settings=settings)
+
+
+def test_a_call_in_raw_text_is_told_with_the_cure_that_helps(tmp_path: Path) -> None:
+    cl = SHOP.replace("RAPID\nGOTO", "INSERT/M98 P77\nRAPID\nGOTO", 1)
+    problem = refusal(tmp_path, "", cl, extends="matsuura_mx330")
+    assert problem.what == "INSERT/M98 P77: nobody can say what it does: subprogram O0077 is not run with raw text"
+    assert '"M98 P77" = "comes back' in problem.cure
+    known = '[control.known]\n"M98 P77" = "comes back: probes"\n'
+    assert "M98 P77" in program(tmp_path, "", cl, more=known, extends="matsuura_mx330")
+
+
 @pytest.mark.parametrize("time", ["time", "operation.time", "total_time", "(time ~ ' long')", "(time | default('-'))"])
 @pytest.mark.parametrize("use", [" | cut(5)", " | lower", " | replace('s', '')", " == '4 s'", " in ['4 s']"])
 def test_a_machining_time_can_only_be_printed(tmp_path: Path, time: str, use: str) -> None:
     problem = refusal(tmp_path, f'''before_operation = ";A {{{{ {time} ~ '' }}}} {{{{ 1 if {time}{use} else 2 }}}}"''')
-    assert (problem.code, "machining time" in problem.what) == ("DEF510", True)
+    assert (problem.code, "machining time" in problem.what) == ("DEF580", True)
 
 
 @pytest.mark.parametrize(
@@ -325,7 +388,7 @@ def test_a_machining_time_can_only_be_printed(tmp_path: Path, time: str, use: st
 def test_a_mode_behind_the_approach_is_refused(tmp_path: Path, extends: str, text: str, word: str) -> None:
     problem = refusal(tmp_path, f'after_approach = """\n;LOOK\n{text} ;NOTE\n"""' if extends == "yl569" else
                       f'after_approach = "{text}"', more=KNOWN, extends=extends)  # fmt: skip
-    assert (problem.code, problem.file) == ("CTL455", str(tmp_path / "ours.toml"))
+    assert (problem.code, problem.file) == ("CTL457", str(tmp_path / "ours.toml"))
     assert f"writes {word}," in problem.what
 
 

@@ -68,8 +68,9 @@ def test_accepting_shows_the_difference_and_takes_it_over(case: Path, capsys: Ca
 def test_a_new_case_is_told_and_written_only_when_accepted(tmp_path: Path, capsys: Capture) -> None:
     path = project(tmp_path, PROJECT + 'divide = "subprograms"\n', name="case.toml")
     before = contents(tmp_path)
-    code, out, _ = tried(capsys, tmp_path)
+    code, out, err = tried(capsys, tmp_path)
     assert (code, contents(tmp_path)) == (1, before)
+    assert err.startswith(f"trunnion test {tmp_path} --accept takes")
     assert f"{path}: NEW: top.mpf is new; FACE.spf is new; SLOT_2.spf is new" in out
     code, out, _ = tried(capsys, tmp_path, "--accept")
     assert code == 0
@@ -221,7 +222,7 @@ def test_the_example_comes_out_and_is_what_the_page_shows(capsys: Capture) -> No
     folder = ROOT / "examples" / "project"
     code, out, _ = tried(capsys, folder)
     assert (code, out.splitlines()[-1]) == (0, "1 case: 1 same")
-    shown = (folder / "part.toml").read_text(encoding="utf-8").partition("\n")[2]
+    shown = (folder / "part.toml").read_text(encoding="utf-8").split("\n", 2)[2]
     assert f"```toml\n{shown}```" in (ROOT / "docs" / "projects.md").read_text(encoding="utf-8")
     found = trunnion.simulate(folder / "part.toml")
     assert found.passed

@@ -69,6 +69,7 @@ def test_a_new_definition_can_be_posted_with_and_says_what_it_has_from_its_base(
     assert "C point_mm (ours.toml" not in told
     assert "From yl569.toml, which is another machine" in told
     assert "rapid traverse (C, B, X, Y, Z)" in told
+    assert "which axes turn endlessly (C), how a program writes their angles (C)" in told
     assert "Acceleration of C, B, X, Y, Z: not stated" in told
 
 
@@ -181,6 +182,19 @@ def test_an_editor_finds_the_schema_and_its_mistakes() -> None:
     assert code == 1
     assert '"off" is not valid' in told
     assert "tool_pokets" in told
+
+
+@pytest.mark.skipif(TAPLO is None and "CI" not in os.environ, reason="taplo is not installed")
+def test_an_editor_finds_mistakes_in_a_project() -> None:
+    Path(file_name("project")).write_text(schema_text("project"), encoding="utf-8")
+    part = first_line("project") + 'machine = "yl569"\ncl = ["a.cls"]\noutput = "a.mpf"\n'
+    Path("ours.toml").write_text(part, encoding="utf-8")
+    assert linted()[0] == 0
+    Path("ours.toml").write_text(part + 'divide = "both"\nreports = "a.html"\n', encoding="utf-8")
+    code, told = linted()
+    assert code == 1
+    assert '"both" is not one of' in told
+    assert "reports" in told
 
 
 def test_a_definition_of_ones_own_has_no_name_of_a_shipped_machine(

@@ -14,6 +14,7 @@ from tests.support.locations import YL569
 from tests.support.machines import machine_without_tcp
 from trunnion.cli import main
 from trunnion.model.operation_start import OperationStart
+from trunnion.model.template_passage import TemplatePassage
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
 from trunnion.output.subprograms import SubprogramOutput
@@ -158,8 +159,10 @@ def spoil(monkeypatch: pytest.MonkeyPatch, change: Callable[[bytes], bytes]) -> 
         sink: BinaryIO,
         advance: Callable[[int], None] | None = None,
         subprograms: SubprogramOutput | None = None,
+        passages: list[TemplatePassage] | None = None,
     ) -> tuple[OperationStart, ...]:
         assert subprograms is None
+        assert not passages
         whole = BytesIO()
         starts = write_program(program, whole, advance)
         changed = change(whole.getvalue())

@@ -87,7 +87,9 @@ def test_settings_are_options_on_the_command_line(capsys: pytest.CaptureFixture[
 
 def test_a_code_that_is_none_has_a_cure(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["explain", "ARG11O"]) == 2
-    assert 'did you mean "ARG110"?' in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert 'did you mean "ARG110"?' in told
+    assert told.startswith("CODE: error: ")
 
 
 def test_all_codes_are_listed(capsys: pytest.CaptureFixture[str]) -> None:

@@ -69,7 +69,7 @@ def test_with_tcp_and_without_the_machine_comes_to_the_same_joints_at_every_bloc
     assert "M428" in programs[0]
     assert "M428" not in programs[1]
     run = motions(BENCHES[name], [with_rests(program) for program in programs])
-    # No joint jumps, as it would where a tool length changes under TCP; motions make some tenths of a mm in a millisecond.
+    # No joint jumps, as it would where a tool length changes under TCP; motions make tenths of a mm in a millisecond.
     assert max(np.abs(np.diff(joints, axis=0)).max() for joints in run) < 1.0
     held, led = map(rests_of, run)
     assert held.shape == led.shape

@@ -47,6 +47,24 @@ def test_a_declared_word_is_understood_and_moves_nothing(base: str, lines: str, 
 
 
 @pytest.mark.parametrize("base", HEADS)
+def test_a_word_of_the_builder_that_nobody_declares_is_named_once(base: str, tmp_path: Path) -> None:
+    words = ("M161", "M162") if base == "xyzac_trt" else ("M61", "M88")
+    lines = "\n".join([*words, words[0]])
+    run = read(tmp_path, base, lines)
+    assert run.errors == ()
+    told = [each for each in run.diagnostics if each.code == "NC225"]
+    assert [each.text.split()[0] for each in told] == list(words)
+    check = {each.key: each for each in trunnion.verify(run, machine=run.machine).checks}["words"]
+    assert check.passed
+    assert check.summary.startswith(f"every word is known but those of the machine: {', '.join(words)}")
+    assert [place.code for place in check.places][:2] == ["NC225", "NC225"]
+    declared = read(tmp_path, base, lines, *(f'{word} = "no effect: ours"' for word in words))
+    assert not [each for each in declared.diagnostics if each.code == "NC225"]
+    check = {each.key: each for each in trunnion.verify(declared, machine=declared.machine).checks}["words"]
+    assert check.summary == "every word is known"
+
+
+@pytest.mark.parametrize("base", HEADS)
 def test_effects_are_those_that_the_definition_names(base: str, tmp_path: Path) -> None:
     run = read(tmp_path, base, "M77", 'M77 = "spindle off, coolant flood, stop"')
     assert run.errors == ()

@@ -12,7 +12,7 @@ import pytest
 from jsonschema import Draft7Validator
 
 from tests.support.locations import ROOT
-from tests.support.schemas import COMPLETE, FOLDER, KINDS, questions, schema, text_of
+from tests.support.schemas import COMPLETE, FOLDER, KINDS, PROJECTS, questions, schema, text_of
 from trunnion.api.definition_checks import machine_problems, stand_in
 from trunnion.controls import load_control
 from trunnion.definitions import Table, load_draft
@@ -49,8 +49,10 @@ JUDGED = {
         r"setting_rules\.\w+\.\w+ is not a key", r"in_force\.\w+ is not a key", r"reading\.\w+ is not a key",
         r"reading\.words\.\S+ is (not|no word)", r"known\.\S+ (has no effect|is a word)", r"settings is missing",
     ],
-    "simulation": [r"there is no such file", r"leads out", r"is \[\]", r"the first set-up", r"work_offset", r"stock",
-                   r"(machine|programs) is missing", r"tools"],
+    "project": [r"there is no such file", r"leads out", r"is \[\]", r"the first set-up", r"work_offset", r"stock",
+                r"(machine|programs|output|cl) is missing", r"tools", r"beside set-ups", r"beside output",
+                r"until ends the simulation early", r"belongs to a program that is posted",
+                r"every operation has a program of its own", r"posts nothing"],
     "tools": BETWEEN_SIZES,
     "impeller": [*BETWEEN_SIZES, r"(points|curves|name) is ", r"names '", r"way is ", r"is not among the tools",
                  r"needs either", r"^tool is missing", r"wants", r"flutes of tool",
@@ -62,7 +64,7 @@ JUDGED = {
 DOCUMENTS = {
     "machine": [(str(COMPLETE / "machine.toml"), "")],
     "control": [("sinumerik_840d", ""), ("fanuc_31i", "reading"), ("heidenhain_tnc640", "by_method")],
-    "simulation": [(str(COMPLETE / f"{name}.toml"), "") for name in ("simulation", "simulation_setups")],
+    "project": [(str(COMPLETE / f"{name}.toml"), "") for name in PROJECTS],
     "tools": [(str(COMPLETE / "tools.toml"), "")],
     "impeller": [(str(ROOT / "examples" / "impeller" / "impeller.toml"), "")],
     "nodes": [(str(COMPLETE / "nodes.toml"), "")],
@@ -221,3 +223,43 @@ def test_a_machine_that_extends_another_is_judged_alike(text: str, good: bool) -
     validator = Draft7Validator(schema("machine"))
     assert validator.is_valid(tomllib.loads(text)) == good
     assert (machine_problems(load_draft(text, Path("ours.toml"), machine_library()), "ours") == []) == good
+
+
+PART = 'machine = "yl569"\ncl = ["a.cls"]\noutput = "a.mpf"\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "good"),
+    [
+        (PART, True),
+        ("[simulation]\n" + PART, True),
+        (PART + "[simulation]\n" + PART, False),
+        ('strict = true\n[simulation]\n' + PART, False),
+        (PART + 'settings = { title = "A", tcp = false, feed_limit = 200, zero = [0, 0, 1] }\n', True),
+        (PART + "settings = 7\n", False),
+        (PART + '[[setup]]\nname = "top"\nremove = true\n', False),
+        ('extends = "base.toml"\n[[setup]]\nname = "top"\nremove = true\n', True),
+        ('extends = "base.toml"\noutputs = "b.mpf"\n', False),
+        ("zero_mm = [0, 0]\n" + PART, False),
+        (PART + '[checks]\nsimulate = "yes"\n', False),
+    ],
+)  # fmt: skip
+def test_a_project_is_judged_with_its_keys_at_the_top_and_in_a_table(text: str, good: bool) -> None:
+    assert Draft7Validator(schema("project")).is_valid(tomllib.loads(text)) == good
+
+
+@pytest.mark.parametrize("kind", ["tools", "impeller", "nodes"])
+def test_what_extends_another_file_needs_no_more(kind: str) -> None:
+    validator = Draft7Validator(schema(kind))
+    assert validator.is_valid({"extends": "base.toml"})
+    assert not validator.is_valid({"extends": 7})
+
+
+def test_every_toml_file_of_the_examples_names_its_schema() -> None:
+    for path in sorted((ROOT / "examples").rglob("*.toml")):
+        first = path.read_text(encoding="utf-8").partition("\n")[0]
+        assert first.startswith("#:schema "), path
+        named = (path.parent / first.removeprefix("#:schema ")).resolve()
+        kind = next(each for each in NAMES if named == (FOLDER / file_name(each)).resolve())
+        own = tomllib.loads(path.read_text(encoding="utf-8"))
+        assert [error.message for error in Draft7Validator(schema(kind)).iter_errors(own)] == [], path

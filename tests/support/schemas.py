@@ -37,7 +37,7 @@ NODES: Final = ROOT / "src" / "trunnion" / "twin" / "recording" / "library"
 
 Json = dict[str, Any]
 
-#: Arrays of tables that merge by name, in files that can extend others.
+#: Arrays of tables that must have names, by which those of a file that extends another merge.
 NAMED: Final = ("axis", "body", "format", "word")
 
 
@@ -51,8 +51,8 @@ class Kind:
     library   of the names
     docs      pages with tables of keys: page, heading above the first table, what stands before the keys
     variants  arrays of tables of several sorts -> the key that says which
-    extends   a file may extend another one
     needs     keys that a loader wants before it asks for others
+    table     a table that may hold all keys of the file; empty: there is none
     """
 
     title: str
@@ -61,8 +61,8 @@ class Kind:
     library: Any
     docs: Sequence[tuple[str, str, str]]
     variants: Mapping[str, str] = field(default_factory=dict)
-    extends: bool = False
     needs: Sequence[str] = ()
+    table: str = ""
 
 
 def _read_control(table: Table, path: Path) -> None:
@@ -75,6 +75,19 @@ def _machine(table: Table, path: Path) -> None:
     read_machine(table, path.stem)
 
 
+#: Projects with every key: of one set-up and of several, posted and simulated.
+PROJECTS: Final = ("project", "project_setups", "simulation", "simulation_setups")
+
+
+def _read_project(table: Table, path: Path) -> None:
+    """As what it is: a project with an output is posted."""
+    top = table.to_dict()
+    keys = top.get("simulation", top)
+    setups = keys.get("setup") if isinstance(keys, dict) else ()
+    tables = [keys, *(setups if isinstance(setups, list) else ())]
+    read_project_table(table, path, is_posted=any(isinstance(each, dict) and "output" in each for each in tables))
+
+
 KINDS: Final[Mapping[str, Kind]] = {
     "machine": Kind(
         "machine definition", _machine, [*shipped_machines(), str(COMPLETE / "machine.toml")], machine_library(),
@@ -82,20 +95,21 @@ KINDS: Final[Mapping[str, Kind]] = {
             "### The file", "### `[[axis]]`", "Of a linear axis:", "Of a rotary axis:", "### `[spindle]`",
             "### `[workpiece]`", "### `[facts]`", "### `[[body]]`", "### `[cl.words]`",
         )],
-        {"axis": "kind", "body": "shape"}, extends=True,
+        {"axis": "kind", "body": "shape"},
     ),
     "control": Kind(
         "control definition", _read_control, [*shipped_controls(), str(COMPLETE / "control.toml")], control_library(),
         [("definitions.md", heading, "") for heading in (
             "#### Keys of a control", "`[[control.format]]`, a", "`[[control.word]]`, a", "Other tables:",
         )],
-        extends=True, needs=("family",),
+        needs=("family",),
     ),
-    "simulation": Kind(
-        "simulation project", lambda table, path: read_project_table(table, path, is_posted=False),
-        [str(ROOT / "examples" / "simulation" / "plate.toml"), str(COMPLETE / "simulation.toml"),
-         str(COMPLETE / "simulation_setups.toml")], COMPLETE,
-        [("simulation.md", "A file is a project if", "simulation.")], needs=("simulation",),
+    "project": Kind(
+        "project", _read_project,
+        [str(ROOT / "examples" / "project" / "part.toml"), str(ROOT / "examples" / "simulation" / "plate.toml"),
+         *(str(COMPLETE / f"{name}.toml") for name in PROJECTS)], COMPLETE,
+        [("projects.md", "| key of the project", ""), ("projects.md", "| key of a set-up", ""),
+         ("simulation.md", "A file is a project if", "")], table="simulation",
     ),
     "tools": Kind(
         "tool library", read_library_table,
@@ -148,13 +162,9 @@ def schema(name: str) -> Json:
     }
     root.required |= set(kind.needs)
     complete = _complete(root)
-    if not kind.extends:
-        return {**found, **_merged(found, complete)}
-    shipped = [each for each in kind.files if not each.endswith(".toml")]
-    found["properties"] = {
-        "extends": {"type": "string", "description": meanings.get("extends", ""), "examples": shipped},
-        **found["properties"],
-    }
+    if kind.table:
+        _add_table(kind.table, found, complete)
+    found["properties"] = {"extends": _extends(kind, meanings), **found["properties"]}
     if name == "machine":
         control = schema("control")
         for key in ("$schema", "title", "if", "else"):
@@ -174,9 +184,23 @@ def schema(name: str) -> Json:
     }
 
 
-def _merged(found: Json, complete: Json) -> Json:
-    """What a file must have at its top, and below by reference."""
-    return {"allOf": [*found.get("allOf", ()), {"$ref": "#/$defs/complete"}], "$defs": {"complete": complete}}
+def _extends(kind: Kind, meanings: Mapping[str, str]) -> Json:
+    """The key that every loader follows before it asks for any other."""
+    shipped = [each for each in kind.files if not each.endswith(".toml")]
+    meaning = meanings.get("extends") or "a .toml file beside this one or below, whose keys count where this has none"
+    return {"type": "string", "description": meaning} | ({"examples": shipped} if shipped else {})
+
+
+def _add_table(table: str, found: Json, complete: Json) -> None:
+    """Let all keys of a file stand in one table too; then none stands beside it."""
+    keys = {key: found[key] for key in ("type", "properties", "additionalProperties")}
+    meaning = "in place of the keys at the top: all of them in this table"
+    others = {"properties": dict.fromkeys(found["properties"], False)}
+    found["allOf"] = [*found.get("allOf", ()), {"if": {"required": [table]}, "then": others}]
+    found["properties"] = {**found["properties"], table: {"description": meaning, **keys}}
+    at_top = dict(complete)
+    complete.clear()
+    complete.update({"if": {"required": [table]}, "then": {"properties": {table: at_top}}, "else": at_top})
 
 
 @cache
@@ -195,12 +219,14 @@ def questions(name: str) -> tuple[tuple[dict[str, Any], list[Question]], ...]:
 def _tree(name: str) -> Node:
     """The tables of a kind."""
     kind, root = KINDS[name], Node()
-    runs = questions(name)
+    runs = [(content.get(kind.table, content), _at_top(asked, kind.table)) for content, asked in questions(name)]
     open_tables = {_plain(each.path) for _, asked in runs for each in asked if each.expected.form is Form.ANY_KEY}
     instances: dict[tuple[str, ...], dict[tuple[int, str], dict[str, bool]]] = {}
     values: dict[tuple[int, str], Any] = {}
     for run, (content, asked) in enumerate(runs):
         for path, key, expected in asked:
+            if kind.table and not path and key == kind.table:
+                continue
             steps = tuple(_steps(path, open_tables))
             node = _node(root, steps)
             keys = instances.setdefault(steps, {}).setdefault((run, path), {})
@@ -225,6 +251,13 @@ def _tree(name: str) -> Node:
                 known, must = node.variants.get(sort, (set(), needed))
                 node.variants[sort] = known | keys.keys(), must & needed
     return root
+
+
+def _at_top(asked: Sequence[Question], table: str) -> list[Question]:
+    """Questions as they are where the keys of the table stand at the top of the file."""
+    if not table:
+        return list(asked)
+    return [each._replace(path=re.sub(rf"^{table}(\.|$)", "", each.path)) for each in asked]
 
 
 def _plain(path: str) -> str:
@@ -254,14 +287,17 @@ def _node(root: Node, steps: Iterable[str]) -> Node:
     return root
 
 
-def _object(node: Node, path: str, meanings: Mapping[str, str], kind: Kind) -> Json:
-    """The schema of a table: what each of its keys may be, and no other keys; nothing is required."""
+def _object(
+    node: Node, path: str, meanings: Mapping[str, str], kind: Kind, *, is_item: bool = False
+) -> Json:  # fmt: skip
+    """The schema of a table, maybe one of several: what each of its keys may be, and no others; none is required."""
     properties = {
         key: _property(node, key, f"{path}{key}", meanings, kind) for key in node.asked if key != "*"
     }  # fmt: skip
     found: Json = {"type": "object", "properties": properties, "additionalProperties": False}
-    if path.rstrip(".") in NAMED:
+    if is_item and "name" in node.asked:
         properties["remove"] = {"type": "boolean", "description": "in a file that extends another: take it out"}
+    if path.rstrip(".") in NAMED:
         found["required"] = ["name"]  # by which it is merged
     if node.any_key:
         rest = _property(node, "*", f"{path}*", meanings, kind) if "*" in node.asked else {}
@@ -287,7 +323,7 @@ def _property(node: Node, key: str, path: str, meanings: Mapping[str, str], kind
     choices = [_value(form, each, child, path, meanings, kind) for form, each in by_form.items()]
     found: Json = choices[0] if len(choices) == 1 else {"anyOf": choices}
     above, _, last = path.rpartition(".")
-    if meaning := meanings.get(path) or meanings.get(f"{above.rpartition('.')[0]}.{last}"):
+    if meaning := meanings.get(path) or meanings.get(f"{above.rpartition('.')[0]}.{last}".lstrip(".")):
         found = {"description": meaning, **found}
     defaults = [each.default for each in asked if each.default not in (None, "", ())]
     if len({json.dumps(default) for default in defaults}) == 1 and len(defaults) == len(asked):
@@ -326,7 +362,7 @@ def _value(
         case Form.TABLE:
             return _object(node, f"{path}.", meanings, kind)
         case Form.TABLES:
-            return {"type": "array", "items": _object(node, f"{path}.", meanings, kind)}
+            return {"type": "array", "items": _object(node, f"{path}.", meanings, kind, is_item=True)}
     raise AssertionError(form)
 
 
@@ -375,7 +411,7 @@ def _complete(node: Node) -> Json:
                 for sort, (_, must) in child.variants.items()
                 if must - child.required
             ]
-            removal = {"properties": {"remove": False}} if key in NAMED else {}
+            removal = {"properties": {"remove": False}} if "name" in child.asked else {}
             parts = inner | removal | ({"allOf": sorts} if sorts else {})
             if removal and "properties" in inner:
                 parts["properties"] = inner["properties"] | removal["properties"]

@@ -17,6 +17,8 @@ from trunnion.machines.loading import machine_library
 #: Keys of axes that no two machines of a type share for certain, and what they are.
 _MEASURED: Final = {
     "point_mm": "the lines about which axes turn", "limits_mm": "travel", "limits_deg": "travel",
+    "endless": "which axes turn endlessly", "output": "how a program writes their angles",
+    "positive": "which way axes go",
     "home_mm": "home", "home_deg": "home", "rapid_mm_min": "rapid traverse", "rapid_deg_min": "rapid traverse",
     "acceleration_mm_s2": "acceleration", "acceleration_deg_s2": "acceleration",
 }  # fmt: skip

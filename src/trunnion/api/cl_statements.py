@@ -61,11 +61,11 @@ def check_statements(machine: Machine) -> None:
         word = name.removeprefix(EVENT_PLACE)
         if word not in _TEXT_STATEMENTS and not can_be_unknown(word):
             templates.add_problem(
-                name, what, f"write a template for {_OR.join(_TEXT_STATEMENTS)} or a word of a shop", code="DEF510"
+                name, what, f"write a template for {_OR.join(_TEXT_STATEMENTS)} or a word of a shop", code="DEF590"
             )
         elif word != word.upper():
             templates.add_problem(
-                name, "is not in capitals, as words of CL files are", f"write {name.upper()}", code="DEF510"
+                name, "is not in capitals, as words of CL files are", f"write {name.upper()}", code="DEF590"
             )
     file = machine.files[-1] if machine.files else machine.key
     words = [word for word in machine.cl_words if not can_be_unknown(word)]

@@ -35,6 +35,9 @@ from trunnion.wording import counted
 #: Places that are not understood which an error names one by one.
 _MOST_NAMED = 20
 
+#: The code of words of the machine's builder, of which a conversion says itself what becomes of them.
+_OF_BUILDER = "NC225"
+
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ConvertResult:
@@ -269,7 +272,8 @@ class _ProgramConverter:
             what = f"{counted(len(errors), 'place')} not understood, and nothing is written"
             cure = "force=True converts what was understood"
             raise RefusedError((*errors[:_MOST_NAMED], Problem(self._file, 0, what, cure, code="CNV120")))
-        self.report([problem for problem in found if not problem.what.startswith(COMPENSATION_FINDINGS)])
+        told = [each for each in found if not each.what.startswith(COMPENSATION_FINDINGS) and each.code != _OF_BUILDER]
+        self.report(told)
         converted = conversion.convert(run, control)
         toolpath, of_builder = conversion.carry_machine_words(converted.toolpath, run.machine, target)
         converted = replace(converted, toolpath=toolpath)

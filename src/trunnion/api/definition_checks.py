@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from trunnion.api.cl_statements import check_statements
 from trunnion.controls import load_control
-from trunnion.definitions import Table
+from trunnion.definitions import Table, in_order
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine, load_machine, shipped_machines
 from trunnion.machines.loading import read_machine
@@ -46,14 +46,14 @@ def machine_problems(table: Table, key: str) -> list[Problem]:
 
 
 def all_problems(checks: Iterable[Callable[[], object]]) -> list[Problem]:
-    """Return the problems that all checks raise together, each once, in the order of files and lines."""
+    """Return the problems that all checks raise together, each once, those in shipped files last."""
     problems: dict[Problem, None] = {}
     for check in checks:
         try:
             check()
         except InputError as error:
             problems |= dict.fromkeys(error.problems)
-    return sorted(problems, key=lambda problem: (problem.file, problem.line))
+    return in_order(problems)
 
 
 def stand_in(file: str, control: Table) -> Machine:

@@ -5,22 +5,21 @@ Out:    toolpaths that are checked as strictly as those of CL files, with a rema
         They are what the program is proven against.
 """
 
-import inspect
 import sys
 import types
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import redirect_stdout
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Final, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
 from trunnion.api.hook_checks import fingerprint, operation_fault, value_fault
+from trunnion.api.hook_copies import detached
+from trunnion.api.hook_files import HookFile, failure
 from trunnion.cl import unknown_statement_remarks
 from trunnion.controls.vocabulary import HOOKS_NOTICE
-from trunnion.definitions.messages import did_you_mean
-from trunnion.errors import InputError, Problem, Severity, unusable_file
+from trunnion.errors import InputError, Problem, Severity
 from trunnion.hooks import Block, Context
 from trunnion.model.motion import Decision, DecisionTopic
 from trunnion.model.splines import Splines
@@ -39,40 +38,7 @@ from trunnion.model.toolpath import (
 )
 from trunnion.wording import counted
 
-#: The functions that a file of hooks may have, and what each is called with.
-_FUNCTIONS: Final = {
-    "on_operation": ("operation", "context"),
-    "on_event": ("event", "context"),
-    "on_block": ("block", "context"),
-}
-
 _Kind = TypeVar("_Kind", Operation, Event)
-
-_MODULE: Final = "trunnion_hooks"
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class HookFile:
-    """A file of hooks that has been run: its functions by name."""
-
-    path: Path
-    functions: dict[str, Callable[..., object]]
-
-    def line_of(self, name: str) -> int:
-        """The line of a function, 0 if it is not in the file."""
-        code = getattr(self.functions[name], "__code__", None)
-        return code.co_firstlineno if code is not None and code.co_filename == str(self.path) else 0
-
-
-def load_hooks(paths: Iterable[Path]) -> tuple[HookFile, ...]:
-    """Run files of hooks, in their order.
-
-    Raises
-    ------
-    InputError
-        If a file is none, fails, or has no hooks, at its line.
-    """
-    return tuple(_load(path) for path in paths)
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +78,14 @@ class Hooks:
         InputError
             If a hook fails, or returns what no CL file could say.
         """
-        return [self._changed(toolpath) for toolpath in toolpaths]
+        given = list(toolpaths)
+        found = [self._changed(toolpath) for toolpath in given]
+        if _moves(given) and not _moves(found):
+            path, function = self._files[-1].path, next(iter(self._files[-1].functions))
+            what = "the hooks leave out every operation that moves the tool"
+            cure = "return None for those that are to stay as they are"
+            raise InputError(Problem(str(path), self._files[-1].line_of(function), what, cure, code="HOK160"))
+        return found
 
     def _changed(self, toolpath: Toolpath) -> Toolpath:
         if not self._files:
@@ -133,18 +106,16 @@ class Hooks:
 
     def _run(self, file: HookFile, cl_file: str, operation: Operation, number: int) -> list[Operation]:
         call = _Caller(file, cl_file, self._run_of, number)
-        call.watch(operation)
         found = [operation]
         if "on_operation" in file.functions:
-            returned = call("on_operation", operation, operation)
-            found = [operation] if returned is None else call.listed("on_operation", returned, Operation)
+            given = call.given(operation)
+            returned = call("on_operation", given, given)
+            made = [given] if returned is None else call.listed("on_operation", returned, Operation)
             call.refuse_changes("on_operation")
-            found = [_plain_operation(call, operation, each) for each in found]
+            found = [_plain_operation(call, operation, given, each) for each in made]
         for name, change in (("on_event", call.events), ("on_block", call.block_events)):
             if name in file.functions:
-                for each in found:
-                    call.watch(each)
-                found = [replace(each, events=change(each)) for each in found]
+                found = [replace(each, events=change(each, call.given(each))) for each in found]
                 call.refuse_changes(name)
         return found
 
@@ -168,6 +139,10 @@ class Hooks:
         )
         name = next(iter(file.functions))
         return [Problem(str(file.path), file.line_of(name), text, severity=Severity.WARNING, code="HOK140")]
+
+
+def _moves(toolpaths: Iterable[Toolpath]) -> bool:
+    return any(len(operation.moves) for toolpath in toolpaths for operation in toolpath.operations)
 
 
 def _motion_change(before: Operation, after: Sequence[Operation]) -> list[str]:
@@ -196,16 +171,18 @@ class _Caller:
         self._file, self._cl_file, self._run, self._number = file, cl_file, run, number
         self._watched: list[tuple[Operation, bytes]] = []
 
-    def watch(self, operation: Operation) -> None:
-        """Keep in mind what an operation is, before a function gets it."""
-        self._watched.append((operation, fingerprint(operation)))
+    def given(self, operation: Operation) -> Operation:
+        """The operation as a function gets it: a copy of its own, that is watched."""
+        copy = detached(operation)
+        self._watched.append((copy, fingerprint(copy)))
+        return copy
 
     def refuse_changes(self, name: str) -> None:
         """Refuse what a function has changed without returning it: nobody would be told, and nothing would check it."""
         if any(fingerprint(operation) != before for operation, before in self._watched):
             what = f"{name} changes an operation in place"
             cure = "return a changed copy: replace(operation, moves=replace(operation.moves, feed=…))"
-            raise InputError(Problem(str(self._file.path), self._file.line_of(name), what, cure, code="HOK130"))
+            raise InputError(Problem(str(self._file.path), self._file.line_of(name), what, cure, code="HOK135"))
 
     def __call__(self, name: str, given: object, operation: Operation) -> object:
         """Call a function with an operation, an event or a block."""
@@ -215,14 +192,12 @@ class _Caller:
             with redirect_stdout(sys.stderr):  # the program may go to standard output
                 return self._file.functions[name](given, context)
         except (Exception, SystemExit) as error:
-            raise InputError(
-                _failure(self._file.path, error, f"{name} fails for operation {operation.name}")
-            ) from error
+            raise InputError(failure(self._file.path, error, f"{name} fails for operation {operation.name}")) from error
 
-    def refuse(self, name: str, what: str, cure: str) -> InputError:
+    def refuse(self, name: str, what: str, cure: str, code: str = "HOK130") -> InputError:
         """The error for what a function has returned."""
         return InputError(
-            Problem(str(self._file.path), self._file.line_of(name), f"{name} returns {what}", cure, code="HOK130")
+            Problem(str(self._file.path), self._file.line_of(name), f"{name} returns {what}", cure, code=code)
         )
 
     def listed(self, name: str, returned: object, kind: type[_Kind]) -> list[_Kind]:
@@ -234,31 +209,35 @@ class _Caller:
         word = kind.__name__.lower()
         raise self.refuse(name, f"a value of type {what}", f"return an {word}, a list of them, or None for no change")
 
-    def events(self, operation: Operation) -> tuple[Event, ...]:
-        """The events of an operation as ``on_event`` leaves them."""
+    def events(self, operation: Operation, given: Operation) -> tuple[Event, ...]:
+        """The events of an operation as ``on_event`` leaves them, which gets those of its copy ``given``."""
         found: list[Event] = []
-        for event in operation.events:
-            returned = self("on_event", event, operation)
+        for event, copy in zip(operation.events, given.events, strict=True):
+            returned = self("on_event", copy, given)
             if returned is None:
                 found.append(event)
                 continue
             for new in self.listed("on_event", returned, Event):
-                if new is not event:
-                    self._check_types("on_event", new)
-                    new = self._checked("on_event", replace(new, row=event.row, line=event.line), len(operation.moves))
-                found.append(new)
+                if new is copy:
+                    found.append(event)
+                    continue
+                self._check_types("on_event", new)
+                new = replace(new, row=event.row, line=event.line)
+                found.append(self._checked("on_event", new, len(operation.moves)))
         return tuple(found)
 
-    def block_events(self, operation: Operation) -> tuple[Event, ...]:
+    def block_events(self, operation: Operation, given: Operation) -> tuple[Event, ...]:
         """The events of an operation with those that ``on_block`` adds, behind the others of their rows."""
         added: list[Event] = []
         for block in _blocks(operation.moves):
-            returned = self("on_block", block, operation)
+            returned = self("on_block", block, given)
             for new in [] if returned is None else self.listed("on_block", returned, Event):
                 self._check_types("on_block", new)
                 if new.row not in (block.row, block.row + 1):
                     cure = "make events with row=block.row, or row=block.row + 1 for behind it"
-                    raise self.refuse("on_block", f"an event at row {new.row} for the block of row {block.row}", cure)
+                    raise self.refuse(
+                        "on_block", f"an event at row {new.row} for the block of row {block.row}", cure, "HOK132"
+                    )
                 new = replace(new, line=block.line) if new.line < 1 else new
                 added.append(self._checked("on_block", new, len(operation.moves)))
         return tuple(sorted((*operation.events, *added), key=lambda event: event.row))
@@ -278,18 +257,22 @@ class _Caller:
         fault = value_fault(event)
         if fault:
             cure = "texts are of one line, and numbers are finite; help(trunnion.hooks) has the values of each event"
-            raise self.refuse(name, f"{type(event).__name__} with {fault}", cure)
+            raise self.refuse(name, f"{type(event).__name__} with {fault}", cure, "HOK132")
 
     def _checked(self, name: str, event: Event, rows: int) -> Event:
         if not 0 <= event.row <= rows:
-            raise self.refuse(name, f"an event at row {event.row}", f"its operation has the rows 0 to {rows}")
-        return replace(event, template="") if isinstance(event, Insert) and event.template else event
+            cure = f"its operation has the rows 0 to {rows}"
+            raise self.refuse(name, f"an event at row {event.row}", cure, "HOK132")
+        return replace(event, template="") if isinstance(event, Insert) and event.template else detached(event)
 
 
-def _plain_operation(call: _Caller, before: Operation, operation: Operation) -> Operation:
-    """An operation that a hook has returned, checked as a reader's is by the way it is made."""
-    if operation is before:
-        return operation
+def _plain_operation(call: _Caller, before: Operation, given: Operation, operation: Operation) -> Operation:
+    """An operation that a hook has returned, checked as a reader's is by the way it is made.
+
+    The hook may keep what it has got (``given``) and what it returns, and change it later: none of it goes on.
+    """
+    if operation is given:
+        return before
     parts: dict[str, type | tuple[type, ...]] = {
         "moves": Moves,
         "arcs": Arcs,
@@ -302,15 +285,22 @@ def _plain_operation(call: _Caller, before: Operation, operation: Operation) -> 
         if not isinstance(part, kind):
             cure = f"keep the {name} of the operation, or make others of the classes in trunnion.hooks"
             raise call.refuse("on_operation", f"an operation with {name} of the type {type(part).__name__}", cure)
-    moves, rows = operation.moves, len(operation.moves)
+    keeps_events, keeps_moves = operation.events is given.events, operation.moves is given.moves
+    own = {
+        name: getattr(before, name) if getattr(operation, name) is getattr(given, name) else detached(part)
+        for name in parts
+        for part in [getattr(operation, name)]
+    }
+    operation = replace(operation, **own)
+    rows = len(operation.moves)
     fault = operation_fault(operation)
     if fault:
         cure = "change copies of the columns: replace(operation, moves=replace(operation.moves, feed=…))"
-        raise call.refuse("on_operation", f"an operation {operation.name!r:.60} that {fault}", cure)
+        raise call.refuse("on_operation", f"an operation {operation.name!r:.60} that {fault}", cure, "HOK132")
     # A spline is about its points: whoever changes these wants lines.
-    splines = operation.splines if moves is before.moves else Splines.empty()
+    splines = before.splines if keeps_moves else Splines.empty()
     events = operation.events
-    if events is not before.events or rows != len(before.moves):
+    if not keeps_events or rows != len(before.moves):
         events = call.checked_events(events, rows)
     return replace(operation, events=events, splines=splines, file=before.file)
 
@@ -321,56 +311,3 @@ def _blocks(moves: Moves) -> Iterable[Block]:
         zip(*(c.tolist() for c in columns), strict=True)
     ):
         yield Block(row, tuple(tip), tuple(axis), Kind(kind), Phase(phase), feed, per_rev, line)
-
-
-def _load(path: Path) -> HookFile:
-    problem = unusable_file(path, "a file of hooks")
-    if problem is None and path.suffix != ".py":
-        problem = Problem(
-            str(path), 0, "is no Python file", "give the path of a file of hooks, such as shop.py", code="HOK110"
-        )
-    if problem is not None:
-        raise InputError(problem)
-    module = types.ModuleType(_MODULE)
-    module.__file__ = str(path)
-    try:
-        with redirect_stdout(sys.stderr):
-            exec(compile(path.read_text(encoding="utf-8-sig"), str(path), "exec"), module.__dict__)
-    except (Exception, SystemExit) as error:
-        raise InputError(_failure(path, error, "the file of hooks fails")) from error
-    named = {name: value for name, value in vars(module).items() if name.startswith("on_") and callable(value)}
-    for name, function in named.items():
-        if name not in _FUNCTIONS:
-            line = getattr(getattr(function, "__code__", None), "co_firstlineno", 0)
-            cure = did_you_mean(name, _FUNCTIONS) or f"hooks are {', '.join(_FUNCTIONS)}"
-            raise InputError(Problem(str(path), line, f"{name} is no hook", cure, code="HOK110"))
-        _check_signature(path, name, function)
-    if not named:
-        cure = f"write a function {' or '.join(_FUNCTIONS)}"
-        raise InputError(Problem(str(path), 0, "the file has no hooks", cure, code="HOK110"))
-    return HookFile(path, {name: named[name] for name in _FUNCTIONS if name in named})
-
-
-def _check_signature(path: Path, name: str, function: Callable[..., object]) -> None:
-    try:
-        inspect.signature(function).bind(*_FUNCTIONS[name])
-    except (TypeError, ValueError):
-        line = getattr(getattr(function, "__code__", None), "co_firstlineno", 0)
-        cure = f"write def {name}({', '.join(_FUNCTIONS[name])}):"
-        raise InputError(Problem(str(path), line, f"{name} takes other arguments", cure, code="HOK110")) from None
-
-
-def _failure(path: Path, error: BaseException, what: str) -> Problem:
-    """The problem that an exception is, at the line of the file where it came about."""
-    line, trace = 0, error.__traceback__
-    while trace is not None:
-        if trace.tb_frame.f_code.co_filename == str(path):
-            line = trace.tb_lineno
-        trace = trace.tb_next
-    if isinstance(error, SyntaxError) and error.filename == str(path):
-        line = error.lineno or 0
-    text = str(error).splitlines()
-    said = f": {text[0]}" if text else ""
-    return Problem(
-        str(path), line, f"{what}: {type(error).__name__}{said}", "mend it there, or leave the hooks out", code="HOK120"
-    )

@@ -73,6 +73,16 @@ _TEMPLATE_CURE: Final = (
 )
 _CURE: Final = "write it as a CL statement, or leave it out: INSERT takes what moves nothing and changes no mode"
 
+#: What is said of a text that calls a subprogram, and its cure.
+_NOT_RUN: Final = "is not run with raw text"
+_CALL_CURE: Final = (
+    'declare a call that comes back under [control.known] of the definition, such as "M98 P77" = "comes back: probes",'
+    " or leave it out"
+)
+
+#: How readers tell of a call whose subprogram they do not have.
+_CALLS: Final = re.compile(r"missing subprogram ([^;:]+)")
+
 
 def insert_problems(program: Program) -> list[Problem]:
     """What is wrong with the raw texts of a program; empty where its control has no reader."""
@@ -119,7 +129,7 @@ def _modes_at(name: str, program: Program) -> list[Problem]:
             assert template is not None
             what = f"template {name} writes {word}, and the operation does not say its own mode again behind it"
             cure = "leave it out, or write it into the template of the approach, in place of the mode there"
-            problems.append(Problem(*template.place_of(k), what, cure, code="CTL455"))
+            problems.append(Problem(*template.place_of(k), what, cure, code="CTL457"))
     return problems
 
 
@@ -144,10 +154,11 @@ def _problem(program: Program, motion: Motion, event: Insert, effect: str) -> Pr
     """What is wrong with a text, at its line of the CL file or at its template."""
     file, text = program.file_of(motion.operation), event.text.strip().replace("\n", " | ")
     if not event.template:
-        return Problem(file, event.line, f"INSERT/{text}: {effect}", _CURE, code="CTL455")
+        cure = _CALL_CURE if effect.endswith(_NOT_RUN) else _CURE
+        return Problem(file, event.line, f"INSERT/{text}: {effect}", cure, code="CTL455")
     place = program.control.templates[event.template].place_of(0)
     what = f"template {event.template} writes {text} at {file}:{event.line}: {effect}"
-    return Problem(*place, what, _TEMPLATE_CURE, code="CTL455")
+    return Problem(*place, what, _TEMPLATE_CURE, code="CTL457")
 
 
 def _not_known(text: str, program: Program) -> str:
@@ -249,6 +260,8 @@ def _difference(without: Run, with_text: Run, declared: Sequence[readers.KnownWo
     if effect:
         return effect
     if unknown:
+        if call := _CALLS.search(unknown[0]):
+            return f"nobody can say what it does: subprogram {call[1]} {_NOT_RUN}"
         return f"nobody can say what it does: {unknown[0]}"
     if len(with_text) < len(without):
         return "it ends the program"

@@ -10,16 +10,23 @@ from typing import BinaryIO, Final
 
 from trunnion.files import OutputFiles
 from trunnion.output.program import Program
-from trunnion.output.template_values import TIME_TOKEN, TIME_TOKEN_LENGTH, estimated_seconds, prints_times
+from trunnion.output.template_values import (
+    TIME_TOKEN_DIGITS,
+    TIME_TOKEN_LETTERS,
+    estimated_seconds,
+    new_time_token,
+    prints_times,
+)
 from trunnion.verification import Verification, durations
 from trunnion.wording import format_duration
 
-__all__ = ["operation_times", "prints_times", "write_times"]
+__all__ = ["new_time_token", "operation_times", "prints_times", "write_times"]
+
+#: Bytes of a token: no time is longer.
+_LENGTH: Final = TIME_TOKEN_LETTERS + TIME_TOKEN_DIGITS
 
 #: Bytes that are read at once.
 _PIECE: Final = 1 << 20
-
-_TOKEN: Final = re.compile(TIME_TOKEN.encode() + rb"(\d{%d})" % (TIME_TOKEN_LENGTH - len(TIME_TOKEN)))
 
 
 def operation_times(program: Program, verification: Verification | None) -> list[float]:
@@ -44,11 +51,12 @@ def write_times(files: OutputFiles, program: Program, seconds: Sequence[float]) 
     colons = family.escape_comment(":") == ":"
     shown = [family.escape_comment(format_duration(time, colons)) for time in times]
     texts = [(text.upper() if capitals else text).encode() for text in shown]
+    token = re.compile(program.time_token.encode() + rb"(\d{%d})" % TIME_TOKEN_DIGITS)
     for sink in files.sinks():
-        _replace_tokens(sink, texts)
+        _replace_tokens(sink, token, texts)
 
 
-def _replace_tokens(sink: BinaryIO, texts: Sequence[bytes]) -> None:
+def _replace_tokens(sink: BinaryIO, token: re.Pattern[bytes], texts: Sequence[bytes]) -> None:
     """Replace tokens in place, piece by piece: no text is longer than its token."""
     read = write = 0
     while True:
@@ -57,16 +65,10 @@ def _replace_tokens(sink: BinaryIO, texts: Sequence[bytes]) -> None:
         if not piece:
             break
         read += len(piece)
-        changed = _TOKEN.sub(lambda match: _text_of(match, texts), piece)
+        changed = token.sub(lambda match: texts[int(match[1])][:_LENGTH], piece)
         if write < read - len(piece) or changed is not piece:
             sink.seek(write)
             sink.write(changed)
         write += len(changed)
     sink.truncate(write)
     sink.seek(write)
-
-
-def _text_of(match: re.Match[bytes], texts: Sequence[bytes]) -> bytes:
-    """The time for a token; a text of the CL file that looks like one stays."""
-    number = int(match[1])
-    return texts[number][:TIME_TOKEN_LENGTH] if number < len(texts) else match[0]

@@ -6,6 +6,7 @@ Out:    the program: planned, written, read back, run and compared with its tool
 """
 
 from collections.abc import Iterable, Sequence
+from concurrent.futures import Future
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
@@ -14,20 +15,22 @@ from trunnion.api import kernels
 from trunnion.api.arguments import check_observer, check_paths
 from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.forcing import Proof, Untold, write_forced
-from trunnion.api.hooks import Hooks, load_hooks
+from trunnion.api.hook_files import load_hooks
+from trunnion.api.hooks import Hooks
 from trunnion.api.input_files import cl_files, machine_files
 from trunnion.api.job import FORCING, PostJob, prepare
-from trunnion.api.machining_times import operation_times, prints_times, write_times
+from trunnion.api.machining_times import new_time_token, operation_times, prints_times, write_times
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.paper_files import PaperFiles, paper_files
 from trunnion.api.papers import PostPapers, post_papers
 from trunnion.api.planning import load_toolpaths, new_problems, plan_program
 from trunnion.api.post_result import PostResult, ProofFailedError
+from trunnion.api.program_places import ProgramPlaces
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.api.reports import write_refusal
 from trunnion.api.settings import Settings
 from trunnion.api.targets import OutputLike, Target, open_target
-from trunnion.api.writing import read_back_while_writing, write
+from trunnion.api.writing import named_verification, read_back_while_writing, write
 from trunnion.errors import Problem, Severity, TrunnionError
 from trunnion.files import OutputGroup, file_on_disk
 from trunnion.jit import compile_ahead
@@ -204,12 +207,13 @@ def post_toolpaths(
     reading = partial(
         read_back_while_writing, target.files, job.machine, encoding=job.encoding, divided=divided, beside=job.beside
     )
+    places = ProgramPlaces(target)
     try:
         with reading() as (progress, running):
             program, planned, problems = plan_program(toolpaths, job, observer)
-            program = replace(program, has_time_tokens=prints_times(program))
-            starts = write(program, target.files.main, progress, subprograms, observer)
-        run = running.result()
+            program = replace(program, time_token=new_time_token() if prints_times(program) else "")
+            starts = write(program, target.files.main, progress, subprograms, observer, places.passages)
+        run = _run_of(running, job, places)
         if job.options.fastest_feed:
             from trunnion.api.fastest_feeds import (
                 raised_feeds,
@@ -225,18 +229,18 @@ def post_toolpaths(
             del run, running
             target.files.restart()
             with reading() as (progress, running):
-                starts = write(program, target.files.main, progress, subprograms, observer)
-            run = running.result()
+                starts = write(program, target.files.main, progress, subprograms, observer, places.passages)
+            run = _run_of(running, job, places)
         expected = expectation(program, job.options)
     except TrunnionError as error:
         if job.papers.report is not None:
             write_refusal(error.problems, job.machine, target.name, job.papers.report)
             target.files.remember_alone(job.papers.report)
         raise
-    columns = job.columns or program.has_time_tokens
+    columns = job.columns or bool(program.time_token)
 
     def prove(run: Run | None, starts: Sequence[OperationStart]) -> Proof:
-        verification = _prove(run, toolpaths, expected, target, starts, columns=columns)
+        verification = _prove(run, toolpaths, expected, target, starts, job, columns=columns)
         # What may get notices in its head is told when lines are those of the file that stays.
         quiet = Untold(observer) if job.force else observer
         return _with_simulation(job, run, target.name, toolpaths, verification, quiet)
@@ -245,7 +249,7 @@ def post_toolpaths(
     if job.force and proof.failed:
         proof = write_forced(program, proof, prove, job, target, subprograms)
     verification, simulated = proof.verification, proof.simulation
-    times = operation_times(program, verification) if program.has_time_tokens else []
+    times = operation_times(program, verification) if program.time_token else []
     if verification is not None and not job.columns:
         verification = without_columns(verification)
     if verification is None:
@@ -260,11 +264,13 @@ def post_toolpaths(
     remarks = [remark for toolpath in toolpaths for remark in toolpath.remarks]
     result = PostResult(tuple(toolpaths), planned, verification, (*remarks, *problems), simulation=simulated)
     if proof.failed and not job.force:
+        assert verification is not None
+        result = replace(result, verification=places.explained(verification, job.control))
         if job.papers.report is not None:
             result.write_report(job.papers.report)
             target.files.remember_alone(job.papers.report)
-        raise _proof_failed(result, job.forcing)
-    if program.has_time_tokens:
+        raise _proof_failed(result, job.forcing, places.cause(proof.failed, job.control))
+    if program.time_token:
         write_times(target.files, program, times)
     if target.papers:
         papers = post_papers(target, program, job, result, verification)
@@ -302,6 +308,7 @@ def _prove(
     expected: Expectation,
     target: Target,
     starts: Sequence[OperationStart],
+    job: PostJob,
     *,
     columns: bool,
 ) -> Verification | None:
@@ -309,7 +316,8 @@ def _prove(
     if run is None:
         return None
     found = verify(run, toolpaths, tolerances=expected.tolerances, settings=expected.settings, columns=columns)
-    return replace(found, program=target.name, operations=rows_from_starts(run, found.operations, starts))
+    found = named_verification(found, target.name, job.beside)
+    return replace(found, operations=rows_from_starts(run, found.operations, starts))
 
 
 def _nothing_checked(job: PostJob, target: Target) -> Problem:
@@ -320,10 +328,16 @@ def _nothing_checked(job: PostJob, target: Target) -> Problem:
     return Problem(target.name, 0, f"{what}{lost}", severity=Severity.WARNING, code="CTL930")
 
 
-def _proof_failed(result: PostResult, forcing: str) -> ProofFailedError:
-    """The error for a program that fails its proof."""
+def _run_of(running: Future[Run | None], job: PostJob, places: ProgramPlaces) -> Run | None:
+    """The run of a program; what cannot be followed in it is told by the names that its files will have."""
+    with places.told(job.control):
+        return running.result()
+
+
+def _proof_failed(result: PostResult, forcing: str, cause: str) -> ProofFailedError:
+    """The error for a program that fails its proof; ``cause`` is the template that is likely to be why."""
     failed = "; ".join(f"{check.summary} ({check.key})" for check in result.checks if not check.passed)
-    what = f"the program fails its proof: {failed}"
+    what = "; ".join(filter(None, (f"the program fails its proof: {failed}", cause)))
     cure = "; ".join(filter(None, ("no program is written", forcing)))
     problem = Problem(result.toolpaths[0].file, 0, what, cure, code="CTL910")
     return ProofFailedError(problem, result)

@@ -22,6 +22,7 @@ def read_settings(table: Table) -> tuple[dict[str, SettingValue], dict[str, tupl
     own = table.table("settings")
     found: dict[str, Any] = {}
     places = {"settings": (*table.location("settings" if "settings" in table else ""), own.path)}
+    own.names()  # the control chooses them: each is known or told below
     stated = own.to_dict()
     if len(stated) > _MOST_SETTINGS:
         table.add_problem("settings", f"has {len(stated)} keys", f"no control has more than {_MOST_SETTINGS}")

@@ -222,7 +222,8 @@ def _changed_by_hooks(
     settings: Mapping[str, str | int | None],
 ) -> list[Toolpath]:
     """What hooks make of toolpaths; they see the settings that are given."""
-    from trunnion.api.hooks import Hooks, load_hooks  # few verifications have hooks
+    from trunnion.api.hook_files import load_hooks  # few verifications have hooks
+    from trunnion.api.hooks import Hooks
 
     texts = {name: str(value) for name, value in settings.items() if value not in (None, "")}
     return Hooks(load_hooks(files), machine.name, control.name if control else "", texts).change(toolpaths)

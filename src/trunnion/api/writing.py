@@ -4,7 +4,7 @@ In:     a planned program.
 Out:    its file, and the run of what is on the disk.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
@@ -17,9 +17,11 @@ from trunnion.files import OutputFiles, WriteProgress
 from trunnion.machines import Machine
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
+from trunnion.model.template_passage import TemplatePassage
 from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
 from trunnion.output.subprograms import SubprogramOutput
+from trunnion.verification import Check, Verification
 
 
 @contextmanager
@@ -88,6 +90,7 @@ def write(
     progress: WriteProgress | None = None,
     subprograms: SubprogramOutput | None = None,
     observer: Observer = SILENT,
+    passages: list[TemplatePassage] | None = None,
 ) -> tuple[OperationStart, ...]:
     """Write a program, and return where its operations begin.
 
@@ -103,6 +106,8 @@ def write(
         How the program is divided into files; None: it is a single file.
     observer
         Receives the progress, in points.
+    passages
+        Takes where texts of the user's templates stand.
     """
     rows, done = sum(len(motion.operation.moves) for motion in program.motions), 0
     with observer.progress("writing", rows, "points") as advance:
@@ -115,13 +120,31 @@ def write(
                 sink.flush()
                 progress.advance(sink.tell(), sink.tell() * rows // done)
 
-        starts = write_program(program, sink, written, subprograms)
+        starts = write_program(program, sink, written, subprograms, passages)
     sink.flush()
     return starts
 
 
+def named_verification(found: Verification, name: str, kept: Iterable[Path]) -> Verification:
+    """The verification of a program with its files, and the places in them, called as they will be.
+
+    Files that are ``kept`` exist already, and stay what they are called.
+    """
+    names = _names(found.run, name) | {str(file): str(file) for file in kept} | {"": ""}
+
+    def named(check: Check) -> Check:
+        return replace(check, places=tuple(replace(each, nc_file=names[each.nc_file]) for each in check.places))
+
+    return replace(found, program=name, run=named_run(found.run, name), checks=tuple(map(named, found.checks)))
+
+
 def named_run(run: Run, name: str) -> Run:
     """A run whose files are called as they will be: the program by its name, subprograms as they lie beside it."""
-    names = {file: Path(file).name for file in run.files[1:]} | {run.files[0]: name}
+    names = _names(run, name)
     told = tuple(replace(each, file=names.get(each.file, each.file)) for each in run.diagnostics)
     return replace(run, files=tuple(names[file] for file in run.files), diagnostics=told)
+
+
+def _names(run: Run, name: str) -> dict[str, str]:
+    """What the files of a run will be called."""
+    return {file: Path(file).name for file in run.files[1:]} | {run.files[0]: name}

@@ -56,7 +56,7 @@ _OPTION: Final = re.compile(r"--[a-z][a-z-]*")
 DIALECTS = ("clsf", "ncl", "solidworks", "clt", "catia", "fusion", "apt")
 
 #: Kinds of files that there are schemas of; listed here for the same reason.
-SCHEMAS = ("machine", "control", "simulation", "tools", "impeller", "nodes")
+SCHEMAS = ("machine", "control", "project", "tools", "impeller", "nodes")
 
 #: Dialects that are written.
 WRITTEN_DIALECTS = ("clsf", "catia", "ncl")

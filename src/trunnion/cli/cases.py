@@ -23,7 +23,8 @@ def run(arguments: argparse.Namespace) -> int:
     parts = ", ".join(f"{count} {outcome}" for outcome, count in became.items())
     print_result(f"{counted(len(paths), 'case')}: {parts}")
     if code and not arguments.accept and became["different"] + became["new"]:
-        tell("trunnion test --accept takes the new programs over, once you have looked at them")
+        folder = f'"{arguments.folder}"' if " " in arguments.folder else arguments.folder
+        tell(f"trunnion test {folder} --accept takes the new programs over, once you have looked at them")
     return code
 
 

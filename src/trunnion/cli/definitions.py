@@ -10,6 +10,7 @@ from trunnion.api.definition_checks import all_problems, machine_problems, stand
 from trunnion.api.describing import describe_control
 from trunnion.api.describing_machine import describe_machine
 from trunnion.cli.controls import control_lines
+from trunnion.cli.machine_list import machine_list
 from trunnion.cli.machine_text import machine_data, machine_lines
 from trunnion.cli.results import as_json, print_result
 from trunnion.controls import load_control
@@ -44,9 +45,7 @@ def machines(arguments: argparse.Namespace) -> int:
             text = first_line("machine") + text.partition("\n")[2]
         print_result(text, end="")
         return 0
-    found = [load_machine(key) for key in shipped_machines()]
-    width = max(len(machine.key) for machine in found)
-    print_result(*(f"{machine.key:<{width}}  {machine.name}" for machine in found))
+    print_result(*machine_list([load_machine(key) for key in shipped_machines()]))
     return 0
 
 

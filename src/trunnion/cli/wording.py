@@ -16,6 +16,8 @@ _OPTIONS: Final = {
     "fixtures": "--fixture",
     "operations": "--operation",
     "cl": "CL",
+    "code": "CODE",
+    "impeller": "IMPELLER",
     "nc": "NC",
     "first": "NC",
     "second": "NC",

@@ -31,7 +31,7 @@ def check_templates(table: Table, control: Control) -> None:
     call = control.templates.get(SUBPROGRAM_TEMPLATES[0])
     if call is not None and "subprogram" not in {name for name, _ in call.fields()}:
         table.add_problem(
-            call.name, "does not say which subprogram it calls", "write {subprogram} in it", code="DEF510"
+            call.name, "does not say which subprogram it calls", "write {subprogram} in it", code="DEF590"
         )
     for template in control.templates.values():
         for text in template.unread_fields():

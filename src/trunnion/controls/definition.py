@@ -6,6 +6,7 @@ What these cannot express is code, in the writer module of the control's family.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from importlib.resources import files
 from itertools import chain
 from typing import Final
 
@@ -276,6 +277,11 @@ class Control:
         if setting not in PRINTED_SETTINGS or not places or not all(place & empty for place in places):
             return ""
         return min(name for place in places for name in place & empty)
+
+    def own_templates(self) -> frozenset[str]:
+        """Names of the templates that stand in files of the user, and not in those that are shipped."""
+        shipped = str(files("trunnion"))
+        return frozenset(name for name, each in self.templates.items() if not each.file.startswith(shipped))
 
     def template_suffix(self, mode: MachiningMode, settings: Mapping[str, str]) -> str:
         """Return the suffix of the templates for a machining mode; empty if the control cannot work in that mode."""

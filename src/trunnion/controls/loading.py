@@ -420,7 +420,7 @@ def _read_text_template(table: Table, name: str, text: str) -> Template:
     if fault is not None:
         file, line = template.place_of(max(fault.line, 1) - 1)
         key = table.key_path(name)
-        table.problems.append(Problem(file, line, f"{key} {fault.what}", fault.cure, key=key, code="DEF510"))
+        table.problems.append(Problem(file, line, f"{key} {fault.what}", fault.cure, key=key, code="DEF570"))
     return template
 
 

@@ -101,7 +101,7 @@ class Template:
 
     def place_of(self, line: int) -> tuple[str, int]:
         """Return file and line of the definition of one of the lines, counted from 0."""
-        return self.file, self.line + line + 1 if self.line else 0
+        return self.file, self.line + line + (len(self.lines) > 1) if self.line else 0
 
     def fields_beside(self, name: str) -> list[set[str]]:
         """Return for each place of a field the other fields without which it is not printed."""

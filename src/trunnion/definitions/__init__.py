@@ -17,7 +17,7 @@ from trunnion.definitions.extends import (
     resolve_extends,
 )
 from trunnion.definitions.source_lines import KeyPath, Layout, LocatedValue, key_lines, layout
-from trunnion.definitions.table import Table
+from trunnion.definitions.table import Table, in_order
 from trunnion.definitions.units import unit_of
 
 __all__ = [
@@ -27,6 +27,7 @@ __all__ = [
     "LocatedValue",
     "Table",
     "definition_names",
+    "in_order",
     "key_lines",
     "layout",
     "load_draft",

@@ -15,6 +15,7 @@ from trunnion.definitions.merging import merge
 from trunnion.definitions.messages import as_written, did_you_mean
 from trunnion.definitions.source_lines import KeyPath, LocatedValue, key_lines, locate_values
 from trunnion.definitions.table import Table
+from trunnion.definitions.toml_faults import toml_fault
 from trunnion.errors import InputError, Problem, unusable_file
 
 #: Larger files are refused unread; real definitions have a few kilobytes.
@@ -132,13 +133,8 @@ def _syntax_problem(label: str, text: str, message: str) -> Problem:
         return Problem(
             label, line, f"is not TOML: {key} is there already", "write each key and each [table] once", code="DEF130"
         )
-    return Problem(
-        label,
-        line,
-        f"is not TOML: {what[:1].lower()}{what[1:]}",
-        "correct the line, or the one before it",
-        code="DEF130",
-    )
+    fault = toml_fault(text, line, what)
+    return Problem(label, fault.line, f"is not TOML: {fault.what}", fault.cure, code="DEF130")
 
 
 def _parent(extends: LocatedValue, child: _DefinitionFile, library: Library) -> _DefinitionFile:

@@ -2,13 +2,15 @@
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib.resources import files
 from types import MappingProxyType
 from typing import Final, TypedDict, Unpack, overload
 
-from trunnion.definitions.expected import GREATEST, Expected, Form, Question
+from trunnion.definitions.expected import Expected, Form, Question
 from trunnion.definitions.messages import a_number, as_written, bounds, did_you_mean, in_quotes, in_unit, unquoted
+from trunnion.definitions.numbers import decimals, finite, finite_numbers, magnitude, within
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.definitions.units import unit_of, without_unit
 from trunnion.errors import InputError, Problem
@@ -22,6 +24,9 @@ REQUIRED: Final = Required()
 
 #: Keys that are not known and are told one by one: for each a similar one is looked for.
 _MOST_UNREAD: Final = 100
+
+#: How the names of shipped files begin.
+_SHIPPED: Final = str(files("trunnion"))
 
 _NO_NAMES: Final[Mapping[str, str]] = MappingProxyType({})
 
@@ -133,10 +138,22 @@ class Table:
     # Problems
 
     def add_problem(self, key: str, what: str, cure: str = "", *, code: str = "DEF330") -> None:
-        """Note a mistake in the value of a key; an empty key means the table itself."""
+        """Note a mistake in the value of a key; an empty key means the table itself.
+
+        Where the value comes from a shipped file, what another file says of this table is what does not fit it: that is
+        the place.
+        """
         file, line = self.location(key)
         path = self.key_path(key) if key else self.path
+        if file != self.file and file.startswith(_SHIPPED):
+            what += f" (inherited from {file}:{line})"
+            file, line = self.file, self._own_line()
         self.problems.append(Problem(file, line, f"{path or 'definition'} {what}", cure, key=path, code=code))
+
+    def _own_line(self) -> int:
+        """The line of the one key that the last file to change the table states besides its name, or of its header."""
+        lines = [each.line for key, each in self._values.items() if each.file == self.file and key != "name"]
+        return lines[0] if len(lines) == 1 else self.line
 
     def raise_problems(self) -> None:
         """Raise every problem noted so far.
@@ -147,8 +164,7 @@ class Table:
             If there is one, with all of them in the order of files and lines.
         """
         if self.problems:
-            unique = dict.fromkeys(self.problems)
-            raise InputError(sorted(unique, key=lambda problem: (problem.file, problem.line)))
+            raise InputError(in_order(self.problems))
 
     def report_unread_keys(self) -> None:
         """Note each key that has not been read; call it when the table has been read."""
@@ -255,11 +271,11 @@ class Table:
         value = self._get(key, expected, cure)
         if value is None:
             return fallback
-        number = _finite(value)
+        number = finite(value)
         if number is None:
-            self.add_problem(key, f"is {as_written(value)}", cure + unquoted(key, value) + _magnitude(value))
+            self.add_problem(key, f"is {as_written(value)}", cure + unquoted(key, value) + magnitude(value))
             return fallback
-        if not _within(number, above, at_least, at_most):
+        if not within(number, above, at_least, at_most):
             self.add_problem(key, f"is {as_written(value)}", cure)
             return fallback
         return number
@@ -281,7 +297,7 @@ class Table:
         value = self._get(key, expected, cure)
         if value is None or (nothing and value == nothing):
             return fallback
-        if not isinstance(value, int) or isinstance(value, bool) or not _within(value, None, at_least, at_most):
+        if not isinstance(value, int) or isinstance(value, bool) or not within(value, None, at_least, at_most):
             self.add_problem(key, f"is {as_written(value)}", cure)
             return fallback
         return value
@@ -315,9 +331,9 @@ class Table:
         value = self._get(key, Expected(Form.VECTOR, isinstance(default, Required), _told(default), size=n), cure)
         if value is None:
             return fallback
-        numbers = _finite_numbers(value)
+        numbers = finite_numbers(value)
         if numbers is None or len(numbers) != n:
-            self.add_problem(key, f"is {as_written(value)}", cure + _magnitude(value))
+            self.add_problem(key, f"is {as_written(value)}", cure + magnitude(value) + decimals(value, n))
             return fallback
         return numbers
 
@@ -334,9 +350,9 @@ class Table:
         value = self._get(key, Expected(Form.INTERVAL, isinstance(default, Required), _told(default), size=2), cure)
         if value is None:
             return fallback
-        numbers = _finite_numbers(value)
+        numbers = finite_numbers(value)
         if numbers is None or len(numbers) != 2:
-            self.add_problem(key, f"is {as_written(value)}", cure + _magnitude(value))
+            self.add_problem(key, f"is {as_written(value)}", cure + magnitude(value) + decimals(value, 2))
             return fallback
         low, high = numbers
         if low >= high:
@@ -357,7 +373,9 @@ class Table:
         if value is None:
             return fallback
         if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
-            self.add_problem(key, f"is {as_written(value)}", cure)
+            self.add_problem(
+                key, f"is {as_written(value)}", f"write [{as_written(value)}]" if isinstance(value, str) else cure
+            )
             return fallback
         return tuple(str(item) for item in value)
 
@@ -388,6 +406,11 @@ class Table:
         return children
 
 
+def in_order(problems: Iterable[Problem]) -> list[Problem]:
+    """Return problems, each once, by files and lines; those in shipped files, which others cause, come last."""
+    return sorted(dict.fromkeys(problems), key=lambda each: (each.file.startswith(_SHIPPED), each.file, each.line))
+
+
 def _told(default: object) -> object:
     """A default as a file could state it; None where there is none."""
     return None if isinstance(default, Required) else list(default) if isinstance(default, tuple) else default
@@ -409,37 +432,3 @@ def _add_files(content: LocatedValue, files: set[str]) -> None:
         for item in value.values() if isinstance(value, dict) else value:
             if isinstance(item, LocatedValue):
                 _add_files(item, files)
-
-
-def _finite(value: object) -> float | None:
-    """The number that a TOML value is, or None if it is too large or none; true and false are no numbers here."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return None
-    try:
-        number = float(value)
-    except OverflowError:
-        return None
-    return number if abs(number) <= GREATEST else None
-
-
-def _magnitude(value: object) -> str:
-    """The bounds of all numbers in words, after a comma, if a number is beyond them; else empty."""
-    numbers = [item for item in (value if isinstance(value, list) else [value]) if isinstance(item, int | float)]
-    return (
-        f", from {-GREATEST:g} to {GREATEST:g}" if any(GREATEST < abs(number) < math.inf for number in numbers) else ""
-    )
-
-
-def _finite_numbers(value: object) -> tuple[float, ...] | None:
-    """The finite numbers in a TOML array; None if it holds anything else, or is no array."""
-    numbers = [_finite(item) for item in value] if isinstance(value, list) else [None]
-    found = tuple(number for number in numbers if number is not None)
-    return found if len(found) == len(numbers) else None
-
-
-def _within(number: float, above: float | None, at_least: float | None, at_most: float | None) -> bool:
-    return (
-        (above is None or number > above)
-        and (at_least is None or number >= at_least)
-        and (at_most is None or number <= at_most)
-    )

@@ -30,9 +30,14 @@ def check_chain(
         len(rotary) != 2 or len(slides) != 3
     ):
         what = f"has {len(slides)} linear and {len(rotary)} rotary axes"
-        table.add_problem(
-            "axis", what, "write three linear and two rotary axes, from the workpiece to the tool", code="DEF410"
-        )
+        cure = "write three linear and two rotary axes, from the workpiece to the tool"
+        if len(axes) > 5:
+            what += f" ({', '.join(axes[k].name for k in (*slides, *rotary))})"
+            cure = (
+                "leave out what a program does not move, such as a quill or a clamped axis (remove = true in the"
+                " [[axis]] of a file that extends another): three linear and two rotary axes are moved together"
+            )
+        table.add_problem("axis", what, cure, code="DEF410")
         sound = False
     for k in range(1, len(axes)):
         stated = all("carries" in axis_tables[at] for at in (k - 1, k))

@@ -200,7 +200,7 @@ class EventWriter:
             blocks.write_lines(self._family.message(replace(event, text=spelled(event.text, self._encoding))))
         elif isinstance(event, Insert):
             lines = event.text.split("\n")
-            blocks.write_lines(lines, as_they_are=True)
+            blocks.write_lines(lines, as_they_are=True, template=event.template)
             if event.template:
                 self._templates.forget_words(lines)
             else:
@@ -222,7 +222,7 @@ class EventWriter:
         if self._spindle_turns and not event.optional:
             self._blocks.write_event(SpindleOff(event.row, event.line))
             self._spindle_turns = False
-        self._blocks.write_lines(self._stop_lines(event))
+        self._blocks.write_lines(self._stop_lines(event), template=STOP_PLACE)
         self._blocks.writer.forget("coolant", *(("spindle",) if event.optional else ()))
         if event.row == len(self._motion.operation.moves):
             return

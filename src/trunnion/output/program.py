@@ -35,8 +35,7 @@ class Program:
     own_settings     those of single operations, by their names; they take precedence over all others
     file             the first CL file, for messages
     notices          comments at the start of the program
-    has_time_tokens  tokens stand for machining times (``trunnion.output.template_values.TIME_TOKEN``) until they are
-                     known
+    time_token       letters that begin the tokens for machining times, until these are known; empty: there are none
     """
 
     machine: Machine
@@ -46,7 +45,7 @@ class Program:
     file: str = ""
     notices: Sequence[str] = ()
     own_settings: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
-    has_time_tokens: bool = False
+    time_token: str = ""
 
     def settings_of(self, operation: Operation) -> dict[str, str]:
         """Return the settings of the run, with those of an operation over them."""

@@ -17,6 +17,7 @@ from trunnion.controls.words import WordRangeError
 from trunnion.machines import SweptPart
 from trunnion.model.motion import Motion
 from trunnion.model.operation_start import OperationStart
+from trunnion.model.template_passage import TemplatePassage
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation, SpindleOn
 from trunnion.output.blocks.motion_blocks import MotionBlockWriter
 from trunnion.output.coordinates.plane_from_pose import tip_after_turn, with_plane_inside_limits, with_plane_of_pose
@@ -38,6 +39,7 @@ def write_program(
     sink: BinaryIO,
     progress: Callable[[int], None] | None = None,
     subprograms: SubprogramOutput | None = None,
+    passages: list[TemplatePassage] | None = None,
 ) -> tuple[OperationStart, ...]:
     """Write a whole program, and return where its operations begin.
 
@@ -51,6 +53,8 @@ def write_program(
         Called with the number of rows written since the last call.
     subprograms
         Write a main program to ``sink`` that calls a subprogram for each operation. None: everything is in one file.
+    passages
+        Takes where texts of the user's templates stand.
 
     Raises
     ------
@@ -59,7 +63,11 @@ def write_program(
     WordRangeError
         If a number is beyond the limits of its word's format; an ``InputError`` with the line of the CL file.
     """
-    return _ProgramWriter(program, sink, progress or (lambda _: None), subprograms).write()
+    writer = _ProgramWriter(program, sink, progress or (lambda _: None), subprograms)
+    starts = writer.write()
+    if passages is not None:
+        passages[:] = writer.passages()
+    return starts
 
 
 def _with_printed_planes(program: Program) -> Program:
@@ -127,6 +135,14 @@ class _ProgramWriter:
         names = {} if self._files is None else self._files.names
         starts = self._blocks.writer.operation_starts
         return tuple(OperationStart(names.get(sink, ""), line, number) for sink, line, number in starts)
+
+    def passages(self) -> list[TemplatePassage]:
+        """Where texts of the user's templates stand, once all is written."""
+        names = {} if self._files is None else self._files.names
+        return [
+            TemplatePassage(names.get(sink, ""), line, texts, template)
+            for sink, line, texts, template in self._blocks.passages
+        ]
 
     def _values(self, motion: Motion, number: int) -> dict[str, Value]:
         """The values that templates may print for a motion."""

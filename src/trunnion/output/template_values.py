@@ -3,10 +3,12 @@
 A value is None where there is none: a template leaves out the line that names it.
 """
 
+import secrets
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import accumulate
+from string import ascii_uppercase
 from typing import Final
 
 import numpy as np
@@ -29,12 +31,10 @@ from trunnion.wording import format_duration
 #: The value of the setting ``blank`` for a block form around all cuts.
 EXTENTS: Final = "extents"
 
-#: Begins the text that stands for a machining time while it is not known; the number of the operation follows, from 1,
-#: or 0 for the whole program. The times are those of the proof.
-TIME_TOKEN: Final = "ZZTIME"
-
-#: Characters of the whole token: no time is longer.
-TIME_TOKEN_LENGTH: Final = 14
+#: Letters that begin the text that stands for a machining time while it is not known, and digits behind them: the
+#: number of the operation, from 1, or 0 for the whole program. The times are those of the proof; none is longer.
+TIME_TOKEN_LETTERS: Final = 7
+TIME_TOKEN_DIGITS: Final = 7
 
 _NO_POSITION: Final = (None, None, None)
 
@@ -198,8 +198,8 @@ class TemplateValues:
 
     def _time_text(self, number: int) -> PrintedText:
         """The machining time of an operation, counted from 1, or of the program (0); or what stands for it."""
-        if self._program.has_time_tokens:
-            return PrintedText(_time_token(number))
+        if self._program.time_token:
+            return PrintedText(self._program.time_token + str(number).zfill(TIME_TOKEN_DIGITS))
         self._seconds = self._seconds or estimated_seconds(self._program)
         seconds = self._seconds[number - 1] if number else sum(self._seconds)
         return PrintedText(format_duration(seconds, colons=self._family.escape_comment(":") == ":"))
@@ -287,7 +287,7 @@ class TemplateValues:
             return self._family_call(loads[-1].number, "", operation)
         what = f"operation {operation.name} has no LOAD/TOOL, and its tool has no name"
         raise InputError(
-            Problem(self._program.file_of(operation), operation.line, what, "write setting tool=NUMBER", code="CTL140")
+            Problem(self._program.file_of(operation), operation.line, what, "write setting tool=NUMBER", code="CTL145")
         )
 
     @cached_property
@@ -346,6 +346,11 @@ def prints_times(program: Program) -> bool:
     return setting != "off" and (listed or bool(fields & wanted))
 
 
+def new_time_token() -> str:
+    """Return letters for the tokens of one program, which no text of a CL file or definition can foresee."""
+    return "".join(secrets.choice(ascii_uppercase) for _ in range(TIME_TOKEN_LETTERS))
+
+
 def estimated_seconds(program: Program) -> list[float]:
     """Return the seconds of each operation as planned, from its first point to its last; cycles take no time."""
     seconds: list[float] = []
@@ -375,10 +380,6 @@ def tool_text(call: str, tool: Tool, unit: float = 1.0) -> str:
     holder = f", holder {tool.holder}" if tool.holder else ""
     name = f" {tool.name}" if tool.name and tool.name != call.strip('"') else ""
     return f"T{call}{name}{data}{holder}"
-
-
-def _time_token(number: int) -> str:
-    return TIME_TOKEN + str(number).zfill(TIME_TOKEN_LENGTH - len(TIME_TOKEN))
 
 
 def spindle_values(program: Program, event: SpindleOn | None) -> dict[str, Value]:

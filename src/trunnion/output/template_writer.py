@@ -25,7 +25,9 @@ class TemplateWriter:
         """
         lines = self.lines(name, values, motion)
         first = self._control.first_lines if notices else 0
-        self._blocks.write_lines([*lines[:first], *notices, *lines[first:]])
+        self._blocks.write_lines(lines[:first], template=name)
+        self._blocks.write_lines(notices)
+        self._blocks.write_lines(lines[first:], template=name)
         if any(field in ("spindle_speed", "new_speed") for field, _ in self._control.templates[name].fields()):
             self._speed = values["spindle_speed"]
 
@@ -48,7 +50,7 @@ class TemplateWriter:
         if name not in self._control.templates:
             return False
         lines = self.lines(name, values, motion)
-        self._blocks.write_lines(lines)
+        self._blocks.write_lines(lines, template=name)
         self.forget_words(lines)
         return True
 

@@ -194,17 +194,6 @@ def with_rests(program: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def rests(bench: Bench, programs: Sequence[str], seconds: float = 60.0) -> list[Floats]:
-    """The positions where the joints rest in each program, (n, 5) mm and degrees.
-
-    Raises
-    ------
-    SimulatorError
-        When LinuxCNC does not run a program to its end.
-    """
-    return [rests_of(joints) for joints in motions(bench, programs, seconds)]
-
-
 def motions(bench: Bench, programs: Sequence[str], seconds: float = 60.0) -> list[Floats]:
     """The positions of the joints in each program, one row a millisecond, (k, 5) mm and degrees.
 

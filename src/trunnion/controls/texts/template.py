@@ -136,7 +136,7 @@ class TextTemplate(Template):
             fault = Fault(
                 f"prints a {error.what}", "correct the value; the control's definition has the limits of formats"
             )
-        raise InputError(Problem(file, at, f"template {self.name} {fault.what}", fault.cure, code="DEF510")) from None
+        raise InputError(Problem(file, at, f"template {self.name} {fault.what}", fault.cure, code="DEF580")) from None
 
 
 def text_template(name: str, text: str, file: str, line: int) -> tuple[TextTemplate, Fault | None]:

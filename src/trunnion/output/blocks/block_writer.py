@@ -92,7 +92,7 @@ class BlockWriter:
 
     def begin_operation(self) -> None:
         """Number the next block, where operations have the numbers."""
-        self.operation_starts.append((self._sink, self._line_counts.get(self._sink, 0) + 1, -1))
+        self.operation_starts.append((*self.place, -1))
         self._begins = True
         if self._numbers.numbered and self._numbers.at_operations:
             self._number[WAIT] = 0
@@ -100,6 +100,11 @@ class BlockWriter:
     def set_block_skip(self, on: bool) -> None:
         """Start the next blocks with the block-skip sign, or no longer."""
         self._skip = np.frombuffer(b"/" if on else b"", np.uint8)
+
+    @property
+    def place(self) -> tuple[BinaryIO, int]:
+        """The present sink, and the line that is written next, from 1."""
+        return self._sink, self._line_counts.get(self._sink, 0) + 1
 
     # Words and their modal state
 

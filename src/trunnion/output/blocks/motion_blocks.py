@@ -80,6 +80,8 @@ class MotionBlockWriter:
         self.progress = progress
         self._words = program.block_words(program.motions[0])
         self.writer = BlockWriter(sink, self._words, self.control.block_numbers, program.text_form)
+        self.passages: list[tuple[BinaryIO, int, tuple[str, ...], str]] = []  # sink, line, texts, template
+        self._own_templates = self.control.own_templates()
         self.feeds = FeedWords(program, self.writer)
         self._orientation = OrientationWords(program, self.writer, self._words)
         self._axis_coordinates: AxisCoordinates | None = None
@@ -164,8 +166,10 @@ class MotionBlockWriter:
 
     # Lines and single blocks
 
-    def write_lines(self, lines: Sequence[str], *, as_they_are: bool = False) -> None:
+    def write_lines(self, lines: Sequence[str], *, as_they_are: bool = False, template: str = "") -> None:
         """Write lines of text, each a block; a line that ends with the continuation sign shares that of the next.
+
+        What a ``template`` of the user's has printed is noted with its place.
 
         Comments that are longer than the control can read continue in the next line; they get capitals where these are
         asked for, unless lines are to stay ``as_they_are``.
@@ -192,6 +196,8 @@ class MotionBlockWriter:
         for line in lines:
             blocks[len(blocks) - continues :] = [f"{blocks[-1]}\n{line}" if continues else line]
             continues = bool(sign) and line.endswith(sign)
+        if template in self._own_templates:
+            self.passages.append((*self.writer.place, tuple("\n".join(blocks).split("\n")), template))
         self.writer.write_lines(blocks)
 
     def _ended(self, line: str) -> str:
@@ -212,11 +218,14 @@ class MotionBlockWriter:
         return [self.family.COMMENTS.sub(self._in_capitals, line) for line in lines] if self._capitals else list(lines)
 
     def _in_capitals(self, comment: re.Match[str]) -> str:
-        """A comment without small letters, but those whose capital is two letters or is lacking in the encoding."""
+        """A comment without small letters, but those whose capital is lacking in the encoding; of ß it is SS."""
         if comment[1] is None:
             return comment[0]
         capitals = ((each, each if each in "µμ" else each.upper()) for each in comment[0])  # M is another unit
-        return "".join(big if len(big) == 1 and not lacking(big, self._encoding) else small for small, big in capitals)
+        return "".join(
+            big if big.isascii() or (len(big) == 1 and not lacking(big, self._encoding)) else small
+            for small, big in capitals
+        )
 
     def write_block(self, words: Mapping[str, int]) -> None:
         """Write one block of words, as counts; none if all of them are active."""

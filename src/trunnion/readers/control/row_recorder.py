@@ -108,6 +108,7 @@ class RowRecorder:
         self.columns = RowBuffer()
         self.modal = ModalBuilder()
         self.events: list[RunEvent] = []
+        self._told_words: set[str] = set()
         self.tools: dict[str, int] = {"": 0}
         self._tool_names = [""]
         self._selected_tool = 0
@@ -165,6 +166,14 @@ class RowRecorder:
         if kind == "spindle":
             modal.spindle.set(self.row, SPINDLE_SENSES[str(value)])
         self.events.append(RunEvent(self.line, self.row, kind, value, modal.file.current, bool(modal.tcp.current)))
+
+    def add_builders_word(self, letter: str, value: float) -> None:
+        """Record an M or H word of the machine's builder, and note the first of each: nobody has said what it does."""
+        self.add_event(letter.lower(), value)
+        word = f"{letter}{value:g}"
+        if word not in self._told_words:
+            self._told_words.add(word)
+            self.note(f"{word} belongs to the machine: what it does is not known", Severity.WARNING, "NC225")
 
     # Tools
 

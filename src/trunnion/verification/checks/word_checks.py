@@ -13,6 +13,11 @@ from trunnion.verification.results import Check, Place
 
 _TITLE: Final = "every word known"
 
+#: The code of words that belong to the machine.
+_OF_MACHINE: Final = "NC225"
+
+_MOST_NAMED: Final = 10
+
 
 def check_words(context: Context) -> Check:
     """Every word is known; texts that the CL file inserts (INSERT) may have any."""
@@ -21,12 +26,23 @@ def check_words(context: Context) -> Check:
     if isinstance(context, ComparedContext):
         errors = _compared_errors(context.expected, context.run, errors)
     remarks = len(diagnostics) - len(errors)
-    good = "every word is known" + (f", {remarks} remarks" if remarks else "")
+    others = remarks - sum(each.code == _OF_MACHINE for each in diagnostics)
+    good = _known(diagnostics) + (f"; {others} remarks" if others else "")
     if not errors and remarks:
         return Check(
             "words", _TITLE, True, good, places=tuple(_place(context, each) for each in diagnostics[:MAX_PLACES])
         )
     return check_from_places("words", _TITLE, [_place(context, error) for error in errors], good)
+
+
+def _known(diagnostics: Sequence[Diagnostic]) -> str:
+    """What is known in words: every word, or all but those of the machine's builder that the definition leaves out."""
+    own = [each.text for each in diagnostics if each.code == _OF_MACHINE]
+    names = list(dict.fromkeys(text.partition(" ")[0] for text in own))
+    if not names:
+        return "every word is known"
+    more = f" and {len(names) - _MOST_NAMED} more" if len(names) > _MOST_NAMED else ""
+    return f"every word is known but those of the machine: {', '.join(names[:_MOST_NAMED])}{more}"
 
 
 def _place(context: Context, diagnostic: Diagnostic) -> Place:

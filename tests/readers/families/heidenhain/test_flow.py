@@ -149,7 +149,7 @@ def test_programs_that_are_not_named_are_not_found(tmp_path: Path) -> None:
     (inner / "MAIN.H").write_text("\n".join(f"CALL PGM {name}" for name in names))
     found = run_program(inner / "MAIN.H", load_machine("dmu65"), subprograms=[inner / "NAMED.H"])
     assert len(found) == 0
-    assert [f.line for f in found.errors] == [1, 2, 3, 4, 5]
+    assert [f.line for f in found.errors if "BEGIN PGM" not in f.text] == [1, 2, 3, 4, 5]
 
 
 def test_labels_may_not_call_themselves_for_ever(run: Runner) -> None:

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.klartext_reading import of_blocks
 from tests.support.locations import TESTS
 from tests.support.naive.klartext import matrix
 from tests.support.reading import Runner, close, slides
@@ -25,7 +26,7 @@ def ran(text: str, factory: pytest.TempPathFactory) -> Run:
     """Run a text."""
     path = factory.getbasetemp() / "PLANE.H"
     path.write_text(text)
-    return run_program(path, DMU65)
+    return of_blocks(run_program(path, DMU65))
 
 
 def axes(run: Run, row: int) -> tuple[float, float]:

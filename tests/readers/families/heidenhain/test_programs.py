@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.klartext_reading import of_blocks
 from tests.support.machines import at_zero
 from tests.support.naive import klartext as naive
 from tests.support.naive import reading as angles
@@ -24,7 +25,7 @@ def ran(text: str, factory: pytest.TempPathFactory) -> Run:
     """Run a text."""
     path = factory.getbasetemp() / "PROGRAM.H"
     path.write_text(text)
-    return run_program(path, DMU65)
+    return of_blocks(run_program(path, DMU65))
 
 
 @settings(max_examples=80, deadline=None)
@@ -126,7 +127,7 @@ def test_numbers_are_read_to_the_last_bit(
 def test_chunks_of_a_long_program_are_one_program(tmp_path: Path) -> None:
     path = tmp_path / "LONG.H"
     path.write_text("".join(f"{k} L X{k % 97} Y{k % 89} F{k % 7 + 1}\n" for k in range(60_000)))
-    run = run_program(path, DMU65)
+    run = of_blocks(run_program(path, DMU65))
     assert run.diagnostics == ()
     k = np.arange(60_000)
     np.testing.assert_array_equal(run.tip[:, 0], k % 97)

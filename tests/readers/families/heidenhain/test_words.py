@@ -212,7 +212,7 @@ def test_tools(run: Runner) -> None:
 
 def test_machine_functions_act_before_or_after_their_block(run: Runner) -> None:
     found = run("L X+1 M3 M8\nL X+2 M9 M5\nL X+3 M13\nL X+4 M0\nSTOP M1\nL X+5 M25\nM136\nL X+6\nM137\nL X7 M30\nL X+9")
-    assert found.diagnostics == ()
+    assert [each.text for each in found.diagnostics] == ["M25 belongs to the machine: what it does is not known"]
     assert [(e.kind, e.value, e.before_row) for e in found.events] == [
         ("spindle", "clockwise", 0), ("coolant", "flood", 0), ("coolant", "off", 2), ("spindle", "off", 2),
         ("spindle", "clockwise", 2), ("coolant", "flood", 2), ("stop", None, 4), ("stop", None, 4),

@@ -67,6 +67,9 @@ class CycleInterpreter(OffsetInterpreter):
         repeats = block.take(letter)
         block.take("L")
         if not axes and not ({"R", "Z"} & given.keys()):
+            if self.motion_code in block.g and not self._modal_words:
+                # It drills at the next position without a G word, with words that nobody has written.
+                self._note("a cycle without a position, Z and R", Severity.ERROR, "NC218")
             return
         self._report_rotary_words(axes)
         self._require_words(self._modal_words, "ZR" + "Q" * (self.motion_code in cycles.NEED_Q))

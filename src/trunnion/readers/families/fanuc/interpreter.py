@@ -282,7 +282,7 @@ class FanucInterpreter(CycleInterpreter):
         elif code == words.RIGID_TAP and self.motion_code not in cycles.THREADS:
             self._spindle_stands = "M29 has stopped it for a thread"
         if not self._common_m_code(code):
-            self.control.add_event("m", float(code))
+            self.control.add_builders_word("M", float(code))
 
     def _m_code_after_motion(self, active: ActiveProgram, line: int, code: int, block: Block) -> None:
         if code == words.CALL:

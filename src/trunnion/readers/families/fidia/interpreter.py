@@ -155,7 +155,7 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
             self._counter.count_motions(1)
             control.retract()
         elif not self._common_m_code(code):
-            control.add_event("m", float(code))
+            control.add_builders_word("M", float(code))
 
     # Motion
 

@@ -112,7 +112,7 @@ class MFunctions:
                 "NC220" if changes_path else "NC221",
             )
         elif code not in _HANDLED_ELSEWHERE:
-            control.add_event("m", float(code))
+            control.add_builders_word("M", float(code))
 
     def _words_of_function(self, code: int, arguments: dict[str, float | None]) -> None:
         """Execute the words of M functions that change feed, path or tilting axes."""

@@ -28,13 +28,19 @@ def end(active: ActiveProgram, words: list[str], note: Note) -> None:
     """End a program; ``words`` are those behind END."""
     active.ended = True
     name = _name(words)
-    if active.name is not None and name != active.name:
+    if active.name is None:
+        note("the program has no BEGIN PGM: no control loads it", Severity.ERROR, "NC160")
+    elif name != active.name:
         note(f"END PGM {name} ends the program that began as {active.name}", Severity.ERROR, "NC160")
 
 
 def check_end_of_file(active: ActiveProgram, note: Note) -> None:
-    """Report a program whose file ends before END PGM."""
-    if active.name is not None and not active.ended:
+    """Report a program whose file has no BEGIN PGM, or ends before END PGM."""
+    if active.name is None and not active.ended:
+        active.ended = True
+        what = "the program has neither BEGIN PGM nor END PGM: no control loads it"
+        note(what, Severity.ERROR, "NC160")
+    elif active.name is not None and not active.ended:
         active.ended = True
         note("the program has no END PGM: no control loads it", Severity.ERROR, "NC160")
 
@@ -44,8 +50,10 @@ def check_rest(active: ActiveProgram, source: SourceText, note: Note, end: str) 
     reachable = _SKIPPED.match(end) is not None
     while source.fill():
         raw = source.next_line()
-        if active.name is not None and not active.ended:
+        if not active.ended:
             active.ended = _END.match(raw) is not None
+            if active.ended and active.name is None:
+                note("the program has no BEGIN PGM: no control loads it", Severity.ERROR, "NC160")
             if active.ended or reachable or not split_line(raw).statement:
                 continue
             reachable = True

@@ -239,8 +239,7 @@ class LinuxcncInterpreter(CycleInterpreter):
         elif code in words.USERS:
             for letter in "PQ":
                 block.take(letter)
-            control.add_event("m", float(code))
-            self._note(f"M{code} belongs to the machine: what it does is not known", Severity.WARNING, "NC224")
+            control.add_builders_word("M", float(code))
             if code in words.USERS_TCP:
                 text = f"M{code} switches TCP in some configurations: M428 and M429 do, or declare what it does"
                 self._note(text, Severity.ERROR, "NC224")

@@ -187,7 +187,7 @@ class SinumerikInterpreter(CallInterpreter):
             if code not in M_AFTER_MOTION:
                 self._m_code(code)
         for value in block.h:
-            self.control.add_event("h", value)
+            self.control.add_builders_word("H", value)
         calls = block.calls
         if self._execute_motion(block) and active.modal is not None:
             calls = [active.modal, *calls]
@@ -359,7 +359,7 @@ class SinumerikInterpreter(CallInterpreter):
             text = "chooses a gear, whose speeds only the machine knows; a definition can declare it"
             self._note(f"M{code} {text}", Severity.ERROR, "NC224")
         else:
-            control.add_event("m", float(code))
+            control.add_builders_word("M", float(code))
 
     def _frame(self, words: list[str], block: Block) -> None:
         control = self.control

@@ -1,0 +1,103 @@
+"""Files of hooks: Python that a user names, run once for its functions.
+
+In:     paths.
+Out:    the functions of each file; what is wrong with one, at its line.
+"""
+
+import inspect
+import sys
+import types
+from collections.abc import Callable, Iterable
+from contextlib import redirect_stdout
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from trunnion.definitions.messages import did_you_mean
+from trunnion.errors import InputError, Problem, unusable_file
+
+#: The functions that a file of hooks may have, and what each is called with.
+_FUNCTIONS: Final = {
+    "on_operation": ("operation", "context"),
+    "on_event": ("event", "context"),
+    "on_block": ("block", "context"),
+}
+
+_MODULE: Final = "trunnion_hooks"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HookFile:
+    """A file of hooks that has been run: its functions by name."""
+
+    path: Path
+    functions: dict[str, Callable[..., object]]
+
+    def line_of(self, name: str) -> int:
+        """The line of a function, 0 if it is not in the file."""
+        code = getattr(self.functions[name], "__code__", None)
+        return code.co_firstlineno if code is not None and code.co_filename == str(self.path) else 0
+
+
+def load_hooks(paths: Iterable[Path]) -> tuple[HookFile, ...]:
+    """Run files of hooks, in their order.
+
+    Raises
+    ------
+    InputError
+        If a file is none, fails, or has no hooks, at its line.
+    """
+    return tuple(_load(path) for path in paths)
+
+
+def _load(path: Path) -> HookFile:
+    problem = unusable_file(path, "a file of hooks")
+    if problem is None and path.suffix != ".py":
+        problem = Problem(
+            str(path), 0, "is no Python file", "give the path of a file of hooks, such as shop.py", code="HOK110"
+        )
+    if problem is not None:
+        raise InputError(problem)
+    module = types.ModuleType(_MODULE)
+    module.__file__ = str(path)
+    try:
+        with redirect_stdout(sys.stderr):
+            exec(compile(path.read_text(encoding="utf-8-sig"), str(path), "exec"), module.__dict__)
+    except (Exception, SystemExit) as error:
+        raise InputError(failure(path, error, "the file of hooks fails")) from error
+    named = {name: value for name, value in vars(module).items() if name.startswith("on_") and callable(value)}
+    for name, function in named.items():
+        if name not in _FUNCTIONS:
+            line = getattr(getattr(function, "__code__", None), "co_firstlineno", 0)
+            cure = did_you_mean(name, _FUNCTIONS) or f"hooks are {', '.join(_FUNCTIONS)}"
+            raise InputError(Problem(str(path), line, f"{name} is no hook", cure, code="HOK110"))
+        _check_signature(path, name, function)
+    if not named:
+        cure = f"write a function {' or '.join(_FUNCTIONS)}"
+        raise InputError(Problem(str(path), 0, "the file has no hooks", cure, code="HOK110"))
+    return HookFile(path, {name: named[name] for name in _FUNCTIONS if name in named})
+
+
+def _check_signature(path: Path, name: str, function: Callable[..., object]) -> None:
+    try:
+        inspect.signature(function).bind(*_FUNCTIONS[name])
+    except (TypeError, ValueError):
+        line = getattr(getattr(function, "__code__", None), "co_firstlineno", 0)
+        cure = f"write def {name}({', '.join(_FUNCTIONS[name])}):"
+        raise InputError(Problem(str(path), line, f"{name} takes other arguments", cure, code="HOK110")) from None
+
+
+def failure(path: Path, error: BaseException, what: str) -> Problem:
+    """The problem that an exception is, at the line of the file where it came about."""
+    line, trace = 0, error.__traceback__
+    while trace is not None:
+        if trace.tb_frame.f_code.co_filename == str(path):
+            line = trace.tb_lineno
+        trace = trace.tb_next
+    if isinstance(error, SyntaxError) and error.filename == str(path):
+        line = error.lineno or 0
+    text = str(error).splitlines()
+    said = f": {text[0]}" if text else ""
+    return Problem(
+        str(path), line, f"{what}: {type(error).__name__}{said}", "mend it there, or leave the hooks out", code="HOK120"
+    )

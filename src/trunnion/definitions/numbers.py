@@ -1,0 +1,46 @@
+"""Numbers of TOML values: which are numbers here, within which bounds, and what to write in place of others."""
+
+import math
+
+from trunnion.definitions.expected import GREATEST
+
+
+def finite(value: object) -> float | None:
+    """The number that a TOML value is, or None if it is too large or none; true and false are no numbers here."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    return number if abs(number) <= GREATEST else None
+
+
+def magnitude(value: object) -> str:
+    """The bounds of all numbers in words, after a comma, if a number is beyond them; else empty."""
+    numbers = [item for item in (value if isinstance(value, list) else [value]) if isinstance(item, int | float)]
+    return (
+        f", from {-GREATEST:g} to {GREATEST:g}" if any(GREATEST < abs(number) < math.inf for number in numbers) else ""
+    )
+
+
+def decimals(value: object, n: int) -> str:
+    """What to write instead of decimal commas, which make more numbers of an array than it should have."""
+    if not isinstance(value, list) or len(value) <= n or any(not isinstance(each, int) for each in value[1:]):
+        return ""
+    return "; decimals stand behind a point, such as 90.5"
+
+
+def finite_numbers(value: object) -> tuple[float, ...] | None:
+    """The finite numbers in a TOML array; None if it holds anything else, or is no array."""
+    numbers = [finite(item) for item in value] if isinstance(value, list) else [None]
+    found = tuple(number for number in numbers if number is not None)
+    return found if len(found) == len(numbers) else None
+
+
+def within(number: float, above: float | None, at_least: float | None, at_most: float | None) -> bool:
+    return (
+        (above is None or number > above)
+        and (at_least is None or number >= at_least)
+        and (at_most is None or number <= at_most)
+    )
