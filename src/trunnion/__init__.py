@@ -17,6 +17,7 @@ Functions
     post_project   project -> all NC programs of its set-ups with their proofs, together or not at all
     read_program   NC program -> Run: what the control does with it
     verify         NC program against its CL files, and against a recording of the machine -> Verification
+    sensitivity    NC program -> Sensitivity: which number of the machine's geometry it depends on
     convert        NC program -> CL file, or program for another machine
     diff           two NC programs -> Comparison
     explain        code of a message, or name of a check -> Explanation
@@ -72,6 +73,8 @@ if TYPE_CHECKING:
     from trunnion.api.reading import read_cl as read_cl
     from trunnion.api.reading import read_program as read_program
     from trunnion.api.reports import write_report as write_report
+    from trunnion.api.sensitivity import Sensitivity as Sensitivity
+    from trunnion.api.sensitivity import sensitivity as sensitivity
     from trunnion.api.simulating import simulate as simulate
     from trunnion.api.simulation_result import SimulationResult as SimulationResult
     from trunnion.api.verifying import verify as verify
@@ -136,6 +139,7 @@ _MODULES: Final = {
     "ProofFailedError": "api.post_result",
     "RefusedError": "errors",
     "Run": "model.run",
+    "Sensitivity": "api.sensitivity",
     "Severity": "errors",
     "SimulationResult": "api.simulation_result",
     "Span": "geometry.spans",
@@ -160,6 +164,7 @@ _MODULES: Final = {
     "read_cl": "api.reading",
     "read_points": "api.curves",
     "read_program": "api.reading",
+    "sensitivity": "api.sensitivity",
     "simulate": "api.simulating",
     "verify": "api.verifying",
     "verify_manifest": "api.manifests",
@@ -201,6 +206,7 @@ __all__ = [
     "ProofFailedError",
     "RefusedError",
     "Run",
+    "Sensitivity",
     "Severity",
     "SimulationResult",
     "Span",
@@ -226,6 +232,7 @@ __all__ = [
     "read_cl",
     "read_points",
     "read_program",
+    "sensitivity",
     "simulate",
     "verify",
     "verify_manifest",

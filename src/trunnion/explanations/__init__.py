@@ -22,6 +22,7 @@ SUBJECTS: Final = {
     "hooks": "Hooks",
     "programs": "Reading programs",
     "checks": "Checks",
+    "capability": "What machines reach, and how exactly",
     "conversion": "Conversion",
     "simulation": "Simulation, tools and meshes",
     "impeller": "Impellers and curves",

@@ -4,11 +4,12 @@ In:     a ``Machine`` and displayed axis values.
 Out:    for each number of the definition, how fast tip and tool axis move with it, in workpiece coordinates.
 Units:  mm; mm per mm for lengths, mm and radians per radian for angles.
 
-The control turns tips into axis values with the numbers of the definition; the iron has the true ones. For the same axis
-values the tip is then off by the derivative of the forward map with respect to the number, times the number's error.
+The control turns tips into axis values with the numbers of the definition; the iron has the true ones. For the same
+axis values the tip is then off by the derivative of the forward map with respect to the number, times its error.
 
-Notation. The forward map is a product of joints, p' = T1 T2 ... T5 p. For joint k let P be the turn of all joints before
-it, towards the workpiece, R its own, w its direction and o its point, and y the tip from o before the joint has moved it.
+Notation. The forward map is a product of joints, p' = T1 T2 ... T5 p. For joint k let P be the turn of all joints
+before it, towards the workpiece, R its own, w its direction, o its point and q its value, y the tip from o before the
+joint has moved it, and e the axis about which the number turns.
 
     point             P (I - R) do              what the turn leaves of a shift
     direction         P (e x R y - R (e x y))   the line turned by a small angle about e, at the point of the definition

@@ -1,0 +1,28 @@
+"""The arguments of the commands about what a machine can do: ``trunnion sensitivity``, ``reach`` and ``fit``."""
+
+import argparse
+from collections.abc import Callable
+
+#: Makes the text of an option a number.
+Number = Callable[[str], float]
+
+
+def add_sensitivity(parser: argparse.ArgumentParser, number: Number) -> None:
+    """Add them; the subprograms and the function that runs it are added by the caller."""
+    parser.add_argument("file", metavar="NC", help="NC program")
+    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs it")
+    parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
+    parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
+    parser.add_argument(
+        "--length", type=number, default=0.01, metavar="MM", help="how far points and lengths are off; 0.01"
+    )
+    parser.add_argument(
+        "--angle", type=number, default=5.0, metavar="ARCSEC",
+        help="how far directions and displayed angles are off, seconds of arc; 5",
+    )  # fmt: skip
+    parser.add_argument(
+        "--zero-at", default="home", metavar="C=0,B=0|home|none",
+        help="where the rotary axes stand when the workpiece zero is set; none: leave nothing to the zero",
+    )  # fmt: skip
+    parser.add_argument("--json", metavar="FILE", help="all numbers as data; - is stdout")
+    parser.add_argument("--report", metavar="FILE", help="the table, and errors over the program, as a page (.html)")
