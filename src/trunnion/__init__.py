@@ -17,6 +17,7 @@ Functions
     post_project   project -> all NC programs of its set-ups with their proofs, together or not at all
     read_program   NC program -> Run: what the control does with it
     verify         NC program against its CL files, and against a recording of the machine -> Verification
+    reach          machine -> Reach: which tool axes and points it reaches
     sensitivity    NC program -> Sensitivity: which number of the machine's geometry it depends on
     convert        NC program -> CL file, or program for another machine
     diff           two NC programs -> Comparison
@@ -69,6 +70,8 @@ if TYPE_CHECKING:
     from trunnion.api.posting import post as post
     from trunnion.api.project_posting import ProjectResult as ProjectResult
     from trunnion.api.project_posting import post_project as post_project
+    from trunnion.api.reaching import Reach as Reach
+    from trunnion.api.reaching import reach as reach
     from trunnion.api.reading import load_machine as load_machine
     from trunnion.api.reading import read_cl as read_cl
     from trunnion.api.reading import read_program as read_program
@@ -137,6 +140,7 @@ _MODULES: Final = {
     "Problem": "errors",
     "ProjectResult": "api.project_posting",
     "ProofFailedError": "api.post_result",
+    "Reach": "api.reaching",
     "RefusedError": "errors",
     "Run": "model.run",
     "Sensitivity": "api.sensitivity",
@@ -161,6 +165,7 @@ _MODULES: Final = {
     "plan": "api.planning",
     "post": "api.posting",
     "post_project": "api.project_posting",
+    "reach": "api.reaching",
     "read_cl": "api.reading",
     "read_points": "api.curves",
     "read_program": "api.reading",
@@ -204,6 +209,7 @@ __all__ = [
     "Problem",
     "ProjectResult",
     "ProofFailedError",
+    "Reach",
     "RefusedError",
     "Run",
     "Sensitivity",
@@ -229,6 +235,7 @@ __all__ = [
     "plan",
     "post",
     "post_project",
+    "reach",
     "read_cl",
     "read_points",
     "read_program",

@@ -270,8 +270,14 @@ def _remarks(run: Run) -> list[Problem]:
         found.append(Problem(file, run.errors[0].line, what, "verify the program first", code="RCH120"))
     if machine.workpiece_zero is None:
         what = "the workpiece zero is not known and counts as the zero of the machine"
-        found.append(Problem(file, 0, what, "give argument zero=X,Y,Z: errors of directions depend on it", code="RCH130"))
+        found.append(
+            Problem(file, 0, what, "give argument zero=X,Y,Z: errors of directions depend on it", code="RCH130")
+        )
     if machine.tool_length is None:
         what = "the tool length is not known and counts as 0"
-        found.append(Problem(file, 0, what, "give argument tool_length=MM: the longer the tool, the larger its errors", code="RCH140"))
+        found.append(
+            Problem(
+                file, 0, what, "give argument tool_length=MM: the longer the tool, the larger its errors", code="RCH140"
+            )
+        )
     return [replace(each, severity=Severity.WARNING) for each in found]

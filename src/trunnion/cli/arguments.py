@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import Any, Final, NoReturn, cast
 
 from trunnion import __version__
-from trunnion.cli.capability_arguments import add_sensitivity
+from trunnion.cli.capability_arguments import add_reach, add_sensitivity
 from trunnion.cli.post_arguments import post_mistake
 from trunnion.cli.twin_arguments import add_machine_access, add_record, add_twin
 
@@ -177,6 +177,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     _add_sensitivity(
         commands.add_parser("sensitivity", help="rank the numbers of a machine by what they do to an NC program")
     )
+    _add_reach(commands.add_parser("reach", help="tell which tool axes and points a machine reaches"))
     _add_diff(commands.add_parser("diff", help="compare what two NC programs make the tool do"))
     _add_convert(
         commands.add_parser("convert", help="turn an NC program into a CL file, or post it for another machine")
@@ -306,6 +307,11 @@ def _add_sensitivity(parser: argparse.ArgumentParser) -> None:
     add_sensitivity(parser, _tolerance)
     _add_subprograms(parser, "it")
     parser.set_defaults(run=_lazy_command("sensitivity", "run"))
+
+
+def _add_reach(parser: argparse.ArgumentParser) -> None:
+    add_reach(parser, _tolerance)
+    parser.set_defaults(run=_lazy_command("reach", "run"))
 
 
 def _add_diff(parser: argparse.ArgumentParser) -> None:

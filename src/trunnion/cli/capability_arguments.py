@@ -26,3 +26,20 @@ def add_sensitivity(parser: argparse.ArgumentParser, number: Number) -> None:
     )  # fmt: skip
     parser.add_argument("--json", metavar="FILE", help="all numbers as data; - is stdout")
     parser.add_argument("--report", metavar="FILE", help="the table, and errors over the program, as a page (.html)")
+
+
+def add_reach(parser: argparse.ArgumentParser, number: Number) -> None:
+    """Add them; the function that runs it is added by the caller."""
+    parser.add_argument("files", nargs="*", metavar="CL", help="CL files whose points are judged")
+    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine whose reach is told")
+    parser.add_argument("--part", metavar="MESH", help="part whose facets the tip is to reach along their normals")
+    parser.add_argument(
+        "--lean", type=float, default=0.0, metavar="DEG", help="how far the tool may lean from a normal; 0"
+    )
+    parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
+    parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
+    parser.add_argument(
+        "--step", type=number, default=5.0, metavar="DEG", help="degrees between tilts, and between azimuths; 5"
+    )
+    parser.add_argument("--json", metavar="FILE", help="everything as data; - is stdout")
+    parser.add_argument("--plot", metavar="FILE", help="tool axes on the sphere, and volumes over the tilt (.svg)")
