@@ -142,12 +142,13 @@ def reach(
     toolpaths = as_toolpaths(cl, None, False, observer)
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
+    surface = None if part is None else part_reach(loaded, check_path("part", part), leaning, degrees, observer)
     return Reach(
         loaded,
         degrees,
         _of_tilts(loaded, degrees, observer),
         sphere_share(loaded),
-        None if part is None else part_reach(loaded, check_path("part", part), leaning, degrees, observer),
+        surface,
         path_reach(loaded, toolpaths, degrees),
         tuple(_remarks(loaded, placed=part is not None or bool(toolpaths))),
     )
