@@ -152,7 +152,7 @@ def sensitivity(
     >>> file = "tests/golden/yl569/3_blade_finish.expected.mpf"
     >>> found = trunnion.sensitivity(file, machine="yl569", zero=(0, 0, 100), tool_length=120)
     >>> found.numbers[0].number.name
-    'gauge point Z'
+    'gauge point X'
     """
     amounts = in_radians(_amount("length", length), _amount("angle", angle))
     loaded = set_up_machine(as_machine(machine), zero, tool_length)
