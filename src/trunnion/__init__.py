@@ -15,6 +15,8 @@ Functions
     plan           CL files -> Plan: motions on the machine
     post           CL files -> NC program with its proof
     post_project   project -> all NC programs of its set-ups with their proofs, together or not at all
+    place          CL files or NC programs -> Placement: where on the table the part may sit
+    post_placed    Placement -> NC program with its proof, the part where it sits best
     read_program   NC program -> Run: what the control does with it
     verify         NC program against its CL files, and against a recording of the machine -> Verification
     reach          machine -> Reach: which tool axes and points it reaches
@@ -63,6 +65,8 @@ if TYPE_CHECKING:
     from trunnion.api.manifests import ManifestCheck as ManifestCheck
     from trunnion.api.manifests import verify_manifest as verify_manifest
     from trunnion.api.observer import Observer as Observer
+    from trunnion.api.placing import place as place
+    from trunnion.api.placing_post import post_placed as post_placed
     from trunnion.api.planning import plan as plan
     from trunnion.api.plotting import write_plot as write_plot
     from trunnion.api.post_result import PostResult as PostResult
@@ -103,6 +107,7 @@ if TYPE_CHECKING:
     from trunnion.model.run import Run as Run
     from trunnion.model.toolpath import Operation as Operation
     from trunnion.model.toolpath import Toolpath as Toolpath
+    from trunnion.placing.placement import Placement as Placement
     from trunnion.verification.comparison.result import Comparison as Comparison
     from trunnion.verification.results import Check as Check
     from trunnion.verification.results import Place as Place
@@ -134,6 +139,7 @@ _MODULES: Final = {
     "Observer": "api.observer",
     "Operation": "model.toolpath",
     "Place": "verification.results",
+    "Placement": "placing.placement",
     "Plan": "model.motion",
     "PointTable": "geometry.point_tables",
     "PostResult": "api.post_result",
@@ -162,8 +168,10 @@ _MODULES: Final = {
     "load_impeller": "api.impellers",
     "load_machine": "api.reading",
     "model_impeller": "api.impellers",
+    "place": "api.placing",
     "plan": "api.planning",
     "post": "api.posting",
+    "post_placed": "api.placing_post",
     "post_project": "api.project_posting",
     "reach": "api.reaching",
     "read_cl": "api.reading",
@@ -203,6 +211,7 @@ __all__ = [
     "Observer",
     "Operation",
     "Place",
+    "Placement",
     "Plan",
     "PointTable",
     "PostResult",
@@ -232,8 +241,10 @@ __all__ = [
     "load_impeller",
     "load_machine",
     "model_impeller",
+    "place",
     "plan",
     "post",
+    "post_placed",
     "post_project",
     "reach",
     "read_cl",

@@ -9,6 +9,7 @@ from typing import Any, Final, NoReturn, cast
 
 from trunnion import __version__
 from trunnion.cli.capability_arguments import add_reach, add_sensitivity
+from trunnion.cli.place_arguments import add_place
 from trunnion.cli.post_arguments import post_mistake
 from trunnion.cli.twin_arguments import add_machine_access, add_record, add_twin
 
@@ -182,6 +183,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     _add_convert(
         commands.add_parser("convert", help="turn an NC program into a CL file, or post it for another machine")
     )
+    _add_place(commands.add_parser("place", help="find where on the table a part may sit, and where best"))
     _add_simulate(commands.add_parser("simulate", help="cut stock with NC programs: what is left, and what is hit"))
     _add_view(commands.add_parser("view", help="show an NC program on its machine, in a browser"))
     _add_twin(commands.add_parser("twin", help="serve an NC program as a running machine: OPC UA and MTConnect"))
@@ -403,6 +405,11 @@ def _add_view(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--output", metavar="FILE.html", help="write a page that works offline, and serve nothing")
     _add_serving(parser)
     parser.set_defaults(run=_lazy_command("view", "run"))
+
+
+def _add_place(parser: argparse.ArgumentParser) -> None:
+    add_place(parser, _Setting, _key_value)
+    parser.set_defaults(run=_lazy_command("place", "run"))
 
 
 def _add_twin(parser: argparse.ArgumentParser) -> None:
