@@ -19,6 +19,7 @@ Functions
     post_placed    Placement -> NC program with its proof, the part where it sits best
     read_program   NC program -> Run: what the control does with it
     verify         NC program against its CL files, and against a recording of the machine -> Verification
+    fit            CL files or NC program -> MachineFit of each machine: which can run it
     reach          machine -> Reach: which tool axes and points it reaches
     sensitivity    NC program -> Sensitivity: which number of the machine's geometry it depends on
     convert        NC program -> CL file, or program for another machine
@@ -57,6 +58,8 @@ if TYPE_CHECKING:
     from trunnion.api.describing_machine import MachineDescription as MachineDescription
     from trunnion.api.describing_machine import describe_machine as describe_machine
     from trunnion.api.explaining import explain as explain
+    from trunnion.api.fitting import MachineFit as MachineFit
+    from trunnion.api.fitting import fit as fit
     from trunnion.api.impeller_cutting import ImpellerCut as ImpellerCut
     from trunnion.api.impeller_cutting import cut_impeller as cut_impeller
     from trunnion.api.impellers import load_impeller as load_impeller
@@ -134,6 +137,7 @@ _MODULES: Final = {
     "InputError": "errors",
     "Machine": "machines.machine",
     "MachineDescription": "api.describing_machine",
+    "MachineFit": "api.fitting",
     "ManifestCheck": "api.manifests",
     "Motion": "model.motion",
     "Observer": "api.observer",
@@ -164,6 +168,7 @@ _MODULES: Final = {
     "describe_machine": "api.describing_machine",
     "diff": "api.comparing",
     "explain": "api.explaining",
+    "fit": "api.fitting",
     "fit_curve": "api.curves",
     "load_impeller": "api.impellers",
     "load_machine": "api.reading",
@@ -206,6 +211,7 @@ __all__ = [
     "InputError",
     "Machine",
     "MachineDescription",
+    "MachineFit",
     "ManifestCheck",
     "Motion",
     "Observer",
@@ -237,6 +243,7 @@ __all__ = [
     "describe_machine",
     "diff",
     "explain",
+    "fit",
     "fit_curve",
     "load_impeller",
     "load_machine",

@@ -8,7 +8,7 @@ from importlib import import_module
 from typing import Any, Final, NoReturn, cast
 
 from trunnion import __version__
-from trunnion.cli.capability_arguments import add_reach, add_sensitivity
+from trunnion.cli.capability_arguments import add_fit, add_reach, add_sensitivity
 from trunnion.cli.place_arguments import add_place
 from trunnion.cli.post_arguments import post_mistake
 from trunnion.cli.twin_arguments import add_machine_access, add_record, add_twin
@@ -179,6 +179,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
         commands.add_parser("sensitivity", help="rank the numbers of a machine by what they do to an NC program")
     )
     _add_reach(commands.add_parser("reach", help="tell which tool axes and points a machine reaches"))
+    _add_fit(commands.add_parser("fit", help="rank the machines that can run CL files or an NC program"))
     _add_diff(commands.add_parser("diff", help="compare what two NC programs make the tool do"))
     _add_convert(
         commands.add_parser("convert", help="turn an NC program into a CL file, or post it for another machine")
@@ -314,6 +315,12 @@ def _add_sensitivity(parser: argparse.ArgumentParser) -> None:
 def _add_reach(parser: argparse.ArgumentParser) -> None:
     add_reach(parser, _tolerance)
     parser.set_defaults(run=_lazy_command("reach", "run"))
+
+
+def _add_fit(parser: argparse.ArgumentParser) -> None:
+    add_fit(parser, _tolerance)
+    _add_subprograms(parser, "the NC program")
+    parser.set_defaults(run=_lazy_command("fit", "run"))
 
 
 def _add_diff(parser: argparse.ArgumentParser) -> None:

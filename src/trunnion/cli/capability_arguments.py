@@ -43,3 +43,20 @@ def add_reach(parser: argparse.ArgumentParser, number: Number) -> None:
     )
     parser.add_argument("--json", metavar="FILE", help="everything as data; - is stdout")
     parser.add_argument("--plot", metavar="FILE", help="tool axes on the sphere, and volumes over the tilt (.svg)")
+
+
+def add_fit(parser: argparse.ArgumentParser, number: Number) -> None:
+    """Add them; the subprograms and the function that runs it are added by the caller."""
+    parser.add_argument(
+        "files", nargs="+", metavar="CL|NC", help="CL files of one program; or, with --machine, a program"
+    )
+    parser.add_argument(
+        "--machines", default="all", metavar="NAME_OR_FILE,…", help="machines that are asked; all shipped ones"
+    )
+    parser.add_argument("--machine", metavar="NAME_OR_FILE", help="machine that the NC program is for")
+    parser.add_argument("--zero", metavar="X,Y,Z", help="workpiece zero of the NC program on its own machine, mm")
+    parser.add_argument("--tool-length", metavar="MM", help="length of the tool on all machines, gauge point to tip")
+    parser.add_argument(
+        "--turns", type=number, default=90.0, metavar="DEG", help="try the part at every so many degrees about Z; 90"
+    )
+    parser.add_argument("--json", metavar="FILE", help="everything as data; - is stdout")
