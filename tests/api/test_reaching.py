@@ -117,6 +117,8 @@ def test_what_is_beyond_the_travel_is_told_apart() -> None:
     top = [k for k in range(12) if found.normal[k, 2] > 0.5]
     assert found.axis[top].all()
     assert not found.travel[top].any()
+    leaning = facet_reach(away, cube(), 30.0, 10.0)
+    assert leaning.axis[np.abs(leaning.normal[:, 2]) < 0.5].all()  # their own normals, though no downward one
 
 
 def test_a_part_is_read_and_judged(tmp_path: Path, capfd: Capture) -> None:
@@ -126,7 +128,8 @@ def test_a_part_is_read_and_judged(tmp_path: Path, capfd: Capture) -> None:
     assert main([*command, "--tool-length", "100", "--json", str(data)]) == 1
     out = capfd.readouterr().out
     assert "83.3 % of the surface is reached along its normal (12 facets)" in out
-    assert out.count("no such tool axis") == 2
+    assert "  no such tool axis: 16.7 %, normals tilted from 180.0° to 180.0°" in out
+    assert out.count(": no such tool axis") == 2
     found = json.loads(data.read_text("utf-8"))["part"]
     assert (found["facets"], len(found["no_tool_axis"]), found["no_travel"]) == (12, 2, [])
     assert found["reached_share"] == pytest.approx(5.0 / 6.0, abs=1e-6)

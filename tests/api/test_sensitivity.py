@@ -95,7 +95,7 @@ def test_a_whole_circle_is_judged_all_around(written: Written) -> None:
 
 
 def test_rapids_and_retracts_do_not_count(written: Written) -> None:
-    far = written("G0 X0 Y0 Z10\nG0 Y4000\nG0 Y0\nG1 Z0 F500\nG1 Y20\nG53 G0 Z400")
+    far = written("G0 X0 Y0 Z10\nG0 Y4000\nG0 Y0\nG1 Z0 F500\nG1 Y20\nG53 G1 Y150\nG53 G0 Z400")
     found = trunnion.sensitivity(far, machine="xyzac_trt", zero=(0, 0, 0), tool_length=0)
     assert found.motions == 2
     assert by_name(found)["Y direction about Z"].tip.largest == pytest.approx(20.0 * math.radians(5.0 / 3600.0))

@@ -225,6 +225,18 @@ def test_points_are_reached_where_a_solution_of_the_inverse_map_is_within_the_tr
         assert bool(found.travel[row]) == any(fits[branch].all() for branch in range(2))
 
 
+def test_a_free_table_turns_a_point_to_where_the_slides_go() -> None:
+    """Y goes to 200 mm and X to 250: with the tool upright, C brings 240 of Y there, and no more than 250."""
+    machine = replace(TABLE, workpiece_zero=(0.0, 0.0, 0.0), tool_length=0.0)
+    points = np.array([[[0.0, 240.0, 10.0]], [[0.0, -320.0, 10.0]], [[0.0, 330.0, 10.0]]])
+    found = reached_points(machine, points, np.tile([0.0, 0.0, 1.0], (3, 1)))
+    assert found.axis.tolist() == [True] * 3
+    # The corners of the travel are 320.2 mm away from its middle.
+    assert found.travel.tolist() == [True, True, False]
+    held = replace(machine, axes=(turn("C", Z, -1, 1), *machine.axes[1:]))
+    assert reached_points(held, points, np.tile([0.0, 0.0, 1.0], (3, 1))).travel.tolist() == [False] * 3
+
+
 def test_slides_whose_place_is_not_known_stop_nothing() -> None:
     far, up = np.full((1, 1, 3), 4000.0), np.array([[0.0, 0.0, 1.0]])
     dmu65 = load_machine("dmu65")

@@ -266,7 +266,7 @@ def _remarks(run: Run) -> list[Problem]:
     machine, file = run.machine, run.files[0] if run.files else "nc"
     found = []
     if run.errors:
-        what = f"{counted(len(run.errors), 'word or block')} not understood, so motions may be wrong"
+        what = f"{counted(len(run.errors), 'place')} not understood, so motions may be wrong"
         found.append(Problem(file, run.errors[0].line, what, "verify the program first", code="RCH120"))
     if machine.workpiece_zero is None:
         what = "the workpiece zero is not known and counts as the zero of the machine"

@@ -307,18 +307,18 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_sensitivity(parser: argparse.ArgumentParser) -> None:
-    add_sensitivity(parser, _tolerance)
+    add_sensitivity(parser)
     _add_subprograms(parser, "it")
     parser.set_defaults(run=_lazy_command("sensitivity", "run"))
 
 
 def _add_reach(parser: argparse.ArgumentParser) -> None:
-    add_reach(parser, _tolerance)
+    add_reach(parser)
     parser.set_defaults(run=_lazy_command("reach", "run"))
 
 
 def _add_fit(parser: argparse.ArgumentParser) -> None:
-    add_fit(parser, _tolerance)
+    add_fit(parser)
     _add_subprograms(parser, "the NC program")
     parser.set_defaults(run=_lazy_command("fit", "run"))
 

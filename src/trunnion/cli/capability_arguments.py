@@ -1,23 +1,31 @@
 """The arguments of the commands about what a machine can do: ``trunnion sensitivity``, ``reach`` and ``fit``."""
 
 import argparse
-from collections.abc import Callable
-
-#: Makes the text of an option a number.
-Number = Callable[[str], float]
+import math
 
 
-def add_sensitivity(parser: argparse.ArgumentParser, number: Number) -> None:
+def amount(text: str) -> float:
+    """A length or an angle above 0."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number above 0; write one, such as 5")
+    return value
+
+
+def add_sensitivity(parser: argparse.ArgumentParser) -> None:
     """Add them; the subprograms and the function that runs it are added by the caller."""
     parser.add_argument("file", metavar="NC", help="NC program")
     parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs it")
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
     parser.add_argument(
-        "--length", type=number, default=0.01, metavar="MM", help="how far points and lengths are off; 0.01"
+        "--length", type=amount, default=0.01, metavar="MM", help="how far points and lengths are off; 0.01"
     )
     parser.add_argument(
-        "--angle", type=number, default=5.0, metavar="ARCSEC",
+        "--angle", type=amount, default=5.0, metavar="ARCSEC",
         help="how far directions and displayed angles are off, seconds of arc; 5",
     )  # fmt: skip
     parser.add_argument(
@@ -28,7 +36,7 @@ def add_sensitivity(parser: argparse.ArgumentParser, number: Number) -> None:
     parser.add_argument("--report", metavar="FILE", help="the table, and errors over the program, as a page (.html)")
 
 
-def add_reach(parser: argparse.ArgumentParser, number: Number) -> None:
+def add_reach(parser: argparse.ArgumentParser) -> None:
     """Add them; the function that runs it is added by the caller."""
     parser.add_argument("files", nargs="*", metavar="CL", help="CL files whose points are judged")
     parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine whose reach is told")
@@ -39,13 +47,13 @@ def add_reach(parser: argparse.ArgumentParser, number: Number) -> None:
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
     parser.add_argument(
-        "--step", type=number, default=5.0, metavar="DEG", help="degrees between tilts, and between azimuths; 5"
+        "--step", type=amount, default=5.0, metavar="DEG", help="degrees between tilts, and between azimuths; 5"
     )
     parser.add_argument("--json", metavar="FILE", help="everything as data; - is stdout")
     parser.add_argument("--plot", metavar="FILE", help="tool axes on the sphere, and volumes over the tilt (.svg)")
 
 
-def add_fit(parser: argparse.ArgumentParser, number: Number) -> None:
+def add_fit(parser: argparse.ArgumentParser) -> None:
     """Add them; the subprograms and the function that runs it are added by the caller."""
     parser.add_argument(
         "files", nargs="+", metavar="CL|NC", help="CL files of one program; or, with --machine, a program"
@@ -57,6 +65,6 @@ def add_fit(parser: argparse.ArgumentParser, number: Number) -> None:
     parser.add_argument("--zero", metavar="X,Y,Z", help="workpiece zero of the NC program on its own machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool on all machines, gauge point to tip")
     parser.add_argument(
-        "--turns", type=number, default=90.0, metavar="DEG", help="try the part at every so many degrees about Z; 90"
+        "--turns", type=amount, default=90.0, metavar="DEG", help="try the part at every so many degrees about Z; 90"
     )
     parser.add_argument("--json", metavar="FILE", help="everything as data; - is stdout")

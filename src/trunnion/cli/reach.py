@@ -4,6 +4,8 @@ import argparse
 from collections.abc import Iterator
 from typing import Final
 
+import numpy as np
+
 from trunnion.api.input_files import machine_files
 from trunnion.api.reach_report import check_reach_plot, reach_data, write_reach_plot
 from trunnion.api.reaching import Reach, TiltReach, reach
@@ -116,6 +118,14 @@ def _part_lines(part: PartReach) -> Iterator[str]:
     missed = part.missed
     share = f"{100.0 * part.share:.1f} % of the surface is reached {near}"
     yield f"{part.name}: {share} ({counted(len(part.area), 'facet')})"
+    for which, why in (
+        (~part.axis, "no such tool axis"),
+        (part.axis & ~part.travel, "beyond the travel of the slides"),
+    ):
+        if which.any():
+            tilts = np.degrees(np.arccos(np.clip(part.normal[which, 2], -1.0, 1.0)))
+            lost = 100.0 * float(part.area[which].sum() / part.area.sum())
+            yield f"  {why}: {lost:.1f} %, normals tilted from {tilts.min():.1f}° to {tilts.max():.1f}°"
     for k in missed[:_MOST].tolist():
         x, y, z = part.centre[k]
         i, j, n = part.normal[k] + 0.0

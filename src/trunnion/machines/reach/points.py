@@ -13,6 +13,11 @@ from trunnion.machines.reach.poses import branch_positions, free_angles
 #: How far a slide may be beyond its limit and still count as on it, mm.
 _ON_LIMIT: Final = 1e-6
 
+#: A free angle is tried finer around the best one: so many angles each time, in a stretch narrower by this factor.
+_TRIALS: Final = 9
+_FINER: Final = 0.3
+_ROUNDS: Final = 6
+
 #: Rows that are computed at a time.
 _ROWS: Final = 65536
 
@@ -41,7 +46,7 @@ def reached_points(machine: Machine, points: Floats, axes: Floats, step: float =
     axes : (n, 3) float64
         From tip to holder, in workpiece coordinates; any length but zero.
     step
-        Most degrees between two angles of a rotary axis that is free.
+        Most degrees between two angles that are tried first of a rotary axis that is free.
     """
     axis, travel = np.zeros(len(axes), np.bool_), np.zeros(len(axes), np.bool_)
     for first in range(0, len(axes), _ROWS):
@@ -54,27 +59,47 @@ def _reached(machine: Machine, points: Floats, axes: Floats, step: float) -> tup
     found = branch_positions(machine, axes)
     travel = np.zeros(len(axes), np.bool_)
     for branch in range(2):
-        rows = np.flatnonzero(found.usable[branch] & ~found.pole)
-        rows = rows[~travel[rows]]
-        travel[rows] = _within_slides(machine, points[rows], found.rotary[branch, rows])
-        for angle in free_angles(machine, step).tolist():
-            rows = np.flatnonzero(found.usable[branch] & found.pole & ~travel)
-            if not len(rows):
-                break
-            rotary = found.rotary[branch, rows]
-            rotary[:, 0] = angle
-            travel[rows] = _within_slides(machine, points[rows], rotary)
+        rows = np.flatnonzero(found.usable[branch] & ~found.pole & ~travel)
+        travel[rows] = _excess(machine, points[rows], found.rotary[branch, rows]) <= _ON_LIMIT
+        rows = np.flatnonzero(found.usable[branch] & found.pole & ~travel)
+        if len(rows):
+            travel[rows] = _least_excess(machine, points[rows], found.rotary[branch, rows], step) <= _ON_LIMIT
     return np.asarray(found.usable.any(axis=0)), travel
 
 
-def _within_slides(machine: Machine, points: Floats, rotary: Floats) -> Flags:
-    """Whether the slides bring the tip to all points (k, c, 3) of each row at rotary positions (k, 2)."""
-    each = points.shape[1]
-    joints = slide_positions(machine, points.reshape(-1, 3), np.repeat(rotary, each, axis=0))
-    within = np.ones(len(joints), np.bool_)
+def _least_excess(machine: Machine, points: Floats, rotary: Floats, step: float) -> Floats:
+    """The excess at the best angle of the first rotary axis, which is free, (k,): tried over its travel, then finer."""
+    axis = machine.axes[machine.rotary[0]]
+    low, high = (-np.inf, np.inf) if axis.endless else (axis.low, axis.high)
+    trial = rotary.copy()
+    least, best = np.full(len(rotary), np.inf), np.zeros(len(rotary))
+
+    def attempt(angles: Floats) -> None:
+        trial[:, 0] = np.clip(angles, low, high)
+        excess = _excess(machine, points, trial)
+        better = excess < least
+        least[better], best[better] = excess[better], trial[better, 0]
+
+    for angle in free_angles(machine, step).tolist():
+        attempt(np.full(len(rotary), angle))
+    for width in step * _FINER ** np.arange(_ROUNDS):
+        middle = best.copy()
+        for offset in np.linspace(-width, width, _TRIALS).tolist():
+            attempt(middle + offset)
+    return least
+
+
+def _excess(machine: Machine, points: Floats, rotary: Floats) -> Floats:
+    """How far beyond their limits slides must go to bring the tip to all points (k, c, 3) of each row, (k,) mm.
+
+    Negative within the limits; infinite where the slides cannot follow.
+    """
+    count, each = points.shape[:2]
+    joints = slide_positions(machine, points.reshape(-1, 3), np.repeat(rotary, each, axis=0)).reshape(count, each, 5)
+    excess = np.full(count, -np.inf)
     for slide in machine.linear:
         axis = machine.axes[slide]
         if machine.is_placed(slide) and axis.has_limits:
-            within &= (joints[:, slide] >= axis.low - _ON_LIMIT) & (joints[:, slide] <= axis.high + _ON_LIMIT)
-        within &= ~np.isnan(joints[:, slide])
-    return np.asarray(within.reshape(-1, each).all(axis=1))
+            beyond = np.maximum(axis.low - joints[:, :, slide], joints[:, :, slide] - axis.high).max(axis=1)
+            excess = np.maximum(excess, beyond)
+    return np.where(np.isnan(joints).any(axis=(1, 2)), np.inf, excess)
