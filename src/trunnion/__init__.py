@@ -69,6 +69,7 @@ if TYPE_CHECKING:
     from trunnion.api.manifests import verify_manifest as verify_manifest
     from trunnion.api.observer import Observer as Observer
     from trunnion.api.placing import place as place
+    from trunnion.api.placing_plot import write_placing_plot as write_placing_plot
     from trunnion.api.placing_post import post_placed as post_placed
     from trunnion.api.planning import plan as plan
     from trunnion.api.plotting import write_plot as write_plot
@@ -188,6 +189,7 @@ _MODULES: Final = {
     "verify_manifest": "api.manifests",
     "write_curve_picture": "api.curves",
     "write_impeller_step": "api.impellers",
+    "write_placing_plot": "api.placing_plot",
     "write_plot": "api.plotting",
     "write_report": "api.reports",
     "write_view": "api.viewing",
@@ -263,6 +265,7 @@ __all__ = [
     "verify_manifest",
     "write_curve_picture",
     "write_impeller_step",
+    "write_placing_plot",
     "write_plot",
     "write_report",
     "write_view",

@@ -2,6 +2,8 @@
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -15,15 +17,17 @@ from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
+from trunnion.placing.between_rows import most_between
 from trunnion.placing.best_turn import TurnResult, best_turns
-from trunnion.placing.path_rows import PathRows
+from trunnion.placing.goals import Goal, PlaceCost, rotary_travel
+from trunnion.placing.path_rows import PathRows, about_z
 from trunnion.placing.placement import AxisUse, Limit, Place, Placement, TurnMargin
 from trunnion.placing.region import region_of
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.travel_limits import Cut, CutSet
 from trunnion.placing.turns import TurnedPath, choices_of
 
-GOALS: Final = ("margin",)
+GOALS: Final = tuple(str(goal) for goal in Goal)
 
 #: Turns are at most as many.
 _MOST_TURNS: Final = 3600
@@ -50,7 +54,9 @@ def place(
     machine
         A name, a path or a ``Machine``.
     goal
-        What the best place is best for: ``"margin"``, the distance of the slides to their limits.
+        What the best place is best for: ``"margin"``, the distance of the slides to their limits; or the least
+        ``"rotary"`` or ``"slides"`` travel, ``"time"`` at rapid speeds, or ``"overspeed"``, fewest rows whose feed the
+        axes do not reach. Places with these goals keep a margin of 1 mm where they can.
     turns
         The part is tried at every so many degrees about Z, and more finely around the best; or the turns themselves.
     zero : (3,) float, mm
@@ -88,7 +94,7 @@ def place(
     (True, 'Y')
     """
     check_observer(observer)
-    check_choice("goal", goal, GOALS)
+    goal = check_choice("goal", goal, GOALS)
     grid, refine = _turns(turns)
     texts = as_texts(settings)
     zero = texts.pop("zero", None) if zero is None else zero
@@ -103,7 +109,7 @@ def place(
     near = _first_guess(loaded)
     paths = [TurnedPath.of(loaded, choice, rows, near) for choice, rows in choices_of(given.rows)]
     with observer.progress("placing", len(grid), "turns") as advance:
-        results, best = best_turns(paths, grid, advance, refine=refine)
+        results, best = best_turns(paths, grid, advance, refine=refine, goal=Goal(goal))
     return _placement(loaded, given, goal, paths, results, best, problems)
 
 
@@ -152,13 +158,16 @@ def _placement(
     found = None
     if best.best is not None and best.cuts is not None:
         found = place_at(machine, rows, best.cuts, _rounded(best.cuts, best.best.zero), best.turn)
+        found = _with_value(found, best.path, Goal(goal))
     held = () if best.best is None else tuple(limit_of_cut(machine, rows, cut) for cut in best.best.holds)
     region = None if best.best is None or best.cuts is None else region_of(best.cuts, best.best)
 
+    @lru_cache(maxsize=2)
+    def turned(turn: float) -> list[CutSet]:
+        return [cuts for cuts in (path.at(turn) for path in paths) if isinstance(cuts, CutSet)]
+
     def margin_at(zero: Floats, turn: float) -> float:
-        found = [path.at(turn) for path in paths]
-        margins = [cuts.at(zero).margins.min() for cuts in found if isinstance(cuts, CutSet)]
-        return float(max(margins, default=-np.inf))
+        return float(max((cuts.at(zero).margins.min() for cuts in turned(turn)), default=-np.inf))
 
     return Placement(
         machine.key,
@@ -166,23 +175,45 @@ def _placement(
         goal,
         found,
         held,
-        _present(machine, rows, paths),
+        _present(machine, rows, paths, Goal(goal)),
         tuple(_turn_margin(machine, rows, result) for result in results),
         region,
+        between_mm=0.0 if found is None or best.path is None else _between(best.path, found),
         problems=tuple(problems),
         toolpaths=given.toolpaths,
         _margin_at=margin_at,
     )
 
 
-def _present(machine: Machine, rows: PathRows, paths: Sequence[TurnedPath]) -> Place | None:
+def _between(path: TurnedPath, found: Place) -> float:
+    """How far slides may go beyond their samples at a place, mm."""
+    angles = path.angles_at(found.turn_deg)
+    assert not isinstance(angles, Obstacle)
+    rows = path.rows.turned(about_z(found.turn_deg))
+    return most_between(path.machine, rows, angles.positions, np.array(found.zero_mm))
+
+
+def _with_value(place: Place, path: TurnedPath | None, goal: Goal) -> Place:
+    """A place with the value of the goal."""
+    angles = None if path is None else path.angles_at(place.turn_deg)
+    if path is None or isinstance(angles, Obstacle) or angles is None:
+        return place
+    rows, positions = path.rows.turned(about_z(place.turn_deg)), angles.positions
+    if goal is Goal.MARGIN:
+        return replace(place, value=place.margin_mm)
+    if goal is Goal.ROTARY:
+        return replace(place, value=rotary_travel(rows, positions))
+    return replace(place, value=PlaceCost.of(goal, path.machine, rows, positions).value(np.array(place.zero_mm)))
+
+
+def _present(machine: Machine, rows: PathRows, paths: Sequence[TurnedPath], goal: Goal) -> Place | None:
     """The place that the machine has been given; None if it has none, or rotary axes do not reach the path there."""
     if machine.workpiece_zero is None:
         return None
     zero = np.array(machine.workpiece_zero)
     places = [
-        place_at(machine, rows, cuts, zero, 0.0)
-        for cuts in (path.at(0.0) for path in paths)
+        _with_value(place_at(machine, rows, cuts, zero, 0.0), path, goal)
+        for path, cuts in ((path, path.at(0.0)) for path in paths)
         if isinstance(cuts, CutSet)
     ]
     return max(places, key=lambda place: place.margin_mm, default=None)
@@ -192,7 +223,7 @@ def _turn_margin(machine: Machine, rows: PathRows, result: TurnResult) -> TurnMa
     if result.best is None:
         assert result.obstacle is not None
         return TurnMargin(result.turn, None, None, obstacle_text(machine, rows, result.obstacle))
-    return TurnMargin(result.turn, result.margin, vector(result.best.zero))
+    return TurnMargin(result.turn, result.margin, vector(result.best.zero), value=result.cost)
 
 
 def obstacle_text(machine: Machine, rows: PathRows, obstacle: Obstacle) -> str:

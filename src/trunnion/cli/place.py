@@ -14,7 +14,7 @@ from trunnion.cli.results import as_json, print_result, tell
 from trunnion.cli.terminal import Terminal, output_place
 from trunnion.files import atomic_file, check_outputs
 from trunnion.placing.placement import AxisUse, Limit, Place, Placement
-from trunnion.wording import counted, one_line
+from trunnion.wording import counted, format_duration, one_line
 
 #: Turns out of reach that are told one by one.
 _MOST: Final = 3
@@ -84,7 +84,10 @@ def placement_lines(found: Placement) -> Iterator[str]:
     if present is not None:
         gain = best.margin_mm - present.margin_mm
         state = f"{present.margin_mm:.3f} mm to the limits" if present.fits else f"{-present.margin_mm:.3f} mm too far"
-        yield f"  present zero {_point(present)}: {state}; the best place has {gain:.3f} mm more"
+        gained = "" if found.goal != "margin" else f"; the best place has {gain:.3f} mm more"
+        yield f"  present zero {_point(present)}: {state}{gained}"
+    if found.goal != "margin" and best.value is not None:
+        yield f"  {_value(found.goal, best)}{'' if present is None else f'; at the present zero {_number(found.goal, present)}'}"
     fitting = sum(turn.fits for turn in found.turns)
     yield f"  it fits at {fitting} of {counted(len(found.turns), 'turn')}"
     if found.region is not None:
@@ -97,6 +100,24 @@ def placement_lines(found: Placement) -> Iterator[str]:
 
 def _point(place: Place) -> str:
     return ",".join(f"{value:.3f}" for value in place.zero_mm)
+
+
+def _value(goal: str, place: Place) -> str:
+    """The value of a goal in words."""
+    what = {
+        "rotary": "the rotary axes turn",
+        "slides": "the slides travel",
+        "time": "at the speeds of the axes it takes",
+        "overspeed": "the axes do not reach the feed in",
+    }
+    return f"{what[goal]} {_number(goal, place)}"
+
+
+def _number(goal: str, place: Place) -> str:
+    value = place.value or 0.0
+    if goal == "time":
+        return format_duration(value)
+    return counted(round(value), "row") if goal == "overspeed" else f"{value:.1f} {'degrees' if goal == 'rotary' else 'mm'}"
 
 
 def _use(axis: AxisUse) -> str:

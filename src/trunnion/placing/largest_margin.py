@@ -14,8 +14,17 @@ from trunnion.arrays import Floats
 from trunnion.extras import import_extra
 from trunnion.placing.travel_limits import FARTHEST, Cut, CutSet, Reached
 
+#: More margin is not sought, mm: a slide with one limit alone would lead the part away without end.
+ENOUGH: Final = 2000.0
+
 #: A half-space that is violated by less is met, mm.
 EXACT: Final = 1e-8
+
+#: So much of a margin is given up where it is kept, mm.
+_TRIFLE: Final = 1e-7
+
+#: How exactly HiGHS meets half-spaces: as exactly as it can.
+_TOLERANCES: Final = {"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10}
 
 #: Solutions that are tried; the rounds of paths of any length are some twenty.
 _MOST_ROUNDS: Final = 500
@@ -29,7 +38,8 @@ class BestPlace:
     """A place with the largest margin.
 
     zero     (3,) mm
-    margin   of the slide that is nearest to a limit, mm; negative: the part fits nowhere, and this is the least excess
+    margin   of the slide that is nearest to a limit, at most ``ENOUGH``, mm; negative: the part fits nowhere, and this is
+             the least excess
     reached  where the slides go there
     holds    the half-spaces that keep the margin from growing, the heaviest first
     """
@@ -68,22 +78,32 @@ def largest_margin(cuts: CutSet, near: Floats, *, settled: bool = True) -> BestP
     if settled:
         solution = _settle(cuts, solution, near)
     reached = cuts.at(solution.zero)
-    return BestPlace(solution.zero, float(reached.margins.min()), reached, holds)
+    return BestPlace(solution.zero, min(float(reached.margins.min()), ENOUGH), reached, holds)
 
 
 def _settle(cuts: CutSet, solution: _Solution, near: Floats) -> _Solution:
-    """Keep what holds, and let the other slides have the largest margins in turn."""
+    """Keep what holds, and let the other slides have the largest margins in turn.
+
+    Margins that are kept are a trifle smaller than those found: rounding must leave the next program a solution. If it
+    leaves none all the same, the last one stands.
+    """
     kept = np.full(3, np.nan)
     for _ in range(2):
         held = {cut.slide for cut in solution.holds(cuts) if np.isnan(kept[cut.slide])}
         if not held:
             break
-        kept[list(held)] = solution.program.x[3] - EXACT
+        kept[list(held)] = float(solution.program.x[3]) - _TRIFLE
         if not np.isnan(kept).any():
             break
-        solution = _solve(cuts, lambda: _greatest_least(cuts, kept))
-    margins = np.where(np.isnan(kept), solution.program.x[3] - EXACT, kept)
-    return _solve(cuts, lambda: _nearest(cuts, margins, near))
+        try:
+            solution = _solve(cuts, lambda: _greatest_least(cuts, kept))
+        except ArithmeticError:
+            return solution
+    margins = np.where(np.isnan(kept), float(solution.program.x[3]) - _TRIFLE, kept)
+    try:
+        return _solve(cuts, lambda: _nearest(cuts, margins, near))
+    except ArithmeticError:
+        return solution
 
 
 def _seed(cuts: CutSet, near: Floats) -> None:
@@ -106,9 +126,9 @@ def _greatest_least(cuts: CutSet, kept: Floats) -> _Solution:
     normals, bounds, slides = cuts.table()
     free = np.isnan(kept[slides])
     table = np.column_stack((normals, free))
-    ranges = [(-FARTHEST, FARTHEST)] * 3 + [(None, FARTHEST)]
+    ranges = [(-FARTHEST, FARTHEST)] * 3 + [(None, ENOUGH)]
     bounds = bounds - np.where(free, 0.0, kept[slides])
-    solved = _linear_program(np.array([0.0, 0.0, 0.0, -1.0]), table, bounds, ranges)
+    solved = linear_program(np.array([0.0, 0.0, 0.0, -1.0]), table, bounds, ranges)
     return _Solution(solved.x[:3], np.where(np.isnan(kept), solved.x[3], kept), solved)
 
 
@@ -119,13 +139,14 @@ def _nearest(cuts: CutSet, margins: Floats, near: Floats) -> _Solution:
     table = np.block([[normals, none], [eye, -eye], [-eye, -eye]])
     ranges = [(-FARTHEST, FARTHEST)] * 3 + [(0.0, None)] * 3
     rows = np.concatenate((bounds - margins[slides], near, -near))
-    solved = _linear_program(np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]), table, rows, ranges)
+    solved = linear_program(np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0]), table, rows, ranges)
     return _Solution(solved.x[:3], margins, solved)
 
 
-def _linear_program(cost: Floats, table: Floats, bounds: Floats, ranges: list[Any]) -> Any:
+def linear_program(cost: Floats, table: Floats, bounds: Floats, ranges: list[Any]) -> Any:
+    """SciPy's solution of: least cost . x, so that table x <= bounds, within ranges."""
     optimize = import_extra("scipy.optimize", "place")
-    solved = optimize.linprog(cost, A_ub=table, b_ub=bounds, bounds=ranges, method="highs")
+    solved = optimize.linprog(cost, A_ub=table, b_ub=bounds, bounds=ranges, method="highs", options=_TOLERANCES)
     if solved.x is None:
         raise ArithmeticError(f"the linear program of a place has no solution: {solved.message}")
     return solved

@@ -15,7 +15,7 @@ from trunnion.model.subdivision import arc_frames, circle_points
 from trunnion.placing.path_rows import PathRows
 
 #: The farthest that a rotary axis turns between two samples, degrees.
-STEP: Final = 1.0
+STEP: Final = 0.5
 
 #: Rotary axes that turn by less stand, degrees.
 _STANDS: Final = 1e-9

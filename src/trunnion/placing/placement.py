@@ -142,6 +142,11 @@ class Placement:
         return None if self.best is None else self.best.margin_mm
 
     @property
+    def seconds(self) -> float | None:
+        """With the goal ``time`` that of the best place, by speeds alone."""
+        return self.best.value if self.best is not None and self.goal == "time" else None
+
+    @property
     def share_of_turns(self) -> float:
         """Of the turns that were tried, those at which the part fits somewhere, 0 to 1."""
         return sum(turn.fits for turn in self.turns) / max(len(self.turns), 1)
