@@ -20,6 +20,7 @@ from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.api.settings import set_up_machine
 from trunnion.errors import ArgumentName, InputError, Severity, TrunnionError, argument_problem
 from trunnion.machines import Machine, shipped_machines
+from trunnion.machines.machine import Vector
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.placing.placement import AxisUse, Placement
 from trunnion.verification.results import durations
@@ -61,8 +62,8 @@ class MachineFit:
     seconds    time of the proven program; None: there is none, or its time is not known
     margins    of the slides at the place that was found, and of the rotary axes at feed
     missing    how far the slides are from reaching it at the best place, mm; None where that is not the reason
-    placement  where the part sits; None: no place was looked for
-    posted     the proven program at that place; None: there is none
+    zero_mm    workpiece zero of the best place, machine frame; None: there is no place, or it was not looked for
+    turn_deg   turn of the part there, about Z
     """
 
     key: str
@@ -71,8 +72,8 @@ class MachineFit:
     seconds: float | None = None
     margins: tuple[AxisMargin, ...] = ()
     missing: float | None = None
-    placement: Placement | None = None
-    posted: PostResult | None = None
+    zero_mm: Vector | None = None
+    turn_deg: float | None = None
 
 
 def fit(
@@ -218,14 +219,16 @@ def _fit(
     if not found.fits:
         return _beyond(machine, found)
     margins = tuple(AxisMargin(each.axis, "mm", each.margin_mm) for each in found.best.axes) if found.best else ()
+    # The placement and the program are let go: of a long path they are large, and there are many machines.
+    place_of = found.zero_mm, found.turn_deg
     try:
         posted = post_placed(found, machine=machine)
     except TrunnionError as error:
-        return MachineFit(machine.key, FitStatus.NOT, _reasons(error), margins=margins, placement=found)
+        return MachineFit(machine.key, FitStatus.NOT, _reasons(error), None, margins, None, *place_of)
     reasons = _open_reasons(machine)
     status = FitStatus.OPEN if reasons else FitStatus.FITS
     margins += _rotary_margins(machine, posted)
-    return MachineFit(machine.key, status, reasons, _seconds(posted), margins, None, found, posted)
+    return MachineFit(machine.key, status, reasons, _seconds(posted), margins, None, *place_of)
 
 
 def _without_limits(machine: Machine, toolpaths: Sequence[Toolpath]) -> MachineFit:
@@ -235,7 +238,7 @@ def _without_limits(machine: Machine, toolpaths: Sequence[Toolpath]) -> MachineF
     except TrunnionError as error:
         return MachineFit(machine.key, FitStatus.NOT, _reasons(error))
     margins = _rotary_margins(machine, posted)
-    return MachineFit(machine.key, FitStatus.OPEN, _open_reasons(machine), _seconds(posted), margins, posted=posted)
+    return MachineFit(machine.key, FitStatus.OPEN, _open_reasons(machine), _seconds(posted), margins)
 
 
 def _open_reasons(machine: Machine) -> tuple[str, ...]:
@@ -249,12 +252,11 @@ def _beyond(machine: Machine, found: Placement) -> MachineFit:
     """A machine whose axes do not reach it at any place."""
     if found.best is None:
         obstacles = tuple(dict.fromkeys(turn.obstacle for turn in found.turns if turn.obstacle))
-        return MachineFit(machine.key, FitStatus.NOT, obstacles[:1], placement=found)
+        return MachineFit(machine.key, FitStatus.NOT, obstacles[:1])
     reasons = tuple(_travel_reason(each) for each in found.best.axes if each.margin_mm < 0.0)
     margins = tuple(AxisMargin(each.axis, "mm", each.margin_mm) for each in found.best.axes)
-    return MachineFit(
-        machine.key, FitStatus.NOT, reasons, margins=margins, missing=-found.best.margin_mm, placement=found
-    )
+    missing = -found.best.margin_mm
+    return MachineFit(machine.key, FitStatus.NOT, reasons, None, margins, missing, found.zero_mm, found.turn_deg)
 
 
 def _travel_reason(use: AxisUse) -> str:

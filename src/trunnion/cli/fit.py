@@ -53,10 +53,9 @@ def fit_lines(found: Sequence[MachineFit]) -> Iterator[str]:
 def _facts(each: MachineFit) -> str:
     """Time, place and margins, as far as there are any."""
     facts = [] if each.seconds is None else [format_duration(each.seconds)]
-    if each.placement is not None and each.placement.best is not None and each.placement.fits:
-        best = each.placement.best
-        zero = ",".join(f"{part:.3f}" for part in best.zero_mm)
-        facts.append(f"zero {zero}" + (f" turned {best.turn_deg:g}°" if best.turn_deg else ""))
+    if each.zero_mm is not None and each.status is not FitStatus.NOT:
+        zero = ",".join(f"{part:.3f}" for part in each.zero_mm)
+        facts.append(f"zero {zero}" + (f" turned {each.turn_deg:g}°" if each.turn_deg else ""))
     if each.status is not FitStatus.NOT:
         left = [_margin(margin) for margin in each.margins if math.isfinite(margin.margin)]
         facts += [f"left {', '.join(left)}"] if left else []
@@ -74,14 +73,13 @@ def fit_data(found: Sequence[MachineFit]) -> dict[str, Any]:
 
 
 def _data(each: MachineFit) -> dict[str, Any]:
-    best = None if each.placement is None else each.placement.best
     return {
         "machine": each.key if not each.key.endswith(".toml") else Path(each.key).as_posix(),
         "status": str(each.status),
         "reasons": list(each.reasons),
         "seconds": None if each.seconds is None else round(each.seconds, 3),
-        "zero_mm": None if best is None else list(best.zero_mm),
-        "turn_deg": None if best is None else best.turn_deg,
+        "zero_mm": None if each.zero_mm is None else list(each.zero_mm),
+        "turn_deg": each.turn_deg,
         "missing_mm": None if each.missing is None else round(each.missing, 6),
         "margins": [
             {
