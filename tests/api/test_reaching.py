@@ -162,7 +162,7 @@ def test_the_picture_is_drawn_and_data_hold_the_same(tmp_path: Path, capfd: Capt
 @pytest.mark.parametrize(
     ("arguments", "what"),
     [
-        (["--step", "0.1"], "--step: error: is 0.1; give a number of degrees from 0.5 to 45"),
+        (["--step", "0.1"], "--step: error: is 0.1; give a number of degrees from 1 to 45"),
         (["--lean", "91"], "--lean: error: is 91.0"),
         (["--lean", "nan"], "--lean: error: is nan"),
         (["--plot", "reach.png"], "reach.png: error: reach is drawn as SVG; let its name end in .svg"),

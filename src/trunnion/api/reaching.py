@@ -21,7 +21,7 @@ from trunnion.machines.reach import AxisPoses, PoseBodies, ReachedVolume, axis_p
 #: Degrees between tilts, and between azimuths, unless it is said.
 DEFAULT_STEP: Final = 5.0
 
-_STEPS: Final = (0.5, 45.0)
+_STEPS: Final = (1.0, 45.0)
 
 #: The farthest that a tool may lean from a surface normal, degrees.
 _MOST_LEAN: Final = 90.0
@@ -109,7 +109,7 @@ def reach(
     tool_length
         From the gauge point of the spindle to the tip, mm.
     step
-        Degrees between tilts, and most between azimuths, from 0.5 to 45.
+        Degrees between tilts, and most between azimuths, from 1 to 45.
     observer
         Receives the progress of reading CL files, and warnings about them.
 
