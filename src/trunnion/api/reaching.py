@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -29,6 +30,9 @@ _MOST_LEAN: Final = 90.0
 #: Directions by which the share of the sphere is found.
 _SPREAD: Final = 40_000
 
+#: Points go to the next azimuth on arcs, so half of the way is a little more than half of the chord.
+_BENT: Final = 1.05
+
 #: Tilts that differ by less are the same, degrees.
 _SAME: Final = 1e-9
 
@@ -43,7 +47,7 @@ class TiltReach:
     one_pose   least and greatest volume of the tips of one rotary position, mm^3, exact; None: no slide limits
     some       volume of the points reached at some azimuth, mm^3; None: no slide limits
     every      volume of the points reached at every azimuth
-    between    how far the points of one rotary position move on the way half-way to the next azimuth, at most, mm
+    between    how far points of one rotary position go half-way to the next azimuth, at most, mm: bounds allow for it
     """
 
     tilt: float
@@ -126,8 +130,8 @@ def reach(
     Notes
     -----
     Volumes are those of tips in the workpiece frame, and do not depend on the workpiece zero. That of one rotary
-    position is exact. Those over azimuths are bounded for the azimuths that are tried. Nothing is in the way of the
-    tool here: collisions are up to ``simulate``.
+    position is exact. Those over azimuths have bounds, which allow for the azimuths between those that are tried.
+    Nothing is in the way of the tool here: collisions are up to ``simulate``.
 
     Examples
     --------
@@ -202,28 +206,36 @@ def _of_tilt(machine: Machine, tilt: float, step: float) -> TiltReach:
     if not _has_travel(machine):
         return TiltReach(tilt, branches, None, None, None, 0.0)
     bodies = pose_bodies(machine, poses.rotary)
-    some, every = reached_volumes(bodies, poses.direction, len(axes))
+    between = _between(poses, bodies)
+    some, every = reached_volumes(bodies, poses.direction, len(axes), between=between)
     volumes = bodies.volume.tolist() or [0.0]
-    return TiltReach(tilt, branches, (min(volumes), max(volumes)), some, every, _between(poses, bodies))
+    return TiltReach(tilt, branches, (min(volumes), max(volumes)), some, every, float(between.max(initial=0.0)))
 
 
-def _between(poses: AxisPoses, bodies: PoseBodies) -> float:
-    """Half of the way of the corners of a body to the nearest one of the next azimuth, at most, mm."""
-    count = len(poses.branches)
-    groups = np.searchsorted(poses.direction, np.arange(count + 1))
-    worst = 0.0
-    for k in range(count):
-        own = bodies.corners[groups[k] : groups[k + 1]]
-        after = (k + 1) % count
-        following = bodies.corners[groups[after] : groups[after + 1]]
-        if count == 1:  # at a pole: from one angle of the free axis to the next
-            own, following = own, np.roll(own, -1, axis=0)
-            ways = np.linalg.norm(own - following, axis=2).max(axis=1)
-            return float(ways[: max(len(ways) - 1, 1)].max(initial=0.0)) / 2.0
-        if len(own) and len(following):
-            ways = np.linalg.norm(own[:, None] - following[None], axis=3).max(axis=2)
-            worst = max(worst, float(ways.min(axis=1).max()))
-    return worst / 2.0
+def _between(poses: AxisPoses, bodies: PoseBodies) -> Floats:
+    """How far the corners of each body go on the way half-way to the nearest one of the next azimuth, (k,) mm.
+
+    At a pole the next angle of the free axis is meant. Where a neighbour cannot be had the others' greatest way counts.
+    """
+    count, k = len(poses.branches), len(bodies.volume)
+    if not k:
+        return np.zeros(0)
+    if count == 1:
+        parts, closes = [np.array([row]) for row in range(k)], False
+    else:
+        groups = np.searchsorted(poses.direction, np.arange(count + 1))
+        parts, closes = [np.arange(first, end) for first, end in pairwise(groups)], True
+    ways = np.full(k, np.nan)
+    for at, own in enumerate(parts):
+        for beside in (at - 1, at + 1):
+            if not closes and not 0 <= beside < len(parts):
+                continue
+            other = parts[beside % len(parts)]
+            if len(own) and len(other):
+                apart = np.linalg.norm(bodies.corners[own][:, None] - bodies.corners[other][None], axis=3).max(axis=2)
+                ways[own] = np.fmax(ways[own], apart.min(axis=1))
+    greatest = float(np.nanmax(ways)) if np.isfinite(ways).any() else 0.0
+    return np.asarray(_BENT * 0.5 * np.where(np.isnan(ways), greatest, ways))
 
 
 def _has_travel(machine: Machine) -> bool:

@@ -73,8 +73,8 @@ def reach_lines(found: Reach) -> Iterator[str]:
     between = max(each.between for each in found.tilts)
     if between:
         yield (
-            f"volumes between their bounds for tool axes every {found.step:g}°; half-way to the next one points move by"
-            f" up to {between:.0f} mm"
+            f"bounds allow for tool axes between those tried, every {found.step:g}°: half-way points move by up to"
+            f" {between:.0f} mm; a smaller --step narrows them"
         )
     if found.part is not None:
         yield from _part_lines(found.part)
