@@ -17,8 +17,8 @@ from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
-from trunnion.placing.between_rows import most_between
 from trunnion.placing.best_turn import TurnResult, best_turns
+from trunnion.placing.between_rows import most_between
 from trunnion.placing.goals import Goal, PlaceCost, rotary_travel
 from trunnion.placing.path_rows import PathRows, about_z
 from trunnion.placing.placement import AxisUse, Limit, Place, Placement, TurnMargin
