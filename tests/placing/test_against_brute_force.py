@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
-from scipy.optimize import minimize
+from scipy.optimize import minimize  # type: ignore[import-untyped]
 
 from tests.support.placed_paths import brute_margin, limited_machines, random_rows
+from trunnion.arrays import Floats
 from trunnion.machines import Machine, inverse, load_machine
 from trunnion.placing.best_turn import best_of_turn, best_turns
 from trunnion.placing.largest_margin import largest_margin
@@ -74,7 +75,7 @@ def test_no_place_is_in_the_region_that_does_not_fit_and_none_outside_that_does(
             assert abs(brute_margin(machine, rows, turn, corner)) < TOLERANCE + 1e-6
 
 
-def walk_uphill(machine: Machine, rows: PathRows, turn: float, at: np.ndarray, seed: int) -> float:
+def walk_uphill(machine: Machine, rows: PathRows, turn: float, at: Floats, seed: int) -> float:
     """The largest margin that a simplex finds by brute force, beginning anew in other directions where it rests."""
     random, best = np.random.default_rng(seed), brute_margin(machine, rows, turn, at)
     if best == -np.inf:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.support.placed_paths import path_rows
+from trunnion.arrays import Codes, Floats
 from trunnion.machines import inverse, load_machine
 from trunnion.model.arc_extremes import ArcPaths
 from trunnion.placing.between_rows import most_between
@@ -73,10 +74,10 @@ def test_slides_that_swing_while_rotary_axes_turn_count_within_the_bound() -> No
     assert most_between(YL569, replace(rows, straight=np.zeros(2, np.bool_)), angles.positions, ZERO) == 0.0
 
 
-def inverse_branch(axis: np.ndarray) -> np.ndarray:
+def inverse_branch(axis: Floats) -> Codes:
     """The branches in which C stands still and B tilts."""
     joints = inverse(YL569, np.zeros_like(axis), axis).joints
-    return np.argmin(np.abs(joints[:, :, 0]), axis=0).astype(np.uint8)
+    return np.asarray(np.argmin(np.abs(joints[:, :, 0]), axis=0), np.uint8)
 
 
 def test_the_pole_holds_the_table_until_the_path_leaves_it() -> None:

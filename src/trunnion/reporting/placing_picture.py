@@ -86,8 +86,8 @@ def _map(found: Placement) -> Iterator[str]:
         first = 0
         for end in ends.tolist():
             fill = "url(#no)" if row[first] < 0 else _BANDS[int(row[first])]
-            at, below = _LEFT + first * size, _TOP + _SIDE - (k + 1) * size
-            yield _field(at, below, (end - first) * size + 0.4, size + 0.4, fill)
+            side, below = _LEFT + first * size, _TOP + _SIDE - (k + 1) * size
+            yield _field(side, below, (end - first) * size + 0.4, size + 0.4, fill)
             first = end
     yield f'<rect class="frame" x="{_LEFT:g}" y="{_TOP:g}" width="{_SIDE:g}" height="{_SIDE:g}"/>\n'
 
