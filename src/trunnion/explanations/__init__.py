@@ -23,6 +23,7 @@ SUBJECTS: Final = {
     "programs": "Reading programs",
     "checks": "Checks",
     "conversion": "Conversion",
+    "placing": "Placing parts",
     "simulation": "Simulation, tools and meshes",
     "impeller": "Impellers and curves",
     "twin": "Twin and recordings",
