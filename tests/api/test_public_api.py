@@ -30,9 +30,9 @@ def test_every_public_name_is_there_and_documented() -> None:
     assert FUNCTIONS == [
         "convert", "cut_impeller", "describe_cl", "describe_control", "describe_controls", "describe_machine",
         "diff", "explain", "fit", "fit_curve", "load_impeller", "load_machine", "model_impeller",
-        "plan", "post", "post_project", "reach", "read_cl", "read_points", "read_program",
+        "place", "plan", "post", "post_placed", "post_project", "reach", "read_cl", "read_points", "read_program",
         "sensitivity", "simulate", "verify", "verify_manifest",
-        "write_curve_picture", "write_impeller_step", "write_plot", "write_report", "write_view",
+        "write_curve_picture", "write_impeller_step", "write_placing_plot", "write_plot", "write_report", "write_view",
     ]  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""Machines with limits, and paths for them, to place; and a slow way to judge a place that shares nothing with placing."""
+"""Machines with limits and paths to place, and a slow way to judge a place that shares nothing with placing."""
 
 from dataclasses import replace
 

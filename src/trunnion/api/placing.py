@@ -17,12 +17,12 @@ from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
-from trunnion.placing.between_rows import most_between
 from trunnion.placing.best_turn import TurnResult, best_turns
+from trunnion.placing.between_rows import most_between
 from trunnion.placing.goals import Goal, PlaceCost, rotary_travel
 from trunnion.placing.path_rows import PathRows, about_z
 from trunnion.placing.placement import AxisUse, Limit, Place, Placement, TurnMargin
-from trunnion.placing.region import region_of
+from trunnion.placing.region import Region, region_of
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.travel_limits import Cut, CutSet
 from trunnion.placing.turns import TurnedPath, choices_of
@@ -160,7 +160,10 @@ def _placement(
         found = place_at(machine, rows, best.cuts, _rounded(best.cuts, best.best.zero), best.turn)
         found = _with_value(found, best.path, Goal(goal))
     held = () if best.best is None else tuple(limit_of_cut(machine, rows, cut) for cut in best.best.holds)
-    region = None if best.best is None or best.cuts is None else region_of(best.cuts, best.best)
+
+    @lru_cache(maxsize=1)
+    def region() -> Region | None:
+        return None if best.best is None or best.cuts is None else region_of(best.cuts, best.best)
 
     @lru_cache(maxsize=2)
     def turned(turn: float) -> list[CutSet]:
@@ -177,10 +180,10 @@ def _placement(
         held,
         _present(machine, rows, paths, Goal(goal)),
         tuple(_turn_margin(machine, rows, result) for result in results),
-        region,
         between_mm=0.0 if found is None or best.path is None else _between(best.path, found),
         problems=tuple(problems),
         toolpaths=given.toolpaths,
+        _find_region=region,
         _margin_at=margin_at,
     )
 

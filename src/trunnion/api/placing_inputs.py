@@ -1,17 +1,18 @@
 """The path that is placed: rows of CL files as they are planned, or of NC programs as they run."""
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 
 from trunnion import readers
-from trunnion.api.arguments import is_stream
+from trunnion.api.arguments import is_stream, wrong_argument
 from trunnion.api.observer import Observer
 from trunnion.api.planning import plan
-from trunnion.api.reading import FilePath, ToolpathLike, read_toolpaths
+from trunnion.api.reading import ToolpathLike, read_toolpaths
 from trunnion.api.settings import Settings, as_texts, number_setting
 from trunnion.arrays import Flags
 from trunnion.errors import InputError, Problem, RefusedError, Severity
@@ -56,29 +57,46 @@ def read_input(
     RefusedError
         If a program has words that are not understood, or no plan of the CL files is possible.
     """
-    given = [files] if isinstance(files, str | os.PathLike | Toolpath) or is_stream(files) else list(files)
+    if isinstance(files, str | os.PathLike | Toolpath) or is_stream(files):
+        files = [files]
+    if isinstance(files, bytes | Mapping) or not isinstance(files, Iterable):
+        raise wrong_argument("files", files, "give CL files or NC programs: a path, or a list of them")
+    given = cast("list[ToolpathLike]", list(files))
     if not given:
         raise InputError(Problem("files", 0, "there is no file", "give at least one", code="ARG130"))
-    programs = [Path(each) for each in given if isinstance(each, str | os.PathLike) and _is_program(each, machine)]
+    texts = as_texts(settings)
+    toolpaths: list[Toolpath] = []
+    programs: list[Path] = []
+    for each in given:
+        found = _toolpaths_of(each, texts, machine, observer)
+        toolpaths += found or ()
+        if found is None and isinstance(each, str | os.PathLike):
+            programs.append(Path(each))
     if programs and len(programs) < len(given):
         what = f"is an NC program, and {counted(len(given) - len(programs), 'other file')} is not"
         raise InputError(Problem(str(programs[0]), 0, what, "give CL files or NC programs, not both", code="PLC110"))
     if programs:
         runs = [_run_of(program, machine, subprograms) for program in programs]
         return PlacedInput(joined_rows([rows_of_run(run) for run in runs]))
-    return _planned(given, machine, settings, observer)
+    return _planned(toolpaths, machine, texts, observer)
 
 
-def _is_program(file: FilePath, machine: Machine) -> bool:
-    """Whether a file is no CL file, and the machine's control understands it."""
+def _toolpaths_of(
+    file: ToolpathLike, settings: Mapping[str, str], machine: Machine, observer: Observer
+) -> list[Toolpath] | None:
+    """The toolpaths of a CL file; None if it is a program that the machine's control understands."""
+    tolerance = number_setting(settings, "spline_tolerance")
     try:
-        read_toolpaths(file, None, False, Observer())
+        return read_toolpaths(file, settings.get("cl_units"), False, observer, settings.get("dialect"), tolerance)
     except InputError as error:
-        if any(problem.code.startswith("FIL") for problem in error.problems) or not readers.can_read(machine):
-            return False
+        if not isinstance(file, str | os.PathLike) or not readers.can_read(machine):
+            raise
+        if any(problem.code.startswith("FIL") for problem in error.problems):
+            raise
         run = readers.run_program(Path(file), machine)
-        return len(run) > len({each.line for each in run.errors})
-    return False
+        if len(run) > len({each.line for each in run.errors}):
+            return None
+        raise
 
 
 def _run_of(program: Path, machine: Machine, subprograms: Sequence[Path]) -> Run:
@@ -91,19 +109,15 @@ def _run_of(program: Path, machine: Machine, subprograms: Sequence[Path]) -> Run
 
 
 def _planned(
-    files: Sequence[ToolpathLike], machine: Machine, settings: Settings | None, observer: Observer
+    toolpaths: Sequence[Toolpath], machine: Machine, settings: Mapping[str, str], observer: Observer
 ) -> PlacedInput:
     """The rows of CL files, planned on the machine without limits of its slides."""
-    texts = as_texts(settings)
-    toolpaths = read_toolpaths(
-        files, texts.get("cl_units"), False, observer, texts.get("dialect"), number_setting(texts, "spline_tolerance")
-    )
     free = replace(
         machine,
         workpiece_zero=(0.0, 0.0, 0.0),
         axes=tuple(axis if axis.is_rotary else replace(axis, low=-np.inf, high=np.inf) for axis in machine.axes),
     )
-    planned = plan(toolpaths, machine=free, settings={**texts, "cycles": "off"}, explain=False, observer=observer)
+    planned = plan(toolpaths, machine=free, settings={**settings, "cycles": "off"}, explain=False, observer=observer)
     warnings = tuple(problem for problem in planned.problems if problem.severity is Severity.WARNING)
     return PlacedInput(rows_of_plan(free, planned.motions), tuple(toolpaths), warnings)
 

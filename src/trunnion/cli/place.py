@@ -87,7 +87,8 @@ def placement_lines(found: Placement) -> Iterator[str]:
         gained = "" if found.goal != "margin" else f"; the best place has {gain:.3f} mm more"
         yield f"  present zero {_point(present)}: {state}{gained}"
     if found.goal != "margin" and best.value is not None:
-        yield f"  {_value(found.goal, best)}{'' if present is None else f'; at the present zero {_number(found.goal, present)}'}"
+        now = "" if present is None else f"; at the present zero {_number(found.goal, present)}"
+        yield f"  {_value(found.goal, best)}{now}"
     fitting = sum(turn.fits for turn in found.turns)
     yield f"  it fits at {fitting} of {counted(len(found.turns), 'turn')}"
     if found.region is not None:
@@ -117,7 +118,11 @@ def _number(goal: str, place: Place) -> str:
     value = place.value or 0.0
     if goal == "time":
         return format_duration(value)
-    return counted(round(value), "row") if goal == "overspeed" else f"{value:.1f} {'degrees' if goal == 'rotary' else 'mm'}"
+    return (
+        counted(round(value), "row")
+        if goal == "overspeed"
+        else f"{value:.1f} {'degrees' if goal == 'rotary' else 'mm'}"
+    )
 
 
 def _use(axis: AxisUse) -> str:

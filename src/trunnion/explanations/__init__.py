@@ -24,6 +24,7 @@ SUBJECTS: Final = {
     "checks": "Checks",
     "capability": "What machines reach, and how exactly",
     "conversion": "Conversion",
+    "placing": "Placing parts",
     "simulation": "Simulation, tools and meshes",
     "impeller": "Impellers and curves",
     "twin": "Twin and recordings",

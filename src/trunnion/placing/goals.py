@@ -1,4 +1,4 @@
-"""What a place costs: travel of the slides, time, and feeds that the axes cannot reach, as convex functions of the zero.
+"""What a place costs: travel of the slides, time, feeds that the axes cannot reach; as convex functions of the zero.
 
 Slides are linear in the workpiece zero, so their steps from row to row are, and
 

@@ -38,8 +38,8 @@ class BestPlace:
     """A place with the largest margin.
 
     zero     (3,) mm
-    margin   of the slide that is nearest to a limit, at most ``ENOUGH``, mm; negative: the part fits nowhere, and this is
-             the least excess
+    margin   of the slide that is nearest to a limit, at most ``ENOUGH``, mm; negative: the part fits nowhere, and this
+             is the least excess
     reached  where the slides go there
     holds    the half-spaces that keep the margin from growing, the heaviest first
     """

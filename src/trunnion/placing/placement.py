@@ -102,7 +102,6 @@ class Placement:
     limits    what keeps its margin from growing, the heaviest first; where it does not fit, what conflicts
     present   the place of the definition or of the arguments; None: neither states one
     turns     what each turn allows, in order; those of the grid and those around the best
-    region    the places at the turn of the best one; None: it fits nowhere
     between_mm  how far slides may go beyond that between rows where rotary axes turn
     problems  warnings
     toolpaths  of CL files; empty for NC programs
@@ -115,11 +114,16 @@ class Placement:
     limits: tuple[Limit, ...]
     present: Place | None
     turns: tuple[TurnMargin, ...]
-    region: Region | None
     between_mm: float = 0.0
     problems: tuple[Problem, ...] = ()
     toolpaths: tuple[Toolpath, ...] = ()
+    _find_region: Callable[[], Region | None] = field(default=lambda: None, repr=False)
     _margin_at: Callable[[Floats, float], float] = field(default=lambda zero, turn: np.nan, repr=False)
+
+    @property
+    def region(self) -> Region | None:
+        """The places at the turn of the best one; None: it fits nowhere. Worked out when first asked for."""
+        return self._find_region()
 
     @property
     def fits(self) -> bool:

@@ -54,24 +54,29 @@ def region_of(cuts: CutSet, best: BestPlace) -> Region | None:
         return None
     if best.margin < _NO_INSIDE:
         return Region(best.zero[None], 0.0, 0.0, best.zero, best.zero, cuts)
-    corners, hull, off = _corners(cuts, best.zero), None, np.inf
+    corners = _corners(cuts, best.zero)
+    judged: dict[tuple[float, ...], float] = {}
     while len(cuts.cuts) < _MOST:
-        off = 0.0
         before = len(cuts.cuts)
         for corner in corners:
-            reached = cuts.at(corner)
-            off = max(off, -float(reached.margins.min()))
-            cuts.add(reached, np.full((3, 2), -TOLERANCE))
+            key = tuple(corner.tolist())
+            if key not in judged:
+                reached = cuts.at(corner)
+                judged[key] = -float(reached.margins.min())
+                cuts.add(reached, np.full((3, 2), -TOLERANCE))
         if len(cuts.cuts) == before:
             break
         corners = _corners(cuts, best.zero)
+    off = max(judged.get(tuple(corner.tolist()), np.inf) for corner in corners)
     spatial = import_extra("scipy.spatial", "place")
     hull = spatial.ConvexHull(corners)
     corners = corners[np.sort(hull.vertices)]
     low, high = corners.min(axis=0), corners.max(axis=0)
     open_low, open_high = low < -0.99 * FARTHEST, high > 0.99 * FARTHEST
     volume = np.inf if (open_low | open_high).any() else float(hull.volume)
-    return Region(corners, off, volume, np.where(open_low, -np.inf, low), np.where(open_high, np.inf, high), cuts)
+    return Region(
+        corners, max(off, 0.0), volume, np.where(open_low, -np.inf, low), np.where(open_high, np.inf, high), cuts
+    )
 
 
 def _corners(cuts: CutSet, inside: Floats) -> Floats:

@@ -65,7 +65,9 @@ def map_margins(found: Placement, fields: int = _FIELDS) -> tuple[Floats, Floats
         high = np.where(np.isfinite(found.region.high[:2]), found.region.high[:2], high)
     side = 1.12 * max(float((high - low).max()), 1.0)
     x, y = ((low[k] + high[k]) / 2.0 + side * ((np.arange(fields) + 0.5) / fields - 0.5) for k in range(2))
-    margins = np.array([[found.margin_at((a, b, best.zero_mm[2]), best.turn_deg) for a in x.tolist()] for b in y.tolist()])
+    margins = np.array(
+        [[found.margin_at((a, b, best.zero_mm[2]), best.turn_deg) for a in x.tolist()] for b in y.tolist()]
+    )
     return x, y, margins
 
 
@@ -84,8 +86,8 @@ def _map(found: Placement) -> Iterator[str]:
         first = 0
         for end in ends.tolist():
             fill = "url(#no)" if row[first] < 0 else _BANDS[int(row[first])]
-            at, below = _LEFT + first * size, _TOP + _SIDE - (k + 1) * size
-            yield f'<rect x="{at:.2f}" y="{below:.2f}" width="{(end - first) * size + 0.4:.2f}" height="{size + 0.4:.2f}" fill="{fill}"/>\n'
+            side, below = _LEFT + first * size, _TOP + _SIDE - (k + 1) * size
+            yield _field(side, below, (end - first) * size + 0.4, size + 0.4, fill)
             first = end
     yield f'<rect class="frame" x="{_LEFT:g}" y="{_TOP:g}" width="{_SIDE:g}" height="{_SIDE:g}"/>\n'
 
@@ -93,7 +95,8 @@ def _map(found: Placement) -> Iterator[str]:
         return _LEFT + ((a - float(x[0])) / step + 0.5) * size, _TOP + _SIDE - ((b - float(y[0])) / step + 0.5) * size
 
     px, py = at(best.zero_mm[0], best.zero_mm[1])
-    yield f'<circle class="best" cx="{px:.1f}" cy="{py:.1f}" r="6"/><circle class="ring" cx="{px:.1f}" cy="{py:.1f}" r="7.6"/>\n'
+    for mark, radius in (("best", 6.0), ("ring", 7.6)):
+        yield f'<circle class="{mark}" cx="{px:.1f}" cy="{py:.1f}" r="{radius:g}"/>\n'
     if found.present is not None:
         px, py = at(found.present.zero_mm[0], found.present.zero_mm[1])
         inside = _LEFT <= px <= _LEFT + _SIDE and _TOP <= py <= _TOP + _SIDE
@@ -112,7 +115,8 @@ def _scales(x: Floats, y: Floats) -> Iterator[str]:
     for value in _ticks(float(y[0]), float(y[-1])):
         py = _TOP + _SIDE - ((value - y[0]) / (y[1] - y[0]) + 0.5) * size
         yield f'<text class="note" x="{_LEFT - 6:g}" y="{py + 4:.1f}" text-anchor="end">{value:g}</text>\n'
-    yield f'<text class="note" x="{_LEFT + _SIDE:g}" y="{_TOP + _SIDE + 30:g}" text-anchor="end">X of the zero, mm</text>\n'
+    end = f'x="{_LEFT + _SIDE:g}" y="{_TOP + _SIDE + 30:g}" text-anchor="end"'
+    yield f'<text class="note" {end}>X of the zero, mm</text>\n'
     yield f'<text class="note" x="{_LEFT - 50:g}" y="{_TOP - 6:g}">Y, mm</text>\n'
 
 
@@ -122,11 +126,15 @@ def _legend(top: float, present: bool) -> Iterator[str]:
     height = _SIDE / (len(_BANDS) + 1)
     for k, colour in enumerate(_BANDS):
         below = _TOP + _SIDE - (k + 2) * height
-        yield f'<rect x="{left:g}" y="{below:.1f}" width="{width:g}" height="{height:.1f}" fill="{colour}"/>\n'
+        yield _field(left, below, width, height, colour)
         yield f'<text class="note" x="{left + 19:g}" y="{below + height + 4:.1f}">{top * k / len(_BANDS):.3g}</text>\n'
-    yield f'<rect x="{left:g}" y="{_TOP + _SIDE - height:.1f}" width="{width:g}" height="{height:.1f}" fill="url(#no)"/>\n'
+    yield _field(left, _TOP + _SIDE - height, width, height, "url(#no)")
     yield f'<text class="note" x="{left + 19:g}" y="{_TOP + 4:g}">{top:.3g}</text>\n'
-    marks = "ring: best place" + (", cross: X and Y of the present one" if present else "") + "; hatched: the part does not fit"
+    marks = (
+        "ring: best place"
+        + (", cross: X and Y of the present one" if present else "")
+        + "; hatched: the part does not fit"
+    )
     yield f'<text class="note" x="{_LEFT:g}" y="{_TOP + _SIDE + 48:g}">{marks}</text>\n'
 
 
@@ -169,6 +177,10 @@ def _turns(found: Placement) -> Iterator[str]:
         px = at(value, 0.0).split()[0]
         yield f'<text class="note" x="{px}" y="{low + 15:g}" text-anchor="middle">{value:g}</text>\n'
     yield f'<text class="note" x="{right:g}" y="{low + 30:g}" text-anchor="end">turn about Z, degrees</text>\n'
+
+
+def _field(x: float, y: float, width: float, height: float, fill: str) -> str:
+    return f'<rect x="{x:.2f}" y="{y:.2f}" width="{width:.2f}" height="{height:.2f}" fill="{fill}"/>\n'
 
 
 def _ticks(low: float, high: float) -> list[float]:
