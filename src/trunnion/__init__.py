@@ -15,8 +15,13 @@ Functions
     plan           CL files -> Plan: motions on the machine
     post           CL files -> NC program with its proof
     post_project   project -> all NC programs of its set-ups with their proofs, together or not at all
+    place          CL files or NC programs -> Placement: where on the table the part may sit
+    post_placed    Placement -> NC program with its proof, the part where it sits best
     read_program   NC program -> Run: what the control does with it
     verify         NC program against its CL files, and against a recording of the machine -> Verification
+    fit            CL files or NC program -> MachineFit of each machine: which can run it
+    reach          machine -> Reach: which tool axes and points it reaches
+    sensitivity    NC program -> Sensitivity: which number of the machine's geometry it depends on
     convert        NC program -> CL file, or program for another machine
     diff           two NC programs -> Comparison
     explain        code of a message, or name of a check -> Explanation
@@ -53,6 +58,8 @@ if TYPE_CHECKING:
     from trunnion.api.describing_machine import MachineDescription as MachineDescription
     from trunnion.api.describing_machine import describe_machine as describe_machine
     from trunnion.api.explaining import explain as explain
+    from trunnion.api.fitting import MachineFit as MachineFit
+    from trunnion.api.fitting import fit as fit
     from trunnion.api.impeller_cutting import ImpellerCut as ImpellerCut
     from trunnion.api.impeller_cutting import cut_impeller as cut_impeller
     from trunnion.api.impellers import load_impeller as load_impeller
@@ -61,6 +68,9 @@ if TYPE_CHECKING:
     from trunnion.api.manifests import ManifestCheck as ManifestCheck
     from trunnion.api.manifests import verify_manifest as verify_manifest
     from trunnion.api.observer import Observer as Observer
+    from trunnion.api.placing import place as place
+    from trunnion.api.placing_plot import write_placing_plot as write_placing_plot
+    from trunnion.api.placing_post import post_placed as post_placed
     from trunnion.api.planning import plan as plan
     from trunnion.api.plotting import write_plot as write_plot
     from trunnion.api.post_result import PostResult as PostResult
@@ -68,10 +78,14 @@ if TYPE_CHECKING:
     from trunnion.api.posting import post as post
     from trunnion.api.project_posting import ProjectResult as ProjectResult
     from trunnion.api.project_posting import post_project as post_project
+    from trunnion.api.reaching import Reach as Reach
+    from trunnion.api.reaching import reach as reach
     from trunnion.api.reading import load_machine as load_machine
     from trunnion.api.reading import read_cl as read_cl
     from trunnion.api.reading import read_program as read_program
     from trunnion.api.reports import write_report as write_report
+    from trunnion.api.sensitivity import Sensitivity as Sensitivity
+    from trunnion.api.sensitivity import sensitivity as sensitivity
     from trunnion.api.simulating import simulate as simulate
     from trunnion.api.simulation_result import SimulationResult as SimulationResult
     from trunnion.api.verifying import verify as verify
@@ -97,6 +111,7 @@ if TYPE_CHECKING:
     from trunnion.model.run import Run as Run
     from trunnion.model.toolpath import Operation as Operation
     from trunnion.model.toolpath import Toolpath as Toolpath
+    from trunnion.placing.placement import Placement as Placement
     from trunnion.verification.comparison.result import Comparison as Comparison
     from trunnion.verification.results import Check as Check
     from trunnion.verification.results import Place as Place
@@ -123,19 +138,23 @@ _MODULES: Final = {
     "InputError": "errors",
     "Machine": "machines.machine",
     "MachineDescription": "api.describing_machine",
+    "MachineFit": "api.fitting",
     "ManifestCheck": "api.manifests",
     "Motion": "model.motion",
     "Observer": "api.observer",
     "Operation": "model.toolpath",
     "Place": "verification.results",
+    "Placement": "placing.placement",
     "Plan": "model.motion",
     "PointTable": "geometry.point_tables",
     "PostResult": "api.post_result",
     "Problem": "errors",
     "ProjectResult": "api.project_posting",
     "ProofFailedError": "api.post_result",
+    "Reach": "api.reaching",
     "RefusedError": "errors",
     "Run": "model.run",
+    "Sensitivity": "api.sensitivity",
     "Severity": "errors",
     "SimulationResult": "api.simulation_result",
     "Span": "geometry.spans",
@@ -150,21 +169,27 @@ _MODULES: Final = {
     "describe_machine": "api.describing_machine",
     "diff": "api.comparing",
     "explain": "api.explaining",
+    "fit": "api.fitting",
     "fit_curve": "api.curves",
     "load_impeller": "api.impellers",
     "load_machine": "api.reading",
     "model_impeller": "api.impellers",
+    "place": "api.placing",
     "plan": "api.planning",
     "post": "api.posting",
+    "post_placed": "api.placing_post",
     "post_project": "api.project_posting",
+    "reach": "api.reaching",
     "read_cl": "api.reading",
     "read_points": "api.curves",
     "read_program": "api.reading",
+    "sensitivity": "api.sensitivity",
     "simulate": "api.simulating",
     "verify": "api.verifying",
     "verify_manifest": "api.manifests",
     "write_curve_picture": "api.curves",
     "write_impeller_step": "api.impellers",
+    "write_placing_plot": "api.placing_plot",
     "write_plot": "api.plotting",
     "write_report": "api.reports",
     "write_view": "api.viewing",
@@ -188,19 +213,23 @@ __all__ = [
     "InputError",
     "Machine",
     "MachineDescription",
+    "MachineFit",
     "ManifestCheck",
     "Motion",
     "Observer",
     "Operation",
     "Place",
+    "Placement",
     "Plan",
     "PointTable",
     "PostResult",
     "Problem",
     "ProjectResult",
     "ProofFailedError",
+    "Reach",
     "RefusedError",
     "Run",
+    "Sensitivity",
     "Severity",
     "SimulationResult",
     "Span",
@@ -216,21 +245,27 @@ __all__ = [
     "describe_machine",
     "diff",
     "explain",
+    "fit",
     "fit_curve",
     "load_impeller",
     "load_machine",
     "model_impeller",
+    "place",
     "plan",
     "post",
+    "post_placed",
     "post_project",
+    "reach",
     "read_cl",
     "read_points",
     "read_program",
+    "sensitivity",
     "simulate",
     "verify",
     "verify_manifest",
     "write_curve_picture",
     "write_impeller_step",
+    "write_placing_plot",
     "write_plot",
     "write_report",
     "write_view",

@@ -8,6 +8,8 @@ from importlib import import_module
 from typing import Any, Final, NoReturn, cast
 
 from trunnion import __version__
+from trunnion.cli.capability_arguments import add_fit, add_reach, add_sensitivity
+from trunnion.cli.place_arguments import add_place
 from trunnion.cli.post_arguments import post_mistake
 from trunnion.cli.twin_arguments import add_machine_access, add_record, add_twin
 
@@ -173,10 +175,16 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     _add_verify(
         commands.add_parser("verify", help="prove an NC program: read it, run it, compare it with its CL files")
     )
+    _add_sensitivity(
+        commands.add_parser("sensitivity", help="rank the numbers of a machine by what they do to an NC program")
+    )
+    _add_reach(commands.add_parser("reach", help="tell which tool axes and points a machine reaches"))
+    _add_fit(commands.add_parser("fit", help="rank the machines that can run CL files or an NC program"))
     _add_diff(commands.add_parser("diff", help="compare what two NC programs make the tool do"))
     _add_convert(
         commands.add_parser("convert", help="turn an NC program into a CL file, or post it for another machine")
     )
+    _add_place(commands.add_parser("place", help="find where on the table a part may sit, and where best"))
     _add_simulate(commands.add_parser("simulate", help="cut stock with NC programs: what is left, and what is hit"))
     _add_view(commands.add_parser("view", help="show an NC program on its machine, in a browser"))
     _add_twin(commands.add_parser("twin", help="serve an NC program as a running machine: OPC UA and MTConnect"))
@@ -302,6 +310,23 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(run=_lazy_command("verify", "run"))
 
 
+def _add_sensitivity(parser: argparse.ArgumentParser) -> None:
+    add_sensitivity(parser)
+    _add_subprograms(parser, "it")
+    parser.set_defaults(run=_lazy_command("sensitivity", "run"))
+
+
+def _add_reach(parser: argparse.ArgumentParser) -> None:
+    add_reach(parser)
+    parser.set_defaults(run=_lazy_command("reach", "run"))
+
+
+def _add_fit(parser: argparse.ArgumentParser) -> None:
+    add_fit(parser)
+    _add_subprograms(parser, "the NC program")
+    parser.set_defaults(run=_lazy_command("fit", "run"))
+
+
 def _add_diff(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("files", nargs=2, metavar="NC", help="NC program")
     parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs the first program")
@@ -391,6 +416,11 @@ def _add_view(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--output", metavar="FILE.html", help="write a page that works offline, and serve nothing")
     _add_serving(parser)
     parser.set_defaults(run=_lazy_command("view", "run"))
+
+
+def _add_place(parser: argparse.ArgumentParser) -> None:
+    add_place(parser, _Setting, _key_value)
+    parser.set_defaults(run=_lazy_command("place", "run"))
 
 
 def _add_twin(parser: argparse.ArgumentParser) -> None:

@@ -26,10 +26,30 @@ _ASSETS = files("trunnion.reporting")
 def render_page(content: ReportContent, series: PlotSeries) -> Iterator[bytes]:
     """Yield the page, piece by piece."""
     parts = [series] if content.recorded is None else [content.recorded.series, series]
+    verdict = "passed" if content.passed else "FAILED"
+    yield from plot_page(
+        f"{content.program}: {verdict}", page_body(content), parts, pictures=content.simulation is not None
+    )
+
+
+def plot_page(title: str, body: str, parts: Sequence[PlotSeries], *, pictures: bool = False) -> Iterator[bytes]:
+    """Yield a page with plots, piece by piece.
+
+    Parameters
+    ----------
+    title
+        Of the window.
+    body
+        HTML from the body tag, with ``main`` open, up to the plots.
+    parts
+        What is plotted, each in a section of its own.
+    pictures
+        The body has pictures.
+    """
     levels = [list(detail_levels(part)) for part in parts]
     scripts = (_read_vendored("uPlot.iife.min.js"), _read_asset("unpack.js") + _read_asset("page.js"))
-    yield _head(content, scripts).encode()
-    yield page_body(content).encode()
+    yield _head(title, scripts, pictures).encode()
+    yield body.encode()
     for part, own in zip(parts, levels, strict=True):
         yield plot_section(part, own).encode()
     yield b"</main>\n"
@@ -58,14 +78,13 @@ def _read_vendored(name: str) -> str:
     return f"\n/*\n{licence}\n*/\n" + vendor.joinpath(name).read_text(encoding="utf-8")
 
 
-def _head(content: ReportContent, scripts: Sequence[str]) -> str:
+def _head(title: str, scripts: Sequence[str], pictures: bool) -> str:
     """Return the head of the page, with its style and a policy that allows only ``scripts``."""
     style = _read_vendored("uPlot.min.css") + _read_asset("page.css")
     sources = " ".join(source_hash(script) for script in scripts)
-    pictures = "img-src data:; " if content.simulation else ""
-    allowed = f"script-src {sources}; style-src {source_hash(style)}; {pictures}"
+    images = "img-src data:; " if pictures else ""
+    allowed = f"script-src {sources}; style-src {source_hash(style)}; {images}"
     policy = f"default-src 'none'; {allowed}base-uri 'none'; form-action 'none'"
-    verdict = "passed" if content.passed else "FAILED"
     return f"""<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -73,7 +92,7 @@ def _head(content: ReportContent, scripts: Sequence[str]) -> str:
 <meta http-equiv="Content-Security-Policy" content="{policy}">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="color-scheme" content="light dark">
-<title>{escape(content.program)}: {verdict}</title>
+<title>{escape(title)}</title>
 <style>{style}</style>
 </head>
 """

@@ -28,13 +28,15 @@ def plot_section(series: PlotSeries, levels: Sequence[DetailLevel]) -> str:
     if len(series) < 2:
         return ""
     own = element_prefix(series)
-    floating = any(curve.floating for plot in series.plots for curve in plot.curves)
+    curves = [curve for plot in series.plots for curve in plot.curves]
+    floating = any(curve.floating for curve in curves)
+    limits = " Red lines are limits." if any(curve.limits for curve in curves) else ""
     title = series.title or f"Axes, speeds and feed over {'time' if series.timed else 'motions: no times are known'}"
     whole = "whole recording" if series.name else "whole program"
     return f"""<section id="{own}plots" class="plots">
 <h2>{escape(title)}</h2>
 <p class="note">Drag over a stretch to zoom in, double-click for the {whole}; click a point to hold it, Escape
-lets go. Red lines are limits.{FLOATING_NOTE if floating else ""} {escape(series.note)}</p>
+lets go.{limits}{FLOATING_NOTE if floating else ""} {escape(series.note)}</p>
 <div id="{own}bar" class="bar">
 <div id="{own}point" class="point"><span class="hint">Loading …</span></div>
 <div class="buttons"><button type=button data-act="left" title="earlier">◀</button>

@@ -1,0 +1,276 @@
+"""Where on the table a part may sit: the feasible places of its workpiece zero, and the best of them."""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from functools import lru_cache
+from typing import Final
+
+import numpy as np
+
+from trunnion.api.arguments import check_choice, check_observer, check_paths, wrong_argument
+from trunnion.api.observer import SILENT, Observer
+from trunnion.api.placing_inputs import PlacedInput, read_input
+from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
+from trunnion.api.settings import Settings, as_texts, set_up_machine
+from trunnion.arrays import Floats
+from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.machines import Machine
+from trunnion.machines.machine import Vector
+from trunnion.placing.best_turn import TurnResult, best_turns
+from trunnion.placing.between_rows import most_between
+from trunnion.placing.goals import Goal, PlaceCost, rotary_travel
+from trunnion.placing.path_rows import PathRows, about_z
+from trunnion.placing.placement import AxisUse, Limit, Place, Placement, TurnMargin
+from trunnion.placing.region import Region, region_of
+from trunnion.placing.rotary_angles import Obstacle
+from trunnion.placing.travel_limits import Cut, CutSet
+from trunnion.placing.turns import TurnedPath, choices_of
+
+GOALS: Final = tuple(str(goal) for goal in Goal)
+
+#: Turns are at most as many.
+_MOST_TURNS: Final = 3600
+
+
+def place(
+    files: Iterable[ToolpathLike] | ToolpathLike,
+    *,
+    machine: MachineLike,
+    goal: str = "margin",
+    turns: float | Sequence[float] = 5.0,
+    zero: str | Iterable[float] | None = None,
+    tool_length: str | float | None = None,
+    settings: Settings | None = None,
+    subprograms: Sequence[FilePath] = (),
+    observer: Observer = SILENT,
+) -> Placement:
+    """Find where on the table a part may sit, and where it sits best.
+
+    Parameters
+    ----------
+    files
+        CL files, which ``trunnion.post`` would make one program of, or NC programs: all must fit at one place.
+    machine
+        A name, a path or a ``Machine``.
+    goal
+        What the best place is best for: ``"margin"``, the distance of the slides to their limits; or the least
+        ``"rotary"`` or ``"slides"`` travel, ``"time"`` at rapid speeds, or ``"overspeed"``, fewest rows whose feed the
+        axes do not reach. Places with these goals keep a margin of 1 mm where they can.
+    turns
+        The part is tried at every so many degrees about Z, and more finely around the best; or the turns themselves.
+    zero : (3,) float, mm
+        The present place of the workpiece zero; by default that of the definition.
+    tool_length
+        Of the tool, gauge point to tip, mm; by default that of the definition, or 0.
+    settings
+        Of CL files, as ``trunnion.post`` takes them.
+    subprograms
+        Files of the subprograms that NC programs call.
+    observer
+        Receives the progress and warnings.
+
+    Returns
+    -------
+    Placement
+        ``fits``, ``zero_mm``, ``turn_deg``, ``margin_mm``, ``limits``, the ``region`` of all places, and more.
+
+    Raises
+    ------
+    InputError
+        When a file or an argument cannot be used, or no slide has limits.
+    RefusedError
+        When no plan of the CL files is possible, or a program has words that are not understood.
+
+    Notes
+    -----
+    docs/placing.md says what is proven, and of which motions.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> found = trunnion.place("tests/golden/yl569/2_hub_rough.cls", machine="yl569", turns=[0.0])
+    >>> found.fits, found.best.axes[1].axis
+    (True, 'Y')
+    """
+    check_observer(observer)
+    goal = check_choice("goal", goal, GOALS)
+    grid, refine = _turns(turns)
+    texts = as_texts(settings)
+    zero = texts.pop("zero", None) if zero is None else zero
+    tool_length = texts.get("tool_length") if tool_length is None else tool_length
+    loaded = set_up_machine(as_machine(machine), zero, tool_length)
+    if not np.isfinite(loaded.limits[list(loaded.linear)]).any():
+        what = f"no slide of {loaded.key} has limits: the part may sit anywhere"
+        raise InputError(argument_problem("machine", what, "state limits_mm of its axes", code="PLC130"))
+    given = read_input(files, loaded, texts, check_paths("subprograms", subprograms), observer)
+    problems = [*given.problems, *_unknown_length(loaded)]
+    observer.problems(problems)
+    near = _first_guess(loaded)
+    paths = [TurnedPath.of(loaded, choice, rows, near) for choice, rows in choices_of(given.rows)]
+    with observer.progress("placing", len(grid), "turns") as advance:
+        results, best = best_turns(paths, grid, advance, refine=refine, goal=Goal(goal))
+    return _placement(loaded, given, goal, paths, results, best, problems)
+
+
+def _turns(turns: float | Sequence[float]) -> tuple[Floats, bool]:
+    """The turns that are tried, degrees, and whether they are refined."""
+    cure = f"give degrees between them, {360.0 / _MOST_TURNS:g} to 360, or a list of turns"
+    if isinstance(turns, int | float):
+        if not 360.0 / _MOST_TURNS <= turns <= 360.0:
+            raise wrong_argument("turns", turns, cure)
+        return np.arange(0.0, 360.0, float(turns)), True
+    try:
+        given = np.array(list(turns), np.float64)
+    except (TypeError, ValueError):
+        raise wrong_argument("turns", turns, cure) from None
+    if given.ndim != 1 or not 0 < len(given) <= _MOST_TURNS or not np.isfinite(given).all():
+        raise wrong_argument("turns", turns, cure)
+    return given, False
+
+
+def _unknown_length(machine: Machine) -> list[Problem]:
+    """A warning where places depend on a tool length that nobody has stated."""
+    if machine.tool_length is not None or not any(machine.depends_on_length(k) for k in machine.linear):
+        return []
+    names = ", ".join(machine.axes[k].name for k in machine.linear if machine.depends_on_length(k))
+    what, cure = f"the tool counts as 0 mm long, and {names} depends on it", "give tool_length"
+    return [argument_problem("tool_length", what, cure, Severity.WARNING, code="PLC210")]
+
+
+def _first_guess(machine: Machine) -> Floats:
+    """A place near which the search begins: the present one, or where the part sits on the first rotary axis."""
+    if machine.workpiece_zero is not None:
+        return np.array(machine.workpiece_zero)
+    return np.array(machine.axes[machine.rotary[0]].point)
+
+
+def _placement(
+    machine: Machine,
+    given: PlacedInput,
+    goal: str,
+    paths: Sequence[TurnedPath],
+    results: Sequence[TurnResult],
+    best: TurnResult,
+    problems: Sequence[Problem],
+) -> Placement:
+    rows = given.rows
+    found = None
+    if best.best is not None and best.cuts is not None:
+        found = place_at(machine, rows, best.cuts, _rounded(best.cuts, best.best.zero), best.turn)
+        found = _with_value(found, best.path, Goal(goal))
+    held = () if best.best is None else tuple(limit_of_cut(machine, rows, cut) for cut in best.best.holds)
+
+    @lru_cache(maxsize=1)
+    def region() -> Region | None:
+        return None if best.best is None or best.cuts is None else region_of(best.cuts, best.best)
+
+    @lru_cache(maxsize=2)
+    def turned(turn: float) -> list[CutSet]:
+        return [cuts for cuts in (path.at(turn) for path in paths) if isinstance(cuts, CutSet)]
+
+    def margin_at(zero: Floats, turn: float) -> float:
+        return float(max((cuts.at(zero).margins.min() for cuts in turned(turn)), default=-np.inf))
+
+    return Placement(
+        machine.key,
+        tuple(dict.fromkeys(stretch.file for stretch in rows.stretches)),
+        goal,
+        found,
+        held,
+        _present(machine, rows, paths, Goal(goal)),
+        tuple(_turn_margin(machine, rows, result) for result in results),
+        between_mm=0.0 if found is None or best.path is None else _between(best.path, found),
+        problems=tuple(problems),
+        toolpaths=given.toolpaths,
+        _find_region=region,
+        _margin_at=margin_at,
+    )
+
+
+def _between(path: TurnedPath, found: Place) -> float:
+    """How far slides may go beyond their samples at a place, mm."""
+    angles = path.angles_at(found.turn_deg)
+    assert not isinstance(angles, Obstacle)
+    rows = path.rows.turned(about_z(found.turn_deg))
+    return most_between(path.machine, rows, angles.positions, np.array(found.zero_mm))
+
+
+def _with_value(place: Place, path: TurnedPath | None, goal: Goal) -> Place:
+    """A place with the value of the goal."""
+    angles = None if path is None else path.angles_at(place.turn_deg)
+    if path is None or isinstance(angles, Obstacle) or angles is None:
+        return place
+    rows, positions = path.rows.turned(about_z(place.turn_deg)), angles.positions
+    if goal is Goal.MARGIN:
+        return replace(place, value=place.margin_mm)
+    if goal is Goal.ROTARY:
+        return replace(place, value=rotary_travel(rows, positions))
+    return replace(place, value=PlaceCost.of(goal, path.machine, rows, positions).value(np.array(place.zero_mm)))
+
+
+def _present(machine: Machine, rows: PathRows, paths: Sequence[TurnedPath], goal: Goal) -> Place | None:
+    """The place that the machine has been given; None if it has none, or rotary axes do not reach the path there."""
+    if machine.workpiece_zero is None:
+        return None
+    zero = np.array(machine.workpiece_zero)
+    places = [
+        _with_value(place_at(machine, rows, cuts, zero, 0.0), path, goal)
+        for path, cuts in ((path, path.at(0.0)) for path in paths)
+        if isinstance(cuts, CutSet)
+    ]
+    return max(places, key=lambda place: place.margin_mm, default=None)
+
+
+def _turn_margin(machine: Machine, rows: PathRows, result: TurnResult) -> TurnMargin:
+    if result.best is None:
+        assert result.obstacle is not None
+        return TurnMargin(result.turn, None, None, obstacle_text(machine, rows, result.obstacle))
+    return TurnMargin(result.turn, result.margin, vector(result.best.zero), value=result.cost)
+
+
+def obstacle_text(machine: Machine, rows: PathRows, obstacle: Obstacle) -> str:
+    """Why a turn is impossible, with the line."""
+    stretch = rows.stretch_of(obstacle.row)
+    what = "no rotary positions give its tool axis"
+    if obstacle.axis >= 0:
+        axis = machine.axes[obstacle.axis]
+        what = f"{axis.name} would have to leave its travel, {axis.low:g} to {axis.high:g} degrees"
+    return f"{stretch.file}:{rows.line[obstacle.row]}: {what}"
+
+
+def place_at(machine: Machine, rows: PathRows, cuts: CutSet, zero: Floats, turn: float) -> Place:
+    """A place with what it leaves each slide."""
+    reached = cuts.at(zero)
+    axes = []
+    for slide, column in enumerate(machine.linear):
+        low, high = (limit_at(machine, rows, cuts.row(reached, slide, side), slide, side) for side in (0, 1))
+        least, greatest = reached.extremes[slide].tolist()
+        axes.append(AxisUse(machine.axes[column].name, least, greatest, float(reached.margins[slide].min()), low, high))
+    return Place(vector(zero), turn, float(reached.margins.min()), tuple(axes))
+
+
+def _rounded(cuts: CutSet, zero: Floats) -> Floats:
+    """A place in whole thousandths of a millimetre, as controls have it, unless the part fits at the exact one only."""
+    rounded = np.round(zero, 3)
+    exact, near = (float(cuts.at(each).margins.min()) for each in (zero, rounded))
+    return rounded if near >= 0.0 or exact < 0.0 else zero
+
+
+def limit_of_cut(machine: Machine, rows: PathRows, cut: Cut) -> Limit:
+    """The limit that a half-space is."""
+    return limit_at(machine, rows, cut.row, cut.slide, cut.side)
+
+
+def limit_at(machine: Machine, rows: PathRows, row: int, slide: int, side: int) -> Limit:
+    """The limit of a slide with the row that comes nearest to it."""
+    axis, stretch = machine.axes[machine.linear[slide]], rows.stretch_of(row)
+    limit = axis.high if side else axis.low
+    return Limit(axis.name, ("low", "high")[side], limit, stretch.file, int(rows.line[row]), stretch.operation)
+
+
+def vector(values: Floats) -> Vector:
+    """Three numbers, without -0."""
+    x, y, z = (value + 0.0 for value in values.tolist())
+    assert math.isfinite(x + y + z)
+    return x, y, z

@@ -1,0 +1,168 @@
+"""The path that is placed: rows of CL files as they are planned, or of NC programs as they run."""
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+
+from trunnion import readers
+from trunnion.api.arguments import is_stream, wrong_argument
+from trunnion.api.observer import Observer
+from trunnion.api.planning import plan
+from trunnion.api.reading import ToolpathLike, read_toolpaths
+from trunnion.api.settings import Settings, as_texts, number_setting
+from trunnion.arrays import Flags
+from trunnion.errors import InputError, Problem, RefusedError, Severity
+from trunnion.machines import Machine
+from trunnion.model.arc_extremes import ArcPaths
+from trunnion.model.run import ProgrammedWord, Run
+from trunnion.model.toolpath import Kind, Toolpath
+from trunnion.placing.path_rows import PathRows, Stretch, joined_rows
+from trunnion.placing.plan_rows import branches, rows_of_plan
+from trunnion.verification.kinematics.positioning_moves import approach_rows
+from trunnion.wording import counted
+
+#: Places that are not understood which an error names one by one.
+_MOST_NAMED = 20
+
+_SLIDE_WORDS = int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z)
+_ROTARY_WORDS = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWord.VECTOR)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlacedInput:
+    """What is placed: rows, and the toolpaths that they come from, of CL files; none, of NC programs."""
+
+    rows: PathRows
+    toolpaths: tuple[Toolpath, ...] = ()
+    problems: tuple[Problem, ...] = ()
+
+
+def read_input(
+    files: Iterable[ToolpathLike] | ToolpathLike,
+    machine: Machine,
+    settings: Settings | None,
+    subprograms: Sequence[Path],
+    observer: Observer,
+) -> PlacedInput:
+    """Read CL files or NC programs; which they are is found out.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be used as either, or some are CL files and others programs.
+    RefusedError
+        If a program has words that are not understood, or no plan of the CL files is possible.
+    """
+    if isinstance(files, str | os.PathLike | Toolpath) or is_stream(files):
+        files = [files]
+    if isinstance(files, bytes | Mapping) or not isinstance(files, Iterable):
+        raise wrong_argument("files", files, "give CL files or NC programs: a path, or a list of them")
+    given = cast("list[ToolpathLike]", list(files))
+    if not given:
+        raise InputError(Problem("files", 0, "there is no file", "give at least one", code="ARG130"))
+    texts = as_texts(settings)
+    toolpaths: list[Toolpath] = []
+    programs: list[Path] = []
+    for each in given:
+        found = _toolpaths_of(each, texts, machine, observer)
+        toolpaths += found or ()
+        if found is None and isinstance(each, str | os.PathLike):
+            programs.append(Path(each))
+    if programs and len(programs) < len(given):
+        what = f"is an NC program, and {counted(len(given) - len(programs), 'other file')} is not"
+        raise InputError(Problem(str(programs[0]), 0, what, "give CL files or NC programs, not both", code="PLC110"))
+    if programs:
+        runs = [_run_of(program, machine, subprograms) for program in programs]
+        return PlacedInput(joined_rows([rows_of_run(run) for run in runs]))
+    return _planned(toolpaths, machine, texts, observer)
+
+
+def _toolpaths_of(
+    file: ToolpathLike, settings: Mapping[str, str], machine: Machine, observer: Observer
+) -> list[Toolpath] | None:
+    """The toolpaths of a CL file; None if it is a program that the machine's control understands."""
+    tolerance = number_setting(settings, "spline_tolerance")
+    try:
+        return read_toolpaths(file, settings.get("cl_units"), False, observer, settings.get("dialect"), tolerance)
+    except InputError as error:
+        if not isinstance(file, str | os.PathLike) or not readers.can_read(machine):
+            raise
+        if any(problem.code.startswith("FIL") for problem in error.problems):
+            raise
+        run = readers.run_program(Path(file), machine)
+        if len(run) > len({each.line for each in run.errors}):
+            return None
+        raise
+
+
+def _run_of(program: Path, machine: Machine, subprograms: Sequence[Path]) -> Run:
+    run = readers.run_program(program, machine, subprograms=subprograms)
+    if run.errors:
+        found = [Problem(each.file, each.line, each.text, code=each.code) for each in run.errors[:_MOST_NAMED]]
+        what = f"{counted(len(run.errors), 'place')} not understood: where it goes is not known"
+        raise RefusedError((*found, Problem(str(program), 0, what, code="PLC120")))
+    return run
+
+
+def _planned(
+    toolpaths: Sequence[Toolpath], machine: Machine, settings: Mapping[str, str], observer: Observer
+) -> PlacedInput:
+    """The rows of CL files, planned on the machine without limits of its slides."""
+    free = replace(
+        machine,
+        workpiece_zero=(0.0, 0.0, 0.0),
+        axes=tuple(axis if axis.is_rotary else replace(axis, low=-np.inf, high=np.inf) for axis in machine.axes),
+    )
+    planned = plan(toolpaths, machine=free, settings={**settings, "cycles": "off"}, explain=False, observer=observer)
+    warnings = tuple(problem for problem in planned.problems if problem.severity is Severity.WARNING)
+    return PlacedInput(rows_of_plan(free, planned.motions), tuple(toolpaths), warnings)
+
+
+def rows_of_run(run: Run) -> PathRows:
+    """The rows of a run that move slides to positions of the workpiece."""
+    machine = run.machine
+    keep = _rows_at_workpiece(run)
+    if not keep.any():
+        raise InputError(Problem(run.files[0], 0, "there is no motion at the part in it", code="CNV121"))
+    rows = np.flatnonzero(keep)
+    joints, tip, axis = run.joints, run.tip[rows], run.axis[rows]
+    rotary = joints[:, list(machine.rotary)]
+    begins = np.append(True, np.diff(rows) > 1)
+    firsts = np.flatnonzero(begins)
+    solution = branches(machine, tip, axis, rotary[rows])
+    arc = np.flatnonzero(keep[run.arcs.row])
+    starts = run.positions(run.arcs.row[arc] - 1).tip
+    seconds = np.zeros(len(rows))
+    feed, mode = run.feed[rows], run.feed_mode[rows]
+    way = np.append(0.0, np.linalg.norm(np.diff(tip, axis=0), axis=1))
+    timed = (run.kind[rows] != Kind.RAPID) & (mode == 94) & (feed > 0.0) & ~begins
+    seconds[timed] = 60.0 * way[timed] / feed[timed]
+    files = run.file[rows]
+    return PathRows(
+        tip,
+        axis,
+        solution,
+        run.line[rows].astype(np.int64),
+        run.tcp[rows],
+        seconds,
+        tuple(
+            Stretch(first, run.files[int(files[first])] if files[first] else run.files[0]) for first in firsts.tolist()
+        ),
+        rotary[rows[firsts]],
+        ArcPaths.of(run.arcs, arc, starts, run.tip[run.arcs.row[arc]]),
+        np.searchsorted(rows, run.arcs.row[arc]),
+    )
+
+
+def _rows_at_workpiece(run: Run) -> Flags:
+    """Which rows move slides, and not to positions of the machine; first legs of approaches are among those."""
+    programmed = run.programmed.astype(np.int64)
+    names_slides = ((programmed & _SLIDE_WORDS) != 0) | ((programmed & (_SLIDE_WORDS | _ROTARY_WORDS)) == 0)
+    moves = run.tcp | names_slides
+    moves &= ~run.machine_frame
+    moves[approach_rows(run)] = False
+    return np.asarray(moves)

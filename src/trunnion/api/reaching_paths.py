@@ -1,0 +1,70 @@
+"""Which points of CL files the tip reaches."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from trunnion.arrays import Flags, Floats, Lines
+from trunnion.machines import Machine
+from trunnion.machines.reach import reached_points
+from trunnion.model.frames import into_frame
+from trunnion.model.toolpath import Operation, Toolpath
+
+
+@dataclass(frozen=True, slots=True)
+class PathReach:
+    """What is reached of the points of a CL file.
+
+    points       how many there are
+    tilts        least and greatest tilt of the tool axis from the workpiece's Z, degrees
+    no_axis      points whose tool axis the rotary axes do not give, and the line of the first; 0 for none
+    no_travel    points beyond the travel of the slides with every rotary position, and the line of the first
+    """
+
+    file: str
+    points: int
+    tilts: tuple[float, float]
+    no_axis: int
+    no_axis_line: int
+    no_travel: int
+    no_travel_line: int
+
+
+def path_reach(machine: Machine, toolpaths: Sequence[Toolpath], step: float) -> tuple[PathReach, ...]:
+    """Judge the points of CL files, in the coordinates of the first operation."""
+    operations = [operation for toolpath in toolpaths for operation in toolpath.operations if len(operation.moves)]
+    if not operations:
+        return ()
+    frame = operations[0].frame
+    return tuple(
+        _of_file(machine, each.file, [into_frame(one, frame) for one in each.operations if len(one.moves)], step)
+        for each in toolpaths
+        if any(len(one.moves) for one in each.operations)
+    )
+
+
+def _of_file(machine: Machine, file: str, operations: Sequence[Operation], step: float) -> PathReach:
+    tip = np.concatenate([one.moves.tip for one in operations])
+    axis = np.concatenate([one.moves.axis for one in operations])
+    line = np.concatenate([one.moves.line for one in operations])
+    found = reached_points(machine, tip[:, None], axis, step)
+    tilts = _tilts(axis)
+    return PathReach(
+        file,
+        len(tip),
+        (float(tilts.min()), float(tilts.max())),
+        *_first(~found.axis, line),
+        *_first(found.axis & ~found.travel, line),
+    )
+
+
+def _first(flags: Flags, line: Lines) -> tuple[int, int]:
+    """How many rows there are, and the line of the first."""
+    rows = np.flatnonzero(flags)
+    return len(rows), int(line[rows[0]]) if len(rows) else 0
+
+
+def _tilts(axis: Floats) -> Floats:
+    """Angles from Z, degrees, accurate near both ends as well."""
+    return np.asarray(np.degrees(np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2])))

@@ -1,0 +1,70 @@
+"""The arguments of the commands about what a machine can do: ``trunnion sensitivity``, ``reach`` and ``fit``."""
+
+import argparse
+import math
+
+
+def amount(text: str) -> float:
+    """A length or an angle above 0."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number above 0; write one, such as 5")
+    return value
+
+
+def add_sensitivity(parser: argparse.ArgumentParser) -> None:
+    """Add them; the subprograms and the function that runs it are added by the caller."""
+    parser.add_argument("file", metavar="NC", help="NC program")
+    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs it")
+    parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
+    parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
+    parser.add_argument(
+        "--length", type=amount, default=0.01, metavar="MM", help="how far points and lengths are off; 0.01"
+    )
+    parser.add_argument(
+        "--angle", type=amount, default=5.0, metavar="ARCSEC",
+        help="how far directions and displayed angles are off, seconds of arc; 5",
+    )  # fmt: skip
+    parser.add_argument(
+        "--zero-at", default="home", metavar="C=0,B=0|home|none",
+        help="where the rotary axes stand when the workpiece zero is set; none: leave nothing to the zero",
+    )  # fmt: skip
+    parser.add_argument("--json", metavar="FILE", help="all numbers as data; - is stdout")
+    parser.add_argument("--report", metavar="FILE", help="the table, and errors over the program, as a page (.html)")
+
+
+def add_reach(parser: argparse.ArgumentParser) -> None:
+    """Add them; the function that runs it is added by the caller."""
+    parser.add_argument("files", nargs="*", metavar="CL", help="CL files whose points are judged")
+    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine whose reach is told")
+    parser.add_argument("--part", metavar="MESH", help="part whose facets the tip is to reach along their normals")
+    parser.add_argument(
+        "--lean", type=float, default=0.0, metavar="DEG", help="how far the tool may lean from a normal; 0"
+    )
+    parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
+    parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
+    parser.add_argument(
+        "--step", type=amount, default=5.0, metavar="DEG", help="degrees between tilts, and between azimuths; 5"
+    )
+    parser.add_argument("--json", metavar="FILE", help="everything as data; - is stdout")
+    parser.add_argument("--plot", metavar="FILE", help="tool axes on the sphere, and volumes over the tilt (.svg)")
+
+
+def add_fit(parser: argparse.ArgumentParser) -> None:
+    """Add them; the subprograms and the function that runs it are added by the caller."""
+    parser.add_argument(
+        "files", nargs="+", metavar="CL|NC", help="CL files of one program; or, with --machine, a program"
+    )
+    parser.add_argument(
+        "--machines", default="all", metavar="NAME_OR_FILE,…", help="machines that are asked; all shipped ones"
+    )
+    parser.add_argument("--machine", metavar="NAME_OR_FILE", help="machine that the NC program is for")
+    parser.add_argument("--zero", metavar="X,Y,Z", help="workpiece zero of the NC program on its own machine, mm")
+    parser.add_argument("--tool-length", metavar="MM", help="length of the tool on all machines, gauge point to tip")
+    parser.add_argument(
+        "--turns", type=amount, default=90.0, metavar="DEG", help="try the part at every so many degrees about Z; 90"
+    )
+    parser.add_argument("--json", metavar="FILE", help="everything as data; - is stdout")

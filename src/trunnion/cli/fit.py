@@ -1,0 +1,92 @@
+"""``trunnion fit``: which machines can run CL files or an NC program."""
+
+import argparse
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from trunnion.api.fitting import AxisMargin, FitStatus, MachineFit, fit
+from trunnion.cli.cl_files import cl_inputs, named_files
+from trunnion.cli.results import as_json, print_result
+from trunnion.cli.terminal import Terminal
+from trunnion.cli.wording import in_command_words
+from trunnion.files import atomic_file, check_outputs
+from trunnion.wording import format_duration, one_line
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Ask the machines; 0 if one of them can run it, else 1."""
+    read = [*named_files(arguments.files), *arguments.subprograms]
+    read += [name for name in arguments.machines.split(",") if name.endswith(".toml")]
+    if arguments.json not in (None, "-"):
+        check_outputs([arguments.json], read)
+    found = fit(
+        cl_inputs(arguments.files) if arguments.machine is None else arguments.files,
+        machines=arguments.machines,
+        machine=arguments.machine,
+        subprograms=arguments.subprograms,
+        zero=arguments.zero,
+        tool_length=arguments.tool_length,
+        turns=arguments.turns,
+        observer=Terminal(),
+    )
+    if arguments.json == "-":
+        print_result(as_json(fit_data(found)))
+    else:
+        if arguments.json is not None:
+            with atomic_file(arguments.json, inputs=read) as sink:
+                sink.write((as_json(fit_data(found)) + "\n").encode())
+        print_result(*map(one_line, fit_lines(found)))
+    return 0 if any(each.status is not FitStatus.NOT for each in found) else 1
+
+
+def fit_lines(found: Sequence[MachineFit]) -> Iterator[str]:
+    """The machines in their order, each with what it makes of it."""
+    wide = max(len(each.key) for each in found)
+    for each in found:
+        yield f"{each.key:<{wide}}  {each.status:<12}  {_facts(each)}".rstrip()
+        for reason in each.reasons:
+            yield f"{'':<{wide}}  {in_command_words(reason)}"
+
+
+def _facts(each: MachineFit) -> str:
+    """Time, place and margins, as far as there are any."""
+    facts = [] if each.seconds is None else [format_duration(each.seconds)]
+    if each.zero_mm is not None and each.status is not FitStatus.NOT:
+        zero = ",".join(f"{part:.3f}" for part in each.zero_mm)
+        facts.append(f"zero {zero}" + (f" turned {each.turn_deg:g}°" if each.turn_deg else ""))
+    if each.status is not FitStatus.NOT:
+        left = [_margin(margin) for margin in each.margins if math.isfinite(margin.margin)]
+        facts += [f"left {', '.join(left)}"] if left else []
+    return "; ".join(facts)
+
+
+def _margin(margin: AxisMargin) -> str:
+    unit = "°" if margin.unit == "deg" else " mm"
+    return f"{margin.axis} {margin.margin:.1f}{unit}"
+
+
+def fit_data(found: Sequence[MachineFit]) -> dict[str, Any]:
+    """The machines as data, in their order."""
+    return {"schema": 1, "machines": [_data(each) for each in found]}
+
+
+def _data(each: MachineFit) -> dict[str, Any]:
+    return {
+        "machine": each.key if not each.key.endswith(".toml") else Path(each.key).as_posix(),
+        "status": str(each.status),
+        "reasons": list(each.reasons),
+        "seconds": None if each.seconds is None else round(each.seconds, 3),
+        "zero_mm": None if each.zero_mm is None else list(each.zero_mm),
+        "turn_deg": each.turn_deg,
+        "missing_mm": None if each.missing is None else round(each.missing, 6),
+        "margins": [
+            {
+                "axis": margin.axis,
+                "unit": margin.unit,
+                "left": round(margin.margin, 6) if math.isfinite(margin.margin) else None,
+            }
+            for margin in each.margins
+        ],
+    }

@@ -1,0 +1,67 @@
+"""The arguments of ``trunnion place``."""
+
+import argparse
+from collections.abc import Callable
+from typing import Any
+
+#: Goals; listed here, so that a command line is taken apart before anything is imported.
+GOALS = ("margin", "rotary", "slides", "time", "overspeed")
+
+
+def degrees(text: str) -> float:
+    """A step between turns."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.1 <= value <= 360.0:
+        raise argparse.ArgumentTypeError(f"{text!r} is no step of turns; write degrees, 0.1 to 360, such as 5")
+    return value
+
+
+def turn(text: str) -> float:
+    """A turn."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = 1e9
+    if not -360.0 <= value <= 360.0:
+        raise argparse.ArgumentTypeError(f"{text!r} is no turn; write degrees, -360 to 360, such as 45")
+    return value
+
+
+def add_place(parser: argparse.ArgumentParser, setting: type[argparse.Action], key_value: Callable[[str], Any]) -> None:
+    """Add the options of the command."""
+    parser.add_argument(
+        "files", nargs="+", metavar="CL|NC", help="CL files or NC programs; all must fit at one place of the part"
+    )
+    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="shipped machine, or a TOML file")
+    parser.add_argument(
+        "--goal", choices=GOALS, default="margin",
+        help="what the best place is best for: margin to the limits, travel of rotary axes or slides, time, or"
+        " fewest blocks whose feed the axes cannot reach; margin",
+    )  # fmt: skip
+    turns = parser.add_mutually_exclusive_group()
+    turns.add_argument(
+        "--turns", type=degrees, default=5.0, metavar="DEG",
+        help="try the part at every so many degrees about Z, and more finely around the best; 5",
+    )  # fmt: skip
+    turns.add_argument(
+        "--turn", type=turn, action="append", metavar="DEG", dest="only",
+        help="try this turn only; 0 leaves the part as it is; may be repeated",
+    )  # fmt: skip
+    parser.add_argument(
+        "--zero", metavar="X,Y,Z", help="the present workpiece zero on the machine, mm, to compare with"
+    )
+    parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
+    parser.add_argument(
+        "--set", action=setting, type=key_value, default=[], metavar="KEY=VALUE", dest="settings",
+        help="for CL files, as post has it; may be repeated",
+    )  # fmt: skip
+    parser.add_argument(
+        "--with", nargs="+", action="extend", default=[], metavar="NC", dest="subprograms",
+        help="files of the subprograms that the programs call; no others are opened",
+    )  # fmt: skip
+    parser.add_argument("--json", metavar="FILE", help="all results as data; - is stdout")
+    parser.add_argument("--plot", metavar="FILE.svg", help="the margin over the table and over the turns")
+    parser.add_argument("--apply", metavar="FILE|-", help="post the CL files with the best place, and prove it")

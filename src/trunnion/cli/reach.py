@@ -1,0 +1,150 @@
+"""``trunnion reach``: which tool axes and points a machine reaches."""
+
+import argparse
+from collections.abc import Iterator
+from typing import Final
+
+import numpy as np
+
+from trunnion.api.input_files import machine_files
+from trunnion.api.reach_report import check_reach_plot, reach_data, write_reach_plot
+from trunnion.api.reaching import Reach, TiltReach, reach
+from trunnion.api.reaching_parts import PartReach
+from trunnion.api.reaching_paths import PathReach
+from trunnion.api.reading import load_machine
+from trunnion.cli.cl_files import cl_inputs, named_files
+from trunnion.cli.results import as_json, print_result
+from trunnion.cli.terminal import Terminal
+from trunnion.files import atomic_file, check_outputs
+from trunnion.machines.reach import ReachedVolume
+from trunnion.wording import counted, one_line
+
+_LITRE: Final = 1e6
+
+#: Facets that the text shows; the data has all.
+_MOST: Final = 12
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Tell and draw what is reached; 0 if all that was asked for is, else 1."""
+    machine = load_machine(arguments.machine)
+    read = [*named_files(arguments.files), *machine_files(arguments.machine, machine)]
+    read += [] if arguments.part is None else [arguments.part]
+    if arguments.plot is not None:
+        check_reach_plot(arguments.plot, read)
+    check_outputs([each for each in (arguments.plot, arguments.json) if each not in (None, "-")], read)
+    terminal = Terminal()
+    found = reach(
+        machine,
+        cl=cl_inputs(arguments.files),
+        part=arguments.part,
+        lean=arguments.lean,
+        zero=arguments.zero,
+        tool_length=arguments.tool_length,
+        step=arguments.step,
+        observer=terminal,
+    )
+    terminal.problems(found.remarks)
+    if arguments.plot is not None:
+        write_reach_plot(found, arguments.plot, read)
+    if arguments.json == "-":
+        print_result(as_json(reach_data(found)))
+    else:
+        if arguments.json is not None:
+            with atomic_file(arguments.json, inputs=read) as sink:
+                sink.write((as_json(reach_data(found)) + "\n").encode())
+        print_result(*map(one_line, reach_lines(found)))
+    missed = any(each.no_axis or each.no_travel for each in found.paths)
+    return 1 if missed or (found.part is not None and len(found.part.missed)) else 0
+
+
+def reach_lines(found: Reach) -> Iterator[str]:
+    """What is reached, in lines."""
+    machine = found.machine
+    length = "no tool" if not machine.tool_length else f"a tool of {machine.tool_length:g} mm"
+    yield f"{machine.name} with {length}: {100.0 * found.sphere:.1f} % of all tool axes"
+    yield "tilt from Z  azimuths  positions   one position l        at every azimuth l         at some azimuth l"
+    for each in found.tilts:
+        if each.share:
+            yield _tilt_line(each)
+    none = [each.tilt for each in found.tilts if not each.share]
+    if none:
+        yield f"no tool axis with a tilt of {_ranges(none, found.step)}"
+    between = max(each.between for each in found.tilts)
+    if between:
+        yield (
+            f"bounds allow for tool axes between those tried, every {found.step:g}°: half-way points move by up to"
+            f" {between:.0f} mm; a smaller --step narrows them"
+        )
+    if found.part is not None:
+        yield from _part_lines(found.part)
+    for path in found.paths:
+        yield _path_line(path)
+
+
+def _tilt_line(each: TiltReach) -> str:
+    low, high = min(each.branches), max(each.branches)
+    positions = f"{low}" if low == high else f"{low} to {high}"
+    pose = "" if each.one_pose is None else _litres(each.one_pose[1])
+    volumes = f"{_volume(each.every):>26}{_volume(each.some):>26}"
+    return f"{each.tilt:>10g}°{100.0 * each.share:>8.1f} %{positions:>11}{pose:>17}{volumes}".rstrip()
+
+
+def _volume(volume: ReachedVolume | None) -> str:
+    if volume is None:
+        return ""
+    if volume.high - volume.low <= 5e-4 * volume.high:
+        return _litres(volume.likely)
+    return f"{_litres(volume.likely)} ({_litres(volume.low)}–{_litres(volume.high)})"
+
+
+def _litres(volume: float) -> str:
+    return f"{volume / _LITRE:.1f}"
+
+
+def _ranges(tilts: list[float], step: float) -> str:
+    """Tilts that follow each other, as ranges."""
+    parts, start = [], 0
+    for k in range(1, len(tilts) + 1):
+        if k == len(tilts) or tilts[k] - tilts[k - 1] > step * 1.001:
+            one = tilts[start] == tilts[k - 1]
+            parts.append(f"{tilts[start]:g}°" if one else f"{tilts[start]:g}° to {tilts[k - 1]:g}°")
+            start = k
+    return ", ".join(parts)
+
+
+def _part_lines(part: PartReach) -> Iterator[str]:
+    near = "along its normal" if not part.lean else f"within {part.lean:g}° of its normal"
+    missed = part.missed
+    share = f"{100.0 * part.share:.1f} % of the surface is reached {near}"
+    yield f"{part.name}: {share} ({counted(len(part.area), 'facet')})"
+    for which, why in (
+        (~part.axis, "no such tool axis"),
+        (part.axis & ~part.travel, "beyond the travel of the slides"),
+    ):
+        if which.any():
+            tilts = np.degrees(np.arccos(np.clip(part.normal[which, 2], -1.0, 1.0)))
+            lost = 100.0 * float(part.area[which].sum() / part.area.sum())
+            yield f"  {why}: {lost:.1f} %, normals tilted from {tilts.min():.1f}° to {tilts.max():.1f}°"
+    for k in missed[:_MOST].tolist():
+        x, y, z = part.centre[k]
+        i, j, n = part.normal[k] + 0.0
+        why = "beyond the travel of the slides" if part.axis[k] else "no such tool axis"
+        yield (
+            f"  facet {k + 1}: {part.area[k]:.1f} mm² at X{x:.3f} Y{y:.3f} Z{z:.3f},"
+            f" normal {i:.3f} {j:.3f} {n:.3f}: {why}"
+        )
+    if len(missed) > _MOST:
+        yield f"  and {len(missed) - _MOST} more"
+
+
+def _path_line(path: PathReach) -> str:
+    tilts = f"tilts from {path.tilts[0]:.2f}° to {path.tilts[1]:.2f}°"
+    faults = []
+    if path.no_axis:
+        faults.append(
+            f"the tool axis of {counted(path.no_axis, 'point')} cannot be had, first in line {path.no_axis_line}"
+        )
+    if path.no_travel:
+        faults.append(f"{counted(path.no_travel, 'point')} beyond the travel, first in line {path.no_travel_line}")
+    return f"{path.file}: {counted(path.points, 'point')}, {tilts}: {'; '.join(faults) or 'all reached'}"

@@ -1,0 +1,160 @@
+"""What is found about the place of a part."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.errors import Problem
+from trunnion.machines.machine import Vector
+from trunnion.model.toolpath import Toolpath
+from trunnion.placing.region import Region
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """A limit that holds a part: where a slide comes nearest to it.
+
+    axis       its name
+    end        ``low`` or ``high``
+    limit_mm   the limit
+    line       of ``file``, a CL file or an NC program; ``operation`` is empty where it has no name
+    """
+
+    axis: str
+    end: str
+    limit_mm: float
+    file: str
+    line: int
+    operation: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class AxisUse:
+    """How a slide uses its travel at a place.
+
+    least_mm, greatest_mm  how far it goes, mm
+    margin_mm              what is left to the nearer of its limits; infinite without limits
+    low, high              where it goes farthest, with the limits
+    """
+
+    axis: str
+    least_mm: float
+    greatest_mm: float
+    margin_mm: float
+    low: Limit
+    high: Limit
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A place of the part, and what it leaves the slides.
+
+    zero_mm    of the workpiece, machine frame, all axes at zero
+    turn_deg   of the part about Z, right-handed
+    margin_mm  of the slide that is nearest to a limit; negative beyond it
+    value      of the goal: mm of margin, mm or degrees of travel, seconds, blocks; None: the goal has none here
+    axes       of all slides
+    """
+
+    zero_mm: Vector
+    turn_deg: float
+    margin_mm: float
+    axes: tuple[AxisUse, ...]
+    value: float | None = None
+
+    @property
+    def fits(self) -> bool:
+        """Whether every slide keeps its limits."""
+        return self.margin_mm >= 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class TurnMargin:
+    """What a turn of the part allows.
+
+    margin_mm  the largest one of any place; None: some row is out of reach of the rotary axes, as ``obstacle`` says
+    zero_mm    the best place there
+    value      of the goal there, as in ``Place``
+    """
+
+    turn_deg: float
+    margin_mm: float | None
+    zero_mm: Vector | None = None
+    obstacle: str = ""
+    value: float | None = None
+
+    @property
+    def fits(self) -> bool:
+        """Whether the part fits somewhere."""
+        return self.margin_mm is not None and self.margin_mm >= 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Placement:
+    """Where a part may sit on a machine.
+
+    machine   key of the machine
+    files     what was placed
+    goal      what the best place is best for
+    best      the best place; where the part fits nowhere, that with the least excess; None: no turn is within reach
+    limits    what keeps its margin from growing, the heaviest first; where it does not fit, what conflicts
+    present   the place of the definition or of the arguments; None: neither states one
+    turns     what each turn allows, in order; those of the grid and those around the best
+    between_mm  how far slides may go beyond that between rows where rotary axes turn
+    problems  warnings
+    toolpaths  of CL files; empty for NC programs
+    """
+
+    machine: str
+    files: tuple[str, ...]
+    goal: str
+    best: Place | None
+    limits: tuple[Limit, ...]
+    present: Place | None
+    turns: tuple[TurnMargin, ...]
+    between_mm: float = 0.0
+    problems: tuple[Problem, ...] = ()
+    toolpaths: tuple[Toolpath, ...] = ()
+    _find_region: Callable[[], Region | None] = field(default=lambda: None, repr=False)
+    _margin_at: Callable[[Floats, float], float] = field(default=lambda zero, turn: np.nan, repr=False)
+
+    @property
+    def region(self) -> Region | None:
+        """The places at the turn of the best one; None: it fits nowhere. Worked out when first asked for."""
+        return self._find_region()
+
+    @property
+    def fits(self) -> bool:
+        """Whether the part fits somewhere."""
+        return self.best is not None and self.best.fits
+
+    @property
+    def zero_mm(self) -> Vector | None:
+        """The workpiece zero of the best place, machine frame, all axes at zero."""
+        return None if self.best is None else self.best.zero_mm
+
+    @property
+    def turn_deg(self) -> float | None:
+        """The turn of the best place about Z, right-handed."""
+        return None if self.best is None else self.best.turn_deg
+
+    @property
+    def margin_mm(self) -> float | None:
+        """The margin of the best place; negative: how far it is from fitting."""
+        return None if self.best is None else self.best.margin_mm
+
+    @property
+    def seconds(self) -> float | None:
+        """With the goal ``time`` that of the best place, by speeds alone."""
+        return self.best.value if self.best is not None and self.goal == "time" else None
+
+    @property
+    def share_of_turns(self) -> float:
+        """Of the turns that were tried, those at which the part fits somewhere, 0 to 1."""
+        return sum(turn.fits for turn in self.turns) / max(len(self.turns), 1)
+
+    def margin_at(self, zero_mm: Vector, turn_deg: float) -> float:
+        """The margin of any place, exact; minus infinity where rotary axes do not reach the path."""
+        return self._margin_at(np.array(zero_mm, np.float64), float(turn_deg))
