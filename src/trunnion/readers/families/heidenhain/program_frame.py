@@ -47,7 +47,7 @@ def check_end_of_file(active: ActiveProgram, note: Note) -> None:
 
 def check_rest(active: ActiveProgram, source: SourceText, note: Note, end: str) -> None:
     """Look for END PGM behind the block ``end`` of the run; report blocks before it, up to a label, and behind it."""
-    reachable = _SKIPPED.match(end) is not None
+    reachable = active.name is None or _SKIPPED.match(end) is not None
     while source.fill():
         raw = source.next_line()
         if not active.ended:
