@@ -1,0 +1,251 @@
+"""Workers of a cluster, by a scheduler of Dask: one task for each file, whose bytes go there and come back.
+
+Results are written here, or by the workers where these reach the place of results themselves (``writing``). A worker
+that dies loses nothing: the scheduler gives its tasks to others. If the scheduler is gone, this waits for it to come
+back and asks again for what it has not heard of; what comes twice is the same, and is kept once.
+"""
+
+import queue
+import time
+import warnings
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from functools import cache
+from pathlib import Path
+from typing import Any, Final, Generic, TypeVar
+
+from trunnion.batch.keys import digest
+from trunnion.batch.records import Record
+from trunnion.batch.running import Assignment, settle
+from trunnion.batch.stores import Store, open_store
+from trunnion.batch.task import Outcome, Status, Task
+from trunnion.batch.work import OtherVersionError, work
+from trunnion.batch.workers import died
+from trunnion.errors import InputError, Problem
+from trunnion.extras import import_extra
+
+#: Tasks that wait at each thread of the workers, so that none is idle; and the fewest in all.
+_AHEAD: Final = 2
+_FEWEST: Final = 8
+
+#: Seconds between looks at the connection, that one attempt takes, and for which a scheduler that is gone is awaited.
+_LOOK: Final = 1.0
+_ATTEMPT: Final = 5.0
+PATIENCE: Final = 120.0
+
+_Label = TypeVar("_Label", bound=Assignment)
+
+
+@dataclass(frozen=True, slots=True)
+class Tls:
+    """Files of certificates (PEM): of the authority that signs, of this client, and its key; none: Dask's own
+    configuration says.
+    """
+
+    ca: Path | None = None
+    cert: Path | None = None
+    key: Path | None = None
+
+
+@dataclass(slots=True, eq=False)
+class _Asked(Generic[_Label]):
+    """A task that was given to the scheduler."""
+
+    label: _Label
+    task: Task
+    future: Any
+    losses: int = field(default=0)
+
+
+class DaskWorkers:
+    """The workers of a scheduler. Use it as a context manager.
+
+    Parameters
+    ----------
+    address
+        Of the scheduler, such as ``tcp://host:8786`` or ``tls://host:8786``.
+    writing
+        Address of the store to which workers write themselves; empty: they give results back.
+    patience
+        Seconds for which a scheduler that is gone is awaited.
+    """
+
+    def __init__(self, address: str, tls: Tls | None = None, writing: str = "", patience: float = PATIENCE) -> None:
+        self._distributed = import_extra("distributed", "cluster")
+        self._address, self._tls, self._writing, self._patience = address, tls or Tls(), writing, patience
+        self._client: Any = None
+        self._blobs: dict[str, Any] = {}
+        self._told: queue.SimpleQueue[str] = queue.SimpleQueue()
+
+    def __enter__(self) -> "DaskWorkers":
+        self._connect(_ATTEMPT)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._leave()
+
+    def run(self, tasks: Iterable[tuple[_Label, Task]]) -> Iterator[tuple[_Label, Outcome | Record]]:
+        """Outcomes as they come, each with the label of its task; a bounded number of tasks is with the scheduler.
+
+        Raises
+        ------
+        InputError
+            If the scheduler is gone for too long, or its workers cannot do the work.
+        """
+        coming, asked = iter(tasks), dict[str, _Asked[_Label]]()
+        is_more = True
+        looked = time.monotonic()
+        while True:
+            while is_more and len(asked) < self._window():
+                each = next(coming, None)
+                if each is None:
+                    is_more = False
+                    break
+                asked[each[0].record.place] = _Asked(*each, self._submit(*each))
+            if not asked:
+                return
+            with suppress(queue.Empty):
+                place = self._told.get(timeout=_LOOK)
+                if place in asked and asked[place].future.done():
+                    yield from self._take(asked, place)
+            if time.monotonic() - looked >= _LOOK:
+                looked = time.monotonic()
+                self._look(asked)
+
+    def _window(self) -> int:
+        """How many tasks are with the scheduler at once."""
+        return max(_FEWEST, _AHEAD * self._threads)
+
+    def _connect(self, seconds: float) -> None:
+        """Connect, within some seconds."""
+        deadline = time.monotonic() + seconds
+        while True:
+            try:
+                self._client = self._distributed.Client(
+                    self._address, timeout=_ATTEMPT, set_as_default=False, security=self._security(),
+                    name="trunnion-batch",
+                )  # fmt: skip
+                self._blobs.clear()
+                self._count_threads()
+                return
+            except (OSError, TimeoutError, ValueError, ImportError) as error:
+                if time.monotonic() >= deadline or isinstance(error, ValueError | ImportError):
+                    cure = "look for the scheduler, and run the batch again: what is done stays done"
+                    what = f"no scheduler of Dask answers: {str(error)[:200]}"
+                    raise InputError(Problem(self._address, 0, what, cure, code="BAT220")) from None
+                time.sleep(_LOOK)
+
+    def _security(self) -> Any:
+        tls = self._tls
+        if tls == Tls():
+            return None
+        return self._distributed.Security(
+            tls_ca_file=_name(tls.ca), tls_client_cert=_name(tls.cert), tls_client_key=_name(tls.key),
+            require_encryption=True,
+        )  # fmt: skip
+
+    def _leave(self) -> None:
+        """Close the connection; the scheduler forgets what nobody asks for any more."""
+        if self._client is not None:
+            with suppress(Exception):
+                self._client.close(timeout=_ATTEMPT)
+            self._client = None
+
+    def _count_threads(self) -> None:
+        with suppress(Exception):  # it is gone: that is told where it is looked for
+            self._threads = sum(self._client.nthreads().values())
+
+    _threads = 0
+
+    def _submit(self, label: Assignment, task: Task) -> Any:
+        """Give a task to the scheduler; content that many tasks share goes there once."""
+        place = label.record.place
+        names = sorted(task.shared)
+        shared = [self._blob(_content(task.shared[name])) for name in names]
+        bare = replace(task, shared={})
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "Sending large graph", UserWarning)
+            future = self._client.submit(
+                _work, bare, names, shared, label.record, self._writing,
+                key=f"trunnion-{label.record.key}", pure=False, retries=0,
+            )  # fmt: skip
+        future.add_done_callback(lambda _: self._told.put(place))
+        return future
+
+    def _blob(self, content: bytes) -> Any:
+        name = f"trunnion-file-{digest(content)}"
+        if name not in self._blobs:
+            with warnings.catch_warnings():
+                warnings.filterwarnings("ignore", "Sending large graph", UserWarning)
+                self._blobs[name] = self._client.submit(bytes, content, key=name)
+        return self._blobs[name]
+
+    def _take(self, asked: "dict[str, _Asked[_Label]]", place: str) -> Iterator[tuple[_Label, Outcome | Record]]:
+        """What came of a task that is done; one that was lost is given again."""
+        each = asked[place]
+        if each.future.status in ("cancelled", "lost"):
+            return  # seen at the next look
+        del asked[place]
+        try:
+            yield each.label, each.future.result(timeout=_ATTEMPT)
+        except Exception as error:
+            outcome = self._outcome_of(error, each)
+            if outcome is None:
+                asked[place] = replace_future(each, self._submit(each.label, each.task))
+                return
+            yield each.label, outcome
+
+    def _outcome_of(self, error: Exception, each: "_Asked[_Label]") -> Outcome | None:
+        """What an error of a task means; None: the connection failed, and it is to be given again."""
+        name = type(error).__name__
+        if name == "KilledWorker":
+            return Outcome(Status.DIED, (died(each.task.file, "several workers died over it"),))
+        if isinstance(error, InputError):
+            raise error
+        if name in ("CancelledError", "FutureCancelledError", "TimeoutError", "CommClosedError") or isinstance(
+            error, OSError
+        ):
+            return None
+        is_other = isinstance(error, OtherVersionError | ImportError)
+        what = str(error) if is_other else f"a worker cannot work: {name}: {str(error)[:300]}"
+        cure = "install the same Trunnion on all workers"
+        raise InputError(Problem(self._address, 0, what, cure, code="BAT210"))
+
+    def _look(self, asked: "Mapping[str, _Asked[_Label]]") -> None:
+        """Connect again if the scheduler is gone, and give it all tasks that it does not know any more."""
+        is_running = self._client.status == "running"
+        lost = [each for each in asked.values() if each.future.status in ("cancelled", "lost")]
+        if is_running and not lost:
+            self._count_threads()
+            return
+        self._leave()
+        self._connect(self._patience)
+        for each in asked.values():
+            each.future = self._submit(each.label, each.task)
+
+
+def replace_future(each: "_Asked[_Label]", future: Any) -> "_Asked[_Label]":
+    """A task with its new future."""
+    each.future = future
+    each.losses += 1
+    return each
+
+
+def _name(path: Path | None) -> str | None:
+    return None if path is None else str(path)
+
+
+def _content(content: bytes | Path) -> bytes:
+    return content if isinstance(content, bytes) else content.read_bytes()
+
+
+def _work(task: Task, names: list[str], shared: list[bytes], record: Record, writing: str) -> Outcome | Record:
+    """Do the work at a worker."""
+    outcome = work(replace(task, shared=dict(zip(names, shared, strict=True))))
+    return settle(_store(writing), record, outcome) if writing else outcome
+
+
+@cache
+def _store(address: str) -> Store:
+    return open_store(address)
