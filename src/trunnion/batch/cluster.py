@@ -10,18 +10,17 @@ import time
 import warnings
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import Any, Final, Generic, TypeVar
+from typing import Any, Final
 
 from trunnion.batch.keys import digest
-from trunnion.batch.records import Record
-from trunnion.batch.running import Assignment, settle
+from trunnion.batch.records import Record, settle
 from trunnion.batch.stores import Store, open_store
 from trunnion.batch.task import Outcome, Status, Task
 from trunnion.batch.work import OtherVersionError, work
-from trunnion.batch.workers import died
+from trunnion.batch.workers import Assignment, died
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
 
@@ -29,12 +28,13 @@ from trunnion.extras import import_extra
 _AHEAD: Final = 2
 _FEWEST: Final = 8
 
+#: Results that are fetched together.
+_TOGETHER: Final = 64
+
 #: Seconds between looks at the connection, that one attempt takes, and for which a scheduler that is gone is awaited.
 _LOOK: Final = 1.0
 _ATTEMPT: Final = 5.0
 PATIENCE: Final = 120.0
-
-_Label = TypeVar("_Label", bound=Assignment)
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,13 +49,12 @@ class Tls:
 
 
 @dataclass(slots=True, eq=False)
-class _Asked(Generic[_Label]):
+class _Asked:
     """A task that was given to the scheduler."""
 
-    label: _Label
+    assignment: Assignment
     task: Task
     future: Any
-    losses: int = field(default=0)
 
 
 class DaskWorkers:
@@ -85,15 +84,15 @@ class DaskWorkers:
     def __exit__(self, *_: object) -> None:
         self._leave()
 
-    def run(self, tasks: Iterable[tuple[_Label, Task]]) -> Iterator[tuple[_Label, Outcome | Record]]:
-        """Outcomes as they come, each with the label of its task; a bounded number of tasks is with the scheduler.
+    def run(self, tasks: Iterable[tuple[Assignment, Task]]) -> Iterator[tuple[Assignment, Outcome | Record]]:
+        """Outcomes as they come, each with its assignment; a bounded number of tasks is with the scheduler.
 
         Raises
         ------
         InputError
             If the scheduler is gone for too long, or its workers cannot do the work.
         """
-        coming, asked = iter(tasks), dict[str, _Asked[_Label]]()
+        coming, asked = iter(tasks), dict[str, _Asked]()
         is_more = True
         looked = time.monotonic()
         while True:
@@ -105,10 +104,7 @@ class DaskWorkers:
                 asked[each[0].record.place] = _Asked(*each, self._submit(*each))
             if not asked:
                 return
-            with suppress(queue.Empty):
-                place = self._told.get(timeout=_LOOK)
-                if place in asked and asked[place].future.done():
-                    yield from self._take(asked, place)
+            yield from self._take(asked, self._heard_of(asked))
             if time.monotonic() - looked >= _LOOK:
                 looked = time.monotonic()
                 self._look(asked)
@@ -158,17 +154,17 @@ class DaskWorkers:
 
     _threads = 0
 
-    def _submit(self, label: Assignment, task: Task) -> Any:
+    def _submit(self, assignment: Assignment, task: Task) -> Any:
         """Give a task to the scheduler; content that many tasks share goes there once."""
-        place = label.record.place
+        place = assignment.record.place
         names = sorted(task.shared)
         shared = [self._blob(_content(task.shared[name])) for name in names]
         bare = replace(task, shared={})
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", "Sending large graph", UserWarning)
             future = self._client.submit(
-                _work, bare, names, shared, label.record, self._writing,
-                key=f"trunnion-{label.record.key}", pure=False, retries=0,
+                _work, bare, names, shared, assignment.record, self._writing,
+                key=f"trunnion-{assignment.record.key}-{digest(place.encode())[:16]}", pure=False, retries=0,
             )  # fmt: skip
         future.add_done_callback(lambda _: self._told.put(place))
         return future
@@ -181,22 +177,42 @@ class DaskWorkers:
                 self._blobs[name] = self._client.submit(bytes, content, key=name)
         return self._blobs[name]
 
-    def _take(self, asked: "dict[str, _Asked[_Label]]", place: str) -> Iterator[tuple[_Label, Outcome | Record]]:
-        """What came of a task that is done; one that was lost is given again."""
-        each = asked[place]
-        if each.future.status in ("cancelled", "lost"):
-            return  # seen at the next look
-        del asked[place]
-        try:
-            yield each.label, each.future.result(timeout=_ATTEMPT)
-        except Exception as error:
-            outcome = self._outcome_of(error, each)
-            if outcome is None:
-                asked[place] = replace_future(each, self._submit(each.label, each.task))
-                return
-            yield each.label, outcome
+    def _heard_of(self, asked: "Mapping[str, _Asked]") -> list[str]:
+        """Tasks that are done, waiting a moment for the first: they are fetched together."""
+        places = dict[str, None]()
+        with suppress(queue.Empty):
+            places[self._told.get(timeout=_LOOK)] = None
+            while len(places) < _TOGETHER:
+                places[self._told.get_nowait()] = None
+        return [each for each in places if each in asked and asked[each].future.status in ("finished", "error")]
 
-    def _outcome_of(self, error: Exception, each: "_Asked[_Label]") -> Outcome | None:
+    def _take(self, asked: "dict[str, _Asked]", places: list[str]) -> Iterator[tuple[Assignment, Outcome | Record]]:
+        """What came of tasks that are done; one whose result was lost is given again."""
+        finished = [place for place in places if asked[place].future.status == "finished"]
+        fetched = dict[str, Outcome | Record]()
+        with suppress(Exception):  # what cannot be fetched with the others is asked for alone
+            futures = {place: asked[place].future for place in finished}
+            fetched = self._client.gather(futures) if futures else fetched
+        for place in places:
+            each = asked.pop(place)
+            found: Outcome | Record | None = fetched.get(place)
+            if found is None:
+                found = self._fetch(each)
+            if found is None:
+                each.future = self._submit(each.assignment, each.task)
+                asked[place] = each
+            else:
+                yield each.assignment, found
+
+    def _fetch(self, each: "_Asked") -> Outcome | Record | None:
+        """What came of a task; None: it was lost on the way."""
+        try:
+            found: Outcome | Record = each.future.result(timeout=_ATTEMPT)
+        except Exception as error:
+            return self._outcome_of(error, each)
+        return found
+
+    def _outcome_of(self, error: Exception, each: "_Asked") -> Outcome | None:
         """What an error of a task means; None: the connection failed, and it is to be given again."""
         name = type(error).__name__
         if name == "KilledWorker":
@@ -212,7 +228,7 @@ class DaskWorkers:
         cure = "install the same Trunnion on all workers"
         raise InputError(Problem(self._address, 0, what, cure, code="BAT210"))
 
-    def _look(self, asked: "Mapping[str, _Asked[_Label]]") -> None:
+    def _look(self, asked: "Mapping[str, _Asked]") -> None:
         """Connect again if the scheduler is gone, and give it all tasks that it does not know any more."""
         is_running = self._client.status == "running"
         lost = [each for each in asked.values() if each.future.status in ("cancelled", "lost")]
@@ -222,14 +238,7 @@ class DaskWorkers:
         self._leave()
         self._connect(self._patience)
         for each in asked.values():
-            each.future = self._submit(each.label, each.task)
-
-
-def replace_future(each: "_Asked[_Label]", future: Any) -> "_Asked[_Label]":
-    """A task with its new future."""
-    each.future = future
-    each.losses += 1
-    return each
+            each.future = self._submit(each.assignment, each.task)
 
 
 def _name(path: Path | None) -> str | None:

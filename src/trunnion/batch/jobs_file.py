@@ -18,7 +18,7 @@ from trunnion.cl import DIALECTS
 from trunnion.cl.writers import WRITERS
 from trunnion.definitions import Table, load_table
 from trunnion.definitions.extends import is_within
-from trunnion.errors import ArgumentName, InputError, Problem, unusable_file
+from trunnion.errors import ArgumentName, InputError, unusable_file
 from trunnion.files import name_fault
 from trunnion.machines import shipped_machines
 from trunnion.simulation.stock.solids import is_mesh
@@ -168,7 +168,7 @@ def read_batch_table(root: Table, path: Path) -> Batch:
         root.add_problem("job", f"has {len(own)} tables", f"write at most {_MOST_JOBS}")
         own = []
     found = folder_files(path.parent, results) if path.parent.is_dir() else []
-    jobs = []
+    jobs: list[Job] = []
     for number, table in enumerate(own, 1):
         action = _action(table, default_action)
         stated = _values(tables, table)
@@ -245,7 +245,9 @@ def _folder_name(table: Table, key: str) -> str:
 def _values(tables: _Tables, table: Table) -> dict[str, Any]:
     """What a table states of the options, by their keys; all of them are asked for, so that none is unknown."""
     stated = set(table.keys())
-    return {key: value for key, option in _OPTIONS.items() for value in [option.read(tables, table, key)] if key in stated}
+    return {
+        key: value for key, option in _OPTIONS.items() for value in [option.read(tables, table, key)] if key in stated
+    }
 
 
 def _refuse_keys(table: Table, action: Action, stated: Collection[str]) -> None:
@@ -261,7 +263,7 @@ def _inputs(table: Table, names: Collection[str]) -> list[str]:
     if len(patterns) > _MOST_PATTERNS:
         table.add_problem("files", f"has {len(patterns)} patterns", f"write at most {_MOST_PATTERNS}")
         return []
-    if "files" in table and not patterns and not table.problems:
+    if table.to_dict().get("files") == []:
         table.add_problem("files", "is []", 'write ["**/*.cls"]')
     found = set[str]()
     for pattern in patterns:

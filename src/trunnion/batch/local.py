@@ -15,10 +15,10 @@ from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from tempfile import TemporaryDirectory
-from typing import Any, Final, Generic, TypeVar
+from typing import Any, Final
 
 from trunnion.batch.task import Costs, Outcome, Status, Task
-from trunnion.batch.workers import died, timed_out
+from trunnion.batch.workers import Assignment, died, timed_out
 from trunnion.errors import InputError, Problem
 
 #: How often a file is tried whose worker dies: the first time another one may have taken the memory.
@@ -27,23 +27,21 @@ TRIES: Final = 2
 #: Workers that end before they can begin, one after another: then none will.
 _MOST_STILLBORN: Final = 3
 
-_Label = TypeVar("_Label")
-
 
 @dataclass(slots=True, eq=False)
-class _Worker(Generic[_Label]):
+class _Worker:
     """A process, and what it works on; ``since`` is when it was given that."""
 
     process: BaseProcess
     pipe: "Connection[Any, Any]"
     is_ready: bool = False
-    given: "_Given[_Label] | None" = None
+    given: "_Given | None" = None
     since: float = 0.0
 
 
 @dataclass(slots=True)
-class _Given(Generic[_Label]):
-    label: _Label
+class _Given:
+    assignment: Assignment
     task: Task
     tries: int = field(default=0)
 
@@ -64,7 +62,7 @@ class LocalWorkers:
     def __init__(self, count: int, function: Callable[[Task], Outcome], timeout: float | None = None) -> None:
         self._count, self._function, self._timeout = count, function, timeout
         self._context = multiprocessing.get_context("spawn")
-        self._workers: list[_Worker[Any]] = []
+        self._workers: list[_Worker] = []
         self._stillborn = 0
 
     def __enter__(self) -> "LocalWorkers":
@@ -77,15 +75,15 @@ class LocalWorkers:
         self._workers.clear()
         self._folder.cleanup()
 
-    def run(self, tasks: Iterable[tuple[_Label, Task]]) -> Iterator[tuple[_Label, Outcome]]:
-        """Outcomes as they come, each with the label of its task; no more tasks are taken than workers are free.
+    def run(self, tasks: Iterable[tuple[Assignment, Task]]) -> Iterator[tuple[Assignment, Outcome]]:
+        """Outcomes as they come, each with its assignment; no more tasks are taken than workers are free.
 
         Raises
         ------
         InputError
             If no worker can be started.
         """
-        coming, again = iter(tasks), deque[_Given[_Label]]()
+        coming, again = iter(tasks), deque[_Given]()
         while True:
             for worker in self._idle():
                 if again or (again := _next(coming)):
@@ -100,23 +98,23 @@ class LocalWorkers:
                 yield from self._hear(worker, again)
             yield from self._late()
 
-    def _idle(self) -> list[_Worker[Any]]:
+    def _idle(self) -> list[_Worker]:
         return [worker for worker in self._workers if worker.is_ready and worker.given is None]
 
-    def _start(self) -> _Worker[Any]:
+    def _start(self) -> _Worker:
         ours, theirs = self._context.Pipe()
         process = self._context.Process(target=_serve, args=(theirs, self._function, self._folder.name), daemon=True)
         process.start()
         theirs.close()
         return _Worker(process, ours)
 
-    def _give(self, worker: _Worker[_Label], given: _Given[_Label]) -> None:
+    def _give(self, worker: _Worker, given: _Given) -> None:
         worker.given, worker.since = given, time.monotonic()
         given.tries += 1
         with suppress(OSError):  # it has died: its pipe tells
             worker.pipe.send(given.task)
 
-    def _heard_of(self) -> list[_Worker[Any]]:
+    def _heard_of(self) -> list[_Worker]:
         """Workers that have something to tell, or have died."""
         seconds = None
         if self._timeout is not None:
@@ -126,7 +124,7 @@ class LocalWorkers:
         by_pipe = {worker.pipe: worker for worker in self._workers}
         return [by_pipe[pipe] for pipe in wait(list(by_pipe), seconds)]  # type: ignore[index]
 
-    def _hear(self, worker: _Worker[_Label], again: deque[_Given[_Label]]) -> Iterator[tuple[_Label, Outcome]]:
+    def _hear(self, worker: _Worker, again: deque[_Given]) -> Iterator[tuple[Assignment, Outcome]]:
         try:
             told = worker.pipe.recv()
         except (EOFError, OSError):
@@ -136,10 +134,10 @@ class LocalWorkers:
             raise InputError(Problem("batch", 0, f"a worker cannot work: {told}", code="BAT210"))
         worker.is_ready = True
         if worker.given is not None and isinstance(told, Outcome):
-            label, worker.given = worker.given.label, None
-            yield label, told
+            assignment, worker.given = worker.given.assignment, None
+            yield assignment, told
 
-    def _bury(self, worker: _Worker[_Label], again: deque[_Given[_Label]]) -> Iterator[tuple[_Label, Outcome]]:
+    def _bury(self, worker: _Worker, again: deque[_Given]) -> Iterator[tuple[Assignment, Outcome]]:
         """Take leave of a worker that has died, and try its task again, or tell that it cannot be done."""
         self._workers.remove(worker)
         _end(worker)
@@ -158,9 +156,9 @@ class LocalWorkers:
             again.append(given)
             return
         why = f"its worker process died {given.tries} times (exit code {worker.process.exitcode})"
-        yield given.label, Outcome(Status.DIED, (died(given.task.file, why),))
+        yield given.assignment, Outcome(Status.DIED, (died(given.task.file, why),))
 
-    def _late(self) -> Iterator[tuple[Any, Outcome]]:
+    def _late(self) -> Iterator[tuple[Assignment, Outcome]]:
         """End the workers whose time is over."""
         if self._timeout is None:
             return
@@ -170,16 +168,19 @@ class LocalWorkers:
                 self._workers.remove(worker)
                 _end(worker)
                 problem = timed_out(worker.given.task.file, self._timeout)
-                yield worker.given.label, Outcome(Status.TIMED_OUT, (problem,), costs=Costs(0.0, now - worker.since))
+                yield (
+                    worker.given.assignment,
+                    Outcome(Status.TIMED_OUT, (problem,), costs=Costs(0.0, now - worker.since)),
+                )
 
 
-def _next(coming: Iterator[tuple[_Label, Task]]) -> "deque[_Given[_Label]]":
+def _next(coming: Iterator[tuple[Assignment, Task]]) -> "deque[_Given]":
     """The next task, if there is one."""
     each = next(coming, None)
     return deque() if each is None else deque([_Given(*each)])
 
 
-def _end(worker: _Worker[Any]) -> None:
+def _end(worker: _Worker) -> None:
     worker.process.kill()
     worker.process.join()
     worker.pipe.close()

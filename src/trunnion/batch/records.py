@@ -10,15 +10,19 @@ written is told from what somebody else has put there, whenever it ends.
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from pathlib import PurePosixPath
 from typing import Any, Final
 
 from trunnion.batch.keys import digest
 from trunnion.batch.stores import Store
-from trunnion.batch.task import Costs, Outcome, Status
+from trunnion.batch.task import NO_COSTS, Costs, Outcome, Status
 from trunnion.errors import InputError, Problem, Severity
 
 #: The folder of records within the results; no output has a name that begins with a point.
 FOLDER: Final = ".trunnion-batch"
+
+#: The result of a file of which several come: a folder beside the results of others.
+_SEVERAL: Final = ".programs"
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +55,7 @@ class Record:
     outputs: Mapping[str, Written] = field(default_factory=dict)
     figures: Mapping[str, Any] = field(default_factory=dict)
     replaces: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    costs: Costs = Costs()
+    costs: Costs = NO_COSTS
 
     @property
     def error(self) -> Problem | None:
@@ -103,6 +107,26 @@ def _problem(values: dict[str, Any]) -> Problem:
 def read_records(store: Store, places: Sequence[str]) -> Iterator[Record | None]:
     """The records of places, one after another."""
     return map(parse_record, store.read_many([record_name(place) for place in places]))
+
+
+def settle(store: Store, record: Record, outcome: Outcome) -> Record:
+    """Keep an outcome, with its files under their names within the results."""
+    return commit(store, record, replace(outcome, files=_named(record.place, outcome.files)))
+
+
+def _named(place: str, files: Mapping[str, bytes]) -> dict[str, bytes]:
+    """Files under their names within the results: a program alone in its place, several in a folder of their own."""
+    path = PurePosixPath(place)
+    report = f"{path.name}."
+    programs = [name for name in files if not _is_report(name, report)]
+    folder = path.parent / f"{path.stem}{_SEVERAL}" if len(programs) > 1 else path.parent
+    return {
+        (folder if name in programs else path.parent).joinpath(name).as_posix(): data for name, data in files.items()
+    }
+
+
+def _is_report(name: str, start: str) -> bool:
+    return name in (f"{start}html", f"{start}json")
 
 
 def commit(store: Store, record: Record, outcome: Outcome) -> Record:
@@ -180,7 +204,9 @@ def check_store(store: Store) -> None:
         If not.
     """
     name = f"{FOLDER}/README.txt"
-    text = b"Trunnion keeps here what it needs to go on with this batch. Without this folder everything is done again.\n"
+    text = (
+        b"Trunnion keeps here what it needs to go on with this batch. Without this folder everything is done again.\n"
+    )
     if store.read(name) != text:
         store.write(name, text)
     if store.read(name) != text:

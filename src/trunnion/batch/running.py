@@ -2,39 +2,28 @@
 
 import os
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePosixPath
-from typing import Any, Final, Protocol, TypeVar
+from typing import Any
 
 from trunnion.api.observer import SILENT, Observer
 from trunnion.batch.jobs import Batch, Job, Unit
 from trunnion.batch.keys import digest, key_of, program_version
 from trunnion.batch.local import LocalWorkers
 from trunnion.batch.places import units_of
-from trunnion.batch.records import Record, check_store, commit, read_records
+from trunnion.batch.records import Record, check_store, commit, read_records, settle
 from trunnion.batch.stores import Store
 from trunnion.batch.task import FILES, Outcome, Status, Task
 from trunnion.batch.work import work
-from trunnion.errors import InputError, Problem
-
-_Label = TypeVar("_Label")
-
-#: The result of a file of which several come: a folder beside others' results.
-_SEVERAL: Final = ".programs"
-
-
-class Workers(Protocol):
-    """What works on tasks, as ``LocalWorkers`` and ``DaskWorkers`` do."""
-
-    def run(self, tasks: Iterable[tuple[_Label, Task]]) -> Iterator[tuple[_Label, Outcome | Record]]:
-        """Outcomes as they come, or records where the worker has written the results itself."""
+from trunnion.batch.workers import Assignment, Workers
+from trunnion.errors import Problem
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BatchResult:
-    """What became of a batch; the records of its files stay where the results are, and are read when they are asked for.
+    """What became of a batch; records of its files stay with the results, and are read when they are asked for.
 
     units   all files, in the order of the places of their results
     store   where the results are
@@ -68,14 +57,6 @@ class BatchResult:
                 yield record
 
 
-@dataclass(frozen=True, slots=True)
-class Assignment:
-    """A unit that is to be done: its number among all, and the record that it will have."""
-
-    number: int
-    record: Record
-
-
 def run_jobs(
     batch: Batch, store: Store, workers: Callable[[int], AbstractContextManager[Workers]], observer: Observer = SILENT
 ) -> BatchResult:
@@ -102,24 +83,6 @@ def run_jobs(
                 found.add(assignment.number, record.status)
                 advance(1)
     return BatchResult(units, store, dict(found.counts), pending.done, sorted(found.failed))
-
-
-def settle(store: Store, record: Record, outcome: Outcome) -> Record:
-    """Keep an outcome, with its files under their names within the results."""
-    return commit(store, record, replace(outcome, files=_named(record.place, outcome.files)))
-
-
-def _named(place: str, files: Mapping[str, bytes]) -> dict[str, bytes]:
-    """Files under their names within the results: a program alone in its place, several in a folder of their own."""
-    path = PurePosixPath(place)
-    report = f"{path.name}."
-    programs = [name for name in files if not _is_report(name, report)]
-    folder = path.parent / f"{path.stem}{_SEVERAL}" if len(programs) > 1 else path.parent
-    return {(folder if name in programs else path.parent).joinpath(name).as_posix(): data for name, data in files.items()}
-
-
-def _is_report(name: str, start: str) -> bool:
-    return name in (f"{start}html", f"{start}json")
 
 
 class _Tally:
@@ -217,17 +180,3 @@ def local_workers(count: int | None, timeout: float | None) -> Callable[[int], A
         return LocalWorkers(max(1, min(count or os.cpu_count() or 1, most)), work, timeout)
 
     return make
-
-
-def check_results(store_place: str | os.PathLike[str] | None) -> str | os.PathLike[str]:
-    """The place of results, which must be stated.
-
-    Raises
-    ------
-    InputError
-        If it is not.
-    """
-    if store_place is None:
-        cure = "name a folder for them: --results FOLDER"
-        raise InputError(Problem("batch", 0, "nothing says where the results go", cure, code="ARG130"))
-    return store_place

@@ -178,7 +178,7 @@ class UrlStore:
     def holds(self, name: str, size: int, checksum: str) -> bool:
         """Whether a file has the size with which it was written: its content would have to be fetched."""
         try:
-            return self._files.info(self._path(name)).get("size") == size
+            return bool(self._files.info(self._path(name)).get("size") == size)
         except OSError:
             return False
 

@@ -89,7 +89,10 @@ def _write_parquet(rows: Iterator[tuple[Any, ...]], columns: dict[str, str], pat
     schema = pyarrow.schema([(name, kinds[kind]) for name, kind in columns.items()])
     with path.open("wb") as stream, parquet.ParquetWriter(stream, schema) as writer:
         while some := list(islice(rows, _ROWS)):
-            arrays = [pyarrow.array(column, kinds[kind]) for column, kind in zip(zip(*some, strict=True), columns.values(), strict=True)]
+            arrays = [
+                pyarrow.array(column, kinds[kind])
+                for column, kind in zip(zip(*some, strict=True), columns.values(), strict=True)
+            ]
             writer.write_table(pyarrow.Table.from_arrays(arrays, schema=schema))
 
 

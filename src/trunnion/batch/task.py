@@ -91,6 +91,10 @@ class Costs:
     seconds: float = 0.0
 
 
+#: Of work that was not done, or not to its end.
+NO_COSTS: Final = Costs()
+
+
 @dataclass(frozen=True, slots=True)
 class Outcome:
     """What came of a task.
@@ -106,4 +110,4 @@ class Outcome:
     warnings: int = 0
     files: Mapping[str, bytes] = field(default_factory=dict)
     figures: Mapping[str, Any] = field(default_factory=dict)
-    costs: Costs = Costs()
+    costs: Costs = NO_COSTS

@@ -138,7 +138,9 @@ def _without_folder(problem: Problem, folder: Path) -> Problem:
             text = text.replace(f"{at}\\", "").replace(f"{at}/", "")
         return text
 
-    return replace(problem, file=told(problem.file).replace("\\", "/"), what=told(problem.what), cure=told(problem.cure))
+    return replace(
+        problem, file=told(problem.file).replace("\\", "/"), what=told(problem.what), cure=told(problem.cure)
+    )
 
 
 @lru_cache(maxsize=16)
@@ -180,9 +182,9 @@ def _add_proof(figures: dict[str, Any], found: Verification, toolpaths: Sequence
 def _convert(
     task: Task, file: Path, arguments: dict[str, Any], result: Path, figures: dict[str, Any], observer: _Collector
 ) -> _Done:
-    named = {name: _machine(arguments.pop(name)) for name in ("machine", "to_machine") if arguments.get(name)}
+    arguments |= {name: _machine(arguments[name]) for name in ("machine", "to_machine") if arguments.get(name)}
     with (result / task.result).open("wb") as stream:
-        found = convert(file, **named, **arguments, output=stream, observer=observer)
+        found = convert(file, **arguments, output=stream, observer=observer)
     if found.posted is not None and found.posted.verification is not None:
         _add_proof(figures, found.posted.verification, found.posted.toolpaths)
     figures["points"] = point_count([found.toolpath])
@@ -227,7 +229,10 @@ def _simulate(
 def _findings(file: str, found: SimulationResult) -> list[Problem]:
     told = [
         Problem(
-            shown(file), each.line, f"{each.kind}: {' and '.join(each.between)}, {each.depth:.3f} mm deep", code="BAT340"
+            shown(file),
+            each.line,
+            f"{each.kind}: {' and '.join(each.between)}, {each.depth:.3f} mm deep",
+            code="BAT340",
         )
         for each in found.findings[:MOST_PROBLEMS]
     ]
@@ -236,6 +241,9 @@ def _findings(file: str, found: SimulationResult) -> list[Problem]:
     return told
 
 
-_DOING: Final[
-    Mapping[Action, Callable[[Task, Path, dict[str, Any], Path, dict[str, Any], _Collector], _Done]]
-] = {Action.POST: _post, Action.CONVERT: _convert, Action.VERIFY: _verify, Action.SIMULATE: _simulate}
+_DOING: Final[Mapping[Action, Callable[[Task, Path, dict[str, Any], Path, dict[str, Any], _Collector], _Done]]] = {
+    Action.POST: _post,
+    Action.CONVERT: _convert,
+    Action.VERIFY: _verify,
+    Action.SIMULATE: _simulate,
+}

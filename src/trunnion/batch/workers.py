@@ -1,8 +1,28 @@
-"""What all workers tell of a file alike."""
+"""What workers are, and what all of them tell of a file alike."""
 
-from trunnion.batch.task import DEFINITIONS, FILES
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Protocol
+
+from trunnion.batch.records import Record
+from trunnion.batch.task import DEFINITIONS, FILES, Outcome, Task
 from trunnion.errors import Problem
 from trunnion.wording import format_duration
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """A file that is to be worked on: its number among all, and the record that it will have."""
+
+    number: int
+    record: Record
+
+
+class Workers(Protocol):
+    """What works on tasks, as ``LocalWorkers`` and ``DaskWorkers`` do."""
+
+    def run(self, tasks: Iterable[tuple[Assignment, Task]]) -> Iterator[tuple[Assignment, Outcome | Record]]:
+        """Outcomes as they come, or records where the worker has written the results itself."""
 
 
 def shown(name: str) -> str:
