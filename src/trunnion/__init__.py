@@ -82,8 +82,6 @@ if TYPE_CHECKING:
     from trunnion.errors import Severity as Severity
     from trunnion.errors import TrunnionError as TrunnionError
     from trunnion.explanations import Explanation as Explanation
-    from trunnion.batch.front import run_batch as run_batch
-    from trunnion.batch.running import BatchResult as BatchResult
     from trunnion.geometry.curves import BSplineCurve as BSplineCurve
     from trunnion.geometry.fitting import CurveFit as CurveFit
     from trunnion.geometry.point_tables import PointTable as PointTable
@@ -110,7 +108,6 @@ __version__ = "0.1.0"
 _MODULES: Final = {
     "Axis": "machines.machine",
     "BSplineCurve": "geometry.curves",
-    "BatchResult": "batch.running",
     "Check": "verification.results",
     "ClDescription": "api.describing_cl",
     "Comparison": "verification.comparison.result",
@@ -163,7 +160,6 @@ _MODULES: Final = {
     "read_cl": "api.reading",
     "read_points": "api.curves",
     "read_program": "api.reading",
-    "run_batch": "batch.front",
     "simulate": "api.simulating",
     "verify": "api.verifying",
     "verify_manifest": "api.manifests",
@@ -177,7 +173,6 @@ _MODULES: Final = {
 __all__ = [
     "Axis",
     "BSplineCurve",
-    "BatchResult",
     "Check",
     "ClDescription",
     "Comparison",
@@ -231,7 +226,6 @@ __all__ = [
     "read_cl",
     "read_points",
     "read_program",
-    "run_batch",
     "simulate",
     "verify",
     "verify_manifest",

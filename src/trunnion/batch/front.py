@@ -12,10 +12,11 @@ from trunnion.api.settings import Settings
 from trunnion.batch.cluster import DaskWorkers, Tls
 from trunnion.batch.jobs import Batch, folder_batch
 from trunnion.batch.jobs_file import load_batch
-from trunnion.batch.running import BatchResult, Workers, local_workers, run_jobs
+from trunnion.batch.running import BatchResult, local_workers, run_jobs
 from trunnion.batch.stores import Store, open_store
 from trunnion.batch.summary import check_summary, write_summary
 from trunnion.batch.task import Action
+from trunnion.batch.workers import Workers
 from trunnion.errors import InputError, argument_problem
 
 #: Workers of one computer.
@@ -95,8 +96,8 @@ def run_batch(
 
     Examples
     --------
-    >>> import trunnion
-    >>> result = trunnion.run_batch(
+    >>> from trunnion.batch import run_batch
+    >>> result = run_batch(
     ...     "tests/golden/yl569", results="build/batch", action="post", machine="yl569", files=["2_*.cls"], workers=1
     ... )
     >>> result.passed, [record.place for record in result.records()]

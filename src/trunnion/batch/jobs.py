@@ -7,6 +7,7 @@ Out:    a ``Batch`` of ``Job`` records, and its ``Unit`` records, one for each f
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path, PurePosixPath
 from typing import Any, Final, NamedTuple
 
@@ -183,7 +184,7 @@ def judged(
     machines: dict[str, Machine] = {}
     for name in ("machine", "to_machine"):
         if value := said.get(name):
-            machines[name] = as_machine(str(value), name)
+            machines[name] = _loaded(str(value), name)
             said[name] = _add_machine(str(value), machines[name], folder, shared)
     if action is not Action.CONVERT and "machine" not in machines:
         raise InputError(argument_problem("machine", "is missing", "name the machine of the programs", code="ARG130"))
@@ -194,6 +195,16 @@ def judged(
     if action is Action.SIMULATE and not said.get("stock"):
         raise InputError(argument_problem("stock", "is missing", "state a box, a cylinder or a mesh", code="ARG130"))
     return said, shared, _extensions(action, said, machines)
+
+
+def _loaded(name: str, argument: str) -> Machine:
+    return as_machine(name, argument) if name.endswith(".toml") else shipped_machine(name)
+
+
+@lru_cache(maxsize=16)
+def shipped_machine(name: str) -> Machine:
+    """A machine that is shipped, or an ``InputError`` that there is none: many jobs name the same one."""
+    return as_machine(name)
 
 
 def _extensions(action: Action, said: Mapping[str, Any], machines: Mapping[str, Machine]) -> Extensions:

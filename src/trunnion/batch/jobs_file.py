@@ -160,7 +160,7 @@ def read_batch_table(root: Table, path: Path) -> Batch:
     tables = _Tables(path.parent)
     results = _results(root, path.parent)
     defaults = root.table("defaults")
-    default_action = _action(defaults, None)
+    default_action = _action(defaults, Action.POST)
     default_output = _output(defaults)
     default_values = _values(tables, defaults)
     own = root.tables("job", required=True)
@@ -212,11 +212,9 @@ def _judged(
     return [Job(name, action, inputs, said, shared, beside, output, extensions.written, report)]
 
 
-def _action(table: Table, default: Action | None) -> Action:
-    words = tuple(Action)
-    if default is None:
-        return Action(table.text("action", Action.POST, one_of=words))
-    return Action(table.text("action", str(default), one_of=words))
+def _action(table: Table, default: Action) -> Action:
+    stated = table.text("action", "", one_of=tuple(Action))
+    return Action(stated) if stated else default
 
 
 def _results(root: Table, folder: Path) -> Path:

@@ -15,13 +15,14 @@ from typing import Any, Final
 from trunnion.api.targets import check_output_name
 from trunnion.batch.records import Record
 from trunnion.batch.running import BatchResult
+from trunnion.errors import Problem
 from trunnion.extras import import_extra
 from trunnion.files import OutputPlace, output_group
 
 #: Column -> type in SQLite. Of a file one row each; values are NULL where there is none.
 COLUMNS: Final = {
     "file": "TEXT", "job": "TEXT", "action": "TEXT", "place": "TEXT", "status": "TEXT",
-    "code": "TEXT", "line": "INTEGER", "message": "TEXT", "warnings": "INTEGER",
+    "code": "TEXT", "told_file": "TEXT", "line": "INTEGER", "message": "TEXT", "warnings": "INTEGER",
     "blocks": "INTEGER", "points": "INTEGER", "motions": "INTEGER", "seconds": "REAL", "tools": "TEXT",
     "axes": "TEXT", "margin_mm": "REAL", "margin_deg": "REAL",
     "tip_deviation_mm": "REAL", "axis_deviation_deg": "REAL", "worst_check": "TEXT", "worst_check_share": "REAL",
@@ -112,18 +113,26 @@ def _by_file(result: BatchResult) -> Iterable[Record]:
 
 def _values(record: Record) -> dict[str, Any]:
     """A record by the names of columns."""
-    error, figures = record.error, record.figures
-    main = next((name for name in record.outputs if name.rpartition("/")[2] == record.place.rpartition("/")[2]), None)
+    name = record.place.rpartition("/")[2]
+    main = next((each for output, each in record.outputs.items() if output.rpartition("/")[2] == name), None)
     found: dict[str, Any] = dict.fromkeys(COLUMNS)
-    found |= {name: _plain(value) for name, value in figures.items() if name in COLUMNS}
+    found |= {key: _plain(value) for key, value in record.figures.items() if key in COLUMNS}
+    found |= _error(record.error)
     return found | {
         "file": _text(record.file), "job": record.job, "action": record.action, "place": record.place,
-        "status": str(record.status), "code": error.code if error else None, "line": error.line if error else None,
-        "message": _text(f"{error.what}; {error.cure}".removesuffix("; ")) if error else None,
-        "warnings": record.warnings, "key": record.key, "outputs": _plain(sorted(record.outputs)),
+        "status": str(record.status), "warnings": record.warnings, "key": record.key,
+        "outputs": _plain(sorted(record.outputs)),
         "bytes": sum(each.bytes for each in record.outputs.values()) if record.outputs else None,
-        "sha256": None if main is None else record.outputs[main].sha256,
+        "sha256": None if main is None else main.sha256,
     }  # fmt: skip
+
+
+def _error(error: Problem | None) -> dict[str, Any]:
+    """The first error by the names of columns."""
+    if error is None:
+        return {}
+    message = _text(f"{error.what}; {error.cure}".removesuffix("; "))
+    return {"code": error.code, "told_file": _text(error.file), "line": error.line, "message": message}
 
 
 def _plain(value: object) -> object:

@@ -7,7 +7,6 @@ cache. It raises nothing that has to do with the file.
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import lru_cache
 from pathlib import Path
 from shutil import copyfile
 from tempfile import TemporaryDirectory
@@ -18,12 +17,12 @@ from trunnion.api.observer import Observer
 from trunnion.api.paper_files import paper_files
 from trunnion.api.post_result import ProofFailedError
 from trunnion.api.posting import post_beside
-from trunnion.api.reading import load_machine
 from trunnion.api.reports import write_report
 from trunnion.api.simulating import simulate
 from trunnion.api.simulation_result import SimulationResult
 from trunnion.api.verifying import verify
 from trunnion.batch.figures import block_count, point_count, simulation_figures, verification_figures
+from trunnion.batch.jobs import shipped_machine
 from trunnion.batch.keys import program_version
 from trunnion.batch.task import DEFINITIONS, FILES, MOST_PROBLEMS, Action, Costs, Outcome, Status, Task
 from trunnion.batch.workers import died, shown
@@ -143,14 +142,9 @@ def _without_folder(problem: Problem, folder: Path) -> Problem:
     )
 
 
-@lru_cache(maxsize=16)
-def _shipped(name: str) -> Machine:
-    return load_machine(name)
-
-
 def _machine(name: str) -> Machine | str:
     """A machine that is shipped is loaded once; definitions of others lie in the folder of the task."""
-    return name if name.endswith(".toml") else _shipped(name)
+    return name if name.endswith(".toml") else shipped_machine(name)
 
 
 _Done = tuple[Status, Sequence[Problem]]

@@ -78,6 +78,8 @@ def _row(record: Record) -> str:
     problem = record.error
     if problem is None:
         return f"{record.file:<{_FILE_WIDTH}}  {'':<{_CODE_WIDTH}}        {record.status}"
-    message = in_command_words(f"{problem.what}; {problem.cure}".removesuffix("; "))
-    line = str(problem.line) if problem.line else ""
+    at = f"{problem.file}:{problem.line}" if problem.line else problem.file
+    place = "" if problem.file == record.file else f"{at}: "
+    message = in_command_words(f"{place}{problem.what}; {problem.cure}".removesuffix("; "))
+    line = str(problem.line) if problem.line and not place else ""
     return f"{record.file:<{_FILE_WIDTH}}  {problem.code:<{_CODE_WIDTH}}  {line:>4}  {message}"
