@@ -19,7 +19,12 @@ from trunnion.errors import InputError
 def test_any_number_of_workers_gives_the_same_although_one_is_killed(tmp_path: Path, count: int) -> None:
     marks = [tmp_path / "first", tmp_path / "second"]
     texts = {f"{k}/x.cls": f"text {k}" for k in range(20)}
-    texts |= {"bad.cls": "fail", "several.cls": "several parts", "3/y.cls": f"die {marks[0]}", "7/z.cls": f"die {marks[1]}"}
+    texts |= {
+        "bad.cls": "fail",
+        "several.cls": "several parts",
+        "3/y.cls": f"die {marks[0]}",
+        "7/z.cls": f"die {marks[1]}",
+    }
     write_files(tmp_path / "in", texts)
     batch = simple_batch(tmp_path / "in")
     result = run_jobs(batch, FolderStore(tmp_path / "out"), lambda _: LocalWorkers(count, simple_work))
@@ -56,7 +61,9 @@ def test_no_process_is_started_where_nothing_is_to_do(tmp_path: Path, monkeypatc
     write_files(tmp_path / "in", {"a.cls": "one"})
     run_simply(simple_batch(tmp_path / "in"), FolderStore(tmp_path / "out"))
     monkeypatch.setattr(LocalWorkers, "_start", None)
-    result = run_jobs(simple_batch(tmp_path / "in"), FolderStore(tmp_path / "out"), lambda _: LocalWorkers(2, simple_work))
+    result = run_jobs(
+        simple_batch(tmp_path / "in"), FolderStore(tmp_path / "out"), lambda _: LocalWorkers(2, simple_work)
+    )
     assert result.done == 1
 
 

@@ -8,7 +8,7 @@ back and asks again for what it has not heard of; what comes twice is the same, 
 import queue
 import time
 import warnings
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
@@ -18,8 +18,7 @@ from typing import Any, Final
 from trunnion.batch.keys import digest
 from trunnion.batch.records import Record, settle
 from trunnion.batch.stores import Store, open_store
-from trunnion.batch.task import Outcome, Status, Task
-from trunnion.batch.work import OtherVersionError, work
+from trunnion.batch.task import OtherVersionError, Outcome, Status, Task
 from trunnion.batch.workers import Assignment, died
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
@@ -64,13 +63,24 @@ class DaskWorkers:
     ----------
     address
         Of the scheduler, such as ``tcp://host:8786`` or ``tls://host:8786``.
+    function
+        What they do; they must be able to import it.
     writing
         Address of the store to which workers write themselves; empty: they give results back.
     patience
         Seconds for which a scheduler that is gone is awaited.
     """
 
-    def __init__(self, address: str, tls: Tls | None = None, writing: str = "", patience: float = PATIENCE) -> None:
+    def __init__(
+        self,
+        address: str,
+        function: Callable[[Task], Outcome],
+        *,
+        tls: Tls | None = None,
+        writing: str = "",
+        patience: float = PATIENCE,
+    ) -> None:
+        self._function = function
         self._distributed = import_extra("distributed", "cluster")
         self._address, self._tls, self._writing, self._patience = address, tls or Tls(), writing, patience
         self._client: Any = None
@@ -108,6 +118,8 @@ class DaskWorkers:
             if time.monotonic() - looked >= _LOOK:
                 looked = time.monotonic()
                 self._look(asked)
+                # A result that was lost with its worker and made again is told of once only.
+                yield from self._take(asked, [place for place in asked if _is_done(asked[place])][:_TOGETHER])
 
     def _window(self) -> int:
         """How many tasks are with the scheduler at once."""
@@ -163,7 +175,7 @@ class DaskWorkers:
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", "Sending large graph", UserWarning)
             future = self._client.submit(
-                _work, bare, names, shared, assignment.record, self._writing,
+                _work, self._function, bare, names, shared, assignment.record, self._writing,
                 key=f"trunnion-{assignment.record.key}-{digest(place.encode())[:16]}", pure=False, retries=0,
             )  # fmt: skip
         future.add_done_callback(lambda _: self._told.put(place))
@@ -184,7 +196,7 @@ class DaskWorkers:
             places[self._told.get(timeout=_LOOK)] = None
             while len(places) < _TOGETHER:
                 places[self._told.get_nowait()] = None
-        return [each for each in places if each in asked and asked[each].future.status in ("finished", "error")]
+        return [place for place in places if place in asked and _is_done(asked[place])]
 
     def _take(self, asked: "dict[str, _Asked]", places: list[str]) -> Iterator[tuple[Assignment, Outcome | Record]]:
         """What came of tasks that are done; one whose result was lost is given again."""
@@ -241,6 +253,10 @@ class DaskWorkers:
             each.future = self._submit(each.assignment, each.task)
 
 
+def _is_done(each: _Asked) -> bool:
+    return each.future.status in ("finished", "error")
+
+
 def _name(path: Path | None) -> str | None:
     return None if path is None else str(path)
 
@@ -249,9 +265,11 @@ def _content(content: bytes | Path) -> bytes:
     return content if isinstance(content, bytes) else content.read_bytes()
 
 
-def _work(task: Task, names: list[str], shared: list[bytes], record: Record, writing: str) -> Outcome | Record:
+def _work(
+    function: Callable[[Task], Outcome], task: Task, names: list[str], shared: list[bytes], record: Record, writing: str
+) -> Outcome | Record:
     """Do the work at a worker."""
-    outcome = work(replace(task, shared=dict(zip(names, shared, strict=True))))
+    outcome = function(replace(task, shared=dict(zip(names, shared, strict=True))))
     return settle(_store(writing), record, outcome) if writing else outcome
 
 

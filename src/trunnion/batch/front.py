@@ -16,6 +16,7 @@ from trunnion.batch.running import BatchResult, local_workers, run_jobs
 from trunnion.batch.stores import Store, open_store
 from trunnion.batch.summary import check_summary, write_summary
 from trunnion.batch.task import Action
+from trunnion.batch.work import work
 from trunnion.batch.workers import Workers
 from trunnion.errors import InputError, argument_problem
 
@@ -157,4 +158,4 @@ def _team(
         if value is not None:
             what = "is for processes of this computer, and the workers of a scheduler are its own"
             raise InputError(argument_problem(name, what, "leave it out", code="ARG130"))
-    return lambda store: lambda _: DaskWorkers(scheduler, tls, store.worker_url)
+    return lambda store: lambda _: DaskWorkers(scheduler, work, tls=tls, writing=store.worker_url)

@@ -1,4 +1,5 @@
-"""Patterns of names: ``*`` and ``?`` within a folder or a file's name, ``**`` for any number of folders."""
+"""Patterns of names: ``*`` and ``?`` within a folder or a file's name, ``**`` for any number of folders, at the end
+with all files in them."""
 
 from fnmatch import fnmatchcase
 
@@ -28,7 +29,8 @@ def matches(name: str, pattern: str) -> bool:
     """
     parts = name.split("/")
     reached = {0}
-    for each in pattern.removeprefix("./").split("/"):
+    sought = pattern.removeprefix("./").split("/")
+    for each in [*sought, "*"] if sought[-1] == "**" else sought:
         if each == "**":
             reached = set(range(min(reached, default=len(parts)), len(parts)))
         else:

@@ -20,6 +20,9 @@ from trunnion.files import name_fault
 #: What names on some system do not have.
 _ODD: Final = re.compile(r"[^\w.,+=@ ()-]")
 
+#: Letters of an extension.
+_LONGEST_EXTENSION: Final = 16
+
 #: What packed files end in.
 _PACKED: Final = frozenset({".gz", ".bz2"})
 
@@ -82,5 +85,7 @@ def _safe(part: str) -> str:
     if not name_fault(PurePosixPath(part)):
         return part
     stem, point, extension = part.rpartition(".")
-    stem, extension = (stem, point + _ODD.sub("_", extension)) if stem else (part, "")
-    return f"{_ODD.sub('_', stem).strip(' .')[:100]}-{digest(part.encode('utf-8', 'surrogateescape'))[:16]}{extension}"
+    keeps = bool(stem) and extension.isascii() and extension.isalnum() and len(extension) < _LONGEST_EXTENSION
+    stem, ending = (stem, point + extension) if keeps else (part, "")
+    checksum = digest(part.encode("utf-8", "surrogateescape"))[:16]
+    return f"{_ODD.sub('_', stem).strip(' .')[:100]}-{checksum}{ending}"

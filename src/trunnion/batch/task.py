@@ -23,6 +23,10 @@ DEFINITIONS: Final = "definitions/"
 MOST_PROBLEMS: Final = 20
 
 
+class OtherVersionError(Exception):
+    """The worker has another version of Trunnion than the one that asks."""
+
+
 class Action(StrEnum):
     """What is done with each file."""
 

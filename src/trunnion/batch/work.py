@@ -24,7 +24,17 @@ from trunnion.api.verifying import verify
 from trunnion.batch.figures import block_count, point_count, simulation_figures, verification_figures
 from trunnion.batch.jobs import shipped_machine
 from trunnion.batch.keys import program_version
-from trunnion.batch.task import DEFINITIONS, FILES, MOST_PROBLEMS, Action, Costs, Outcome, Status, Task
+from trunnion.batch.task import (
+    DEFINITIONS,
+    FILES,
+    MOST_PROBLEMS,
+    Action,
+    Costs,
+    OtherVersionError,
+    Outcome,
+    Status,
+    Task,
+)
 from trunnion.batch.workers import died, shown
 from trunnion.errors import Problem, RefusedError, Severity, TrunnionError
 from trunnion.files import output_group
@@ -33,10 +43,6 @@ from trunnion.verification import Check, Verification
 
 #: Arguments that may name files.
 _NAMING: Final = ("machine", "to_machine", "cl", "subprograms", "stock", "part", "fixtures", "libraries")
-
-
-class OtherVersionError(Exception):
-    """The worker has another version of Trunnion than the one that asks."""
 
 
 class _Collector(Observer):
