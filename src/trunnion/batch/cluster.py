@@ -5,6 +5,7 @@ that dies loses nothing: the scheduler gives its tasks to others. If the schedul
 back and asks again for what it has not heard of; what comes twice is the same, and is kept once.
 """
 
+import logging
 import queue
 import time
 import warnings
@@ -15,13 +16,17 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
+from trunnion.api.observer import SILENT, Observer
 from trunnion.batch.keys import digest
 from trunnion.batch.records import Record, settle
 from trunnion.batch.stores import Store, open_store
 from trunnion.batch.task import OtherVersionError, Outcome, Status, Task
 from trunnion.batch.workers import Assignment, died
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, Problem, Severity
 from trunnion.extras import import_extra
+
+#: Where Dask's client logs.
+_LOG: Final = logging.getLogger("distributed.client")
 
 #: Tasks that wait at each thread of the workers, so that none is idle; and the fewest in all.
 _AHEAD: Final = 2
@@ -69,6 +74,8 @@ class DaskWorkers:
         Address of the store to which workers write themselves; empty: they give results back.
     patience
         Seconds for which a scheduler that is gone is awaited.
+    observer
+        Is told that the scheduler is gone.
     """
 
     def __init__(
@@ -79,7 +86,9 @@ class DaskWorkers:
         tls: Tls | None = None,
         writing: str = "",
         patience: float = PATIENCE,
+        observer: Observer = SILENT,
     ) -> None:
+        self._observer = observer
         self._function = function
         self._distributed = import_extra("distributed", "cluster")
         self._address, self._tls, self._writing, self._patience = address, tls or Tls(), writing, patience
@@ -88,11 +97,20 @@ class DaskWorkers:
         self._told: queue.SimpleQueue[str] = queue.SimpleQueue()
 
     def __enter__(self) -> "DaskWorkers":
-        self._connect(_ATTEMPT)
+        # Its client prints how a connection was lost, which is told here in words of our own.
+        self._was_disabled, _LOG.disabled = _LOG.disabled, True
+        try:
+            self._connect(_ATTEMPT)
+        except BaseException:
+            _LOG.disabled = self._was_disabled
+            raise
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._leave()
+        try:
+            self._leave()
+        finally:
+            _LOG.disabled = self._was_disabled
 
     def run(self, tasks: Iterable[tuple[Assignment, Task]]) -> Iterator[tuple[Assignment, Outcome | Record]]:
         """Outcomes as they come, each with its assignment; a bounded number of tasks is with the scheduler.
@@ -247,6 +265,10 @@ class DaskWorkers:
         if is_running and not lost:
             self._count_threads()
             return
+        if not is_running:
+            what = "the scheduler is gone, and awaited"
+            cure = f"start it again within {self._patience:.0f} s; nothing that is done is lost"
+            self._observer.problems([Problem(self._address, 0, what, cure, Severity.WARNING, code="BAT230")])
         self._leave()
         self._connect(self._patience)
         for each in asked.values():

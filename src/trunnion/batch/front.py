@@ -112,7 +112,7 @@ def run_batch(
     }  # fmt: skip
     if summary is not None:
         check_summary(summary)
-    team = _team(workers, timeout, scheduler, tls)
+    team = _team(workers, timeout, scheduler, tls, observer)
     batch = _batch(path, given, results)
     place = results if results is not None else batch.results
     if place is None:
@@ -142,7 +142,7 @@ def _batch(path: Path, given: Mapping[str, Any], results: FilePath | None) -> Ba
 
 
 def _team(
-    workers: int | None, timeout: float | None, scheduler: str | None, tls: Tls | None
+    workers: int | None, timeout: float | None, scheduler: str | None, tls: Tls | None, observer: Observer
 ) -> Callable[[Store], Callable[[int], AbstractContextManager[Workers]]]:
     """What makes the workers once the place of results is known."""
     if scheduler is None:
@@ -158,4 +158,4 @@ def _team(
         if value is not None:
             what = "is for processes of this computer, and the workers of a scheduler are its own"
             raise InputError(argument_problem(name, what, "leave it out", code="ARG130"))
-    return lambda store: lambda _: DaskWorkers(scheduler, work, tls=tls, writing=store.worker_url)
+    return lambda store: lambda _: DaskWorkers(scheduler, work, tls=tls, writing=store.worker_url, observer=observer)
