@@ -45,6 +45,10 @@ from trunnion.verification import Check, Verification
 _NAMING: Final = ("machine", "to_machine", "cl", "subprograms", "stock", "part", "fixtures", "libraries")
 
 
+#: The folder of what comes of a task, within its own.
+_RESULT: Final = "result"
+
+
 class _Collector(Observer):
     """Keeps what is warned of."""
 
@@ -73,12 +77,12 @@ def work(task: Task) -> Outcome:
 
 def _work_in(folder: Path, task: Task) -> Outcome:
     paths = _lay_out(folder, {**task.shared, **task.files})
-    result = folder / "result"
+    result = folder / _RESULT
     result.mkdir()
     collector = _Collector()
     figures: dict[str, Any] = {}
     try:
-        arguments = _with_paths(task.arguments, paths)
+        arguments = _with_paths(task.arguments, folder)
         status, own = _DOING[task.action](task, paths[task.file], arguments, result, figures, collector)
     except RefusedError as error:
         status, own = Status.FAILED, error.problems
@@ -93,6 +97,8 @@ def _work_in(folder: Path, task: Task) -> Outcome:
     files = {each.name: each.read_bytes() for each in sorted(result.iterdir()) if each.is_file()}
     if status is not Status.PASSED:
         files = {name: data for name, data in files.items() if name == task.report}
+    if task.report in files:
+        files[task.report] = _told(files[task.report].decode(), folder).encode()
     programs = [data for name, data in files.items() if name != task.report]
     if task.action in (Action.VERIFY, Action.SIMULATE):
         programs = [task.files[task.file]]
@@ -123,29 +129,31 @@ def _lay_out(folder: Path, files: Mapping[str, bytes | Path]) -> dict[str, Path]
     return paths
 
 
-def _with_paths(arguments: Mapping[str, Any], paths: Mapping[str, Path]) -> dict[str, Any]:
-    """Arguments with the paths of the files that they name."""
+def _with_paths(arguments: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Arguments with the paths of the files that they name, which need not be there: no others are ever opened."""
 
     def path(value: Any) -> Any:
         if isinstance(value, list | tuple):
             return [path(each) for each in value]
-        return str(paths[value]) if isinstance(value, str) and value in paths else value
+        is_name = isinstance(value, str) and value.startswith((FILES, DEFINITIONS))
+        return str(folder / value) if is_name else value
 
     return {name: path(value) if name in _NAMING else value for name, value in arguments.items()}
 
 
 def _without_folder(problem: Problem, folder: Path) -> Problem:
     """A problem with the names of files as they stand beside the jobs."""
+    file, what, cure = (_told(text, folder) for text in (problem.file, problem.what, problem.cure))
+    return replace(problem, file=file.replace("\\", "/"), what=what, cure=cure)
 
-    def told(text: str) -> str:
-        for name in (f"{FILES}", f"{DEFINITIONS}", "result/"):
-            at = folder / name.rstrip("/")
-            text = text.replace(f"{at}\\", "").replace(f"{at}/", "")
-        return text
 
-    return replace(
-        problem, file=told(problem.file).replace("\\", "/"), what=told(problem.what), cure=told(problem.cure)
-    )
+def _told(text: str, folder: Path) -> str:
+    """A text without the folder of the task in the names of files, also as JSON writes them."""
+    for name in (FILES, DEFINITIONS, f"{_RESULT}/"):
+        at = str(folder / name)
+        for start in (f"{at}/", f"{at}\\", f"{at}\\".replace("\\", "\\\\")):
+            text = text.replace(start, "")
+    return text
 
 
 def _machine(name: str) -> Machine | str:
@@ -199,7 +207,7 @@ def _verify(
     found = verify(file, machine=machine, **arguments, columns=True, observer=observer)
     _add_proof(figures, found)
     if task.report:
-        write_report(replace(found, program=file.name), result / task.report)
+        write_report(found, result / task.report)
     return (Status.PASSED, ()) if found.passed else (Status.FAILED, _failures(task.file, found))
 
 
