@@ -1,5 +1,6 @@
 """Places of results and patterns of names."""
 
+import os
 import unicodedata
 from fnmatch import fnmatchcase
 from pathlib import Path, PurePosixPath
@@ -103,6 +104,10 @@ def test_files_of_a_folder_are_those_within(tmp_path: Path) -> None:
         (tmp_path / name).touch()
     (tmp_path / "in/link.cls").symlink_to(tmp_path / "secret.cls")
     (tmp_path / "in/same.cls").symlink_to(tmp_path / "in/a/x.cls")
+    (tmp_path / "in/nowhere.cls").symlink_to(tmp_path / "in/no")
+    (tmp_path / "in/folder.cls").mkdir()
+    if hasattr(os, "mkfifo"):
+        os.mkfifo(tmp_path / "in/pipe.cls")
     (tmp_path / "in/loop").symlink_to(tmp_path / "in", target_is_directory=True)
     assert folder_files(tmp_path / "in", tmp_path / "in/out") == ["a/x.cls", "same.cls"]
 

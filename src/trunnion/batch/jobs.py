@@ -13,6 +13,7 @@ from typing import Any, Final, NamedTuple
 
 from trunnion.api.input_files import machine_files
 from trunnion.api.job import prepare
+from trunnion.api.project_paths import is_file
 from trunnion.api.reading import as_machine
 from trunnion.batch.patterns import matches
 from trunnion.batch.records import FOLDER
@@ -97,14 +98,16 @@ def folder_files(folder: Path, without: Path | None = None) -> list[str]:
             and not (here / name / FOLDER).is_dir()
         ]  # fmt: skip
         inner = PurePosixPath(here.relative_to(folder).as_posix())
-        found += [
-            (inner / name).as_posix() for name in names
-            if not name.startswith(".") and (not (here / name).is_symlink() or is_within(here / name, folder))
-        ]  # fmt: skip
+        found += [(inner / name).as_posix() for name in names if _is_input(here / name, folder)]
         if len(found) > MOST_FILES:
             what = f"has more than {MOST_FILES} files"
             raise InputError(Problem(str(folder), 0, what, "divide it among several batches", code="BAT120"))
     return sorted(found)
+
+
+def _is_input(path: Path, folder: Path) -> bool:
+    """Whether a path is that of a file in the folder, which can be read to its end: no pipe, no link that leads out."""
+    return not path.name.startswith(".") and is_file(path) and (not path.is_symlink() or is_within(path, folder))
 
 
 def folder_batch(
