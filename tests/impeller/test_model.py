@@ -190,7 +190,7 @@ def test_points_are_not_read_through_a_link_that_leads_out(tmp_path: Path) -> No
     except OSError:
         pytest.skip("this user may make no links")
     ((line, what),) = mistakes(path)
-    assert (line, what) == (7, "blade.points is 'blade_points.csv', which leads out of the folder of the definition")
+    assert (line, what) == (8, "blade.points is 'blade_points.csv', which leads out of the folder of the definition")
 
 
 def test_a_fillet_without_a_place_has_the_row_of_its_point(tmp_path: Path) -> None:

@@ -85,20 +85,30 @@ async function main() {
   });
   const monitor = (itemToMonitor, parameters) =>
     subscription.monitor(itemToMonitor, { discardOldest: true, ...parameters }, TimestampsToReturn.Both);
+  const microseconds = (value) => value.sourceTimestamp.getTime() * 1000 + (value.sourcePicoseconds || 0) / 1e6;
   const follow = async (nodeId, into, extract) => {
     const item = await monitor({ nodeId, attributeId: AttributeIds.Value }, { samplingInterval: SAMPLING, queueSize: 1000 });
     item.on("changed", (value) => {
       if (value.statusCode.hasOverflowBit) seen.lost += 1;
-      const micros = value.sourceTimestamp.getTime() * 1000 + (value.sourcePicoseconds || 0) / 1e6;
-      into.push([micros, extract(value.value.value)]);
+      into.push([microseconds(value), extract(value.value.value)]);
     });
+    return item;
   };
+  // The client decodes structures of one message while it takes the next one, and may tell that first: the order in
+  // which values came is that of the messages.
+  const messages = [];
+  subscription.on("raw_notification", (message) => messages.push(message));
+  const numbersInOrder = (item) => messages
+    .flatMap((message) => message.notificationData).flatMap((told) => told.monitoredItems || [])
+    .filter((told) => told.clientHandle === item.monitoringParameters.clientHandle)
+    .map(({ value }) => [microseconds(value), value.value.value]);
+  const items = {};
   for (const axis of axes) {
     const name = axis.browseName.name;
     seen.axes[name] = { rotational: await read(session, await child(session, axis.nodeId, "IsRotational")), values: [] };
     seen.positions[name] = [];
     const position = await child(session, axis.nodeId, "PosDirect");
-    await follow(await child(session, position, "ActPos"), seen.axes[name].values, (value) => value);
+    items[name] = await follow(await child(session, position, "ActPos"), seen.axes[name].values, (value) => value);
     await follow(position, seen.positions[name], (value) => [value.actPos, value.remDist]);
   }
   seen.speeds = [];
@@ -153,18 +163,26 @@ async function main() {
     await pause(50);
   }
   step("ended");
-  await pause(400);
   seen.duration = duration;
   seen.end = await read(session, timeNode);
   seen.history = {};
   for (const axis of axes) {
+    const name = axis.browseName.name;
     const nodeId = await child(session, axis.nodeId, "PosDirect", "ActPos");
     const result = await session.readHistoryValue({ nodeId }, new Date(started - 1000), new Date(Date.now() + 1000));
-    seen.history[axis.browseName.name] = result.historyData.dataValues.map((value) => value.value.value);
+    const values = result.historyData.dataValues.map((value) => value.value.value);
+    seen.history[name] = values;
+    // What has been told may still be on its way when the program has ended.
+    const arrived = () => [seen.axes[name].values, seen.positions[name].map(([at, [value]]) => [at, value])]
+      .every((told) => told.length > 0 && told[told.length - 1][1] === values[values.length - 1]);
+    while (!arrived() && Date.now() < deadline) await pause(50);
+    seen.axes[name].values = numbersInOrder(items[name]);
+    seen.positions[name].sort(([one], [other]) => one - other);
   }
   step("reset");
   seen.calls.reset = await call("Reset");
   seen.afterReset = await read(session, timeNode);
+  seen.status.sort(([one], [other]) => one - other);
   await subscription.terminate();
   await session.close();
   await client.disconnect();

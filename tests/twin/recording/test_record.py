@@ -51,12 +51,13 @@ def wait_for(process: subprocess.Popen[str], words: str) -> None:
     raise AssertionError("".join(told))
 
 
-def wait_for_line(journal: Path, recorder: subprocess.Popen[str]) -> None:
-    """Wait until the last motion has been written: what a server that is killed has not sent, nobody can record."""
+def wait_for_last_motion(journal: Path, recorder: subprocess.Popen[str]) -> None:
+    """Wait until the last motion has been written: what is not sent before server or recorder end, nobody can record."""
     last = float(read_program(BLADE_FINISH, machine="yl569").line[-1])
     while recorder.poll() is None:
         with journal.open(encoding="utf-8", newline="") as file:
-            if any(row["line"] and float(row["line"]) >= last for row in csv.DictReader(file)):
+            rows = (row for row in csv.DictReader(file) if row["program"].endswith(BLADE_FINISH.name))
+            if any(row["line"] and float(row["line"]) >= last for row in rows):
                 return
         time.sleep(0.1)
     raise AssertionError("the recorder has ended")
@@ -80,7 +81,7 @@ def recording_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with served(BLADE_FINISH, "--speed", "50", "--hold", "--no-mtconnect") as twin:
         recorder = started(twin.opcua, file)
         asyncio.run(run_program(twin.opcua))
-        wait_for_line(file.with_name("blade.parquet.csv"), recorder)
+        wait_for_last_motion(file.with_name("blade.parquet.csv"), recorder)
         twin.process.kill()
     wait_for(recorder, "the connection is broken")
     port = twin.opcua.rpartition(":")[2].partition("/")[0]
@@ -152,6 +153,7 @@ def test_one_recording_over_all_programs_of_a_part_is_in_the_report(tmp_path: Pa
     with served(main_program, *files, "--speed", "200", "--hold", "--no-mtconnect") as twin:
         recorder = started(twin.opcua, file)
         asyncio.run(run_program(twin.opcua))
+        wait_for_last_motion(file, recorder)
         recorder.send_signal(signal.SIGINT)
         recorder.communicate()
     named = [argument for _, cl in IMPELLER.values() for argument in ("--cl", str(cl))]
