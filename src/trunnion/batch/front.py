@@ -95,6 +95,10 @@ def run_batch(
     InputError
         When the jobs cannot be used, results cannot be kept, or nobody can work. A file that fails raises nothing.
 
+    Notes
+    -----
+    Processes of this computer import the script that calls this: it does so behind ``if __name__ == "__main__":``.
+
     Examples
     --------
     >>> from trunnion.batch import run_batch
