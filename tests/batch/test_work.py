@@ -72,6 +72,14 @@ def test_a_conversion_is_that_of_the_library() -> None:
     assert to_cl.files == {"x.cls": (text or "").encode()}
 
 
+def test_a_conversion_may_give_several_programs() -> None:
+    arguments = {"machine": "yl569", "to_machine": "dmu65", "settings": {"programs": "operations"}}
+    found = done(Action.CONVERT, arguments, {"x.mpf": NC}, "x.h")
+    assert found.status is Status.PASSED
+    assert len(found.files) == 2
+    assert b"CALL PGM" in found.files["x.h"]
+
+
 def test_a_program_is_compared_with_the_cl_file_beside_it() -> None:
     arguments = {"machine": "yl569", "cl": ["files/x.cls"]}
     assert done(Action.VERIFY, dict(arguments), {"x.mpf": NC, "x.cls": CL}).status is Status.PASSED

@@ -12,7 +12,7 @@ from shutil import copyfile
 from tempfile import TemporaryDirectory
 from typing import Any, Final
 
-from trunnion.api.converting import convert
+from trunnion.api.converting import convert_beside
 from trunnion.api.observer import Observer
 from trunnion.api.paper_files import paper_files
 from trunnion.api.post_result import ProofFailedError
@@ -191,8 +191,8 @@ def _convert(
     task: Task, file: Path, arguments: dict[str, Any], result: Path, figures: dict[str, Any], observer: _Collector
 ) -> _Done:
     arguments |= {name: _machine(arguments[name]) for name in ("machine", "to_machine") if arguments.get(name)}
-    with (result / task.result).open("wb") as stream:
-        found = convert(file, **arguments, output=stream, observer=observer)
+    with output_group(remembers=False) as group:
+        found = convert_beside(file, **arguments, output=result / task.result, observer=observer, group=group)
     if found.posted is not None and found.posted.verification is not None:
         _add_proof(figures, found.posted.verification, found.posted.toolpaths)
     figures["points"] = point_count([found.toolpath])
