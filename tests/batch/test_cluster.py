@@ -100,7 +100,8 @@ def test_workers_of_another_version_end_the_batch(cluster: Cluster) -> None:
         list(workers.run([(Assignment(0, record), task)]))
 
 
-def test_a_scheduler_that_is_not_there_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "tls://127.0.0.1:9", "nonsense://x"])
+def test_a_scheduler_that_is_not_there_is_told(monkeypatch: pytest.MonkeyPatch, address: str) -> None:
     monkeypatch.setattr("trunnion.batch.cluster._ATTEMPT", 0.2)
-    with pytest.raises(InputError, match="BAT220"), DaskWorkers("tcp://127.0.0.1:9", simple_work):
+    with pytest.raises(InputError, match="BAT220"), DaskWorkers(address, simple_work):
         pass

@@ -155,8 +155,8 @@ class DaskWorkers:
                 self._blobs.clear()
                 self._count_threads()
                 return
-            except (OSError, TimeoutError, ValueError, ImportError) as error:
-                if time.monotonic() >= deadline or isinstance(error, ValueError | ImportError):
+            except (OSError, ValueError, TypeError, ImportError) as error:
+                if time.monotonic() >= deadline or not isinstance(error, OSError):
                     cure = "look for the scheduler, and run the batch again: what is done stays done"
                     what = f"no scheduler of Dask answers: {str(error)[:200]}"
                     raise InputError(Problem(self._address, 0, what, cure, code="BAT220")) from None
