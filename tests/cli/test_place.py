@@ -99,6 +99,7 @@ def test_apply_posts_the_part_where_it_sits_best(tmp_path: Path, capsys: pytest.
         (["--goal", "beauty"], "invalid choice"),
         (["--plot", "picture.png"], "FIL260"),
         (["--zero", "1,2"], "--zero"),
+        (["--json", "-", "--apply", "-"], "stdout"),
         (["--tool-length", "long"], "--tool-length"),
     ],
 )

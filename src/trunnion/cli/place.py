@@ -12,6 +12,7 @@ from trunnion.api.reading import load_machine
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result, tell
 from trunnion.cli.terminal import Terminal, output_place
+from trunnion.errors import InputError, argument_problem
 from trunnion.files import atomic_file, check_outputs
 from trunnion.placing.placement import AxisUse, Limit, Place, Placement
 from trunnion.wording import counted, format_duration, one_line
@@ -29,6 +30,9 @@ def run(arguments: argparse.Namespace) -> int:
 
         check_placing_plot(arguments.plot, read)
     targets = (arguments.json, arguments.apply, arguments.plot)
+    if arguments.json == arguments.apply == "-":
+        what, cure = "go to stdout both", "let one of them go to a file"
+        raise InputError(argument_problem("json", f"and apply {what}", cure, code="ARG140"))
     check_outputs([target for target in targets if target not in (None, "-")], read)
     settings = dict(arguments.settings)
     length = arguments.tool_length or settings.get("tool_length")
