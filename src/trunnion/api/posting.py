@@ -162,14 +162,16 @@ def post_beside(
     observer: Observer,
     simulation: "SimulationLike | None" = None,
     hooks: Sequence[FilePath] = (),
+    notices: Sequence[str] = (),
     group: OutputGroup | None = None,
     forcing: str = FORCING,
     later: list[PostPapers] | None = None,
 ) -> PostResult:
     """Post CL files as ``post`` does, and write over none of the other files of the same work.
 
-    The program appears with those of the ``group``, if there is one. What a refusal says of ``force`` is ``forcing``.
-    Papers are written, or go into the list ``later``: who gives it writes them.
+    The program appears with those of the ``group``, if there is one, and with ``notices`` as comments in its head. What
+    a refusal says of ``force`` is ``forcing``. Papers are written, or go into the list ``later``: who gives it writes
+    them.
     """
     check_observer(observer)
     loaded = as_machine(machine)
@@ -189,7 +191,8 @@ def post_beside(
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
         changes = Hooks(load_hooks(hook_files), job.machine.name, job.control.name, job.settings)
         toolpaths = load_toolpaths(cl, job, strict, observer, changes.change)
-        job = replace(job, notices=changes.notices, decisions=tuple(changes.decisions) if job.options.explain else ())
+        decisions = tuple(changes.decisions) if job.options.explain else ()
+        job = replace(job, notices=(*notices, *changes.notices), decisions=decisions)
         target.files.protect(file_on_disk(toolpath.file) for toolpath in toolpaths)
         return post_toolpaths(toolpaths, job, target, observer, later)
 
