@@ -17,12 +17,17 @@ def test_text_names_the_place_its_margins_and_what_limits_it(capsys: pytest.Capt
     lines = capsys.readouterr().out.splitlines()
     assert code == 0
     assert lines[0].startswith("yl569: best zero ")
-    assert [line.split()[0] for line in lines[1:4]] == ["X", "Y", "Z"]
-    assert all("left" in line for line in lines[1:4])
-    assert lines[4].startswith("  it is held by ")
-    assert f"({HUB}:" in lines[4]
-    assert lines[5].startswith("  present zero 0.000,0.000,120.000: ")
-    assert lines[6] == "  it fits at 1 of 1 turn"
+    assert lines[1] == "  the part is clamped as it is drawn"
+    assert [line.split()[0] for line in lines[2:7]] == ["X", "Y", "Z", "C", "B"]
+    assert all("left" in line for line in lines[2:5])
+    assert lines[5].endswith("degrees, no limits")
+    assert "degrees of -11 to 100: " in lines[6]
+    assert lines[7].startswith("  it is held by ")
+    assert f"({HUB}:" in lines[7]
+    assert lines[8].startswith("  present zero 0.000,0.000,120.000: ")
+    assert lines[9] == "  it fits at 1 of 1 turn"
+    assert lines[10].startswith("  clamped so, the zero may be anywhere within X ")
+    assert lines[11].startswith("  and not beyond X ")
 
 
 def test_data_has_the_place_the_region_and_the_turns(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -103,9 +108,56 @@ def test_apply_posts_the_part_where_it_sits_best(tmp_path: Path, capsys: pytest.
     assert "travel        ok" in err
 
 
+def test_the_program_says_how_the_part_is_clamped_and_verify_takes_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    program, sheet = tmp_path / "placed.mpf", tmp_path / "placed.html"
+    machine = ["--machine", "yl569", "--tool-length", "90"]
+    angles = ["--turn", "45", "--tilt", "-10"]
+    assert main(["place", BLADE, *machine, *angles, "--apply", str(program), "--sheet", str(sheet)]) == 0
+    out = capsys.readouterr().out
+    lines = out.splitlines()
+    assert "tilted -10 degrees about X, then turned 45 degrees: " in lines[0]
+    assert "fixture angle of -10 degrees about X of the part, right-handed: its +Y side goes down" in lines[1]
+    assert lines[2] == "  then turn the part by 45 degrees about Z, counter-clockwise seen from above (from +Z)"
+    head = program.read_text("utf-8").splitlines()[:3]
+    assert head[0].endswith(";PART TILTED -10 DEG ABOUT X OF THE PART FIRST, RIGHT-HANDED, ITS +Y SIDE GOES DOWN")
+    assert head[1].endswith(";PART TURNED 45 DEG THEN ABOUT Z, COUNTER-CLOCKWISE SEEN FROM ABOVE, FROM +Z")
+    x, y, z = lines[0].split("best zero ")[1].split(", ")[0].split(",")
+    assert head[2].endswith(f";WORKPIECE ZERO ON THE MACHINE X{x} Y{y} Z{z} MM, ALL AXES AT ZERO")
+    assert "PART TURNED 45 DEG" in sheet.read_text("utf-8")
+    verified = ["verify", str(program), "--cl", BLADE, *machine]
+    assert main(verified) == 1
+    told = capsys.readouterr().err
+    assert "tilted by -10 degrees about X and turned by 45 degrees about Z" in told
+    assert "PLC220" in told
+    assert main([*verified, *angles[:2]]) == 1
+    assert "PLC220" in capsys.readouterr().err
+
+
+def test_a_program_that_is_clamped_as_told_is_verified_without_a_word(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    program = tmp_path / "placed.mpf"
+    machine = ["--machine", "yl569", "--tool-length", "90"]
+    for angles in (["--turn", "45", "--tilt", "-10"], ["--turn", "-30"], ["--turn", "0"]):
+        assert main(["place", BLADE, *machine, *angles, "--apply", str(program)]) == 0
+        capsys.readouterr()
+        assert main(["verify", str(program), "--cl", BLADE, *machine, *angles]) == 0
+        assert "PLC220" not in capsys.readouterr().err
+    assert ";PART CLAMPED AS DRAWN, NOT TURNED" in program.read_text("utf-8")
+    assert main(["verify", str(program), *machine, "--turn", "5"]) == 2  # without CL files there is nothing to turn
+    assert "there are none" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        (["--tilt", "91"], "is no tilt"),
+        (["--tilt", "nan"], "is no tilt"),
+        (["--free", "--tilt", "5"], "not allowed with"),
+        (["--free", "--turns", "1"], "give wider steps"),
+        (["--sheet", "sheet.html"], "--apply"),
         (["--turns", "0"], "is no step of turns"),
         (["--turns", "nan"], "is no step of turns"),
         (["--turn", "inf"], "is no turn"),
