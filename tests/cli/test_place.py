@@ -121,10 +121,10 @@ def test_the_program_says_how_the_part_is_clamped_and_verify_takes_it(
     assert "fixture angle of -10 degrees about X of the part, right-handed: its +Y side goes down" in lines[1]
     assert lines[2] == "  then turn the part by 45 degrees about Z, counter-clockwise seen from above (from +Z)"
     head = program.read_text("utf-8").splitlines()[:3]
-    assert head[0].endswith(";PART TILTED -10 DEG ABOUT X OF THE PART FIRST, RIGHT-HANDED, ITS +Y SIDE GOES DOWN")
-    assert head[1].endswith(";PART TURNED 45 DEG THEN ABOUT Z, COUNTER-CLOCKWISE SEEN FROM ABOVE, FROM +Z")
+    assert head[0].endswith(";PART TILTED -10 DEG FIRST, ABOUT ITS X, RIGHT-HANDED, ITS +Y SIDE DOWN")
+    assert head[1].endswith(";PART TURNED 45 DEG ABOUT Z, COUNTER-CLOCKWISE SEEN FROM ABOVE, FROM +Z")
     x, y, z = lines[0].split("best zero ")[1].split(", ")[0].split(",")
-    assert head[2].endswith(f";WORKPIECE ZERO ON THE MACHINE X{x} Y{y} Z{z} MM, ALL AXES AT ZERO")
+    assert head[2].endswith(f";WORKPIECE ZERO X{x} Y{y} Z{z} MM ON THE MACHINE, AXES AT 0")
     assert "PART TURNED 45 DEG" in sheet.read_text("utf-8")
     verified = ["verify", str(program), "--cl", BLADE, *machine]
     assert main(verified) == 1
@@ -189,3 +189,27 @@ def test_files_that_cannot_be_placed_are_refused(tmp_path: Path, capsys: pytest.
     assert "PLC110" in capsys.readouterr().err
     assert main(["place", program, "--machine", "yl569", "--turn", "0", "--apply", str(tmp_path / "x.mpf")]) == 2
     assert "PLC140" in capsys.readouterr().err
+
+
+def test_a_set_up_of_a_project_is_placed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The plate is 2 x 65 by 2 x 32 mm of path: travel less that is a box, and the whole region."""
+    project = "examples/project/part.toml"
+    assert main(["place", project, "--setup", "top", "--turn", "0"]) == 0
+    out = capsys.readouterr().out
+    assert "present zero 0.000,0.000,-160.000: 118.000 mm to the limits" in out
+    assert "may be anywhere within X -185.000 to 185.000, Y -118.000 to 118.000, Z -354.000 to 120.000" in out
+    assert "not beyond" not in out
+    assert main(["place", project]) == 2
+    assert "top, bottom [PLC170]" in capsys.readouterr().err
+    assert main(["place", project, "--setup", "side"]) == 2
+    assert "PLC170" in capsys.readouterr().err
+    assert main(["place", project, BLADE]) == 2
+    assert main(["place", BLADE, "--machine", "yl569", "--setup", "top"]) == 2
+    assert main(["place", BLADE]) == 2
+    assert "--machine" in capsys.readouterr().err
+    hooked = tmp_path / "hooked.toml"
+    (tmp_path / "blade.cls").write_text(Path(BLADE).read_text("utf-8"), "utf-8")
+    (tmp_path / "h.py").write_text("def on_operation(operation, context):\n    return None\n", "utf-8")
+    hooked.write_text('machine = "yl569"\ncl = ["blade.cls"]\noutput = "b.mpf"\nhooks = ["h.py"]\n', "utf-8")
+    assert main(["place", str(hooked)]) == 2
+    assert "PLC160" in capsys.readouterr().err

@@ -140,7 +140,8 @@ def test_a_part_that_no_table_reaches_as_it_is_drawn_is_placed_and_posted_tilted
 def test_notices_are_found_again(tmp_path: Path) -> None:
     program = tmp_path / "head.nc"
     notices = placed_notices((1.0, -2.0, 3.5), -45.0, 30.0)
-    assert notices[1].startswith("PART TURNED 315 DEG THEN ABOUT Z, COUNTER-CLOCKWISE")
+    assert notices[1].startswith("PART TURNED 315 DEG ABOUT Z, COUNTER-CLOCKWISE")
+    assert max(map(len, placed_notices((-246.014, -407.304, -136.189), 312.656, -37.125))) <= 76  # one line each
     program.write_text("\n".join(f"({text})" for text in notices), "utf-8")
     assert unlike_head(program, 315.0, 30.0) == unlike_head(program, -45.0, 30.0) == []
     assert [problem.code for problem in unlike_head(program, 45.0, 30.0)] == ["PLC220"]

@@ -23,6 +23,7 @@ from trunnion.placing.between_rows import most_between
 from trunnion.placing.goals import Goal, PlaceCost, rotary_travel
 from trunnion.placing.path_rows import PathRows, about_x, about_z
 from trunnion.placing.placement import AxisUse, Limit, Place, Placement, RotaryUse, TurnMargin
+from trunnion.placing.planned_time import planned_seconds
 from trunnion.placing.region import Region, region_of
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.travel_limits import Cut, CutSet
@@ -54,7 +55,7 @@ def place(
         A name, a path or a ``Machine``.
     goal
         What the best place is best for: ``"margin"``, the distance of the slides to their limits; or the least
-        ``"rotary"`` or ``"slides"`` travel, ``"time"`` at rapid speeds, or ``"overspeed"``, fewest rows whose feed the
+        ``"rotary"`` or ``"slides"`` travel, ``"time"``, or ``"overspeed"``, fewest rows whose feed the
         axes do not reach. Places with these goals keep a margin of 1 mm where they can.
     turns
         The part is tried at every so many degrees about Z, and more finely around the best; or the turns themselves.
@@ -204,6 +205,8 @@ def _with_value(place: Place, path: TurnedPath | None, goal: Goal) -> Place:
         return replace(place, value=place.margin_mm)
     if goal is Goal.ROTARY:
         return replace(place, value=rotary_travel(rows, positions))
+    if goal is Goal.TIME:
+        place = replace(place, planned_s=planned_seconds(path.machine, rows, positions, np.array(place.zero_mm)))
     return replace(place, value=PlaceCost.of(goal, path.machine, rows, positions).value(np.array(place.zero_mm)))
 
 

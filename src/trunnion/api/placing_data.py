@@ -60,6 +60,7 @@ def _place(place: Place) -> dict[str, object]:
         "tilt_deg": _number(place.tilt_deg),
         "margin_mm": _number(place.margin_mm),
         "value": None if place.value is None else _number(place.value),
+        "planned_s": None if place.planned_s is None else _number(place.planned_s),
         "axes": [_axis(axis) for axis in place.axes],
         "rotary": [
             {name: value if isinstance(value, str) else _number(value) for name, value in asdict(axis).items()}

@@ -34,17 +34,16 @@ _SAME: Final = 2e-3
 def placed_notices(zero: Vector, turn: float, tilt: float) -> tuple[str, ...]:
     """Comments for the head of a program: how the part is clamped, degrees, and where its zero (3,) is, mm."""
     x, y, z = (f"{letter}{value:.3f}" for letter, value in zip("XYZ", zero, strict=True))
-    return (*_clamped(turn, tilt), f"WORKPIECE ZERO ON THE MACHINE {x} {y} {z} MM, ALL AXES AT ZERO")
+    return (*_clamped(turn, tilt), f"WORKPIECE ZERO {x} {y} {z} MM ON THE MACHINE, AXES AT 0")
 
 
 def _clamped(turn: float, tilt: float) -> Iterator[str]:
     turn %= 360.0
     if tilt:
         side = "UP" if tilt > 0.0 else "DOWN"
-        yield f"{_TILTED} {number(tilt)} DEG ABOUT X OF THE PART FIRST, RIGHT-HANDED, ITS +Y SIDE GOES {side}"
+        yield f"{_TILTED} {number(tilt)} DEG FIRST, ABOUT ITS X, RIGHT-HANDED, ITS +Y SIDE {side}"
     if turn or tilt:
-        then = " THEN" if tilt else ""
-        yield f"{PLACED_NOTICE} {number(turn)} DEG{then} ABOUT Z, COUNTER-CLOCKWISE SEEN FROM ABOVE, FROM +Z"
+        yield f"{PLACED_NOTICE} {number(turn)} DEG ABOUT Z, COUNTER-CLOCKWISE SEEN FROM ABOVE, FROM +Z"
     else:
         yield "PART CLAMPED AS DRAWN, NOT TURNED"
 

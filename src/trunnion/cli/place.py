@@ -2,22 +2,27 @@
 
 import argparse
 from collections.abc import Iterator
-from typing import Final
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
 
 from trunnion.api.input_files import machine_files
 from trunnion.api.placing import place
 from trunnion.api.placing_data import placement_data
 from trunnion.api.placing_post import post_placed
-from trunnion.api.reading import load_machine
+from trunnion.api.reading import FilePath, load_machine
+from trunnion.api.settings import as_texts
 from trunnion.api.turned_parts import number
 from trunnion.arrays import Floats
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result, tell
 from trunnion.cli.terminal import Terminal, output_place
-from trunnion.errors import InputError, argument_problem
+from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.files import atomic_file, check_outputs
 from trunnion.placing.placement import AxisUse, Limit, Place, Placement, RotaryUse, TurnMargin
 from trunnion.wording import counted, format_duration, one_line
+
+if TYPE_CHECKING:  # imported where a project is placed
+    from trunnion.api.placing_project import PlacedSetup
 
 #: The step of the fixture angles of ``--free``, degrees.
 _FREE_STEP: Final = 15.0
@@ -28,8 +33,15 @@ _MOST: Final = 3
 
 def run(arguments: argparse.Namespace) -> int:
     """Place a part; 0 if it fits somewhere, else 1."""
+    project = _project(arguments)
+    read: list[FilePath] = [*named_files(arguments.files), *arguments.subprograms]
+    if project is not None:
+        read += project.read
+        arguments.files, arguments.machine = list(project.files), arguments.machine or project.machine
+    if arguments.machine is None:
+        raise InputError(argument_problem("machine", "is missing", "name the machine", code="ARG130"))
     machine = load_machine(arguments.machine)
-    read = [*named_files(arguments.files), *arguments.subprograms, *machine_files(arguments.machine, machine)]
+    read += machine_files(arguments.machine, machine)
     if arguments.plot is not None:
         from trunnion.api.placing_plot import check_placing_plot
 
@@ -42,7 +54,7 @@ def run(arguments: argparse.Namespace) -> int:
         what, cure = "go to stdout both", "let one of them go to a file"
         raise InputError(argument_problem("json", f"and apply {what}", cure, code="ARG140"))
     check_outputs([target for target in targets if target not in (None, "-")], read)
-    settings = dict(arguments.settings)
+    settings = {**({} if project is None else as_texts(project.settings)), **dict(arguments.settings)}
     length = arguments.tool_length or settings.get("tool_length")
     found = place(
         cl_inputs(arguments.files),
@@ -75,6 +87,20 @@ def run(arguments: argparse.Namespace) -> int:
             found, machine=machine, output=output, settings=settings, sheet=arguments.sheet, observer=Terminal()
         )
     return 0 if found.fits else 1
+
+
+def _project(arguments: argparse.Namespace) -> "PlacedSetup | None":
+    """The set-up of the project that is placed; None: files are."""
+    projects = [file for file in arguments.files if file.endswith(".toml")]
+    if not projects:
+        if arguments.setup is not None:
+            raise InputError(argument_problem("setup", "is that of a project", "give one (.toml)", code="ARG130"))
+        return None
+    if len(arguments.files) > 1:
+        raise InputError(Problem(projects[0], 0, "is a project, and others are named", "give it alone", code="ARG130"))
+    from trunnion.api.placing_project import placed_setup
+
+    return placed_setup(Path(projects[0]), arguments.setup)
 
 
 def placement_lines(found: Placement) -> Iterator[str]:
@@ -115,7 +141,8 @@ def placement_lines(found: Placement) -> Iterator[str]:
     if found.region is not None:
         box = found.region.box
         yield f"  clamped so, the zero may be anywhere within {_ends(box.low, box.high)}"
-        yield f"  and not beyond {_ends(found.region.low, found.region.high)}, where not every place fits"
+        if not found.region.is_box:
+            yield f"  and not beyond {_ends(found.region.low, found.region.high)}, where not every place fits"
 
 
 def _clamped(place: Place | TurnMargin) -> str:
@@ -184,7 +211,7 @@ def _value(goal: str, place: Place) -> str:
     what = {
         "rotary": "the rotary axes turn",
         "slides": "the slides travel",
-        "time": "at the speeds of the axes it takes",
+        "time": "as the planner of speeds has it, it takes",
         "overspeed": "the axes do not reach the feed in",
     }
     return f"{what[goal]} {_goal_number(goal, place)}"
@@ -193,7 +220,8 @@ def _value(goal: str, place: Place) -> str:
 def _goal_number(goal: str, place: Place) -> str:
     value = place.value or 0.0
     if goal == "time":
-        return format_duration(value)
+        planned = value if place.planned_s is None else place.planned_s
+        return f"{format_duration(planned)} ({format_duration(value)} by speeds alone)"
     return (
         counted(round(value), "row")
         if goal == "overspeed"

@@ -44,9 +44,13 @@ def tilt(text: str) -> float:
 def add_place(parser: argparse.ArgumentParser, setting: type[argparse.Action], key_value: Callable[[str], Any]) -> None:
     """Add the options of the command."""
     parser.add_argument(
-        "files", nargs="+", metavar="CL|NC", help="CL files or NC programs; all must fit at one place of the part"
+        "files", nargs="+", metavar="CL|NC|PROJECT",
+        help="CL files or NC programs, which must all fit at one place of the part; or one project (.toml)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--machine", metavar="NAME_OR_FILE", help="shipped machine, or a TOML file; by default that of the project"
     )
-    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="shipped machine, or a TOML file")
+    parser.add_argument("--setup", metavar="NAME", help="the set-up of a project with several")
     parser.add_argument(
         "--goal", choices=GOALS, default="margin",
         help="what the best place is best for: margin to the limits, travel of rotary axes or slides, time, or"

@@ -99,7 +99,7 @@ HOOKS_NOTICE: Final = "MOTION CHANGED BY HOOKS"
 
 #: The same in a program whose part is clamped otherwise than its CL files have it.
 PLACED_NOTICE: Final = "PART TURNED"
-PLACED_NOTICES: Final = (PLACED_NOTICE, "PART TILTED", "PART CLAMPED AS DRAWN", "WORKPIECE ZERO ON THE MACHINE")
+PLACED_NOTICES: Final = (PLACED_NOTICE, "PART TILTED", "PART CLAMPED AS DRAWN", "WORKPIECE ZERO X")
 
 #: Values of the records of tools and of operations, for templates with expressions.
 TOOL_VALUES: Final = (

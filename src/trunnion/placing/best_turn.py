@@ -16,6 +16,7 @@ from trunnion.placing.goals import OF_PLACE, Goal, PlaceCost, rotary_travel
 from trunnion.placing.largest_margin import BestPlace, largest_margin
 from trunnion.placing.least_cost import least_cost
 from trunnion.placing.path_rows import about_z
+from trunnion.placing.planned_time import planned_seconds
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.travel_limits import CutSet
 from trunnion.placing.turns import TurnedPath
@@ -37,6 +38,9 @@ _FINEST: Final = 0.1
 _NEARLY: Final = 0.01
 _MOST_NEAR: Final = 12
 _LIKE_ROOM: Final = 0.01
+
+#: Orientations whose places are timed.
+_MOST_TIMED: Final = 5
 
 #: Best ones of a grid of tilts and turns around which the search goes on.
 _STARTS: Final = 3
@@ -179,7 +183,8 @@ def best_orientations(
     best = _best(results)
     if goal is Goal.MARGIN:
         best = search.with_most_rotary_room(best)
-    return sorted(results, key=lambda one: (one.tilt, one.turn)), search.whole(best)
+    whole = search.fastest(best) if goal is Goal.TIME else search.whole(best)
+    return sorted(results, key=lambda one: (one.tilt, one.turn)), whole
 
 
 class _Search:
@@ -229,6 +234,26 @@ class _Search:
             if own > room + _LIKE_ROOM:
                 chosen, room = one, own
         return chosen
+
+    def fastest(self, best: TurnResult) -> TurnResult:
+        """Of the best few orientations, each with its cheapest place and that with the largest margin, the fastest.
+
+        Costs leave accelerations out; the planner of speeds, which is not convex, judges these places.
+        """
+        if best.cost is None:
+            return self.whole(best)
+        found: list[tuple[float, TurnResult]] = []
+        for one in dict.fromkeys([best, *self.best_ones(_MOST_TIMED)]):
+            whole = self.whole(one)
+            if whole.path is None or whole.cuts is None or whole.best is None or whole.cost is None:
+                continue
+            rows, positions = whole.path.rows_at(whole.turn)
+            cost = PlaceCost.of(self._goal, whole.path.machine, rows, positions)
+            for place in (whole.best, largest_margin(whole.cuts, whole.path.near)):
+                seconds = planned_seconds(whole.path.machine, rows, positions, place.zero)
+                found.append((seconds, replace(whole, best=place, cost=cost.at(place.zero)[0])))
+        least = min(seconds for seconds, _ in found)
+        return next(result for seconds, result in found if seconds <= least * (1.0 + _LIKE_COST))
 
     def _rotary_room(self, result: TurnResult) -> float:
         path = self.whole(result).path

@@ -75,6 +75,7 @@ class Place:
     value      of the goal: mm of margin, mm or degrees of travel, seconds, blocks; None: the goal has none here
     axes       of all slides
     rotary     of the rotary axes
+    planned_s  with the goal ``time``: seconds of the rows by the planner of speeds, with accelerations and jerks
     """
 
     zero_mm: Vector
@@ -84,6 +85,7 @@ class Place:
     value: float | None = None
     tilt_deg: float = 0.0
     rotary: tuple[RotaryUse, ...] = ()
+    planned_s: float | None = None
 
     @property
     def fits(self) -> bool:
@@ -174,8 +176,8 @@ class Placement:
 
     @property
     def seconds(self) -> float | None:
-        """With the goal ``time`` that of the best place, by speeds alone."""
-        return self.best.value if self.best is not None and self.goal == "time" else None
+        """With the goal ``time`` that of the best place, as the planner of speeds has it."""
+        return None if self.best is None else self.best.planned_s
 
     @property
     def share_of_turns(self) -> float:

@@ -46,6 +46,12 @@ class Region:
     cuts: CutSet
     box: Box
 
+    @property
+    def is_box(self) -> bool:
+        """Whether all places within its extent fit."""
+        ends = ((self.low, self.box.low), (self.high, self.box.high))
+        return all(np.allclose(one, other, rtol=0.0, atol=TOLERANCE) for one, other in ends)
+
     def margin(self, zero: Floats) -> float:
         """What the slide nearest to a limit has left with the zero (3,) there, mm; negative: it does not fit."""
         return float(self.cuts.at(np.asarray(zero, np.float64)).margins.min())

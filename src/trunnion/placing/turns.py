@@ -94,6 +94,12 @@ class TurnedPath:
         """Positions of the rotary axes at a turn."""
         return rotary_angles(self.machine, self.rows.turned(about_z(turn)))
 
+    def rows_at(self, turn: float) -> tuple[PathRows, Floats]:
+        """The rows at a turn that is within reach, and the positions (n, 2) of the rotary axes in them, degrees."""
+        angles = self.angles_at(turn)
+        assert not isinstance(angles, Obstacle)
+        return self.rows.turned(about_z(turn)), angles.positions
+
     @cached_property
     def _turning(self) -> Turning:
         return turning_of(self.machine)
