@@ -213,3 +213,13 @@ def test_a_set_up_of_a_project_is_placed(tmp_path: Path, capsys: pytest.CaptureF
     hooked.write_text('machine = "yl569"\ncl = ["blade.cls"]\noutput = "b.mpf"\nhooks = ["h.py"]\n', "utf-8")
     assert main(["place", str(hooked)]) == 2
     assert "PLC160" in capsys.readouterr().err
+
+
+def test_a_program_that_is_converted_still_says_how_the_part_is_clamped(tmp_path: Path) -> None:
+    program, other = tmp_path / "placed.mpf", tmp_path / "other.h"
+    machine = ["--machine", "yl569", "--tool-length", "90"]
+    assert main(["place", BLADE, *machine, "--turn", "30", "--apply", str(program)]) == 0
+    assert main(["convert", str(program), "--machine", "yl569", "--to-machine", "dmu65", "--output", str(other)]) == 0
+    head = other.read_text("utf-8").splitlines()[:4]
+    assert head[1].endswith("; PART TURNED 30 DEG ABOUT Z, COUNTER-CLOCKWISE SEEN FROM ABOVE, FROM +Z")
+    assert not any("WORKPIECE ZERO" in line for line in head)

@@ -143,6 +143,7 @@ def test_notices_are_found_again(tmp_path: Path) -> None:
     assert notices[1].startswith("PART TURNED 315 DEG ABOUT Z, COUNTER-CLOCKWISE")
     assert max(map(len, placed_notices((-246.014, -407.304, -136.189), 312.656, -37.125))) <= 76  # one line each
     program.write_text("\n".join(f"({text})" for text in notices), "utf-8")
+    assert unlike_head(tmp_path, 315.0, 30.0) == unlike_head(tmp_path / "none.nc", 0.0, 0.0) == []
     assert unlike_head(program, 315.0, 30.0) == unlike_head(program, -45.0, 30.0) == []
     assert [problem.code for problem in unlike_head(program, 45.0, 30.0)] == ["PLC220"]
     assert [problem.code for problem in unlike_head(program, 315.0, 0.0)] == ["PLC220"]

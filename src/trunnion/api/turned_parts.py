@@ -73,17 +73,18 @@ def turned_toolpaths(
     return [replace(path, operations=tuple(map(turned, path.operations))) for path in toolpaths]
 
 
+def carried_notices(program: Path) -> tuple[str, ...]:
+    """Comments on how its part is clamped for a program that is made of another one, if that states it."""
+    stated = _stated(program)
+    return () if stated is None else tuple(_clamped(*stated))
+
+
 def unlike_head(program: Path, turn: float, tilt: float) -> list[Problem]:
     """A warning where the head of a program says that its part is clamped otherwise, degrees; else none."""
-    try:
-        with program.open("rb") as stream:
-            head = stream.read(_HEAD).decode("latin-1").upper()
-    except OSError:
+    stated = _stated(program)
+    if stated is None:
         return []
-    stated = [re.search(re.escape(words) + _NUMBER, head) for words in (PLACED_NOTICE, _TILTED)]
-    if stated[0] is None:
-        return []
-    turns, tilts = (0.0 if found is None else float(found[1]) for found in stated)
+    turns, tilts = stated
     off = abs((turns - turn + 180.0) % 360.0 - 180.0)
     if off < _SAME and abs(tilts - tilt) < _SAME:
         return []
@@ -92,3 +93,16 @@ def unlike_head(program: Path, turn: float, tilt: float) -> list[Problem]:
     told = f"turn={number(turns)}" + (f" and tilt={number(tilts)}" if tilts else "")
     cure = f"give {told}, so that the CL files are turned before they are compared"
     return [Problem(str(program), 0, what, cure, Severity.WARNING, code="PLC220")]
+
+
+def _stated(program: Path) -> tuple[float, float] | None:
+    """Turn and tilt that the head of a program states, degrees; None: it states none."""
+    if not program.is_file():  # what a pipe holds can be read once
+        return None
+    try:
+        with program.open("rb") as stream:
+            head = stream.read(_HEAD).decode("latin-1").upper()
+    except OSError:
+        return None
+    turn, tilt = (re.search(re.escape(words) + _NUMBER, head) for words in (PLACED_NOTICE, _TILTED))
+    return None if turn is None else (float(turn[1]), 0.0 if tilt is None else float(tilt[1]))
