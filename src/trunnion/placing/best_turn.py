@@ -19,7 +19,7 @@ from trunnion.placing.path_rows import about_z
 from trunnion.placing.planned_time import planned_seconds
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.travel_limits import CutSet
-from trunnion.placing.turns import TurnedPath
+from trunnion.placing.turns import Choice, TurnedPath
 
 #: Turns whose margins differ by less are alike: of them the least one is taken, mm.
 _ALIKE: Final = 1e-6
@@ -59,6 +59,7 @@ class TurnResult:
     cuts      its half-spaces
     best      its best place
     obstacle  where there is no path: why
+    choice    that of the path
     cost      of the goal at the best place; None: the goal is the margin, or the part does not fit
     """
 
@@ -69,6 +70,7 @@ class TurnResult:
     obstacle: Obstacle | None = None
     cost: float | None = None
     tilt: float = 0.0
+    choice: Choice | None = None
 
     @property
     def margin(self) -> float:
@@ -92,7 +94,9 @@ def best_of_turn(
         else:
             if number in known:
                 _follow(cuts, known[number])
-            found = known[number] = TurnResult(turn, path, cuts, largest_margin(cuts, path.near, settled=False))
+            found = known[number] = TurnResult(
+                turn, path, cuts, largest_margin(cuts, path.near, settled=False), choice=path.choice
+            )
             if goal is not Goal.MARGIN and found.margin >= 0.0:
                 found = _with_cost(found, path, cuts, goal)
         if best is None or _is_better(found, best):
@@ -193,6 +197,7 @@ class _Search:
     def __init__(self, paths_at: Callable[[float], Sequence[TurnedPath]], goal: Goal) -> None:
         self._paths_at, self._goal = paths_at, goal
         self._known: dict[int, TurnResult] = {}
+        self._rooms: dict[tuple[float, Choice, float], float] = {}
         self.results: dict[tuple[float, float], TurnResult] = {}
 
     def judge(self, turn: float, tilt: float) -> TurnResult:
@@ -256,11 +261,13 @@ class _Search:
         return next(result for seconds, result in found if seconds <= least * (1.0 + _LIKE_COST))
 
     def _rotary_room(self, result: TurnResult) -> float:
-        path = self.whole(result).path
-        angles = None if path is None else path.angles_at(result.turn)
-        if path is None or angles is None or isinstance(angles, Obstacle):
-            return -np.inf
-        return rotary_room(path.machine, angles.positions)
+        """What an orientation leaves of the travel of the rotary axes, degrees."""
+        path = next(path for path in self._paths_at(result.tilt) if path.choice is result.choice)
+        key = (result.tilt, path.choice, 0.0 if path.has_like_rotary_room else result.turn)
+        if key not in self._rooms:
+            _, positions = path.rows_at(result.turn)
+            self._rooms[key] = rotary_room(path.machine, positions)
+        return self._rooms[key]
 
     def whole(self, result: TurnResult) -> TurnResult:
         """A result with its path, half-spaces and settled place."""

@@ -100,6 +100,12 @@ class TurnedPath:
         assert not isinstance(angles, Obstacle)
         return self.rows.turned(about_z(turn)), angles.positions
 
+    @property
+    def has_like_rotary_room(self) -> bool:
+        """Whether no turn changes what is left to the rotary axes: the first, which turns along, has no limits."""
+        first = self.machine.axes[self.machine.rotary[0]]
+        return self._turning is not Turning.OTHER and np.isinf(first.low) and np.isinf(first.high)
+
     @cached_property
     def _turning(self) -> Turning:
         return turning_of(self.machine)
