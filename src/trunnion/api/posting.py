@@ -20,6 +20,7 @@ from trunnion.api.hook_files import load_hooks
 from trunnion.api.hooks import Hooks
 from trunnion.api.input_files import cl_files, machine_files
 from trunnion.api.job import FORCING, PostJob, prepare
+from trunnion.api.left_over_files import left_over
 from trunnion.api.machining_times import new_time_token, operation_times, prints_times, write_times
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.paper_files import PaperFiles, paper_files
@@ -282,8 +283,17 @@ def post_toolpaths(
             papers.write()
         else:
             later.append(papers)
+    stay = left_over(
+        target, target.papers.values() if later is not None else [place for _, place in target.files.papers]
+    )
+    observer.problems(stay)
     return replace(
-        result, encoding=job.encoding, output=target.path, subprograms=target.subprograms, _memory=target.memory
+        result,
+        problems=(*result.problems, *stay),
+        encoding=job.encoding,
+        output=target.path,
+        subprograms=target.subprograms,
+        _memory=target.memory,
     )
 
 
