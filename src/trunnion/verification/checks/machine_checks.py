@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from trunnion.machines import Axis
 from trunnion.verification.context import MAX_PLACES, Context
 from trunnion.verification.kinematics.axis_motion import AxisMotion
+from trunnion.verification.kinematics.machine_travel import positions_beyond_travel
 from trunnion.verification.kinematics.worst_rows import WorstRows
 from trunnion.verification.results import Check
 from trunnion.wording import counted
@@ -33,7 +34,7 @@ class _Margin:
 def check_travel(context: Context, motion: AxisMotion) -> Check:
     """Every axis is inside its limits; the summary has the smallest margin."""
     title = "travel of the axes"
-    margins = sorted(_margins(context, motion), key=lambda margin: margin.share)
+    margins = sorted([*_margins(context, motion), *_machine_margins(context)], key=lambda margin: margin.share)
     unchecked = _unchecked_axes(context)
     if not margins:
         return Check("travel", title, True, unchecked or "no axis with limits moves")
@@ -91,6 +92,14 @@ def _margins(context: Context, motion: AxisMotion) -> Iterator[_Margin]:
         tool = "" if is_placed else " with a tool 0 mm long"
         text = f"{axis.name} goes to {value:.3f}{tool}, its limit is {limit:g} {'deg' if axis.is_rotary else 'mm'}"
         yield _Margin(axis, min(below, above), text, value, row)
+
+
+def _machine_margins(context: Context) -> Iterator[_Margin]:
+    """Positions in machine coordinates beyond the travel; those within it are no measure of the room at the part."""
+    for found in positions_beyond_travel(context.run):
+        axis = context.run.machine.axes[found.column]
+        text = f"{axis.name} goes to {found.value:.3f} in machine coordinates, its limit is {found.limit:g} mm"
+        yield _Margin(axis, -found.beyond, text, found.value, found.row)
 
 
 def check_speed(context: Context, motion: AxisMotion) -> Check:
