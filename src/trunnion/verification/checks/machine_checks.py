@@ -85,13 +85,23 @@ def _margins(context: Context, motion: AxisMotion) -> Iterator[_Margin]:
         below, above = low - axis.low, axis.high - high
         is_placed = machine.is_placed(k)
         if not is_placed and (machine.workpiece_zero is None or min(below, above) >= -_ROUNDING):
-            text = f"{axis.name} needs {high - low:.3f} of {axis.high - axis.low:g} mm"
+            within = _within(context, motion, k, (0, 1))
+            counted_too = f", counting what it does{within}" if within else ""
+            text = f"{axis.name} needs {high - low:.3f} of {axis.high - axis.low:g} mm{counted_too}"
             yield _Margin(axis, (axis.high - axis.low) - (high - low), text, high - low, rows[1])
             continue
         value, limit, row = (low, axis.low, rows[0]) if below < above else (high, axis.high, rows[1])
         tool = "" if is_placed else " with a tool 0 mm long"
-        text = f"{axis.name} goes to {value:.3f}{tool}, its limit is {limit:g} {'deg' if axis.is_rotary else 'mm'}"
+        unit, within = "deg" if axis.is_rotary else "mm", _within(context, motion, k, (0,) if below < above else (1,))
+        text = f"{axis.name} goes to {value:.3f}{within}{tool}, its limit is {limit:g} {unit}"
         yield _Margin(axis, min(below, above), text, value, row)
+
+
+def _within(context: Context, motion: AxisMotion, column: int, sides: Sequence[int]) -> str:
+    """Where a slide is farther out between the ends of a block than at them; empty if it is not."""
+    rows = [int(motion.extreme_rows[column, side]) for side in sides if motion.within_lines[column, side]]
+    names = " and ".join(dict.fromkeys(context.block_name(row) for row in rows))
+    return f" within {names}, while rotary axes turn" if names else ""
 
 
 def _machine_margins(context: Context) -> Iterator[_Margin]:
