@@ -15,12 +15,14 @@ k (d / 2 + w L) at most. Lines whose bound stays within what has been found are 
 pieces with bounds of their own, and these again.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Ints
+from trunnion.arrays import Flags, Floats, Floats2, Ints
+from trunnion.jit import kernel
 from trunnion.machines import KinematicParameters, Machine, inverse, kinematic_parameters
 from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.subdivision import slerp
@@ -60,6 +62,49 @@ def chord_excursion(turn: Floats, way: Floats, arm: Floats) -> Floats:
         Of the tip, and from a rotary axis to it, mm.
     """
     return np.asarray((turn**2 * arm + 2.0 * turn * way) / 8.0)
+
+
+@kernel(writes="beyond")
+def _write_beyond(
+    tip: Floats2,
+    joints: Floats2,
+    counts: Flags,
+    great_circle: Flags,
+    kinematics: KinematicParameters,
+    normals: Floats,
+    columns: Ints,
+    extremes: Floats2,
+    beyond: Floats,
+) -> None:
+    """Write how far slides may go beyond what has been found in rows, mm; 0 where they do not.
+
+    normals  (3,)  lengths of the normals of the slides
+    columns  (5,)  of the rotary axes and of the slides
+    """
+    point, second, tool = kinematics.first_point, kinematics.second_offset, kinematics.tool_offset
+    others = math.sqrt(second[0] ** 2 + second[1] ** 2 + second[2] ** 2)
+    others += math.sqrt(tool[0] ** 2 + tool[1] ** 2 + tool[2] ** 2)
+    for row in range(counts.shape[0]):
+        beyond[row] = 0.0
+        first = abs(joints[row + 1, columns[0]] - joints[row, columns[0]])
+        turn = first + abs(joints[row + 1, columns[1]] - joints[row, columns[1]])
+        if not counts[row] or not turn > STANDS:
+            continue
+        turn = math.radians(turn)
+        way, arm, arm_before = 0.0, 0.0, 0.0
+        for k in range(3):
+            way += (tip[row + 1, k] - tip[row, k]) ** 2
+            arm += (tip[row + 1, k] - point[k]) ** 2
+            arm_before += (tip[row, k] - point[k]) ** 2
+        way, arm = math.sqrt(way), math.sqrt(max(arm, arm_before)) + others
+        bound = 0.5 * way + turn * arm if great_circle[row] else (turn * turn * arm + 2.0 * turn * way) / 8.0
+        for k in range(3):
+            column = columns[2 + k]
+            low, high = joints[row, column], joints[row + 1, column]
+            if low > high:
+                low, high = high, low
+            room = bound * normals[k]
+            beyond[row] = max(beyond[row], high + room - extremes[column, 1], extremes[column, 0] - low + room)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -115,13 +160,29 @@ class LineSearch:
         lengths = np.full(3, _BETWEEN_SLIDES) if below else np.linalg.norm(inverse_slides, axis=1)
         columns = self._kinematics.columns[2:]
         self._normals = np.array([lengths[columns.index(column)] for column in self._slides])
+        self._columns = np.array([*self._rotary, *self._slides])
+
+    def likely(self, tip: Floats, joints: Floats, counts: Flags, great_circle: Flags) -> Ints:
+        """Which of n consecutive rows may go beyond what has been found, the farthest first.
+
+        Parameters
+        ----------
+        tip, joints : (n + 1, 3), (n + 1, 5) float64
+            The position before the rows comes first.
+        counts, great_circle : (n,) bool
+            Which rows are lines under TCP, and on which of these the tool axis moves on a great circle.
+        """
+        beyond = np.empty(len(counts))
+        _write_beyond(
+            tip, joints, counts, great_circle, self._kinematics, self._normals, self._columns,
+            self._extremes, beyond,
+        )  # fmt: skip
+        found = np.flatnonzero(beyond > _NEGLIGIBLE)
+        return found[np.argsort(-beyond[found], kind="stable")]
 
     def add(self, lines: TurningLines) -> None:
-        """Search lines; those that may go farthest beyond what has been found come first."""
-        pieces = _Pieces(np.arange(len(lines.row)), np.tile([0.0, 1.0], (len(lines.row), 1)), lines.joints)
-        beyond = self._beyond(lines, pieces)
-        order = np.argsort(-beyond, kind="stable")
-        order = order[beyond[order] > _NEGLIGIBLE]
+        """Search lines, which should come in the order of ``likely``."""
+        order = np.arange(len(lines.row))
         for first in range(0, len(order), _AT_A_TIME):
             some = lines.select(order[first : first + _AT_A_TIME])
             cut = _Pieces(np.arange(len(some.row)), np.tile([0.0, 1.0], (len(some.row), 1)), some.joints)

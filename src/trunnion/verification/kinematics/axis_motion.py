@@ -23,7 +23,7 @@ from trunnion.model.arc_extremes import run_reach
 from trunnion.model.feed_path import NO_ROTATION
 from trunnion.model.run import Orientation, PositionChunk, Run
 from trunnion.model.toolpath import Kind
-from trunnion.model.turning_lines import STANDS, LineSearch, TurningLines
+from trunnion.model.turning_lines import LineSearch, TurningLines
 from trunnion.timing import RowFeeds, RunTimer
 from trunnion.verification.kinematics.arc_speeds import ArcSpeeds
 from trunnion.verification.kinematics.axis_motion_kernel import AxisLimits, ChunkRows, axis_motion_rows
@@ -172,16 +172,15 @@ class AxisMotionAnalyzer:
         known = np.append(self._counts_before, ~machine_frame[:-1]) | self._is_placed
         self._counts_before = not machine_frame[-1]
         end = first + len(tcp)
-        rotary = positions.joints[:, list(self._run.machine.rotary)]
-        turns = np.abs(np.diff(rotary, axis=0)).max(axis=1) > STANDS
-        at = np.flatnonzero(counts & known & turns & (self._run.kind[first:end] != Kind.ARC))
+        counts &= known & (self._run.kind[first:end] != Kind.ARC)
+        by_vector = self._run.orientation_between(first, end) == Orientation.GREAT_CIRCLE
+        at = self._line_search.likely(positions.tip, positions.joints, counts, by_vector)
         if not len(at):
             return
-        by_vector = self._run.orientation_between(first, end)[at] == Orientation.GREAT_CIRCLE
         tip, axis, joints = (
             np.stack((each[at], each[at + 1]), axis=1) for each in (positions.tip, positions.axis, positions.joints)
         )
-        self._line_search.add(TurningLines(first + at, tip, axis, joints, by_vector))
+        self._line_search.add(TurningLines(first + at, tip, axis, joints, by_vector[at]))
 
     def _turns(self, positions: PositionChunk) -> Flags:
         """Which rows turn a rotary axis, (k,) bool."""
