@@ -99,12 +99,60 @@ def test_even_turns_reach_what_dense_samples_reach(
     extremes, rows = np.stack((joints.min(axis=0), joints.max(axis=0)), axis=1), np.full((5, 2), -1)
     within = np.zeros((5, 2), np.bool_)
     lines = TurningLines(np.array([7]), tip[None], axes[None], joints[None], np.zeros(1, np.bool_))
-    LineSearch(machine, extremes, rows, within).add(lines)
+    search, even = LineSearch(machine, extremes, rows, within), np.zeros(1, np.bool_)
+    if len(search.likely(tip, joints, ~even, even)):
+        search.add(lines)
     dense = slides_between(machine, tip, joints, 2000)
     for column in machine.linear:
         for side, expected in ((0, dense[:, column].min()), (1, dense[:, column].max())):
             assert abs(extremes[column, side] - expected) < 5e-3
             assert within[column, side] == (rows[column, side] == 7)
+
+
+def great_circle_slides(machine: Machine, tip: Floats, axes: Floats, joints: Floats, count: int) -> Floats:
+    """(k, 5) axis values while the tool axis moves on its great circle, from branches that follow each other."""
+    share = np.linspace(0.0, 1.0, count + 1)[:, None]
+    angle = math.acos(min(1.0, float(axes[0] @ axes[1])))
+    vector = (np.sin((1.0 - share) * angle) * axes[0] + np.sin(share * angle) * axes[1]) / math.sin(angle)
+    solved = inverse(machine, tip[0] + share * (tip[1] - tip[0]), vector / np.linalg.norm(vector, axis=1)[:, None])
+    rotary = list(machine.rotary)
+    found, last = [joints[0]], joints[0]
+    for at in range(1, count + 1):
+        both = solved.joints[:, at].copy()
+        both[:, rotary] += 360.0 * np.rint((last[rotary] - both[:, rotary]) / 360.0)
+        off = np.nan_to_num(np.abs(both[:, rotary] - last[rotary]).sum(axis=1), nan=np.inf)
+        last = both[int(np.argmin(off))]
+        found.append(last)
+    return np.array(found)
+
+
+@settings(max_examples=80, deadline=None)
+@given(
+    name=st.sampled_from(MACHINES),
+    begin=directions,
+    bend=st.tuples(st.floats(-4.0, 4.0), st.floats(-10.0, 10.0)),
+    tips=st.tuples(points, points),
+)
+def test_great_circles_reach_what_dense_samples_reach(
+    name: str, begin: tuple[float, float], bend: tuple[float, float], tips: tuple[tuple[float, ...], ...]
+) -> None:
+    machine = replace(load_machine(name), workpiece_zero=(10.0, 20.0, 30.0), tool_length=80.0)
+    axes = np.array([axis_of(*begin), axis_of(begin[0] + bend[0], begin[1] + bend[1])])
+    tip = np.array(tips)
+    joints = inverse(machine, tip, axes).joints[0]
+    if not np.isfinite(joints).all() or np.linalg.norm(axes[1] - axes[0]) < 1e-3:
+        return
+    dense = great_circle_slides(machine, tip, axes, joints, 400)
+    if np.abs(dense[-1] - joints[1])[list(machine.rotary)].max() > 1e-6:
+        return  # it ends on the other branch
+    extremes, rows = np.stack((joints.min(axis=0), joints.max(axis=0)), axis=1), np.full((5, 2), -1)
+    search = LineSearch(machine, extremes, rows, np.zeros((5, 2), np.bool_))
+    by_vector = np.ones(1, np.bool_)
+    if len(search.likely(tip, joints, by_vector, by_vector)):
+        search.add(TurningLines(np.array([7]), tip[None], axes[None], joints[None], by_vector))
+    for column in machine.linear:
+        assert dense[:, column].min() > extremes[column, 0] - 5e-3
+        assert dense[:, column].max() < extremes[column, 1] + 5e-3
 
 
 def slides_between(machine: Machine, tip: Floats, joints: Floats, count: int) -> Floats:

@@ -11,7 +11,8 @@ both rotary axes turn together, the tip's way d, and the longest arm L from a ro
 
 where k is the norm of the slide's normal. A curve leaves its chord by at most an eighth of that. Where the tool axis
 moves on a great circle instead, rotary axes turn unevenly, by 2 w at most, and a slide goes beyond its ends by
-k (d / 2 + w L) at most. Lines whose bound stays within what has been found are done; the others are cut into eight
+k (d / 2 + w L) at most, and far from the poles by no more than sixteen times as much as with even angles: there their
+second derivatives are below 16 w^2. Lines whose bound stays within what has been found are done; the others are cut into eight
 pieces with bounds of their own, and these again.
 """
 
@@ -29,6 +30,12 @@ from trunnion.model.subdivision import slerp
 
 #: Rotary axes that turn by less stand, degrees.
 STANDS: Final = 1e-9
+
+#: On great circles the bound for angles that are nearly even holds for turns up to so many radians, where two tool axes
+#: that differ by one rotary axis each are this share as independent as at best; and what it allows for.
+_SMALL_TURN: Final = 0.1
+_FROM_POLE: Final = 0.2
+_UNEVEN: Final = 16.0
 
 #: Slides that may go on by less, mm, are not looked at.
 _NEGLIGIBLE: Final = 1e-3
@@ -73,6 +80,7 @@ def _write_beyond(
     kinematics: KinematicParameters,
     normals: Floats,
     columns: Ints,
+    pole: Floats,
     extremes: Floats2,
     beyond: Floats,
 ) -> None:
@@ -80,6 +88,7 @@ def _write_beyond(
 
     normals  (3,)  lengths of the normals of the slides
     columns  (5,)  of the rotary axes and of the slides
+    pole     (2,)  as ``_pole_distance`` has it
     """
     point, second, tool = kinematics.first_point, kinematics.second_offset, kinematics.tool_offset
     others = math.sqrt(second[0] ** 2 + second[1] ** 2 + second[2] ** 2)
@@ -97,7 +106,13 @@ def _write_beyond(
             arm += (tip[row + 1, k] - point[k]) ** 2
             arm_before += (tip[row, k] - point[k]) ** 2
         way, arm = math.sqrt(way), math.sqrt(max(arm, arm_before)) + others
-        bound = 0.5 * way + turn * arm if great_circle[row] else (turn * turn * arm + 2.0 * turn * way) / 8.0
+        bound = (turn * turn * arm + 2.0 * turn * way) / 8.0
+        if great_circle[row]:
+            angle, after = math.radians(joints[row, columns[1]]), math.radians(joints[row + 1, columns[1]])
+            away = abs(pole[0] * math.cos(angle) + pole[1] * math.sin(angle))
+            away = min(away, abs(pole[0] * math.cos(after) + pole[1] * math.sin(after)))
+            uneven = _UNEVEN * bound if turn <= _SMALL_TURN and away >= _FROM_POLE else np.inf
+            bound = min(0.5 * way + turn * arm, uneven)
         for k in range(3):
             column = columns[2 + k]
             low, high = joints[row, column], joints[row + 1, column]
@@ -105,6 +120,18 @@ def _write_beyond(
                 low, high = high, low
             room = bound * normals[k]
             beyond[row] = max(beyond[row], high + room - extremes[column, 1], extremes[column, 0] - low + room)
+
+
+def _pole_distance(machine: Machine) -> Floats:
+    """(2,): with cosine and sine of the second rotary position, how far tool axes are from where axes turn fast.
+
+    That is how independent the ways are that both rotary axes turn the tool, as a share of the most. With the lines of
+    the axes a and b and the tool t that is |t . (a x b)|, as the first axis turns all of them together.
+    """
+    first, second = (np.array(machine.axes[column].direction) for column in machine.rotary)
+    tool, square = np.array(machine.spindle_direction), np.cross(first, second)
+    pair = np.array([square @ tool, machine.axes[machine.rotary[1]].sense * (square @ np.cross(second, tool))])
+    return np.asarray(pair / max(float(np.linalg.norm(pair)), 1e-12))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -161,6 +188,7 @@ class LineSearch:
         columns = self._kinematics.columns[2:]
         self._normals = np.array([lengths[columns.index(column)] for column in self._slides])
         self._columns = np.array([*self._rotary, *self._slides])
+        self._pole = _pole_distance(machine)
 
     def likely(self, tip: Floats, joints: Floats, counts: Flags, great_circle: Flags) -> Ints:
         """Which of n consecutive rows may go beyond what has been found, the farthest first.
@@ -175,7 +203,7 @@ class LineSearch:
         beyond = np.empty(len(counts))
         _write_beyond(
             tip, joints, counts, great_circle, self._kinematics, self._normals, self._columns,
-            self._extremes, beyond,
+            self._pole, self._extremes, beyond,
         )  # fmt: skip
         found = np.flatnonzero(beyond > _NEGLIGIBLE)
         return found[np.argsort(-beyond[found], kind="stable")]
