@@ -58,7 +58,12 @@ def test_both_ends_of_a_travel_are_told(tmp_path: Path) -> None:
     file = tmp_path / "part.mpf"
     file.write_text(HEAD + "SUPA G0 X300 D0\nSUPA G0 X=-250.5 D0\nG53 G0 Y151 D0\nG153 G0 Z251 D0\n" + FOOT)
     found = check(trunnion.verify(file, machine="yl569"), "travel")
-    assert sorted((place.value, place.nc_line) for place in found.places) == [(-250.5, 9), (151, 10), (251, 11), (300, 8)]
+    assert sorted((place.value, place.nc_line) for place in found.places) == [
+        (-250.5, 9),
+        (151, 10),
+        (251, 11),
+        (300, 8),
+    ]
 
 
 def test_with_a_zero_the_limits_are_the_same(tmp_path: Path) -> None:
@@ -95,5 +100,3 @@ def test_the_command_fails_and_no_place_is_found(tmp_path: Path, capsys: pytest.
     [problem] = refused.value.problems
     assert (problem.code, problem.line) == ("PLC160", 9)
     assert "X goes to 300.000 in machine coordinates, its limit is 250 mm" in str(problem)
-
-

@@ -29,6 +29,9 @@ from trunnion.placing.turns import TurnedPath, choices_of
 
 GOALS: Final = tuple(str(goal) for goal in Goal)
 
+#: The part is tried at every so many degrees about Z, and more finely around the best.
+DEFAULT_TURNS: Final = 5.0
+
 #: Turns are at most as many.
 _MOST_TURNS: Final = 3600
 
@@ -38,7 +41,7 @@ def place(
     *,
     machine: MachineLike,
     goal: str = "margin",
-    turns: float | Sequence[float] = 5.0,
+    turns: float | Sequence[float] = DEFAULT_TURNS,
     zero: str | Iterable[float] | None = None,
     tool_length: str | float | None = None,
     settings: Settings | None = None,
@@ -104,7 +107,7 @@ def place(
         what = f"no slide of {loaded.key} has limits: the part may sit anywhere"
         raise InputError(argument_problem("machine", what, "state limits_mm of its axes", code="PLC130"))
     given = read_input(files, loaded, texts, check_paths("subprograms", subprograms), observer)
-    problems = [*given.problems, *_unknown_length(loaded)]
+    problems = [*given.problems, *unknown_length(loaded)]
     observer.problems(problems)
     near = _first_guess(loaded)
     paths = [TurnedPath.of(loaded, choice, rows, near) for choice, rows in choices_of(given.rows)]
@@ -129,12 +132,13 @@ def _turns(turns: float | Sequence[float]) -> tuple[Floats, bool]:
     return given, False
 
 
-def _unknown_length(machine: Machine) -> list[Problem]:
+def unknown_length(machine: Machine) -> list[Problem]:
     """A warning where places depend on a tool length that nobody has stated."""
     if machine.tool_length is not None or not any(machine.depends_on_length(k) for k in machine.linear):
         return []
-    names = ", ".join(machine.axes[k].name for k in machine.linear if machine.depends_on_length(k))
-    what, cure = f"the tool counts as 0 mm long, and {names} depends on it", "give tool_length"
+    names = [machine.axes[k].name for k in machine.linear if machine.depends_on_length(k)]
+    depend = "depends" if len(names) == 1 else "depend"
+    what, cure = f"the tool counts as 0 mm long, and {', '.join(names)} {depend} on it", "give tool_length"
     return [argument_problem("tool_length", what, cure, Severity.WARNING, code="PLC210")]
 
 

@@ -2,17 +2,25 @@
 
 import argparse
 import math
+from collections.abc import Callable
+
+from trunnion.cli.place_arguments import degrees
 
 
-def amount(text: str) -> float:
-    """A length or an angle above 0."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0.0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number above 0; write one, such as 5")
-    return value
+def ranged(what: str, least: float, most: float, example: str) -> Callable[[str], float]:
+    """A reader of numbers between bounds, both of which count; ``what`` is the number in messages."""
+
+    def read(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not least <= value <= most:
+            cure = f"write a number from {least:g} to {most:g}, such as {example}"
+            raise argparse.ArgumentTypeError(f"{text!r} is not {what}; {cure}")
+        return value
+
+    return read
 
 
 def add_sensitivity(parser: argparse.ArgumentParser) -> None:
@@ -22,10 +30,14 @@ def add_sensitivity(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
     parser.add_argument(
-        "--length", type=amount, default=0.01, metavar="MM", help="how far points and lengths are off; 0.01"
+        "--length",
+        type=ranged("an error of a length in mm", 1e-6, 10.0, "0.01"),
+        default=0.01,
+        metavar="MM",
+        help="how far points and lengths are off; 0.01",
     )
     parser.add_argument(
-        "--angle", type=amount, default=5.0, metavar="ARCSEC",
+        "--angle", type=ranged("an error of an angle in seconds", 1e-6, 3600.0, "5"), default=5.0, metavar="ARCSEC",
         help="how far directions and displayed angles are off, seconds of arc; 5",
     )  # fmt: skip
     parser.add_argument(
@@ -47,7 +59,11 @@ def add_reach(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
     parser.add_argument(
-        "--step", type=amount, default=5.0, metavar="DEG", help="degrees between tilts, and between azimuths; 5"
+        "--step",
+        type=ranged("a step in degrees", 1.0, 45.0, "5"),
+        default=5.0,
+        metavar="DEG",
+        help="degrees between tilts, and between azimuths; 5",
     )
     parser.add_argument("--json", metavar="FILE", help="everything as data; - is stdout")
     parser.add_argument("--plot", metavar="FILE", help="tool axes on the sphere, and volumes over the tilt (.svg)")
@@ -65,6 +81,10 @@ def add_fit(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--zero", metavar="X,Y,Z", help="workpiece zero of the NC program on its own machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool on all machines, gauge point to tip")
     parser.add_argument(
-        "--turns", type=amount, default=90.0, metavar="DEG", help="try the part at every so many degrees about Z; 90"
+        "--turns",
+        type=degrees,
+        default=5.0,
+        metavar="DEG",
+        help="try the part at every so many degrees about Z; 5",
     )
     parser.add_argument("--json", metavar="FILE", help="everything as data; - is stdout")

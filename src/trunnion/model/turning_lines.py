@@ -12,8 +12,8 @@ both rotary axes turn together, the tip's way d, and the longest arm L from a ro
 where k is the norm of the slide's normal. A curve leaves its chord by at most an eighth of that. Where the tool axis
 moves on a great circle instead, rotary axes turn unevenly, by 2 w at most, and a slide goes beyond its ends by
 k (d / 2 + w L) at most, and far from the poles by no more than sixteen times as much as with even angles: there their
-second derivatives are below 16 w^2. Lines whose bound stays within what has been found are done; the others are cut into eight
-pieces with bounds of their own, and these again.
+second derivatives are below 16 w^2. Lines whose bound stays within what has been found are done; the others are cut
+into eight pieces with bounds of their own, and these again.
 """
 
 import math
@@ -227,9 +227,7 @@ class LineSearch:
         turn = np.radians(np.abs(np.diff(pieces.joints[:, :, self._rotary], axis=1)).sum(axis=(1, 2)))
         way = np.linalg.norm(tip[:, 1] - tip[:, 0], axis=1) * share
         arm = np.maximum(*(longest_arms(self._kinematics, tip[:, end]) for end in (0, 1)))
-        bound = np.where(
-            lines.great_circle[line], 0.5 * way + turn * arm, chord_excursion(turn, way, arm)
-        )
+        bound = np.where(lines.great_circle[line], 0.5 * way + turn * arm, chord_excursion(turn, way, arm))
         room = bound[:, None] * self._normals
         slides = pieces.joints[:, :, self._slides]
         low, high = self._extremes[self._slides].T
