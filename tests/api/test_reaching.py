@@ -203,7 +203,8 @@ def test_a_table_that_tilts_depends_on_the_tool_length_and_a_warning_says_so(cap
         next(each for each in trunnion.reach("dmu65", step=45.0, tool_length=length).tilts if each.tilt == 90.0)
         for length in (0.0, 100.0)
     )
-    assert short.every is not None and long.every is not None
+    assert short.every is not None
+    assert long.every is not None
     assert short.every.likely < long.every.likely
 
 

@@ -283,12 +283,17 @@ def _beyond(asked: MachineLike, machine: Machine, found: Placement) -> MachineFi
     reasons = (*map(_travel_reason, beyond), tried, *_length_reasons(machine))
     missing = -found.best.margin_mm
     too_small = any(_needed(each) > _travel(each) for each in beyond)
-    table = None if too_small or isinstance(asked, Machine) else load_table(asked, machine_library(), kind="machine")
-    if not too_small and (assumed := assumed_places(machine, table)):
+    if not too_small and (assumed := _assumed_places(asked, machine)):
         reasons = (f"{assumed}: with the places of the machine it may fit", *reasons)
         return MachineFit(machine.key, FitStatus.OPEN, reasons, missing=missing)
     margins = tuple(AxisMargin(each.axis, "mm", each.margin_mm) for each in found.best.axes)
     return MachineFit(machine.key, FitStatus.NOT, reasons, None, margins, missing, found.zero_mm, found.turn_deg)
+
+
+def _assumed_places(asked: MachineLike, machine: Machine) -> str:
+    """Why it is not known where the axes of a machine lie; empty if its definition states it."""
+    named = not isinstance(asked, Machine)
+    return assumed_places(machine, load_table(os.fspath(asked), machine_library(), kind="machine") if named else None)
 
 
 def _turns_tried(found: Placement) -> str:

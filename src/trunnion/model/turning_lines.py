@@ -206,7 +206,7 @@ class LineSearch:
             self._pole, self._extremes, beyond,
         )  # fmt: skip
         found = np.flatnonzero(beyond > _NEGLIGIBLE)
-        return found[np.argsort(-beyond[found], kind="stable")]
+        return np.asarray(found[np.argsort(-beyond[found], kind="stable")])
 
     def add(self, lines: TurningLines) -> None:
         """Search lines, which should come in the order of ``likely``."""
@@ -232,7 +232,7 @@ class LineSearch:
         slides = pieces.joints[:, :, self._slides]
         low, high = self._extremes[self._slides].T
         over = np.maximum(slides.max(axis=1) + room - high, low - slides.min(axis=1) + room)
-        return np.nan_to_num(over.max(axis=1), nan=-np.inf)
+        return np.asarray(np.nan_to_num(over.max(axis=1), nan=-np.inf))
 
     def _cut(self, lines: TurningLines, pieces: _Pieces) -> _Pieces:
         """Cut pieces, and keep what their ends show."""

@@ -20,8 +20,8 @@ FEED_WORDS: Final = ("feed", "feed_per_rev")
 class FeedWords:
     """Writes feeds, and knows the feed mode that is active.
 
-    rapid_feed  F of rapids on machines where rapids are lines at a high feed, as a count; ABSENT: rapids have no F. A cut
-                at that very feed gets the next lower one, which is no rapid
+    rapid_feed  F of rapids on machines where rapids are lines at a high feed, as a count; ABSENT: rapids have no F.
+                A cut at that very feed gets the next lower one, which is no rapid
     """
 
     def __init__(self, program: Program, writer: BlockWriter) -> None:
