@@ -100,3 +100,12 @@ def test_the_command_fails_and_no_place_is_found(tmp_path: Path, capsys: pytest.
     [problem] = refused.value.problems
     assert (problem.code, problem.line) == ("PLC160", 9)
     assert "X goes to 300.000 in machine coordinates, its limit is 250 mm" in str(problem)
+
+
+def test_steps_from_an_unknown_place_do_not_count(tmp_path: Path) -> None:
+    """Z is 200 above a zero that nobody knows, and goes up by 100."""
+    file = tmp_path / "part.mpf"
+    file.write_text(HEAD + "G0 X0 Y0 Z200\nG91 SUPA G0 Z100 D0\nG90\n" + FOOT)
+    assert check(trunnion.verify(file, machine="yl569"), "travel").passed
+    known = trunnion.verify(file, machine="yl569", zero=(0, 0, 0), tool_length=0.0)
+    assert check(known, "travel").summary.startswith("Z goes to 300.000 in machine coordinates")

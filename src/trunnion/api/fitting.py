@@ -292,8 +292,9 @@ def _beyond(asked: MachineLike, machine: Machine, found: Placement) -> MachineFi
 
 def _assumed_places(asked: MachineLike, machine: Machine) -> str:
     """Why it is not known where the axes of a machine lie; empty if its definition states it."""
-    named = not isinstance(asked, Machine)
-    return assumed_places(machine, load_table(os.fspath(asked), machine_library(), kind="machine") if named else None)
+    if isinstance(asked, Machine):
+        return assumed_places(machine, None)
+    return assumed_places(machine, load_table(os.fspath(asked), machine_library(), kind="machine"))
 
 
 def _turns_tried(found: Placement) -> str:

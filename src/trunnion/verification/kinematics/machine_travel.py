@@ -12,6 +12,7 @@ import numpy as np
 from trunnion.arrays import Ints
 from trunnion.model.run import CHUNK_ROWS, ProgrammedWord, Run
 from trunnion.verification.kinematics.home_tolerance import home_tolerance
+from trunnion.verification.kinematics.machine_positions import MachinePositions
 
 #: Travel beyond a limit by less than this is rounding, mm.
 _ROUNDING = 1e-5
@@ -42,8 +43,9 @@ class MachinePosition:
 def positions_beyond_travel(run: Run) -> Iterator[MachinePosition]:
     """Yield for each end of the travel of a slide the block that goes farthest beyond it, if one does.
 
-    Only slides that a block names count: the others stay where nobody may know the machine position. Retracts by a
-    word end at the travel by themselves. Home in inches is home (``home_tolerance``).
+    Only slides that a block names count: the others stay where nobody may know the machine position. Steps (G91) count
+    only where zero and tool length are known. Retracts by a word end at the travel by themselves. Home in inches is
+    home (``home_tolerance``).
     """
     rows = run.state.machine_frame.rows_with(True)
     retracts = [event.before_row for event in run.events if event.kind == "retract"]
@@ -61,10 +63,13 @@ def _beyond(run: Run, rows: Ints) -> Iterator[MachinePosition]:
     """The farthest of some rows at each end of each slide."""
     machine = run.machine
     joints, near_home = run.positions(rows).joints, home_tolerance(run, rows)
+    known, steps = MachinePositions.of(run).known, run.state.machine_steps.at(rows)
     for word in _SLIDES:
         column = machine.column(str(word.name))
         axis, values = machine.axes[column], joints[:, column]
         named = (run.programmed[rows] & int(word)) != 0
+        if not known:
+            named &= (steps & int(word)) == 0
         named &= np.abs(values - axis.home) > near_home[:, column]
         for limit, sign in ((axis.low, -1.0), (axis.high, 1.0)):
             over = np.where(named, sign * (values - limit), -np.inf)
