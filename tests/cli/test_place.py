@@ -70,6 +70,19 @@ def test_a_part_that_fits_nowhere_is_refused_with_what_conflicts(
     assert not program.exists()
 
 
+def test_travel_that_is_missing_is_told_where_one_slide_has_too_little(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The contour is 103.296 mm wide in Y, the circle of radius 51.648 mm: 80 mm are 23.296 too few."""
+    machine = tmp_path / "short.toml"
+    machine.write_text('extends = "yl569"\n[[axis]]\nname = "Y"\nlimits_mm = [-30, 50]\n', "utf-8")
+    contour = "tests/golden/yl569/1_contour_rough.cls"
+    assert main(["place", contour, "--machine", str(machine), "--tool-length", "0", "--turn", "0"]) == 1
+    out = capsys.readouterr().out
+    assert "fits nowhere: 11.648 mm too far at the least" in out
+    assert "Y needs 23.296 mm more travel" in out
+
+
 def test_a_tool_axis_out_of_reach_is_told_with_its_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     machine = tmp_path / "stiff.toml"
     machine.write_text('extends = "yl569"\n[[axis]]\nname = "B"\nlimits_deg = [-5, 20]\n', "utf-8")
@@ -99,6 +112,7 @@ def test_apply_posts_the_part_where_it_sits_best(tmp_path: Path, capsys: pytest.
         (["--goal", "beauty"], "invalid choice"),
         (["--plot", "picture.png"], "FIL260"),
         (["--zero", "1,2"], "--zero"),
+        (["--json", "-", "--apply", "-"], "stdout"),
         (["--tool-length", "long"], "--tool-length"),
     ],
 )

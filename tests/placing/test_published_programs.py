@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import trunnion
+from trunnion.api.placing_post import turned_toolpaths
 
 FOLDER = Path("tests/golden/yl569")
 CONTOUR, HUB, BLADE = (FOLDER / f"{name}.cls" for name in ("1_contour_rough", "2_hub_rough", "3_blade_finish"))
@@ -112,3 +113,27 @@ def test_the_part_is_posted_where_it_was_placed_and_no_farther() -> None:
         column = posted.run.machine.column(axis.axis)
         assert extremes[:, column].min() == pytest.approx(axis.least_mm, abs=1e-4)
         assert extremes[:, column].max() == pytest.approx(axis.greatest_mm, abs=1e-4)
+
+
+def test_a_post_is_refused_outside_of_the_region_and_proven_inside() -> None:
+    """From the best place towards a corner, a twentieth of a millimetre before and behind the border."""
+    found = trunnion.place(BLADE, machine="yl569", turns=[33.0], tool_length=100.0)
+    assert found.region is not None
+    assert found.zero_mm is not None
+    toolpaths = turned_toolpaths(found.toolpaths, 33.0)
+    best = np.array(found.zero_mm)
+    for corner in (found.region.corners[0], found.region.corners[-1]):
+        share = np.array([0.0, 2.0])
+        for _ in range(60):  # bisection for the border
+            middle = best + share.mean() * (corner - best)
+            share[0 if found.region.margin(middle) >= 0.0 else 1] = share.mean()
+        step = 0.05 / -found.region.margin(best + (share[0] + 1e-3) * (corner - best)) * 1e-3
+        for side, fits in ((-1.0, True), (1.0, False)):
+            zero = best + (share[0] + side * step) * (corner - best)
+            assert 0.01 < -side * found.region.margin(zero) < 0.1
+            settings: dict[str, str | float] = {"tool_length": 100.0, "zero": ",".join(map(str, zero.tolist()))}
+            if fits:
+                assert trunnion.post(toolpaths, machine="yl569", settings=settings).passed
+            else:
+                with pytest.raises(trunnion.RefusedError):
+                    trunnion.post(toolpaths, machine="yl569", settings=settings)

@@ -11,7 +11,7 @@ from trunnion.machines import inverse, load_machine
 from trunnion.model.arc_extremes import ArcPaths
 from trunnion.placing.between_rows import most_between
 from trunnion.placing.extremes import Extremes
-from trunnion.placing.path_rows import about_z
+from trunnion.placing.path_rows import Stretch, about_z
 from trunnion.placing.rotary_angles import RotaryAngles, rotary_angles
 from trunnion.placing.slide_forms import SlideForms
 from trunnion.placing.travel_limits import CutSet
@@ -102,3 +102,42 @@ def test_rows_of_hulls_stand_for_all_rows_at_the_pole() -> None:
         tips = rows.tip @ about_z(turn).T + ZERO
         extremes = np.column_stack((tips.min(axis=0), tips.max(axis=0)))
         assert cuts.at(ZERO).extremes == pytest.approx(extremes, abs=1e-9)
+
+
+def test_at_the_pole_the_table_stands_where_it_stood() -> None:
+    """C comes from 30 degrees: it stays there until the tool tilts, and keeps what it has then."""
+    tilt, azimuth = np.radians([0.0, 0.0, 40.0, 0.0]), np.radians(75.0)
+    axis = np.column_stack((np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)))
+    rows = replace(path_rows(np.zeros((4, 3)), axis, np.zeros(4)), start=np.array([[30.0, 0.0]]))
+    angles = rotary_angles(YL569, rows)
+    assert isinstance(angles, RotaryAngles)
+    assert angles.positions == pytest.approx(np.array([[30.0, 0.0], [30.0, 0.0], [75.0, 40.0], [75.0, 0.0]]))
+    assert angles.held.tolist() == [True, True, False, False]
+
+
+@pytest.mark.parametrize("name", ["yl569", "generic_head_head_ca", "generic_head_table_bc"])
+def test_a_turned_path_is_the_path_of_the_turned_part(name: str) -> None:
+    """Operations that begin at the pole and leave it, with ways between rows: parts of a path add up to all of it."""
+    machine = replace(load_machine(name), workpiece_zero=None, tool_length=75.0)
+    random = np.random.default_rng(8)
+    count = 60
+    tilt = np.radians(
+        np.concatenate((np.zeros(10), np.linspace(0.0, 60.0, 20), np.zeros(5), np.linspace(20.0, 5.0, 25)))
+    )
+    azimuth = np.radians(np.linspace(-40.0, 170.0, count))
+    axis = np.column_stack((np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)))
+    stretches = (Stretch(0, "a.cls"), Stretch(30, "a.cls"))
+    rows = path_rows(random.uniform(-60.0, 60.0, (count, 3)), axis, np.zeros(count), straight=True)
+    rows = replace(rows, stretches=stretches, start=np.array([[12.0, 0.0], [12.0, 0.0]]))
+    path = TurnedPath.of(machine, Choice.FIRST, rows, np.zeros(3))
+    for turn in (0.0, 40.0, 155.0):
+        turned = rows.turned(about_z(turn))
+        angles = rotary_angles(machine, turned)
+        assert isinstance(angles, RotaryAngles)
+        forms = path_forms(machine, turned, angles.positions)
+        assert isinstance(forms, SlideForms)
+        whole = Extremes.of(forms, np.zeros(3))
+        cuts = path.at(turn)
+        assert isinstance(cuts, CutSet)
+        for zero in random.uniform(-200.0, 200.0, (8, 3)):
+            assert cuts.at(zero).extremes == pytest.approx(whole.at(zero)[0], abs=1e-8)

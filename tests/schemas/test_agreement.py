@@ -58,6 +58,8 @@ JUDGED = {
                  r"needs either", r"^tool is missing", r"wants", r"flutes of tool",
                  r"not less than the diameter", r"a wall would stay"],
     "nodes": [r"is empty", r"is given beside", r"does not say which variable", r"has no namespace"],
+    "batch": [r"there is no such file", r"leads out", r"has no meaning with", r"matches no file", r"is \[\]",
+              r"(machine|stock) is missing", r"say where a conversion leads"],
 }  # fmt: skip
 
 #: Documents that are mutated, of each kind, and the table in which; empty: in all.
@@ -68,6 +70,7 @@ DOCUMENTS = {
     "tools": [(str(COMPLETE / "tools.toml"), "")],
     "impeller": [(str(ROOT / "examples" / "impeller" / "impeller.toml"), "")],
     "nodes": [(str(COMPLETE / "nodes.toml"), "")],
+    "batch": [(str(COMPLETE / "batch.toml"), "")],
 }
 
 #: Tables whose keys are all alike: the first and the last of them stand for all.

@@ -17,6 +17,7 @@ from typing import Any, Final
 from tests.support.locations import DOCS, ROOT, TESTS
 from trunnion.api.definition_checks import stand_in
 from trunnion.api.project_file import read_project_table
+from trunnion.batch.jobs_file import read_batch_table
 from trunnion.controls import load_control
 from trunnion.controls.loading import control_library, shipped_controls
 from trunnion.definitions import Table, load_table
@@ -128,6 +129,11 @@ KINDS: Final[Mapping[str, Kind]] = {
         "list of OPC UA nodes to record", lambda table, _path: read_nodes(table),
         [*(str(NODES / f"{name}.toml") for name in node_list_names()), str(COMPLETE / "nodes.toml")], COMPLETE,
         [("twin.md", "namespace = \"SinumerikVarProvider\"", "columns.*.")],
+    ),
+    "batch": Kind(
+        "file of jobs", read_batch_table, [str(COMPLETE / "batch.toml")], COMPLETE,
+        [("batch.md", "## A file of jobs", ""), ("batch.md", "Keys of a job;", "job."),
+         ("batch.md", "Keys of a job;", "defaults.")],
     ),
 }  # fmt: skip
 

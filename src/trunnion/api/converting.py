@@ -26,6 +26,7 @@ from trunnion.controls.vocabulary import INCH
 from trunnion.conversion import Conversion
 from trunnion.conversion.program_events import COMPENSATION_FINDINGS
 from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem
+from trunnion.files import OutputGroup
 from trunnion.jit import compile_ahead
 from trunnion.machines import Machine
 from trunnion.model.run import Run
@@ -139,6 +140,29 @@ def convert(
     >>> converted.posted.passed
     True
     """
+    return convert_beside(
+        nc, machine=machine, to_machine=to_machine, to_cl=to_cl, dialect=dialect, output=output,
+        subprograms=subprograms, zero=zero, tool_length=tool_length, settings=settings, force=force, observer=observer,
+    )  # fmt: skip
+
+
+def convert_beside(
+    nc: FilePath | BinaryIO,
+    *,
+    machine: MachineLike | None = None,
+    to_machine: MachineLike | None = None,
+    to_cl: bool = False,
+    dialect: str = "clsf",
+    output: OutputLike = None,
+    subprograms: Sequence[FilePath] = (),
+    zero: str | Iterable[float] | None = None,
+    tool_length: str | float | None = None,
+    settings: Settings | None = None,
+    force: bool = False,
+    observer: Observer = SILENT,
+    group: OutputGroup | None = None,
+) -> ConvertResult:
+    """Convert as ``convert`` does; the result appears with those of the ``group``, if there is one."""
     check_observer(observer)
     others = check_paths("subprograms", subprograms)
     if (to_machine is None) is not to_cl:
@@ -148,7 +172,7 @@ def convert(
     if machine is None:
         _refuse_for_cl(to_machine=to_machine, subprograms=others, zero=zero, tool_length=tool_length, force=force)
         source_file = nc if is_stream(nc) else check_path("nc", nc)
-        with open_target(output, inputs=[source_file] if isinstance(source_file, Path) else []) as target:
+        with open_target(output, inputs=[source_file] if isinstance(source_file, Path) else [], group=group) as target:
             toolpath, remarks = convert_cl(source_file, target, dialect, settings, observer)
         return ConvertResult(toolpath, {}, remarks, None, target.path, target.memory)
     program = check_path("nc", nc)
@@ -163,7 +187,7 @@ def convert(
     _check_settings(job, to_cl)
     definitions = [*machine_files(machine, source), *machine_files(to_machine or target_machine, target_machine)]
     source = set_up_machine(source, zero, tool_length)
-    with open_target(output, inputs=[program, *others, *definitions]) as target:
+    with open_target(output, inputs=[program, *others, *definitions], group=group) as target:
         compile_ahead(readers.KERNELS if to_cl else kernels.CONVERTING)
         divided = job.subprograms(target.files, target.path) is not None
         converter = _ProgramConverter(str(nc), observer, force)

@@ -119,6 +119,8 @@ def place(
 def _turns(turns: float | Sequence[float]) -> tuple[Floats, bool]:
     """The turns that are tried, degrees, and whether they are refined."""
     cure = f"give degrees between them, {360.0 / _MOST_TURNS:g} to 360, or a list of turns"
+    if isinstance(turns, bool):
+        raise wrong_argument("turns", turns, cure)
     if isinstance(turns, int | float):
         if not 360.0 / _MOST_TURNS <= turns <= 360.0:
             raise wrong_argument("turns", turns, cure)
@@ -136,9 +138,8 @@ def unknown_length(machine: Machine) -> list[Problem]:
     """A warning where places depend on a tool length that nobody has stated."""
     if machine.tool_length is not None or not any(machine.depends_on_length(k) for k in machine.linear):
         return []
-    names = [machine.axes[k].name for k in machine.linear if machine.depends_on_length(k)]
-    depend = "depends" if len(names) == 1 else "depend"
-    what, cure = f"the tool counts as 0 mm long, and {', '.join(names)} {depend} on it", "give tool_length"
+    names = ", ".join(machine.axes[k].name for k in machine.linear if machine.depends_on_length(k))
+    what, cure = f"the tool counts as 0 mm long, and places depend on its length ({names})", "give tool_length"
     return [argument_problem("tool_length", what, cure, Severity.WARNING, code="PLC210")]
 
 

@@ -9,6 +9,7 @@ from typing import Final, Literal
 from trunnion import readers, verification
 from trunnion.api import kernels
 from trunnion.api.arguments import check_choice, check_observer, check_paths, check_whole, wrong_argument
+from trunnion.api.builders_words import builders_words
 from trunnion.api.cl_statements import replace_unknown_statements
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
@@ -124,7 +125,7 @@ def verify(
         The Python files that the program was posted with: they change the CL files as they did then. They are run:
         name none that you have not read.
     observer
-        Receives the progress of reading CL files, and warnings about them.
+        Receives the progress of reading CL files, and warnings about them and about the program.
 
     Returns
     -------
@@ -173,6 +174,7 @@ def verify(
     defaults = default_settings(loaded)
     toolpaths = as_toolpaths(cl, units, False, observer, dialect)
     run = as_run(nc, loaded, subprograms)
+    observer.problems(builders_words(run))
     if len(run.normals):
         from trunnion.cl.surface_normals import with_normals
 

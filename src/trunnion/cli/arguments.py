@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import Any, Final, NoReturn, cast
 
 from trunnion import __version__
+from trunnion.cli.batch_arguments import add_batch
 from trunnion.cli.capability_arguments import add_fit, add_reach, add_sensitivity
 from trunnion.cli.place_arguments import add_place
 from trunnion.cli.post_arguments import post_mistake
@@ -58,7 +59,7 @@ _OPTION: Final = re.compile(r"--[a-z][a-z-]*")
 DIALECTS = ("clsf", "ncl", "solidworks", "clt", "catia", "fusion", "apt")
 
 #: Kinds of files that there are schemas of; listed here for the same reason.
-SCHEMAS = ("machine", "control", "project", "tools", "impeller", "nodes")
+SCHEMAS = ("machine", "control", "project", "tools", "impeller", "nodes", "batch")
 
 #: Dialects that are written.
 WRITTEN_DIALECTS = ("clsf", "catia", "ncl")
@@ -186,6 +187,7 @@ def _parsers() -> tuple[argparse.ArgumentParser, Mapping[str, argparse.ArgumentP
     )
     _add_place(commands.add_parser("place", help="find where on the table a part may sit, and where best"))
     _add_simulate(commands.add_parser("simulate", help="cut stock with NC programs: what is left, and what is hit"))
+    _add_batch(commands.add_parser("batch", help="post, convert, verify or simulate many files, here or on a cluster"))
     _add_view(commands.add_parser("view", help="show an NC program on its machine, in a browser"))
     _add_twin(commands.add_parser("twin", help="serve an NC program as a running machine: OPC UA and MTConnect"))
     _add_record(commands.add_parser("record", help="record what a machine, or a twin, shows by OPC UA"))
@@ -388,6 +390,15 @@ def _add_stock(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--near", type=_tolerance, metavar="MM", help="tell bodies that come as near as this, too")
     parser.add_argument("--cell", type=_cell, metavar="MM", help="width of the cells; a 200th of the stock's side")
     parser.add_argument("--accuracy", type=_tolerance, metavar="MM", help="of motions and tools; a tenth of a cell")
+
+
+def _add_batch(parser: argparse.ArgumentParser) -> None:
+    add_batch(parser)
+    parser.add_argument(
+        "--set", action=_Setting, type=_key_value, default=[], metavar="KEY=VALUE", dest="settings",
+        help="for a folder: settings as post has them; may be repeated",
+    )  # fmt: skip
+    parser.set_defaults(run=_lazy_command("batch", "run"))
 
 
 def _add_view(parser: argparse.ArgumentParser) -> None:

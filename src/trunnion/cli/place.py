@@ -12,6 +12,7 @@ from trunnion.api.reading import load_machine
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result, tell
 from trunnion.cli.terminal import Terminal, output_place
+from trunnion.errors import InputError, argument_problem
 from trunnion.files import atomic_file, check_outputs
 from trunnion.placing.placement import AxisUse, Limit, Place, Placement
 from trunnion.wording import counted, format_duration, one_line
@@ -29,6 +30,9 @@ def run(arguments: argparse.Namespace) -> int:
 
         check_placing_plot(arguments.plot, read)
     targets = (arguments.json, arguments.apply, arguments.plot)
+    if arguments.json == arguments.apply == "-":
+        what, cure = "go to stdout both", "let one of them go to a file"
+        raise InputError(argument_problem("json", f"and apply {what}", cure, code="ARG140"))
     check_outputs([target for target in targets if target not in (None, "-")], read)
     settings = dict(arguments.settings)
     length = arguments.tool_length or settings.get("tool_length")
@@ -80,7 +84,7 @@ def placement_lines(found: Placement) -> Iterator[str]:
         yield f"  {_use(axis)}"
     if found.limits:
         what = "it is held by" if best.fits else "these conflict:"
-        yield f"  {what} {'; '.join(dict.fromkeys(map(_limit, found.limits)))}"
+        yield f"  {what} {'; '.join(dict.fromkeys(map(_limit, found.limits)))}{_overlap(found)}"
     if present is not None:
         gain = best.margin_mm - present.margin_mm
         state = f"{present.margin_mm:.3f} mm to the limits" if present.fits else f"{-present.margin_mm:.3f} mm too far"
@@ -101,6 +105,14 @@ def placement_lines(found: Placement) -> Iterator[str]:
 
 def _point(place: Place) -> str:
     return ",".join(f"{value:.3f}" for value in place.zero_mm)
+
+
+def _overlap(found: Placement) -> str:
+    """How much travel is missing, where both limits of one slide conflict and nothing else does."""
+    ends = {(limit.axis, limit.end) for limit in found.limits}
+    if found.fits or found.best is None or len(ends) != 2 or len({axis for axis, _ in ends}) > 1:
+        return ""
+    return f"; {found.limits[0].axis} needs {-2.0 * found.best.margin_mm:.3f} mm more travel"
 
 
 def _value(goal: str, place: Place) -> str:

@@ -29,6 +29,7 @@ SUBJECTS: Final = {
     "impeller": "Impellers and curves",
     "twin": "Twin and recordings",
     "pages": "Viewer and builder",
+    "batch": "Batches",
 }
 
 

@@ -14,7 +14,7 @@ from typing import Final
 from trunnion.files import atomic_file
 
 #: What there are schemas of.
-KINDS: Final = ("machine", "control", "project", "tools", "impeller", "nodes")
+KINDS: Final = ("machine", "control", "project", "tools", "impeller", "nodes", "batch")
 
 #: How the titles of schemas begin.
 _TITLE: Final = "Trunnion: "

@@ -41,9 +41,9 @@ def test_a_label_may_be_a_parameter(run: Runner) -> None:
 
 @pytest.mark.parametrize("text", ["CALL LBL 8", 'CALL LBL "NO"', "FN 9: IF +1 EQU +1 GOTO LBL 8"])
 def test_a_missing_label_ends_the_program(text: str, run: Runner) -> None:
-    found = run(f"L X+1\n{text}\nL X+2")
+    found = run(f"BEGIN PGM MAIN MM\nL X+1\n{text}\nL X+2\nEND PGM MAIN MM")
     assert xs(found) == [1]
-    assert [f.line for f in found.errors] == [2]
+    assert [f.line for f in found.errors] == [3]
 
 
 @pytest.mark.parametrize(

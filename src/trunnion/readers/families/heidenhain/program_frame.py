@@ -12,6 +12,7 @@ from trunnion.readers.program.source_text import SourceText
 _UNITS: Final = ("MM", "INCH")
 _LABEL: Final = re.compile(r"[ \t]*(?:/[ \t]*)?(?:[0-9]+[ \t]*)?LBL(?![A-Z])", re.IGNORECASE)
 _SKIPPED: Final = re.compile(r"[ \t]*(?:[0-9]+[ \t]*)?/")
+_PROGRAM_END: Final = re.compile(r"(?<![A-Z])M0*(?:2|30)(?![0-9])", re.IGNORECASE)
 _END: Final = re.compile(r"[ \t]*(?:[0-9]+[ \t]*)?END[ \t]+PGM(?![A-Z])", re.IGNORECASE)
 
 
@@ -47,7 +48,9 @@ def check_end_of_file(active: ActiveProgram, note: Note) -> None:
 
 def check_rest(active: ActiveProgram, source: SourceText, note: Note, end: str) -> None:
     """Look for END PGM behind the block ``end`` of the run; report blocks before it, up to a label, and behind it."""
-    reachable = _SKIPPED.match(end) is not None
+    # An error ends the run too; what follows it would run if that were not there.
+    ends = _PROGRAM_END.search(end) is not None and _SKIPPED.match(end) is None
+    reachable = active.name is None or not ends
     while source.fill():
         raw = source.next_line()
         if not active.ended:

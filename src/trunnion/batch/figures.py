@@ -1,0 +1,104 @@
+"""Figures of a program for the summary: plain numbers and texts, as JSON has them.
+
+Units:  seconds, mm, degrees; margins as in ``reporting.extents``.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from trunnion.api.simulation_result import SimulationResult
+from trunnion.model.arc_extremes import RunArcs
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Toolpath
+from trunnion.reporting.extents import AxisExtent, axis_extent
+from trunnion.verification import Check, Verification
+
+#: Digits behind the point, of mm, degrees and seconds.
+_DECIMALS: Final = 6
+
+
+def point_count(toolpaths: Iterable[Toolpath]) -> int:
+    """CL points of toolpaths."""
+    return sum(len(operation.moves) for toolpath in toolpaths for operation in toolpath.operations)
+
+
+def block_count(programs: Iterable[bytes]) -> int:
+    """Lines of programs that are not blank."""
+    return sum(1 for each in programs for line in each.splitlines() if line.strip())
+
+
+def verification_figures(found: Verification) -> dict[str, Any]:
+    """Of a program that was run and checked, with the columns of the verification."""
+    run = found.run
+    arcs = RunArcs.of(run)
+    axes = [axis_extent(run, k, axis, arcs) for k, axis in enumerate(run.machine.axes)]
+    worst = _worst(found.checks)
+    return {
+        **_run_figures(run),
+        "seconds": _rounded(float(np.nansum(found.seconds))) if len(found.seconds) else None,
+        "axes": {each.name: _extent(each) for each in axes},
+        "margin_mm": _least(each.margin for each in axes if each.unit == "mm"),
+        "margin_deg": _least(each.margin for each in axes if each.unit != "mm"),
+        "tip_deviation_mm": _worst_of(found.checks, "tip"),
+        "axis_deviation_deg": _worst_of(found.checks, "axis"),
+        "failed_checks": [check.key for check in found.checks if not check.passed],
+        "worst_check": "" if worst is None else worst.key,
+        "worst_check_share": None if worst is None else _rounded(_share(worst)),
+    }
+
+
+def simulation_figures(found: SimulationResult) -> dict[str, Any]:
+    """Of a program that cut stock."""
+    return {
+        "seconds": _rounded(sum(each.seconds for each in found.operations)),
+        "tools": sorted({each.tool for each in found.operations}),
+        "removed_mm3": _rounded(found.removed),
+        "findings": len(found.findings),
+        "gouge_mm": None if found.gouge is None else _rounded(found.gouge.largest),
+    }
+
+
+def _run_figures(run: Run) -> dict[str, Any]:
+    tools = {run.tools[int(index)] for index in np.unique(run.tool)}
+    return {"motions": len(run), "tools": sorted(tools - {""})}
+
+
+def _extent(extent: AxisExtent) -> dict[str, Any]:
+    low, high = (None, None) if extent.extremes is None else (extent.extremes.low, extent.extremes.high)
+    return {
+        "unit": "mm" if extent.unit == "mm" else "deg",
+        "low": _rounded(low),
+        "high": _rounded(high),
+        "margin": _rounded(extent.margin),
+        "zero_known": extent.zero_known,
+    }
+
+
+def _worst(checks: Sequence[Check]) -> Check | None:
+    """The check that comes nearest to its limit, or goes furthest beyond it; one that failed without values first."""
+    return max(checks, key=_share, default=None)
+
+
+def _share(check: Check) -> float:
+    """How much of its limit a check reaches; of one that does not measure 0, or 1 where it failed."""
+    least = 0.0 if check.passed else 1.0
+    if check.worst is None or not check.limit or not math.isfinite(check.worst):
+        return least
+    return max(least, min(check.worst / check.limit, 1.0) if check.passed else check.worst / check.limit)
+
+
+def _worst_of(checks: Sequence[Check], key: str) -> float | None:
+    return next((_rounded(check.worst) for check in checks if check.key == key), None)
+
+
+def _least(values: Iterable[float | None]) -> float | None:
+    return _rounded(min((value for value in values if value is not None), default=None))
+
+
+def _rounded(value: float | None) -> float | None:
+    if value is None or not math.isfinite(value):
+        return None
+    return round(value, _DECIMALS) + 0.0

@@ -1,0 +1,165 @@
+"""The front door of batches: what is asked for, as arguments, and what became of it."""
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
+from pathlib import Path
+from typing import Any, Final, Literal
+
+from trunnion.api.arguments import check_choice, check_observer, check_path
+from trunnion.api.observer import SILENT, Observer
+from trunnion.api.reading import FilePath
+from trunnion.api.settings import Settings
+from trunnion.batch.cluster import DaskWorkers, Tls
+from trunnion.batch.jobs import Batch, folder_batch
+from trunnion.batch.jobs_file import load_batch
+from trunnion.batch.running import BatchResult, local_workers, run_jobs
+from trunnion.batch.stores import Store, open_store
+from trunnion.batch.summary import check_summary, write_summary
+from trunnion.batch.task import Action
+from trunnion.batch.work import work
+from trunnion.batch.workers import Workers
+from trunnion.errors import InputError, argument_problem
+
+#: Workers of one computer.
+_MOST_WORKERS: Final = 1024
+
+
+def run_batch(
+    jobs: FilePath,
+    *,
+    results: FilePath | None = None,
+    action: Literal["post", "convert", "verify", "simulate"] | None = None,
+    machine: FilePath | None = None,
+    files: Sequence[str] = (),
+    settings: Settings | None = None,
+    to_machine: FilePath | None = None,
+    to_cl: bool = False,
+    cl: Sequence[str] = (),
+    stock: FilePath | None = None,
+    tools: Sequence[str] = (),
+    report: Literal["html", "json"] | None = None,
+    workers: int | None = None,
+    timeout: float | None = None,
+    scheduler: str | None = None,
+    tls: Tls | None = None,
+    summary: FilePath | None = None,
+    observer: Observer = SILENT,
+) -> BatchResult:
+    """Post, convert, verify or simulate many files; what is done already is not done again.
+
+    Parameters
+    ----------
+    jobs
+        A file of jobs (``.toml``; docs/batch.md), which states all but ``results`` and what follows ``report``; or a
+        folder, of which every file is taken that the action is for.
+    results
+        Folder of the results, or an address of fsspec such as ``s3://bucket/folder``; by default what the file of jobs
+        says.
+    action
+        What is done with each file of a folder.
+    machine
+        The machine of a folder's programs: a name, or a path.
+    files
+        Patterns of names in a folder, such as ``"**/*.nc"``; by default the extensions of CL files, or that of the
+        machine's programs.
+    settings
+        As ``trunnion.post`` takes them.
+    to_machine, to_cl
+        Where a conversion leads.
+    cl
+        Names of the CL files that a program is compared with, ``"{folder}/{stem}.cls"``, below the folder.
+    stock, tools
+        As ``trunnion.simulate`` takes them.
+    report
+        Form of the report of each file; None: there is none.
+    workers
+        Processes of this computer; by default as many as there are processors.
+    timeout
+        Seconds that a file may take on this computer; None: any time.
+    scheduler
+        Address of a scheduler of Dask, such as ``"tcp://host:8786"``, whose workers do the work.
+    tls
+        Certificates for a scheduler at ``tls://``.
+    summary
+        File of a table of all files, ``.sqlite`` or ``.parquet``.
+    observer
+        Receives the progress, in files.
+
+    Returns
+    -------
+    BatchResult
+        ``passed``, ``counts``, and ``failures()``, which are read where the results are.
+
+    Raises
+    ------
+    InputError
+        When the jobs cannot be used, results cannot be kept, or nobody can work. A file that fails raises nothing.
+
+    Notes
+    -----
+    Processes of this computer import the script that calls this: it does so behind ``if __name__ == "__main__":``.
+
+    Examples
+    --------
+    >>> from trunnion.batch import run_batch
+    >>> result = run_batch(
+    ...     "tests/golden/yl569", results="build/batch", action="post", machine="yl569", files=["2_*.cls"], workers=1
+    ... )
+    >>> result.passed, [record.place for record in result.records()]
+    (True, ['2_hub_rough.mpf'])
+    """
+    check_observer(observer)
+    path = check_path("jobs", jobs)
+    given: dict[str, Any] = {
+        "action": action, "machine": machine, "files": files, "settings": settings, "to_machine": to_machine,
+        "to_cl": to_cl, "cl": cl, "stock": stock, "tools": tools, "report": report,
+    }  # fmt: skip
+    if summary is not None:
+        check_summary(summary)
+    team = _team(workers, timeout, scheduler, tls, observer)
+    batch = _batch(path, given, results)
+    place = results if results is not None else batch.results
+    if place is None:
+        raise InputError(argument_problem("results", "is missing", "name a folder for the results", code="ARG130"))
+    store = open_store(place if isinstance(place, str) else Path(place))
+    result = run_jobs(batch, store, team(store), observer)
+    if summary is not None:
+        write_summary(result, summary)
+    return result
+
+
+def _batch(path: Path, given: Mapping[str, Any], results: FilePath | None) -> Batch:
+    """The jobs of a file, or those of a folder as arguments say."""
+    stated = {name: value for name, value in given.items() if value}
+    if not path.is_dir():
+        if stated:
+            what, cure = f"{path} is a file of jobs, which states it itself", "leave it out, or give a folder"
+            raise InputError(argument_problem(next(iter(stated)), what, cure, code="ARG130"))
+        return load_batch(path)
+    if "action" not in stated:
+        cure = "say what is done with the files of a folder: post, convert, verify or simulate"
+        raise InputError(argument_problem("action", "is missing", cure, code="ARG130"))
+    check_choice("action", stated["action"], tuple(Action))
+    action, patterns = Action(stated.pop("action")), stated.pop("files", ())
+    inside = results if results is not None and "://" not in str(results) else None
+    return folder_batch(path, action, stated, None if inside is None else Path(inside), patterns)
+
+
+def _team(
+    workers: int | None, timeout: float | None, scheduler: str | None, tls: Tls | None, observer: Observer
+) -> Callable[[Store], Callable[[int], AbstractContextManager[Workers]]]:
+    """What makes the workers once the place of results is known."""
+    if scheduler is None:
+        if tls is not None:
+            raise InputError(argument_problem("tls", "is for a scheduler", "leave it out", code="ARG130"))
+        if workers is not None and not 1 <= workers <= _MOST_WORKERS:
+            cure = f"give a number from 1 to {_MOST_WORKERS}"
+            raise InputError(argument_problem("workers", f"is {workers}", cure, code="ARG140"))
+        if timeout is not None and not timeout > 0.0:
+            raise InputError(argument_problem("timeout", f"is {timeout}", "give seconds above 0", code="ARG140"))
+        return lambda _: local_workers(workers, timeout)
+    for name, value in (("workers", workers), ("timeout", timeout)):
+        if value is not None:
+            what = "is for processes of this computer, and the workers of a scheduler are its own"
+            raise InputError(argument_problem(name, what, "leave it out", code="ARG130"))
+    return lambda store: lambda _: DaskWorkers(scheduler, work, tls=tls, writing=store.worker_url, observer=observer)

@@ -1,0 +1,262 @@
+"""The jobs of a batch: which files, and what is done with each.
+
+In:     a file of jobs (``jobs_file.py``) or a folder.
+Out:    a ``Batch`` of ``Job`` records, and its ``Unit`` records, one for each file, in order.
+"""
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path, PurePosixPath
+from typing import Any, Final, NamedTuple
+
+from trunnion.api.input_files import machine_files
+from trunnion.api.job import prepare
+from trunnion.api.project_paths import is_file
+from trunnion.api.reading import as_machine
+from trunnion.batch.patterns import matches
+from trunnion.batch.records import FOLDER
+from trunnion.batch.task import DEFINITIONS, FILES, Action
+from trunnion.controls import load_control
+from trunnion.definitions.extends import is_within
+from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.machines import Machine
+
+#: Files that a folder may have, all and those of a batch: a record of each is held while it runs.
+MOST_FILES: Final = 1_000_000
+
+#: Extensions of CL files.
+CL_EXTENSIONS: Final = (".cls", ".clsf", ".cl", ".clt", ".ncl", ".apt", ".aptsource", ".cldata")
+
+#: Extensions of CL files by the dialects that are written.
+_WRITTEN: Final = {"clsf": ".cls", "catia": ".aptsource", "ncl": ".ncl"}
+
+#: What the results of an action are called that writes no program.
+NOTED: Final = {Action.VERIFY: ".verification", Action.SIMULATE: ".simulation"}
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """Files with which the same is done.
+
+    files      names beside the jobs, in order
+    arguments  of the function of the library that does it; files by their logical names
+    shared     files that all of them need, by logical names
+    beside     argument -> names of files that go with a single one; ``{folder}`` and ``{stem}`` stand for its own
+    output     folder of the results, within those of the batch; empty: these themselves
+    extension  of a result
+    report     of what form: ``html``, ``json``, or empty
+    """
+
+    name: str
+    action: Action
+    files: Sequence[str]
+    arguments: Mapping[str, Any]
+    shared: Mapping[str, Path] = field(default_factory=dict)
+    beside: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    output: str = ""
+    extension: str = ""
+    report: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Batch:
+    """Jobs, and the folder beside which their files lie; ``results`` is where these go if nothing else is said."""
+
+    folder: Path
+    jobs: Sequence[Job]
+    results: Path | None = None
+
+
+class Unit(NamedTuple):
+    """One file of one job, and the place of its result within the results."""
+
+    place: str
+    job: int
+    file: str
+
+
+def folder_files(folder: Path, without: Path | None = None) -> list[str]:
+    """The files in a folder and below, by their names with ``/``, in order; none of hidden folders, nor ``without``.
+
+    Links to folders are not followed, and links to files elsewhere are left out.
+
+    Raises
+    ------
+    InputError
+        If there is no such folder, or it has too many files.
+    """
+    if not folder.is_dir():
+        raise InputError(Problem(str(folder), 0, "there is no such folder", "give the path of a folder", code="FIL110"))
+    found: list[str] = []
+    for at, folders, names in os.walk(folder):
+        here = Path(at)
+        folders[:] = [
+            name for name in folders
+            if not name.startswith(".") and (without is None or (here / name).resolve() != without.resolve())
+            and not (here / name / FOLDER).is_dir()
+        ]  # fmt: skip
+        inner = PurePosixPath(here.relative_to(folder).as_posix())
+        found += [(inner / name).as_posix() for name in names if _is_input(here / name, folder)]
+        if len(found) > MOST_FILES:
+            what = f"has more than {MOST_FILES} files"
+            raise InputError(Problem(str(folder), 0, what, "divide it among several batches", code="BAT120"))
+    return sorted(found)
+
+
+def _is_input(path: Path, folder: Path) -> bool:
+    """Whether a path is that of a file in the folder, which can be read to its end: no pipe, no link that leads out."""
+    return not path.name.startswith(".") and is_file(path) and (not path.is_symlink() or is_within(path, folder))
+
+
+def folder_batch(
+    folder: Path, action: Action, arguments: Mapping[str, Any], results: Path | None, patterns: Sequence[str] = ()
+) -> Batch:
+    """Every file of a folder with which an action can be done.
+
+    Parameters
+    ----------
+    arguments
+        Of the function of the library; the names of files are paths.
+    results
+        The folder of results, whose files are none of the inputs.
+    patterns
+        Names of the files; by default those with the extensions of CL files, or of programs of the machine.
+
+    Raises
+    ------
+    InputError
+        If an argument cannot be used, or there are no such files.
+    """
+    given = {name: value for name, value in arguments.items() if value}
+    beside = {name: _listed(given.pop(name)) for name in ("cl", "subprograms") if given.get(name)}
+    report = str(given.pop("report", ""))
+    said, shared, extensions = judged(action, given, folder)
+    sought = (extensions.read,) if extensions.read else CL_EXTENSIONS
+    files = [
+        name for name in folder_files(folder, results)
+        if (any(matches(name, each) for each in patterns) if patterns else name.lower().endswith(sought))
+    ]  # fmt: skip
+    if not files:
+        what = f"has no files that match {', '.join(patterns)}" if patterns else f"has no files {', '.join(sought)}"
+        cure = "name them by --files PATTERN, such as --files '**/*.nc'"
+        raise InputError(Problem(str(folder), 0, what, cure, code="BAT120"))
+    job = Job(str(action), action, files, said, shared, beside, "", extensions.written, report)
+    return Batch(folder, [job])
+
+
+def _listed(value: Any) -> list[str]:
+    return [value] if isinstance(value, str) else list(value)
+
+
+class Extensions(NamedTuple):
+    """Of the files that an action reads, empty for CL files, and of what it writes."""
+
+    read: str
+    written: str
+
+
+def judged(
+    action: Action, arguments: Mapping[str, Any], folder: Path
+) -> tuple[dict[str, Any], dict[str, Path], Extensions]:
+    """Judge the arguments of an action before any work.
+
+    Parameters
+    ----------
+    arguments
+        Of the function of the library; files by their paths.
+    folder
+        Beside which the files of the jobs lie.
+
+    Returns
+    -------
+    dict
+        The arguments with logical names of files, as JSON has them.
+    dict
+        The paths of these, and of what they lead to, by logical names.
+    Extensions
+        Of what is read and written.
+
+    Raises
+    ------
+    InputError
+        With what cannot be used of them.
+    """
+    said, shared = dict(arguments), dict[str, Path]()
+    machines: dict[str, Machine] = {}
+    for name in ("machine", "to_machine"):
+        if value := said.get(name):
+            machines[name] = _loaded(str(value), name)
+            said[name] = _add_machine(str(value), machines[name], folder, shared)
+    if action is not Action.CONVERT and "machine" not in machines:
+        raise InputError(argument_problem("machine", "is missing", "name the machine of the programs", code="ARG130"))
+    for name in ("stock", "part", "fixtures", "libraries"):
+        if value := said.get(name):
+            several = [_add_file(each, folder, shared) for each in ([value] if isinstance(value, str) else value)]
+            said[name] = several[0] if isinstance(value, str) else several
+    if action is Action.SIMULATE and not said.get("stock"):
+        raise InputError(argument_problem("stock", "is missing", "state a box, a cylinder or a mesh", code="ARG130"))
+    return said, shared, _extensions(action, said, machines)
+
+
+def _loaded(name: str, argument: str) -> Machine:
+    return as_machine(name, argument) if name.endswith(".toml") else shipped_machine(name)
+
+
+@lru_cache(maxsize=16)
+def shipped_machine(name: str) -> Machine:
+    """A machine that is shipped, or an ``InputError`` that there is none: many jobs name the same one."""
+    return as_machine(name)
+
+
+def _extensions(action: Action, said: Mapping[str, Any], machines: Mapping[str, Machine]) -> Extensions:
+    if action is Action.POST:
+        job = prepare(machines["machine"], said.get("settings"))
+        return Extensions("", job.control.extension)
+    machine = machines.get("machine")
+    read = load_control(machine.control.unread_copy()).extension if machine is not None else ""
+    if action in NOTED:
+        return Extensions(read, "")
+    if bool(said.get("to_machine")) is bool(said.get("to_cl")):
+        cure = "give either a machine, or say that a CL file is wanted"
+        raise InputError(argument_problem("to_machine", "and to_cl say where a conversion leads", cure, code="CNV110"))
+    if said.get("to_cl"):
+        return Extensions(read, _WRITTEN[said.get("dialect", "clsf")])
+    if machine is None:
+        cure = "name the machine of the programs; post makes programs of CL files"
+        raise InputError(argument_problem("machine", "is missing", cure, code="CNV110"))
+    return Extensions(read, prepare(machines["to_machine"], said.get("settings")).control.extension)
+
+
+def _add_machine(name: str, machine: Machine, folder: Path, shared: dict[str, Path]) -> str:
+    """Note the files of a machine that are not shipped; returns its logical name."""
+    if not name.endswith(".toml"):
+        return name
+    path = Path(name)
+    own = [Path(each) for each in machine_files(name, machine)]
+    root = folder if is_within(path, folder) else path.parent
+    prefix = FILES if root is folder else DEFINITIONS
+    for each in (path, *own):
+        if is_within(each, root):
+            shared[_logical(each, root, prefix)] = each
+    return _logical(path, root, prefix)
+
+
+def _add_file(name: Any, folder: Path, shared: dict[str, Path]) -> Any:
+    """Note a file that is named; a text that names none, such as ``box:10,10,10``, stays what it is."""
+    if not isinstance(name, str | os.PathLike) or not Path(name).is_file():
+        return name
+    path = Path(name)
+    inside = is_within(path, folder)
+    logical = _logical(path, folder, FILES) if inside else f"{DEFINITIONS}{path.name}"
+    shared[logical] = path
+    return logical
+
+
+def _logical(path: Path, root: Path, prefix: str) -> str:
+    """The name of a file below a folder: as it is written there, or behind links where it is not."""
+    try:
+        return prefix + path.absolute().relative_to(root.absolute()).as_posix()
+    except ValueError:
+        return prefix + path.resolve().relative_to(root.resolve()).as_posix()

@@ -1,0 +1,46 @@
+"""What decides whether a result is still that of its file: checksums of all that it was made from."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import trunnion
+
+
+def digest(content: bytes) -> str:
+    """SHA-256 of bytes, hexadecimal."""
+    return hashlib.sha256(content).hexdigest()
+
+
+@cache
+def program_version() -> str:
+    """The version of Trunnion, with a checksum of its own files: two builds of one version are told apart."""
+    found = hashlib.sha256()
+    root = Path(trunnion.__file__).parent
+    files = sorted((each.relative_to(root).as_posix(), each) for each in root.rglob("*") if _counts(each))
+    for name, path in files:
+        found.update(f"{name}\0{digest(path.read_bytes())}\n".encode())
+    return f"{trunnion.__version__}+{found.hexdigest()[:16]}"
+
+
+def _counts(path: Path) -> bool:
+    return path.is_file() and "__pycache__" not in path.parts
+
+
+def key_of(program: str, said: Mapping[str, Any], digests: Mapping[str, str]) -> str:
+    """The key of a result.
+
+    Parameters
+    ----------
+    program
+        Version of Trunnion.
+    said
+        What is to be done, as JSON has it.
+    digests
+        Logical names of all files that are read, and their checksums.
+    """
+    text = json.dumps([program, said, digests], sort_keys=True, ensure_ascii=True, allow_nan=False)
+    return digest(text.encode("ascii"))

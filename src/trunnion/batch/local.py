@@ -1,0 +1,201 @@
+"""Workers as processes of this computer, each with a pipe of its own: the death of one takes its own file only.
+
+Python's own pools (``ProcessPoolExecutor``) end all of their work when one process dies, and cannot end a task that
+takes too long.
+"""
+
+import multiprocessing
+import signal
+import tempfile
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field
+from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess
+from tempfile import TemporaryDirectory
+from typing import Any, Final
+
+from trunnion.batch.task import Costs, Outcome, Status, Task
+from trunnion.batch.workers import Assignment, died, timed_out
+from trunnion.errors import InputError, Problem
+
+#: How often a file is tried whose worker dies: the first time another one may have taken the memory.
+TRIES: Final = 2
+
+#: Workers that end before they can begin, one after another: then none will.
+_MOST_STILLBORN: Final = 3
+
+
+@dataclass(slots=True, eq=False)
+class _Worker:
+    """A process, and what it works on; ``since`` is when it was given that."""
+
+    process: BaseProcess
+    pipe: "Connection[Any, Any]"
+    is_ready: bool = False
+    given: "_Given | None" = None
+    since: float = 0.0
+
+
+@dataclass(slots=True)
+class _Given:
+    assignment: Assignment
+    task: Task
+    tries: int = field(default=0)
+
+
+class LocalWorkers:
+    """Processes that work on tasks. Use it as a context manager: they end with it.
+
+    Parameters
+    ----------
+    count
+        How many.
+    function
+        What they do; it must be importable.
+    timeout
+        Seconds that a task may take; None: any time. It is ended by ending its process.
+    """
+
+    def __init__(self, count: int, function: Callable[[Task], Outcome], timeout: float | None = None) -> None:
+        self._count, self._function, self._timeout = count, function, timeout
+        self._context = multiprocessing.get_context("spawn")
+        self._workers: list[_Worker] = []
+        self._stillborn = 0
+
+    def __enter__(self) -> "LocalWorkers":
+        self._folder = TemporaryDirectory(prefix="trunnion-", ignore_cleanup_errors=True)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for worker in self._workers:
+            _end(worker)
+        self._workers.clear()
+        self._folder.cleanup()
+
+    def run(self, tasks: Iterable[tuple[Assignment, Task]]) -> Iterator[tuple[Assignment, Outcome]]:
+        """Outcomes as they come, each with its assignment; no more tasks are taken than workers are free.
+
+        Raises
+        ------
+        InputError
+            If no worker can be started.
+        """
+        coming, again = iter(tasks), deque[_Given]()
+        while True:
+            for worker in self._idle():
+                if again or (again := _next(coming)):
+                    self._give(worker, again.popleft())
+            if not again and len(self._workers) < self._count:
+                again = _next(coming)
+            if again:
+                self._workers += [self._start() for _ in range(self._count - len(self._workers))]
+            elif all(worker.given is None for worker in self._workers):
+                return
+            for worker in self._heard_of():
+                yield from self._hear(worker, again)
+            yield from self._late()
+
+    def _idle(self) -> list[_Worker]:
+        return [worker for worker in self._workers if worker.is_ready and worker.given is None]
+
+    def _start(self) -> _Worker:
+        ours, theirs = self._context.Pipe()
+        process = self._context.Process(target=_serve, args=(theirs, self._function, self._folder.name), daemon=True)
+        process.start()
+        theirs.close()
+        return _Worker(process, ours)
+
+    def _give(self, worker: _Worker, given: _Given) -> None:
+        worker.given, worker.since = given, time.monotonic()
+        given.tries += 1
+        with suppress(OSError):  # it has died: its pipe tells
+            worker.pipe.send(given.task)
+
+    def _heard_of(self) -> list[_Worker]:
+        """Workers that have something to tell, or have died."""
+        seconds = None
+        if self._timeout is not None:
+            now = time.monotonic()
+            left = [worker.since + self._timeout - now for worker in self._workers if worker.given is not None]
+            seconds = max(0.0, min(left, default=self._timeout))
+        by_pipe = {worker.pipe: worker for worker in self._workers}
+        return [by_pipe[pipe] for pipe in wait(list(by_pipe), seconds)]  # type: ignore[index]
+
+    def _hear(self, worker: _Worker, again: deque[_Given]) -> Iterator[tuple[Assignment, Outcome]]:
+        try:
+            told = worker.pipe.recv()
+        except (EOFError, OSError):
+            yield from self._bury(worker, again)
+            return
+        if isinstance(told, Exception):
+            raise InputError(Problem("batch", 0, f"a worker cannot work: {told}", code="BAT210"))
+        worker.is_ready = True
+        if worker.given is not None and isinstance(told, Outcome):
+            assignment, worker.given = worker.given.assignment, None
+            yield assignment, told
+
+    def _bury(self, worker: _Worker, again: deque[_Given]) -> Iterator[tuple[Assignment, Outcome]]:
+        """Take leave of a worker that has died, and try its task again, or tell that it cannot be done."""
+        self._workers.remove(worker)
+        _end(worker)
+        if not worker.is_ready:
+            self._stillborn += 1
+            if self._stillborn >= _MOST_STILLBORN:
+                what = f"worker processes end before they begin (exit code {worker.process.exitcode})"
+                cure = "look for a limit of memory or processes, or let fewer work"
+                raise InputError(Problem("batch", 0, what, cure, code="BAT210"))
+            return
+        self._stillborn = 0
+        given = worker.given
+        if given is None:
+            return
+        if given.tries < TRIES:
+            again.append(given)
+            return
+        why = f"its worker process died {given.tries} times (exit code {worker.process.exitcode})"
+        yield given.assignment, Outcome(Status.DIED, (died(given.task.file, why),))
+
+    def _late(self) -> Iterator[tuple[Assignment, Outcome]]:
+        """End the workers whose time is over."""
+        if self._timeout is None:
+            return
+        now = time.monotonic()
+        for worker in list(self._workers):
+            if worker.given is not None and now - worker.since >= self._timeout:
+                self._workers.remove(worker)
+                _end(worker)
+                problem = timed_out(worker.given.task.file, self._timeout)
+                yield (
+                    worker.given.assignment,
+                    Outcome(Status.TIMED_OUT, (problem,), costs=Costs(0.0, now - worker.since)),
+                )
+
+
+def _next(coming: Iterator[tuple[Assignment, Task]]) -> "deque[_Given]":
+    """The next task, if there is one."""
+    each = next(coming, None)
+    return deque() if each is None else deque([_Given(*each)])
+
+
+def _end(worker: _Worker) -> None:
+    worker.process.kill()
+    worker.process.join()
+    worker.pipe.close()
+
+
+def _serve(pipe: "Connection[Any, Any]", function: Callable[[Task], Outcome], folder: str) -> None:
+    """Work on tasks until nobody gives any more, with temporary files in a folder that outlives the process."""
+    tempfile.tempdir = folder
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to all processes of a terminal: the first one decides
+    with suppress(EOFError, OSError):
+        pipe.send(None)
+        while True:
+            task = pipe.recv()
+            try:
+                outcome: Outcome | Exception = function(task)
+            except Exception as error:
+                outcome = RuntimeError(str(error))
+            pipe.send(outcome)

@@ -1,0 +1,91 @@
+"""Places of results: unique, safe on every system, and the same whatever else is done with them.
+
+A result lies as its file does: of ``a/x.cls`` and ``b/x.cls`` come ``a/x.mpf`` and ``b/x.mpf``. Where two would be
+one, on a system that takes capitals for small letters too, each keeps the extension of its file (``x.cls.mpf``), and
+if that is not enough a checksum of its name.
+"""
+
+import re
+import unicodedata
+from collections.abc import Callable, Sequence
+from pathlib import PurePosixPath
+from typing import Final
+
+from trunnion.batch.jobs import NOTED, Job, Unit
+from trunnion.batch.keys import digest
+from trunnion.batch.task import Action
+from trunnion.errors import InputError, Problem
+from trunnion.files import name_fault
+
+#: What names on some system do not have.
+_ODD: Final = re.compile(r"[^\w.,+=@ ()-]")
+
+#: Letters of an extension.
+_LONGEST_EXTENSION: Final = 16
+
+#: What packed files end in.
+_PACKED: Final = frozenset({".gz", ".bz2"})
+
+
+def units_of(jobs: Sequence[Job]) -> list[Unit]:
+    """The files of all jobs with the places of their results, in the order of these.
+
+    Raises
+    ------
+    InputError
+        If names are made so that two results cannot be told apart.
+    """
+    files = [(number, file) for number, job in enumerate(jobs) for file in job.files]
+    places = [_place(jobs[number], file) for number, file in files]
+    for other in (_with_extension, _with_checksum):
+        for k in _alike(places):
+            number, file = files[k]
+            places[k] = other(jobs[number], file)
+    if twice := _alike(places):
+        file = files[twice[0]][1]
+        raise InputError(Problem(file, 0, "has no place of its own for its result", "rename it", code="BAT120"))
+    return sorted(Unit(place, number, file) for place, (number, file) in zip(places, files, strict=True))
+
+
+def _alike(places: Sequence[str]) -> list[int]:
+    """The places that some system takes for the same as another one."""
+    by_name: dict[str, list[int]] = {}
+    for k, place in enumerate(places):
+        by_name.setdefault(unicodedata.normalize("NFC", place).casefold(), []).append(k)
+    return [k for same in by_name.values() if len(same) > 1 for k in same]
+
+
+def _place(job: Job, file: str) -> str:
+    name = PurePosixPath(file).name
+    return _named(job, file, lambda: _stem(name) if job.action in (Action.POST, Action.CONVERT) else name)
+
+
+def _with_extension(job: Job, file: str) -> str:
+    return _named(job, file, lambda: PurePosixPath(file).name)
+
+
+def _with_checksum(job: Job, file: str) -> str:
+    return _named(job, file, lambda: f"{PurePosixPath(file).name}-{digest(f'{job.name}/{file}'.encode())[:16]}")
+
+
+def _stem(name: str) -> str:
+    path = PurePosixPath(name)
+    return PurePosixPath(path.stem).stem if path.suffix.lower() in _PACKED else path.stem
+
+
+def _named(job: Job, file: str, stem: Callable[[], str]) -> str:
+    ending = NOTED.get(job.action, job.extension)
+    folders = PurePosixPath(file).parent.parts
+    parts = [*PurePosixPath(job.output).parts, *map(_safe, folders), _safe(stem() + ending)]
+    return "/".join(parts)
+
+
+def _safe(part: str) -> str:
+    """A name that every system takes: the same where it is one, else with a checksum of it."""
+    if not name_fault(PurePosixPath(part)):
+        return part
+    stem, point, extension = part.rpartition(".")
+    keeps = bool(stem) and extension.isascii() and extension.isalnum() and len(extension) < _LONGEST_EXTENSION
+    stem, ending = (stem, point + extension) if keeps else (part, "")
+    checksum = digest(part.encode("utf-8", "surrogateescape"))[:16]
+    return f"{_ODD.sub('_', stem).strip(' .')[:100]}-{checksum}{ending}"

@@ -1,0 +1,182 @@
+"""A batch from its jobs to its results: what is done already is left, everything else is given to workers."""
+
+import os
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field, replace
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from trunnion.api.observer import SILENT, Observer
+from trunnion.batch.jobs import Batch, Job, Unit
+from trunnion.batch.keys import digest, key_of, program_version
+from trunnion.batch.local import LocalWorkers
+from trunnion.batch.places import units_of
+from trunnion.batch.records import Record, check_store, commit, read_records, settle
+from trunnion.batch.stores import Store
+from trunnion.batch.task import FILES, Outcome, Status, Task
+from trunnion.batch.work import work
+from trunnion.batch.workers import Assignment, Workers
+from trunnion.errors import Problem
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BatchResult:
+    """What became of a batch; records of its files stay with the results, and are read when they are asked for.
+
+    units   all files, in the order of the places of their results
+    store   where the results are
+    counts  how many became what
+    done    how many were done already
+    failed  indices of the units that did not pass
+    """
+
+    units: Sequence[Unit]
+    store: Store
+    counts: Mapping[Status, int]
+    done: int
+    failed: Sequence[int] = field(repr=False)
+
+    @property
+    def passed(self) -> bool:
+        """Whether every file is done, and may run."""
+        return not self.failed
+
+    def records(self) -> Iterator[Record]:
+        """What became of each file, in the order of the places of results."""
+        return self._read(self.units)
+
+    def failures(self) -> Iterator[Record]:
+        """The same of those that did not pass."""
+        return self._read([self.units[k] for k in self.failed])
+
+    def _read(self, units: Sequence[Unit]) -> Iterator[Record]:
+        for record in read_records(self.store, [unit.place for unit in units]):
+            if record is not None:
+                yield record
+
+
+def run_jobs(
+    batch: Batch, store: Store, workers: Callable[[int], AbstractContextManager[Workers]], observer: Observer = SILENT
+) -> BatchResult:
+    """Do what is not done yet of a batch.
+
+    Parameters
+    ----------
+    workers
+        Makes the workers, of at most as many as there are files.
+
+    Raises
+    ------
+    InputError
+        If results cannot be kept, or nobody can work. What is done by then stays done.
+    """
+    units = units_of(batch.jobs)
+    check_store(store)
+    found = _Tally(units)
+    with observer.progress("batch", len(units), "files") as advance:
+        pending = _Pending(batch, store, units, found, advance)
+        with workers(len(units)) as team:
+            for assignment, outcome in team.run(pending.tasks()):
+                record = outcome if isinstance(outcome, Record) else settle(store, assignment.record, outcome)
+                found.add(assignment.number, record.status)
+                advance(1)
+    return BatchResult(units, store, dict(found.counts), pending.done, sorted(found.failed))
+
+
+class _Tally:
+    """What became of files: counts, and the numbers of those that did not pass."""
+
+    def __init__(self, units: Sequence[Unit]) -> None:
+        self.counts = Counter[Status]()
+        self.failed: list[int] = []
+        self._units = units
+
+    def add(self, number: int, status: Status) -> None:
+        """Count a file."""
+        self.counts[status] += 1
+        if status is not Status.PASSED:
+            self.failed.append(number)
+
+
+class _Pending:
+    """The tasks that are not done yet, made one at a time as workers ask for them.
+
+    done  how many were found done so far
+    """
+
+    def __init__(
+        self, batch: Batch, store: Store, units: Sequence[Unit], found: _Tally, advance: Callable[[int], None]
+    ) -> None:
+        self.done = 0
+        self._batch, self._store, self._units, self._found, self._advance = batch, store, units, found, advance
+        self._shared = [{name: path.read_bytes() for name, path in job.shared.items()} for job in batch.jobs]
+        self._digests = [{name: digest(data) for name, data in each.items()} for each in self._shared]
+
+    def tasks(self) -> Iterator[tuple[Assignment, Task]]:
+        """Yield tasks; files that cannot be read are failures at once."""
+        records = read_records(self._store, [unit.place for unit in self._units])
+        for number, (unit, before) in enumerate(zip(self._units, records, strict=True)):
+            job = self._batch.jobs[unit.job]
+            record = Record(unit.place, unit.file, job.name, str(job.action), "", Status.BROKEN)
+            try:
+                task = task_of(self._batch.folder, job, unit, self._shared[unit.job])
+            except OSError as error:
+                problem = Problem(unit.file, 0, f"cannot be read: {error.strerror or error}", code="FIL120")
+                commit(self._store, record, Outcome(Status.UNUSABLE, (problem,)))
+                self._found.add(number, Status.UNUSABLE)
+                self._advance(1)
+                continue
+            key = _key(task, self._digests[unit.job])
+            if before is not None and before.is_done(key, self._store):
+                self.done += 1
+                self._found.add(number, before.status)
+                self._advance(1)
+                continue
+            yield Assignment(number, replace(record, key=key)), task
+
+
+def task_of(folder: Path, job: Job, unit: Unit, shared: Mapping[str, bytes]) -> Task:
+    """The task of a unit, with the content of its files as it is now; what goes with it and is missing is left out.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    """
+    arguments: dict[str, Any] = dict(job.arguments)
+    name = FILES + unit.file
+    own = {name: (folder / unit.file).read_bytes()}
+    for argument, patterns in job.beside.items():
+        arguments[argument] = []
+        for pattern in patterns:
+            beside = _beside(pattern, unit.file)
+            arguments[argument].append(FILES + beside)
+            path = folder / beside
+            if path.is_file():
+                own[FILES + beside] = path.read_bytes()
+    result = PurePosixPath(unit.place).name
+    report = f"{result}.{job.report}" if job.report else ""
+    return Task(program_version(), job.action, arguments, name, own, shared, result, report)
+
+
+def _beside(pattern: str, file: str) -> str:
+    """The name of a file that goes with another one."""
+    path = PurePosixPath(file)
+    return PurePosixPath(pattern.replace("{folder}", path.parent.as_posix()).replace("{stem}", path.stem)).as_posix()
+
+
+def _key(task: Task, shared: Mapping[str, str]) -> str:
+    digests = {**shared, **{name: digest(data) for name, data in task.files.items()}}
+    said = [task.action, task.arguments, task.file, task.result, task.report]
+    return key_of(task.program, {"said": said}, digests)
+
+
+def local_workers(count: int | None, timeout: float | None) -> Callable[[int], AbstractContextManager[Workers]]:
+    """Makes workers on this computer: ``count``, by default as many as there are processors."""
+
+    def make(most: int) -> AbstractContextManager[Workers]:
+        return LocalWorkers(max(1, min(count or os.cpu_count() or 1, most)), work, timeout)
+
+    return make

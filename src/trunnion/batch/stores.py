@@ -1,0 +1,214 @@
+"""Where results are kept: a folder, or a place that fsspec knows (S3, a web server's store, memory).
+
+A file appears whole or not at all. Names are relative, with ``/``.
+"""
+
+import os
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from pathlib import Path, PurePosixPath
+from typing import Any, Final, Protocol
+
+from trunnion.batch.keys import digest
+from trunnion.definitions.extends import is_within
+from trunnion.errors import InputError, Problem
+from trunnion.extras import import_extra
+from trunnion.files import atomic_file
+
+#: Files that are asked for at once where that takes a journey each.
+_AT_ONCE: Final = 256
+
+
+class Store(Protocol):
+    """Keeps files by name.
+
+    label         what messages call it
+    worker_url    by which workers write to it themselves; empty: they cannot
+    """
+
+    label: str
+    worker_url: str
+
+    def read(self, name: str) -> bytes | None:
+        """A file; None: there is none."""
+
+    def read_many(self, names: Sequence[str]) -> Iterator[bytes | None]:
+        """Files one after another, in their order."""
+
+    def write(self, name: str, content: bytes) -> None:
+        """Write a file, or replace it."""
+
+    def remove(self, name: str) -> None:
+        """Remove a file, if it is there."""
+
+    def digest(self, name: str) -> str | None:
+        """SHA-256 of a file; None: there is none."""
+
+    def holds(self, name: str, size: int, checksum: str) -> bool:
+        """Whether a file is as it was written, as far as that is quickly found out."""
+
+    def names(self, folder: str) -> list[str]:
+        """The files in a folder and below, in order."""
+
+
+class FolderStore:
+    """A folder of this computer, which is made when something is written."""
+
+    worker_url = ""
+
+    def __init__(self, folder: Path) -> None:
+        self.label = str(folder)
+        self._folder = folder
+
+    def read(self, name: str) -> bytes | None:
+        """A file; None: there is none."""
+        try:
+            return (self._folder / name).read_bytes()
+        except (FileNotFoundError, NotADirectoryError):
+            return None
+        except OSError as error:
+            raise self._unusable(name, "cannot be read", error) from None
+
+    def read_many(self, names: Sequence[str]) -> Iterator[bytes | None]:
+        """Files one after another, in their order."""
+        return map(self.read, names)
+
+    def write(self, name: str, content: bytes) -> None:
+        """Write a file, or replace it; what leads out of the folder by a link is refused."""
+        path = self._folder / name
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise self._unusable(name, "cannot be written", error) from None
+        if not is_within(path.parent, self._folder):
+            what = "leads out of the folder of results by a link"
+            raise InputError(Problem(str(path), 0, what, "choose another folder", code="FIL230"))
+        with atomic_file(path) as sink:
+            sink.write(content)
+
+    def remove(self, name: str) -> None:
+        """Remove a file, if it is there."""
+        with suppress(FileNotFoundError, NotADirectoryError):
+            (self._folder / name).unlink()
+
+    def digest(self, name: str) -> str | None:
+        """SHA-256 of a file; None: there is none."""
+        content = self.read(name)
+        return None if content is None else digest(content)
+
+    def holds(self, name: str, size: int, checksum: str) -> bool:
+        """Whether a file is as it was written."""
+        try:
+            return (self._folder / name).stat().st_size == size and self.digest(name) == checksum
+        except OSError:
+            return False
+
+    def names(self, folder: str) -> list[str]:
+        """The files in a folder and below, in order."""
+        found = (self._folder / folder).rglob("*")
+        return sorted(each.relative_to(self._folder).as_posix() for each in found if each.is_file())
+
+    def _unusable(self, name: str, what: str, error: OSError) -> InputError:
+        cure = "choose another folder for the results"
+        return InputError(
+            Problem(str(self._folder / name), 0, f"{what}: {error.strerror or error}", cure, code="FIL230")
+        )
+
+
+class UrlStore:
+    """A place of fsspec. One PUT writes a file, so that it appears whole in stores of objects; others move it."""
+
+    def __init__(self, url: str) -> None:
+        fsspec = import_extra("fsspec", "cluster")
+        self.label = url
+        try:
+            self._files, self._root = fsspec.core.url_to_fs(url.rstrip("/"))
+        except (ValueError, ImportError, OSError) as error:
+            cure = "write FOLDER, or a place of fsspec such as s3://bucket/folder, whose package is installed"
+            raise InputError(Problem(url, 0, f"is no place for results: {error}", cure, code="BAT130")) from None
+        protocol = self._files.protocol
+        self._protocol = protocol if isinstance(protocol, str) else protocol[0]
+        self.worker_url = "" if self._protocol == "memory" else url
+        self._moves = self._protocol in ("file", "local", "sftp", "ssh", "ftp", "smb")
+
+    def read(self, name: str) -> bytes | None:
+        """A file; None: there is none."""
+        try:
+            return bytes(self._files.cat_file(self._path(name)))
+        except (FileNotFoundError, NotADirectoryError):
+            return None
+        except OSError as error:
+            raise self._unusable(error) from None
+
+    def read_many(self, names: Sequence[str]) -> Iterator[bytes | None]:
+        """Files one after another, in their order; some hundred are asked for at once."""
+        for first in range(0, len(names), _AT_ONCE):
+            paths = [self._path(name) for name in names[first : first + _AT_ONCE]]
+            found: dict[str, Any] = self._files.cat(paths, on_error="return")
+            for path in paths:
+                content = found.get(path)
+                if isinstance(content, Exception) and not isinstance(content, FileNotFoundError | NotADirectoryError):
+                    raise self._unusable(content)
+                yield bytes(content) if isinstance(content, bytes | bytearray) else None
+
+    def write(self, name: str, content: bytes) -> None:
+        """Write a file, or replace it."""
+        path = self._path(name)
+        try:
+            self._files.makedirs(path.rpartition("/")[0], exist_ok=True)
+            if not self._moves:
+                self._files.pipe_file(path, content)
+                return
+            part = f"{path}.{os.getpid()}.{os.urandom(4).hex()}.part"
+            self._files.pipe_file(part, content)
+            self._files.mv(part, path)
+        except OSError as error:
+            raise self._unusable(error) from None
+
+    def remove(self, name: str) -> None:
+        """Remove a file, if it is there."""
+        with suppress(FileNotFoundError):
+            self._files.rm_file(self._path(name))
+
+    def digest(self, name: str) -> str | None:
+        """SHA-256 of a file; None: there is none."""
+        content = self.read(name)
+        return None if content is None else digest(content)
+
+    def holds(self, name: str, size: int, checksum: str) -> bool:
+        """Whether a file has the size with which it was written: its content would have to be fetched."""
+        try:
+            return bool(self._files.info(self._path(name)).get("size") == size)
+        except OSError:
+            return False
+
+    def names(self, folder: str) -> list[str]:
+        """The files in a folder and below, in order."""
+        try:
+            found = self._files.find(self._path(folder))
+        except FileNotFoundError:
+            return []
+        return sorted(PurePosixPath(each).relative_to(self._root).as_posix() for each in found)
+
+    def _path(self, name: str) -> str:
+        return f"{self._root}/{name}"
+
+    def _unusable(self, error: Exception) -> InputError:
+        cure = "look at its address and rights, and run the batch again"
+        return InputError(Problem(self.label, 0, f"does not take results: {error}", cure, code="BAT130"))
+
+
+def open_store(place: str | os.PathLike[str]) -> Store:
+    """The store at a folder or an address.
+
+    Raises
+    ------
+    InputError
+        If it is no place for results, or the package that knows it is not installed.
+    """
+    if isinstance(place, str) and "://" in place:
+        return UrlStore(place)
+    folder = Path(place)
+    if folder.exists() and not folder.is_dir():
+        raise InputError(Problem(str(place), 0, "is a file", "name a folder for the results", code="FIL230"))
+    return FolderStore(folder)

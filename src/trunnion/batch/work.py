@@ -1,0 +1,257 @@
+"""The work on one file: bytes in, bytes out, in a folder of its own that is gone afterwards.
+
+It is the same on this computer and on another one, and leaves nothing behind: neither files nor notes in the user's
+cache. It raises nothing that has to do with the file.
+"""
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from shutil import copyfile
+from tempfile import TemporaryDirectory
+from typing import Any, Final
+
+from trunnion.api.converting import convert_beside
+from trunnion.api.observer import Observer
+from trunnion.api.paper_files import paper_files
+from trunnion.api.post_result import ProofFailedError
+from trunnion.api.posting import post_beside
+from trunnion.api.reports import write_report
+from trunnion.api.simulating import simulate
+from trunnion.api.simulation_result import SimulationResult
+from trunnion.api.verifying import verify
+from trunnion.batch.figures import block_count, point_count, simulation_figures, verification_figures
+from trunnion.batch.jobs import shipped_machine
+from trunnion.batch.keys import program_version
+from trunnion.batch.task import (
+    DEFINITIONS,
+    FILES,
+    MOST_PROBLEMS,
+    Action,
+    Costs,
+    OtherVersionError,
+    Outcome,
+    Status,
+    Task,
+)
+from trunnion.batch.workers import died, shown
+from trunnion.errors import Problem, RefusedError, Severity, TrunnionError
+from trunnion.files import output_group
+from trunnion.machines import Machine
+from trunnion.verification import Check, Verification
+
+#: Arguments that may name files.
+_NAMING: Final = ("machine", "to_machine", "cl", "subprograms", "stock", "part", "fixtures", "libraries")
+
+
+#: The folder of what comes of a task, within its own.
+_RESULT: Final = "result"
+
+
+class _Collector(Observer):
+    """Keeps what is warned of."""
+
+    def __init__(self) -> None:
+        self.found: list[Problem] = []
+
+    def problems(self, problems: Sequence[Problem]) -> None:
+        self.found += problems
+
+
+def work(task: Task) -> Outcome:
+    """Do the work on one file.
+
+    Raises
+    ------
+    OtherVersionError
+        If this process has another version of Trunnion than the task asks for.
+    """
+    if task.program != program_version():
+        raise OtherVersionError(f"a worker has Trunnion {program_version()}, and this computer {task.program}")
+    started, used = time.perf_counter(), time.process_time()
+    with TemporaryDirectory(prefix="trunnion-", ignore_cleanup_errors=True) as folder:
+        found = _work_in(Path(folder).resolve(), task)
+    return replace(found, costs=Costs(time.process_time() - used, time.perf_counter() - started))
+
+
+def _work_in(folder: Path, task: Task) -> Outcome:
+    paths = _lay_out(folder, {**task.shared, **task.files})
+    result = folder / _RESULT
+    result.mkdir()
+    collector = _Collector()
+    figures: dict[str, Any] = {}
+    try:
+        arguments = _with_paths(task.arguments, folder)
+        status, own = _DOING[task.action](task, paths[task.file], arguments, result, figures, collector)
+    except RefusedError as error:
+        status, own = Status.FAILED, error.problems
+        if isinstance(error, ProofFailedError) and error.result.verification is not None:
+            _add_proof(figures, error.result.verification, error.result.toolpaths)
+    except TrunnionError as error:
+        status, own = Status.UNUSABLE, error.problems
+    except MemoryError:
+        status, own = Status.DIED, (died(task.file, "the memory of the worker was full"),)
+    except Exception as error:
+        status, own = Status.BROKEN, (_broken(task.file, error),)
+    files = {each.name: each.read_bytes() for each in sorted(result.iterdir()) if each.is_file()}
+    if status is not Status.PASSED:
+        files = {name: data for name, data in files.items() if name == task.report}
+    if task.report in files:
+        files[task.report] = _told(files[task.report].decode(), folder).encode()
+    programs = [data for name, data in files.items() if name != task.report]
+    if task.action in (Action.VERIFY, Action.SIMULATE):
+        programs = [task.files[task.file]]
+    if programs and status in (Status.PASSED, Status.FAILED):
+        figures["blocks"] = block_count(programs)
+    problems = dict.fromkeys((*own, *collector.found))
+    errors = [problem for problem in problems if problem.severity is Severity.ERROR]
+    warnings = [problem for problem in problems if problem.severity is not Severity.ERROR]
+    told = tuple(_without_folder(problem, folder) for problem in [*errors, *warnings][:MOST_PROBLEMS])
+    return Outcome(status, told, len(warnings), files, figures)
+
+
+def _broken(file: str, error: Exception) -> Problem:
+    what = f"Trunnion has an error here: {type(error).__name__}: {error}"
+    return Problem(shown(file), 0, what, "report it with the file", code="BAT330")
+
+
+def _lay_out(folder: Path, files: Mapping[str, bytes | Path]) -> dict[str, Path]:
+    """Write files under their logical names; paths by these."""
+    paths = {}
+    for name, content in files.items():
+        paths[name] = path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        if isinstance(content, bytes):
+            path.write_bytes(content)
+        else:
+            copyfile(content, path)
+    return paths
+
+
+def _with_paths(arguments: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Arguments with the paths of the files that they name, which need not be there: no others are ever opened."""
+
+    def path(value: Any) -> Any:
+        if isinstance(value, list | tuple):
+            return [path(each) for each in value]
+        is_name = isinstance(value, str) and value.startswith((FILES, DEFINITIONS))
+        return str(folder / value) if is_name else value
+
+    return {name: path(value) if name in _NAMING else value for name, value in arguments.items()}
+
+
+def _without_folder(problem: Problem, folder: Path) -> Problem:
+    """A problem with the names of files as they stand beside the jobs."""
+    file, what, cure = (_told(text, folder) for text in (problem.file, problem.what, problem.cure))
+    return replace(problem, file=file.replace("\\", "/"), what=what, cure=cure)
+
+
+def _told(text: str, folder: Path) -> str:
+    """A text without the folder of the task in the names of files, also as JSON writes them."""
+    for name in (FILES, DEFINITIONS, f"{_RESULT}/"):
+        at = str(folder / name)
+        for start in (f"{at}/", f"{at}\\", f"{at}\\".replace("\\", "\\\\")):
+            text = text.replace(start, "")
+    return text
+
+
+def _machine(name: str) -> Machine | str:
+    """A machine that is shipped is loaded once; definitions of others lie in the folder of the task."""
+    return name if name.endswith(".toml") else shipped_machine(name)
+
+
+_Done = tuple[Status, Sequence[Problem]]
+
+
+def _post(
+    task: Task, file: Path, arguments: dict[str, Any], result: Path, figures: dict[str, Any], observer: _Collector
+) -> _Done:
+    output = result / task.result
+    report = result / task.report if task.report else None
+    with output_group(remembers=False) as group:
+        found = post_beside(
+            str(file), (), machine=_machine(arguments["machine"]), output=output,
+            settings=arguments.get("settings"), strict=arguments.get("strict", False), force=False, explain=False,
+            papers=paper_files(report, None, None, None, output), columns=True,
+            subprograms=arguments.get("subprograms", ()), observer=observer, group=group,
+        )  # fmt: skip
+    if found.verification is not None:
+        _add_proof(figures, found.verification, found.toolpaths)
+    return Status.PASSED if found.passed else Status.FAILED, found.problems
+
+
+def _add_proof(figures: dict[str, Any], found: Verification, toolpaths: Sequence[Any] = ()) -> None:
+    figures |= verification_figures(found)
+    if toolpaths:
+        figures["points"] = point_count(toolpaths)
+
+
+def _convert(
+    task: Task, file: Path, arguments: dict[str, Any], result: Path, figures: dict[str, Any], observer: _Collector
+) -> _Done:
+    arguments |= {name: _machine(arguments[name]) for name in ("machine", "to_machine") if arguments.get(name)}
+    with output_group(remembers=False) as group:
+        found = convert_beside(file, **arguments, output=result / task.result, observer=observer, group=group)
+    if found.posted is not None and found.posted.verification is not None:
+        _add_proof(figures, found.posted.verification, found.posted.toolpaths)
+    figures["points"] = point_count([found.toolpath])
+    figures["settings"] = {str(key): str(value) for key, value in found.settings.items()}
+    return Status.PASSED if found.passed else Status.FAILED, found.problems
+
+
+def _verify(
+    task: Task, file: Path, arguments: dict[str, Any], result: Path, figures: dict[str, Any], observer: _Collector
+) -> _Done:
+    machine = _machine(arguments.pop("machine"))
+    found = verify(file, machine=machine, **arguments, columns=True, observer=observer)
+    _add_proof(figures, found)
+    if task.report:
+        write_report(found, result / task.report)
+    return (Status.PASSED, ()) if found.passed else (Status.FAILED, _failures(task.file, found))
+
+
+def _failures(file: str, found: Verification) -> list[Problem]:
+    """A problem of each check that failed, at its worst place."""
+    return [_failure(file, check) for check in found.checks if not check.passed]
+
+
+def _failure(file: str, check: Check) -> Problem:
+    line = next((place.nc_line for place in check.places if not place.nc_file), 0)
+    return Problem(shown(file), line, check.summary, code=check.key)
+
+
+def _simulate(
+    task: Task, file: Path, arguments: dict[str, Any], result: Path, figures: dict[str, Any], observer: _Collector
+) -> _Done:
+    machine = _machine(arguments.pop("machine"))
+    found = simulate(file, machine=machine, **arguments, threads=1, observer=observer)
+    figures |= simulation_figures(found)
+    if task.report:
+        replace(found, seconds=0.0).write_report(result / task.report)
+    if found.passed:
+        return Status.PASSED, found.remarks
+    return Status.FAILED, [*_findings(task.file, found), *found.remarks]
+
+
+def _findings(file: str, found: SimulationResult) -> list[Problem]:
+    told = [
+        Problem(
+            shown(file),
+            each.line,
+            f"{each.kind}: {' and '.join(each.between)}, {each.depth:.3f} mm deep",
+            code="BAT340",
+        )
+        for each in found.findings[:MOST_PROBLEMS]
+    ]
+    if found.gouge is not None and found.gouge.largest > found.limit:
+        told.append(Problem(shown(file), 0, f"missing from the part: {found.gouge.largest:.3f} mm", code="BAT340"))
+    return told
+
+
+_DOING: Final[Mapping[Action, Callable[[Task, Path, dict[str, Any], Path, dict[str, Any], _Collector], _Done]]] = {
+    Action.POST: _post,
+    Action.CONVERT: _convert,
+    Action.VERIFY: _verify,
+    Action.SIMULATE: _simulate,
+}

@@ -1,0 +1,85 @@
+"""``trunnion batch``: many files posted, converted, verified or simulated."""
+
+import argparse
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+from typing import Final
+
+from trunnion.batch.cluster import Tls
+from trunnion.batch.front import run_batch
+from trunnion.batch.records import Record
+from trunnion.batch.running import BatchResult
+from trunnion.batch.task import Status
+from trunnion.cli.results import print_result, tell
+from trunnion.cli.terminal import Terminal
+from trunnion.cli.wording import in_command_words
+from trunnion.errors import InputError, argument_problem
+from trunnion.wording import counted, one_line
+
+#: Files that failed which are printed; the summary has all of them.
+_MOST: Final = 200
+
+#: Columns of the widest file and code in a table.
+_FILE_WIDTH: Final = 60
+_CODE_WIDTH: Final = 12
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run a batch; 0 if every file passed, else 1."""
+    given = {name: getattr(arguments, name) for name in ("tls_ca", "tls_cert", "tls_key")}
+    if arguments.scheduler is None and any(given.values()):
+        name = next(name for name, value in given.items() if value)
+        raise InputError(
+            argument_problem(name, "is for a scheduler", "add --scheduler, or leave it out", code="ARG130")
+        )
+    files = (None if value is None else Path(value) for value in given.values())
+    try:
+        result = run_batch(
+            arguments.jobs,
+            results=arguments.results,
+            action=arguments.action,
+            machine=arguments.machine,
+            files=arguments.files,
+            settings=dict(arguments.settings),
+            to_machine=arguments.to_machine,
+            to_cl=arguments.to_cl,
+            cl=arguments.cl,
+            stock=arguments.stock,
+            tools=arguments.tools,
+            report=arguments.report,
+            workers=arguments.workers,
+            timeout=arguments.timeout,
+            scheduler=arguments.scheduler,
+            tls=Tls(*files) if any(given.values()) else None,
+            summary=arguments.summary,
+            observer=Terminal(),
+        )
+    except KeyboardInterrupt:
+        tell("the batch goes on where it was stopped when it is run again")
+        raise
+    print_result(*map(one_line, _lines(result)))
+    return 0 if result.passed else 1
+
+
+def _lines(result: BatchResult) -> Iterator[str]:
+    """A batch in lines: what failed, and how many became what."""
+    if result.failed:
+        yield f"{'file':<{_FILE_WIDTH}}  {'code':<{_CODE_WIDTH}}  line  message"
+    yield from map(_row, islice(result.failures(), _MOST))
+    if len(result.failed) > _MOST:
+        yield f"and {len(result.failed) - _MOST} more; --summary FILE.sqlite has all of them"
+    parts = ", ".join(f"{result.counts[status]} {status}" for status in Status if result.counts.get(status))
+    before = f"; {result.done} of them done before" if result.done else ""
+    yield f"{counted(len(result.units), 'file')}: {parts}{before}; results in {result.store.label}"
+
+
+def _row(record: Record) -> str:
+    problem = record.error
+    if problem is None:
+        return f"{record.file:<{_FILE_WIDTH}}  {'':<{_CODE_WIDTH}}        {record.status}"
+    at = f"{problem.file}:{problem.line}" if problem.line else problem.file
+    place = "" if problem.file == record.file else f"{at}: "
+    message = in_command_words(f"{place}{problem.what}; {problem.cure}".removesuffix("; "))
+    line = str(problem.line) if problem.line and not place else ""
+    return f"{record.file:<{_FILE_WIDTH}}  {problem.code:<{_CODE_WIDTH}}  {line:>4}  {message}"

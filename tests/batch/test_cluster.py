@@ -1,0 +1,107 @@
+"""A small cluster of Dask: the results of a plain loop, although workers die and the scheduler is started again."""
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, nullcontext
+from pathlib import Path
+
+import pytest
+
+import trunnion
+from tests.support.batch_work import simple_work
+from tests.support.batches import run_simply, simple_batch, tree, write_files
+from tests.support.dask_clusters import Cluster, needs_dask
+from tests.support.locations import YL569
+from trunnion.api.observer import Observer
+from trunnion.batch import Status, run_batch
+from trunnion.batch.cluster import DaskWorkers
+from trunnion.batch.records import Record
+from trunnion.batch.running import run_jobs
+from trunnion.batch.stores import FolderStore, open_store
+from trunnion.batch.task import Action, OtherVersionError, Task
+from trunnion.batch.workers import Assignment
+from trunnion.errors import InputError
+
+pytestmark = needs_dask
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    with Cluster(tmp_path_factory.mktemp("cluster"), 2) as found:
+        yield found
+
+
+class Disturber(Observer):
+    """Calls a function once, when so many files are done."""
+
+    def __init__(self, after: int, act: Callable[[], None]) -> None:
+        self._left, self._act = after, act
+
+    def progress(self, stage: str, total: int, unit: str) -> AbstractContextManager[Callable[[int], None]]:
+        return nullcontext(self._count)
+
+    def _count(self, more: int) -> None:
+        self._left -= more
+        if self._left == 0:
+            self._act()
+
+
+@pytest.mark.parametrize("place", ["folder", "file"])
+def test_nothing_is_lost_or_doubled_although_a_worker_and_the_scheduler_die(
+    cluster: Cluster, tmp_path: Path, place: str
+) -> None:
+    texts = {f"{k}/x.cls": f"text {k}" for k in range(40)}
+    write_files(tmp_path / "in", texts | {"bad.cls": "fail", "several.cls": "several parts"})
+    batch = simple_batch(tmp_path / "in")
+    store = open_store((tmp_path / "out").as_uri() if place == "file" else tmp_path / "out")
+    disturb = cluster.restart_scheduler if place == "folder" else cluster.kill_worker
+    result = run_jobs(
+        batch,
+        store,
+        lambda _: DaskWorkers(cluster.address, simple_work, writing=store.worker_url),
+        Disturber(9, disturb),
+    )
+    assert result.counts == {Status.PASSED: 41, Status.UNUSABLE: 1}
+    run_simply(batch, FolderStore(tmp_path / "loop"))
+    assert tree(tmp_path / "out") == tree(tmp_path / "loop")
+
+
+def test_programs_are_those_of_a_plain_loop(cluster: Cluster, tmp_path: Path) -> None:
+    text, programs = (YL569 / "2_hub_rough.cls").read_bytes(), {}
+    for k in range(4):
+        file = tmp_path / f"in/{k % 2}/p{k}.cls"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(text.replace(b"RPM,2000", f"RPM,{2000 + k}".encode(), 1))
+        posted = trunnion.post(file, machine="yl569", settings={"title": "X"}).text
+        programs[f"{k % 2}/p{k}.mpf"] = (posted or "").encode()
+    result = run_batch(
+        tmp_path / "in", results=tmp_path / "out", action="post", machine="yl569", settings={"title": "X"},
+        scheduler=cluster.address,
+    )  # fmt: skip
+    assert result.passed
+    written = tree(tmp_path / "out")
+    assert {name: data for name, data in written.items() if not name.startswith(".")} == programs
+    again = run_batch(
+        tmp_path / "in", results=tmp_path / "out", action="post", machine="yl569", settings={"title": "X"}, workers=1
+    )
+    assert again.done == 4  # what a cluster has done, this computer need not do
+
+
+def _other_version(task: Task) -> None:
+    raise OtherVersionError("a worker has Trunnion 0")
+
+
+def test_workers_of_another_version_end_the_batch(cluster: Cluster) -> None:
+    task = Task("", Action.POST, {}, "files/a.cls", {"files/a.cls": b""}, {"files/m": b"shared"}, "a.mpf", "")
+    record = Record("a.mpf", "a.cls", "", "post", "", Status.BROKEN)
+    with (
+        DaskWorkers(cluster.address, _other_version) as workers,  # type: ignore[arg-type]
+        pytest.raises(InputError, match=r"a worker has Trunnion 0.*BAT210"),
+    ):
+        list(workers.run([(Assignment(0, record), task)]))
+
+
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:9", "tls://127.0.0.1:9", "nonsense://x"])
+def test_a_scheduler_that_is_not_there_is_told(monkeypatch: pytest.MonkeyPatch, address: str) -> None:
+    monkeypatch.setattr("trunnion.batch.cluster._ATTEMPT", 0.2)
+    with pytest.raises(InputError, match="BAT220"), DaskWorkers(address, simple_work):
+        pass

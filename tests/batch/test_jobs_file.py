@@ -1,0 +1,113 @@
+"""Files of jobs, and folders: which files are taken, and what is refused with its line."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.support.batches import write_files
+from trunnion.batch.jobs import folder_batch
+from trunnion.batch.jobs_file import load_batch
+from trunnion.batch.task import Action
+from trunnion.errors import InputError
+
+
+def load(folder: Path, text: str, *names: str) -> object:
+    write_files(folder, dict.fromkeys(names or ("a/x.cls", "b/x.cls", "b/y.nc"), "") | {"jobs.toml": text})
+    return load_batch(folder / "jobs.toml")
+
+
+def problems(folder: Path, text: str) -> list[str]:
+    with pytest.raises(InputError) as caught:
+        load(folder, text)
+    return [str(each).removeprefix(f"{folder}/jobs.toml:") for each in caught.value.problems]
+
+
+def test_defaults_hold_for_jobs_that_state_nothing_else(tmp_path: Path) -> None:
+    text = """
+results = "out"
+[defaults]
+machine = "yl569"
+settings = {title = "ALL", part = "P"}
+tolerance_mm = 0.01
+[[job]]
+files = ["**/*.cls"]
+settings = {title = "OWN"}
+[[job]]
+name = "check"
+action = "verify"
+files = ["b/*.nc"]
+machine = "dmu65"
+cl = ["{folder}/x.cls"]
+"""
+    batch = load_batch_of(tmp_path, text)
+    post, check = batch.jobs
+    assert batch.results == tmp_path / "out"
+    assert (post.name, post.action, list(post.files)) == ("job 1", Action.POST, ["a/x.cls", "b/x.cls"])
+    assert post.arguments == {"machine": "yl569", "settings": {"title": "OWN", "part": "P"}}
+    assert post.extension == ".mpf"
+    assert (check.name, list(check.files)) == ("check", ["b/y.nc"])
+    assert check.arguments == {"machine": "dmu65", "tolerance": 0.01}
+    assert check.beside == {"cl": ["{folder}/x.cls"]}
+
+
+def load_batch_of(folder: Path, text: str):  # type: ignore[no-untyped-def]
+    return load(folder, text)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("", "job is missing"),
+        ('[[job]]\nfiles = ["**/*.cls"]', "machine is missing"),
+        ('[[job]]\nmachine = "yl569"\nfiles = ["../*"]', "leads out of the folder"),
+        ('[[job]]\nmachine = "yl569"\nfiles = []', "is []"),
+        ('[[job]]\nmachine = "yl569"\nfiles = ["*.apt"]', "matches no file"),
+        ('[[job]]\nmachine = "yl569"\nfiles = ["**"]\noutput = "../x"', "leads out of the folder"),
+        ('[[job]]\nmachine = "yl569"\nfiles = ["**"]\noutput = ".git"', "begins with a point"),
+        ('results = "/tmp"\n[[job]]\nmachine = "yl569"\nfiles = ["**"]', "leads out of the folder"),
+        ('[[job]]\nmachine = "../m.toml"\nfiles = ["**"]', "leads out of the folder"),
+        ('[[job]]\nmachine = "yl569"\nfiles = ["**"]\nstock = "box:1,1,1"', 'has no meaning with action = "post"'),
+        ('[[job]]\nmachine = "yl569"\nfiles = ["**"]\nsettings = {nosuch = 1}', "nosuch"),
+        ('[[job]]\nmachine = "yl569"\nfiles = ["**"]\naction = "convert"', "to_machine"),
+        ('[[job]]\nmachine = "yl569"\nfiles = ["**"]\naction = "simulate"', "stock is missing"),
+        ('[[job]]\nmachine = "yl569"\nfiles = ["**"]\nname = "a"\n' * 2, "twice"),
+        ('[[job]]\nmachine = "yl569"\nfiles = ["**"]\nhooks = ["x.py"]', "hooks is not a key"),
+        ('[[job]]\nmachine = "yl569"\nfiles = ["**"]\naction = "verify"\ncl = ["../{stem}.cls"]', "leads out"),
+    ],
+)
+def test_mistakes_are_told(tmp_path: Path, text: str, told: str) -> None:
+    found = problems(tmp_path, text)
+    assert any(told in each for each in found), found
+
+
+def test_mistakes_are_told_together_with_their_lines(tmp_path: Path) -> None:
+    text = '[defaults]\nmachine = "nosuch"\n[[job]]\nfiles = ["*.apt"]\nhooks = []\n'
+    assert [each.partition(":")[0] for each in problems(tmp_path, text)] == ["2", "4", "5"]
+
+
+def test_results_are_no_inputs(tmp_path: Path) -> None:
+    text = '[[job]]\nmachine = "yl569"\nfiles = ["**/*.cls"]\n'
+    batch = load_batch_of(tmp_path, text + "")
+    write_files(tmp_path, {"results/old.cls": ""})
+    assert batch.jobs[0].files == load_batch(tmp_path / "jobs.toml").jobs[0].files
+
+
+def test_a_folder_gives_the_files_of_its_action(tmp_path: Path) -> None:
+    write_files(tmp_path, dict.fromkeys(("a.cls", "B.APT", "c.mpf", "d/e.MPF", "f.txt"), ""))
+    posted = folder_batch(tmp_path, Action.POST, {"machine": "yl569"}, None)
+    assert posted.jobs[0].files == ["B.APT", "a.cls"]
+    checked = folder_batch(tmp_path, Action.VERIFY, {"machine": "yl569"}, None)
+    assert checked.jobs[0].files == ["c.mpf", "d/e.MPF"]
+    named = folder_batch(tmp_path, Action.VERIFY, {"machine": "yl569"}, None, ["*.txt"])
+    assert named.jobs[0].files == ["f.txt"]
+    with pytest.raises(InputError, match="BAT120"):
+        folder_batch(tmp_path, Action.VERIFY, {"machine": "haas_umc750"}, None, ["*.x"])
+
+
+def test_a_definition_goes_with_all_that_it_extends(tmp_path: Path) -> None:
+    write_files(
+        tmp_path, {"in/a.cls": "", "lib/base.toml": 'extends = "yl569"\n', "lib/m.toml": 'extends = "base.toml"\n'}
+    )
+    batch = folder_batch(tmp_path / "in", Action.POST, {"machine": str(tmp_path / "lib/m.toml")}, None)
+    assert batch.jobs[0].arguments["machine"] == "definitions/m.toml"
+    assert sorted(batch.jobs[0].shared) == ["definitions/base.toml", "definitions/m.toml"]

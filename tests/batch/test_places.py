@@ -1,0 +1,117 @@
+"""Places of results and patterns of names."""
+
+import os
+import unicodedata
+from fnmatch import fnmatchcase
+from pathlib import Path, PurePosixPath
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from trunnion.batch.jobs import Job, folder_files
+from trunnion.batch.patterns import matches, pattern_fault
+from trunnion.batch.places import units_of
+from trunnion.batch.task import Action
+from trunnion.errors import InputError
+from trunnion.files import name_fault
+
+NAMES = st.text(st.sampled_from("aAbé.:*<~ \u202e-"), min_size=1, max_size=6).filter(
+    lambda name: name not in (".", "..")
+)
+FILES = st.lists(st.lists(NAMES, min_size=1, max_size=3).map("/".join), max_size=12, unique=True)
+
+
+def places(*files: str, action: Action = Action.POST, output: str = "") -> list[str]:
+    return [unit.place for unit in units_of([Job("job", action, files, {}, output=output, extension=".mpf")])]
+
+
+def test_results_lie_as_their_files_do() -> None:
+    assert places("b/x.cls", "a/x.cls", "top.cls.gz") == ["a/x.mpf", "b/x.mpf", "top.mpf"]
+    assert places("a/x.cls", output="out/five") == ["out/five/a/x.mpf"]
+    assert places("a/x.mpf", action=Action.VERIFY) == ["a/x.mpf.verification"]
+
+
+def test_results_of_one_name_keep_the_extensions_of_their_files() -> None:
+    assert places("x.cls", "x.ncl", "y.cls") == ["x.cls.mpf", "x.ncl.mpf", "y.mpf"]
+
+
+def test_names_that_differ_in_capitals_only_get_a_checksum() -> None:
+    first, second = places("x.cls", "X.cls")
+    assert first.lower() != second.lower()
+    assert first.startswith("X.cls-")
+    assert second.startswith("x.cls-")
+
+
+def test_names_that_some_system_does_not_take_are_replaced() -> None:
+    (place,) = places("con.cls")
+    assert place.startswith("con-")
+    assert place.endswith(".mpf")
+    assert not name_fault(PurePosixPath(place))
+
+
+@given(FILES, FILES)
+def test_places_are_unique_and_safe_on_every_system(one: list[str], other: list[str]) -> None:
+    jobs = [Job(name, Action.POST, files, {}, extension=".mpf") for name, files in (("one", one), ("other", other))]
+    units = units_of(jobs)
+    folded = [unicodedata.normalize("NFC", unit.place).casefold() for unit in units]
+    assert len(set(folded)) == len(units) == len(one) + len(other)
+    assert [name_fault(PurePosixPath(unit.place)) for unit in units] == [""] * len(units)
+    turned = units_of([Job(job.name, job.action, job.files[::-1], {}, extension=".mpf") for job in jobs])
+    assert turned == units
+
+
+@pytest.mark.parametrize(
+    ("name", "pattern", "is_one"),
+    [
+        ("x.cls", "*.cls", True), ("a/x.cls", "*.cls", False), ("a/x.cls", "*/*.cls", True),
+        ("x.cls", "**/*.cls", True), ("a/b/x.cls", "**/*.cls", True), ("a/b/x.cls", "a/**", True),
+        ("a/b/x.cls", "a/**/x.cls", True), ("a/x.cls", "a/**/x.cls", True), ("b/x.cls", "a/**", False),
+        ("a/b/c/d", "**/b/**/d", True), ("x.CLS", "*.cls", False), ("x.cls", "./x.cls", True),
+        ("x1.cls", "x?.cls", True), ("a", "a/**", False), ("a/b", "**", True),
+    ],
+)  # fmt: skip
+def test_patterns(name: str, pattern: str, is_one: bool) -> None:
+    assert matches(name, pattern) is is_one
+
+
+@given(
+    st.text(st.sampled_from("ab*?."), min_size=1, max_size=6), st.text(st.sampled_from("ab."), min_size=1, max_size=6)
+)
+def test_a_pattern_without_folders_is_that_of_the_shell(pattern: str, name: str) -> None:
+    assert matches(name, pattern) is (fnmatchcase(name, pattern) or pattern == "**")
+
+
+def test_patterns_of_many_folders_take_no_time() -> None:
+    assert not matches("/".join("a" * 400), "/".join(["**", "a"] * 200) + "/b")
+
+
+@pytest.mark.parametrize("pattern", ["", "/x", "../x", "a/../x", "a//x", "a/", "c:x", "a\\x", "x" * 1001])
+def test_patterns_that_lead_out_of_the_folder_are_refused(pattern: str) -> None:
+    assert pattern_fault(pattern)
+
+
+def test_files_of_a_folder_are_those_within(tmp_path: Path) -> None:
+    for name in (
+        "in/a/x.cls",
+        "in/.hidden/y.cls",
+        "in/out/z.cls",
+        "in/.y.cls",
+        "secret.cls",
+        "in/other/.trunnion-batch/r",
+    ):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).touch()
+    (tmp_path / "in/link.cls").symlink_to(tmp_path / "secret.cls")
+    (tmp_path / "in/same.cls").symlink_to(tmp_path / "in/a/x.cls")
+    (tmp_path / "in/nowhere.cls").symlink_to(tmp_path / "in/no")
+    (tmp_path / "in/folder.cls").mkdir()
+    if hasattr(os, "mkfifo"):
+        os.mkfifo(tmp_path / "in/pipe.cls")
+    (tmp_path / "in/loop").symlink_to(tmp_path / "in", target_is_directory=True)
+    assert folder_files(tmp_path / "in", tmp_path / "in/out") == ["a/x.cls", "same.cls"]
+
+
+def test_a_folder_that_is_not_there_is_told(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="FIL110"):
+        folder_files(tmp_path / "no")

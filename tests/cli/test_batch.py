@@ -1,0 +1,86 @@
+"""``trunnion batch``: the results of the single commands, and a table of what failed."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.support.locations import YL569
+from trunnion.cli import main
+
+CL = (YL569 / "2_hub_rough.cls").read_bytes()
+
+
+def test_a_folder_is_posted_as_the_single_command_does(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name in ("a/x.cls", "b/x.cls"):
+        (tmp_path / "in" / name).parent.mkdir(parents=True)
+        (tmp_path / "in" / name).write_bytes(CL if name < "b" else CL.replace(b"RPM,2000", b"RPM,2100"))
+    (tmp_path / "in/bad.cls").write_bytes(b"GOTO/1,2\n")
+    out = tmp_path / "in/out"
+    command = ["batch", str(tmp_path / "in"), "--action", "post", "--machine", "yl569", "--set", "title=X"]
+    command += ["--results", str(out), "--workers", "2", "--summary", str(tmp_path / "s.sqlite")]
+    assert main(command) == 1
+    printed = capsys.readouterr()
+    head, row, last = printed.out.splitlines()
+    assert head.split() == ["file", "code", "line", "message"]
+    assert row.split()[:3] == ["bad.cls", "CL310", "1"]
+    assert "GOTO has 2 numbers" in row
+    assert last == f"3 files: 2 passed, 1 unusable; results in {out}"
+    assert printed.err == ""
+    for name in ("a", "b"):
+        single = tmp_path / f"{name}.mpf"
+        assert (
+            main(
+                [
+                    "post",
+                    str(tmp_path / f"in/{name}/x.cls"),
+                    "--machine",
+                    "yl569",
+                    "--set",
+                    "title=X",
+                    "--output",
+                    str(single),
+                ]
+            )
+            == 0
+        )
+        assert (out / name / "x.mpf").read_bytes() == single.read_bytes()
+    capsys.readouterr()
+    (tmp_path / "in/bad.cls").unlink()
+    assert main(command) == 0
+    assert capsys.readouterr().out == f"2 files: 2 passed; 2 of them done before; results in {out}\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ([], "--action: error: is missing"),
+        (["--action", "post"], "--machine: error: is missing"),
+        (["--action", "convert", "--machine", "yl569"], "--to-machine: error"),
+        (["--action", "post", "--machine", "yl569"], "--results: error: is missing"),
+        (["--action", "post", "--machine", "dmu66", "--results", "x"], "dmu65"),
+        (
+            ["--action", "post", "--machine", "yl569", "--results", "x", "--scheduler", "tcp://h:1", "--workers", "2"],
+            "--workers",
+        ),
+        (["--action", "post", "--machine", "yl569", "--results", "x", "--tls-ca", "x"], "--tls-ca"),
+        (["--action", "post", "--machine", "yl569", "--results", "x", "--set", "nosuch=1"], "nosuch"),
+        (["--action", "post", "--machine", "yl569", "--results", "x", "--summary", "s.csv"], ".sqlite or .parquet"),
+        (["--action", "verify", "--machine", "yl569", "--results", "x"], "has no files .mpf"),
+    ],
+)
+def test_what_cannot_be_done_ends_with_2_before_any_work(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, arguments: list[str], told: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "in").mkdir()
+    (tmp_path / "in/x.cls").write_bytes(CL)
+    assert main(["batch", "in", *arguments]) == 2
+    assert told in capsys.readouterr().err
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["in"]
+
+
+def test_a_file_of_jobs_states_everything_itself(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "jobs.toml").write_text('[[job]]\nmachine = "yl569"\nfiles = ["*.cls"]\n', encoding="utf-8")
+    (tmp_path / "x.cls").write_bytes(CL)
+    assert main(["batch", str(tmp_path / "jobs.toml"), "--machine", "yl569"]) == 2
+    assert "states it itself" in capsys.readouterr().err

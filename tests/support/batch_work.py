@@ -1,0 +1,34 @@
+"""Work that takes no time in place of posts, in worker processes too, which import little for it.
+
+What it does stands in the file: ``fail``, ``refuse``, ``several …``, ``die PATH`` (ends its process, unless PATH is
+there, and makes it), ``always die``, ``sleep SECONDS``; anything else passes.
+"""
+
+import os
+import signal
+import time
+from pathlib import Path
+
+from trunnion.batch.task import Outcome, Status, Task
+from trunnion.errors import Problem
+
+
+def simple_work(task: Task) -> Outcome:
+    """What stands in the file."""
+    text = task.files[task.file].decode()
+    word, _, rest = text.partition(" ")
+    if word == "die" and not Path(rest).exists():
+        Path(rest).write_text("", encoding="utf-8")
+        os.kill(os.getpid(), getattr(signal, "SIGKILL", signal.SIGTERM))
+    if text == "always die":
+        os.kill(os.getpid(), getattr(signal, "SIGKILL", signal.SIGTERM))
+    if word == "sleep":
+        time.sleep(float(rest))
+    if word == "fail":
+        return Outcome(Status.UNUSABLE, (Problem(task.file, 3, "is wrong", code="CL310"),))
+    if word == "refuse":
+        return Outcome(Status.FAILED, (Problem(task.file, 0, "must not run", code="tip"),), figures={"points": 2})
+    files = {task.result: f"of {text}".encode()}
+    if word == "several":
+        files |= {"SUB1": b"one", "SUB2": b"two"}
+    return Outcome(Status.PASSED, files=files, figures={"points": len(text), "tools": ["1"], "seconds": 1.5})

@@ -1,0 +1,95 @@
+"""Batches whose work takes no time, and a store in which it is interrupted."""
+
+import json
+from collections.abc import Iterable, Iterator
+from contextlib import nullcontext
+from pathlib import Path
+from types import TracebackType
+
+from tests.support.batch_work import simple_work
+from trunnion.batch.jobs import Batch, Job
+from trunnion.batch.records import FOLDER, Record
+from trunnion.batch.running import BatchResult, run_jobs
+from trunnion.batch.stores import FolderStore, Store
+from trunnion.batch.task import Action, Outcome, Task
+from trunnion.batch.workers import Assignment
+
+
+class InOrder:
+    """Does the work here, one task after another; ``reverse``: the last one first."""
+
+    def __init__(self, *, reverse: bool = False) -> None:
+        self.done: list[str] = []
+        self._reverse = reverse
+
+    def __enter__(self) -> "InOrder":
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
+        """Nothing is left to end."""
+
+    def run(self, tasks: Iterable[tuple[Assignment, Task]]) -> Iterator[tuple[Assignment, Outcome | Record]]:
+        given = list(tasks)
+        for assignment, task in reversed(given) if self._reverse else given:
+            self.done.append(assignment.record.file)
+            yield assignment, simple_work(task)
+
+
+class Interrupted(KeyboardInterrupt):
+    """What ``StoppingStore`` raises."""
+
+
+class StoppingStore(FolderStore):
+    """A folder in which the work is interrupted before a change, counted from 0; or within it, which leaves a part."""
+
+    def __init__(self, folder: Path, before: int) -> None:
+        super().__init__(folder)
+        self.changes, self._before = 0, before
+
+    def write(self, name: str, content: bytes) -> None:
+        """Write, or be interrupted."""
+        self._count()
+        super().write(name, content)
+
+    def remove(self, name: str) -> None:
+        """Remove, or be interrupted."""
+        self._count()
+        super().remove(name)
+
+    def _count(self) -> None:
+        if self.changes == self._before:
+            raise Interrupted
+        self.changes += 1
+
+
+def write_files(folder: Path, texts: dict[str, str]) -> None:
+    """Files by their names, with ``/``."""
+    for name, text in texts.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(text.encode())
+
+
+def simple_batch(folder: Path) -> Batch:
+    """All files ``.cls`` in a folder; nothing is asked of a machine."""
+    files = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*.cls"))
+    return Batch(folder, [Job("job", Action.POST, files, {"machine": "yl569"}, extension=".mpf")])
+
+
+def run_simply(batch: Batch, store: Store, workers: InOrder | None = None) -> BatchResult:
+    """Run a batch here."""
+    team = workers or InOrder()
+    return run_jobs(batch, store, lambda _: nullcontext(team))
+
+
+def tree(folder: Path) -> dict[str, object]:
+    """All files of a folder of results: bytes, and of records all but what the work cost."""
+    found: dict[str, object] = {}
+    for path in sorted(folder.rglob("*")):
+        name = path.relative_to(folder).as_posix()
+        if not path.is_file():
+            continue
+        content = path.read_bytes()
+        is_record = name.startswith(FOLDER) and name.endswith(".json")
+        found[name] = json.loads(content.splitlines()[0]) if is_record else content
+    return found
