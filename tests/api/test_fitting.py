@@ -164,7 +164,8 @@ def test_a_tool_without_a_known_length_leaves_it_open(tmp_path: Path, capfd: Cap
     file = tilted(tmp_path, 30.0)
     found = trunnion.fit(file, machines="generic_head_head_ca", turns=[0.0])
     assert status(found) == {"generic_head_head_ca": "open"}
-    assert found[0].reasons == ("the tool counts as 0 mm long, and places depend on its length (X, Y, Z); give its length",)
+    (reason,) = found[0].reasons
+    assert reason == "the tool counts as 0 mm long, and places depend on its length (X, Y, Z); give its length"
     assert main(["fit", str(file), "--machines", "dmu65", "--turns", "360"]) == 0
     out, err = capfd.readouterr()
     assert "places depend on its length (Z); give its length" in out
