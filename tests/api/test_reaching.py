@@ -178,6 +178,7 @@ def test_the_picture_is_drawn_and_data_hold_the_same(tmp_path: Path, capfd: Capt
     ("arguments", "what"),
     [
         (["--step", "0.1"], "--step: error: is 0.1; give a number of degrees from 1 to 45"),
+        (["--step", "0"], "--step: error: is 0.0; give a number of degrees from 1 to 45"),
         (["--lean", "91"], "--lean: error: is 91.0"),
         (["--lean", "nan"], "--lean: error: is nan"),
         (["--plot", "reach.png"], "reach.png: error: reach is drawn as SVG; let its name end in .svg"),
@@ -190,3 +191,29 @@ def test_what_cannot_be_used_is_told(arguments: list[str], what: str, capfd: Cap
     out, err = capfd.readouterr()
     assert out == ""
     assert what in err
+
+
+def test_a_table_that_tilts_depends_on_the_tool_length_and_a_warning_says_so(capfd: Capture) -> None:
+    """At 90 degrees the tool of a DMU 65 lies across: without a length its tip hardly comes beyond the spindle."""
+    assert main(["reach", "--machine", "dmu65", "--step", "45"]) == 0
+    assert "the tool length is not known and counts as 0; give --tool-length MM" in capfd.readouterr().err
+    assert main(["reach", "--machine", "dmu65", "--step", "45", "--tool-length", "100"]) == 0
+    assert "tool length" not in capfd.readouterr().err
+    short, long = (
+        next(each for each in trunnion.reach("dmu65", step=45.0, tool_length=length).tilts if each.tilt == 90.0)
+        for length in (0.0, 100.0)
+    )
+    assert short.every is not None
+    assert long.every is not None
+    assert short.every.likely < long.every.likely
+
+
+def test_a_part_that_leaks_is_told(tmp_path: Path, capfd: Capture) -> None:
+    corners = [(0, 0, 0), (30, 0, 0), (0, 30, 0)]
+    facet = "".join(f"vertex {x} {y} {z}\n" for x, y, z in corners)
+    file = tmp_path / "open.stl"
+    file.write_text(f"solid s\nfacet normal 0 0 1\nouter loop\n{facet}endloop\nendfacet\nendsolid s\n")
+    main(["reach", "--machine", "dmu65", "--part", str(file), "--step", "45"])
+    err = capfd.readouterr().err
+    assert "open.stl: warning: leaks: 3 edges of its surface are open" in err
+    assert "[SIM214]" in err

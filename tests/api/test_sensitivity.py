@@ -143,7 +143,15 @@ def test_the_page_draws_the_error_of_each_motion(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "what"),
     [
-        (["--zero-at", "A=0"], "--zero-at: error: is 'A=0'; give home, none, or angles such as C=0,B=0"),
+        (
+            ["--zero-at", "A=0"],
+            "is 'A=0'; A is no rotary axis of the machine; give home, none, or angles such as C=0,B=0",
+        ),
+        (
+            ["--zero-at", "B=300"],
+            "--zero-at: error: is 'B=300'; B goes from -11 to 100 degrees; give an angle within them",
+        ),
+        (["--angle=-5"], "--angle: error: is -5.0; give a number above 0, and at most 3600"),
         (["--zero-at", "B=nan"], "--zero-at: error: is 'B=nan'"),
         (["--zero-at", "B"], "--zero-at: error: is 'B'"),
         (["--angle", "7200"], "--angle: error: is 7200.0; give a number above 0, and at most 3600"),
@@ -161,6 +169,12 @@ def test_what_cannot_be_used_is_told(arguments: list[str], what: str, capfd: Cap
 def test_a_program_without_cuts_is_refused(written: Written, capfd: Capture) -> None:
     assert main(["sensitivity", str(written("G0 X0 Y0 Z10")), "--machine", "xyzac_trt"]) == 2
     assert "has no motion at feed; give a program that cuts [RCH110]" in capfd.readouterr().err
+
+
+def test_a_cl_file_is_told_from_a_program(capfd: Capture) -> None:
+    file = YL569 / "2_hub_rough.cls"
+    assert main(["sensitivity", str(file), "--machine", "yl569"]) == 2
+    assert "2_hub_rough.cls: error: is a CL file, and no NC program; post it" in capfd.readouterr().err
 
 
 def test_nothing_is_written_over_the_program(tmp_path: Path) -> None:

@@ -77,6 +77,7 @@ def waves(n: int, tools: tuple[str, ...] = ("", "1"), machine: Machine | None = 
             work_offset=same(54, np.uint16),
             tcp=same(1, np.bool_),
             machine_frame=same(0, np.bool_),
+            machine_steps=same(0, np.uint8),
             inches=same(0, np.bool_),
             orientation=same(0, np.uint8),
             xyz_is_tip=same(0, np.bool_),

@@ -24,6 +24,10 @@ _MEASURED: Final = {
 }  # fmt: skip
 
 
+#: Ends of keys that say where axes lie, and how far slides go.
+_PLACES: Final = (" point_mm", " limits_mm", " gauge_point_mm")
+
+
 def assumptions(machine: Machine, table: Table | None) -> tuple[str, ...]:
     """Return what is assumed of a machine.
 
@@ -37,6 +41,18 @@ def assumptions(machine: Machine, table: Table | None) -> tuple[str, ...]:
     own = None if table is None else table.unread_copy()
     of_files = () if own is None else (*_marked(own), *_inherited(own))
     return (*of_files, *_left_open(machine))
+
+
+def assumed_places(machine: Machine, table: Table | None) -> str:
+    """Why it is not known where axes lie in their travel; empty if the definition states it.
+
+    Parameters as for ``assumptions``.
+    """
+    if not machine.spindle_point_is_stated:
+        return "the definition does not state the gauge point, and with it where the rotary axes lie in the travel"
+    marked = [] if table is None else marked_in(table.content, ("#",))
+    names = [each.name for each in marked if each.name.endswith(_PLACES) and "assum" in each.mark]
+    return f"the definition assumes {', '.join(names)}" if names else ""
 
 
 def _marked(table: Table) -> Iterator[str]:

@@ -54,6 +54,7 @@ def _expected_settings(program: Program, options: PlanOptions) -> ExpectedValues
     every = [values, *(program.effective_settings(motion.operation) for motion in program.motions)]
     tool, work_offset, edge = _operation_settings(program, values)
     inverse_time = program.control.formats.get("inverse_time")
+    rapid_feed = float(values["rapid_feed"]) if values.get("rapid_feed") else None
     return ExpectedValues(
         tool=tool,
         work_offset=work_offset,
@@ -69,7 +70,8 @@ def _expected_settings(program: Program, options: PlanOptions) -> ExpectedValues
         max_feed=program.control.formats["feed"].five_axis.greatest,
         fastest_feed=options.fastest_feed,
         feed_limit=options.feed_limit,
-        rapid_feed=float(values["rapid_feed"]) if values.get("rapid_feed") else None,
+        rapid_feed=rapid_feed,
+        below_rapid_feed=None if rapid_feed is None else rapid_feed - program.control.formats["feed"].five_axis.digit,
         smoothing=max(float(each.get(key) or 0.0) for each in every for key in _SMOOTHING),
         rigid_tap=m_code(values.get("rigid_tap", "")),
         tool_deltas={

@@ -10,26 +10,29 @@ from typing import Final
 import numpy as np
 
 from trunnion.api.arguments import check_paths, wrong_argument
+from trunnion.api.assumptions import assumed_places
 from trunnion.api.converting import convert
 from trunnion.api.observer import SILENT, Observer
-from trunnion.api.placing import place
+from trunnion.api.placing import place, unknown_length
 from trunnion.api.placing_post import post_placed
 from trunnion.api.post_result import PostResult
 from trunnion.api.posting import post
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_toolpaths
 from trunnion.api.settings import set_up_machine
+from trunnion.definitions import load_table
 from trunnion.errors import ArgumentName, InputError, Severity, TrunnionError, argument_problem
 from trunnion.machines import Machine, shipped_machines
+from trunnion.machines.loading import machine_library
 from trunnion.machines.machine import Vector
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.placing.placement import AxisUse, Placement
 from trunnion.verification.results import durations
 
-#: The part is tried at every so many degrees about Z unless it is said, and more finely around the best.
-DEFAULT_TURNS: Final = 90.0
-
 #: Arguments that are the same for all machines: what is wrong with one is no reason of a machine.
 _OF_ALL: Final = ("tool_length", "turns")
+
+#: How reasons begin that a tool without a known length leaves open.
+_LENGTH: Final = "the tool counts as 0 mm long"
 
 #: Problems of a machine that are told.
 _MOST: Final = 3
@@ -84,7 +87,7 @@ def fit(
     subprograms: Sequence[FilePath] = (),
     zero: str | Iterable[float] | None = None,
     tool_length: str | float | None = None,
-    turns: float | Sequence[float] = DEFAULT_TURNS,
+    turns: float | Sequence[float] | None = None,
     observer: Observer = SILENT,
 ) -> tuple[MachineFit, ...]:
     """Tell which machines can run CL files or an NC program, the best first.
@@ -102,9 +105,11 @@ def fit(
     zero : (3,) float, mm
         Workpiece zero of the NC program on its own machine, where it moves slides to positions of the machine.
     tool_length
-        Of the tool, gauge point to tip, mm, on all machines; by default that of each definition, or 0.
+        Of the tool, gauge point to tip, mm, on all machines; by default the greatest that the CL files state for tools
+        in the spindle. Where none is known the answer is open at best.
     turns
-        The part is tried at every so many degrees about Z; or the turns themselves, as for ``trunnion.place``.
+        The part is tried at every so many degrees about Z, 5 by default; or the turns themselves, as for
+        ``trunnion.place``.
     observer
         Receives the progress and warnings about the files.
 
@@ -128,17 +133,29 @@ def fit(
     Examples
     --------
     >>> import trunnion
-    >>> found = trunnion.fit("tests/golden/yl569/2_hub_rough.cls", machines="yl569,hs664rt", turns=[0.0])
+    >>> hub = "tests/golden/yl569/2_hub_rough.cls"
+    >>> found = trunnion.fit(hub, machines="yl569,hs664rt", turns=[0.0], tool_length=120.0)
     >>> [(each.key, str(each.status)) for each in found]
     [('yl569', 'fits'), ('hs664rt', 'open')]
     """
     asked = _asked(machines)
     toolpaths = _toolpaths(files, machine, check_paths("subprograms", subprograms), zero, tool_length, observer)
+    if tool_length is None:
+        tool_length = _stated_length(toolpaths)
     found = []
     with observer.progress("fit", len(asked), "machines") as advance:
         for each in asked:
             found.append(_fit(each, toolpaths, tool_length, turns))
             advance(1)
+    if tool_length is None and any(_LENGTH in reason for each in found for reason in each.reasons):
+        cure = "give tool_length of the longest tool"
+        observer.problems(
+            (
+                argument_problem(
+                    "tool_length", f"{_LENGTH} where slides depend on it", cure, Severity.WARNING, code="PLC210"
+                ),
+            )
+        )
     return tuple(sorted(found, key=_rank))
 
 
@@ -202,8 +219,17 @@ def _toolpaths(
     return toolpaths
 
 
+def _stated_length(toolpaths: Sequence[Toolpath]) -> float | None:
+    """The greatest length of a tool in the spindle, mm; None if one that moves has none."""
+    lengths = [each.tool.set_length for path in toolpaths for each in path.operations if len(each.moves)]
+    return max(lengths) if lengths and min(lengths) > 0.0 else None
+
+
 def _fit(
-    asked: MachineLike, toolpaths: Sequence[Toolpath], tool_length: str | float | None, turns: float | Sequence[float]
+    asked: MachineLike,
+    toolpaths: Sequence[Toolpath],
+    tool_length: str | float | None,
+    turns: float | Sequence[float] | None,
 ) -> MachineFit:
     """What a machine makes of it; whatever is wrong with the machine is its reason."""
     key = asked.key if isinstance(asked, Machine) else os.fspath(asked)
@@ -217,7 +243,7 @@ def _fit(
             raise
         return MachineFit(key, FitStatus.NOT, _reasons(error))
     if not found.fits:
-        return _beyond(machine, found)
+        return _beyond(asked, machine, found)
     margins = tuple(AxisMargin(each.axis, "mm", each.margin_mm) for each in found.best.axes) if found.best else ()
     # The placement and the program are let go: of a long path they are large, and there are many machines.
     place_of = found.zero_mm, found.turn_deg
@@ -243,25 +269,56 @@ def _without_limits(machine: Machine, toolpaths: Sequence[Toolpath]) -> MachineF
 
 def _open_reasons(machine: Machine) -> tuple[str, ...]:
     names = [machine.names[k] for k in machine.linear if not machine.axes[k].has_limits]
-    if not names:
-        return ()
-    return (f"no limits of {' and '.join(names)} are stated, so only the other axes are judged",)
+    limits = (f"no limits of {' and '.join(names)} are stated, so only the other axes are judged",) if names else ()
+    return limits if len(names) == len(machine.linear) else (*limits, *_length_reasons(machine))
 
 
-def _beyond(machine: Machine, found: Placement) -> MachineFit:
+def _length_reasons(machine: Machine) -> tuple[str, ...]:
+    return tuple(f"{problem.what}; give its length" for problem in unknown_length(machine))
+
+
+def _beyond(asked: MachineLike, machine: Machine, found: Placement) -> MachineFit:
     """A machine whose axes do not reach it at any place."""
+    tried = _turns_tried(found)
     if found.best is None:
         obstacles = tuple(dict.fromkeys(turn.obstacle for turn in found.turns if turn.obstacle))
-        return MachineFit(machine.key, FitStatus.NOT, obstacles[:1])
-    reasons = tuple(_travel_reason(each) for each in found.best.axes if each.margin_mm < 0.0)
-    margins = tuple(AxisMargin(each.axis, "mm", each.margin_mm) for each in found.best.axes)
+        return MachineFit(machine.key, FitStatus.NOT, (*obstacles[:1], tried))
+    beyond = [each for each in found.best.axes if each.margin_mm < 0.0]
+    reasons = (*map(_travel_reason, beyond), tried, *_length_reasons(machine))
     missing = -found.best.margin_mm
+    too_small = any(_needed(each) > _travel(each) for each in beyond)
+    if not too_small and (assumed := _assumed_places(asked, machine)):
+        reasons = (f"{assumed}: with the places of the machine it may fit", *reasons)
+        return MachineFit(machine.key, FitStatus.OPEN, reasons, missing=missing)
+    margins = tuple(AxisMargin(each.axis, "mm", each.margin_mm) for each in found.best.axes)
     return MachineFit(machine.key, FitStatus.NOT, reasons, None, margins, missing, found.zero_mm, found.turn_deg)
+
+
+def _assumed_places(asked: MachineLike, machine: Machine) -> str:
+    """Why it is not known where the axes of a machine lie; empty if its definition states it."""
+    if isinstance(asked, Machine):
+        return assumed_places(machine, None)
+    return assumed_places(machine, load_table(os.fspath(asked), machine_library(), kind="machine"))
+
+
+def _turns_tried(found: Placement) -> str:
+    """At which turns of the part it was tried, with the cure."""
+    turns = [turn.turn_deg for turn in found.turns]
+    named = f"{turns[0]:g} degrees" if len(turns) == 1 else f"{len(turns)} angles from {min(turns):g} to {max(turns):g}"
+    return f"the part was tried turned about Z by {named}: give other turns, or tilt it in its set-up"
+
+
+def _needed(use: AxisUse) -> float:
+    return use.greatest_mm - use.least_mm
+
+
+def _travel(use: AxisUse) -> float:
+    return use.high.limit_mm - use.low.limit_mm
 
 
 def _travel_reason(use: AxisUse) -> str:
     """Why the travel of a slide is too small, with the lines."""
-    travel, needed = use.high.limit_mm - use.low.limit_mm, use.greatest_mm - use.least_mm
+    travel, needed = _travel(use), _needed(use)
     if needed > travel:
         return (
             f"the travel of {use.axis}, {travel:g} mm, is {needed - travel:.3f} mm too small for what it goes from"

@@ -111,7 +111,7 @@ def place(
         raise InputError(argument_problem("machine", what, "state limits_mm of its axes", code="PLC130"))
     tilts_by_size = tuple(sorted(grid.tilts.tolist(), key=abs))
     given = read_input(files, loaded, texts, check_paths("subprograms", subprograms), observer, tilts_by_size)
-    problems = [*given.problems, *_unknown_length(loaded)]
+    problems = [*given.problems, *unknown_length(loaded)]
     observer.problems(problems)
     near = _first_guess(loaded)
 
@@ -125,7 +125,7 @@ def place(
     return _placement(loaded, given, goal, paths_at, results, best, problems)
 
 
-def _unknown_length(machine: Machine) -> list[Problem]:
+def unknown_length(machine: Machine) -> list[Problem]:
     """A warning where places depend on a tool length that nobody has stated."""
     if machine.tool_length is not None or not any(machine.depends_on_length(k) for k in machine.linear):
         return []

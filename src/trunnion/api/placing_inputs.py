@@ -1,7 +1,7 @@
 """The path that is placed: rows of CL files as they are planned, or of NC programs as they run."""
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -24,6 +24,7 @@ from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.placing.path_rows import PathRows, Stretch, about_x, joined_rows
 from trunnion.placing.plan_rows import branches, rows_of_plan
+from trunnion.verification.kinematics.machine_travel import positions_beyond_travel
 from trunnion.verification.kinematics.positioning_moves import approach_rows
 from trunnion.wording import counted
 
@@ -61,7 +62,8 @@ def read_input(
     InputError
         If a file cannot be used as either, or some are CL files and others programs.
     RefusedError
-        If a program has words that are not understood, or no plan of the CL files is possible.
+        If a program has words that are not understood, or leaves the travel in machine coordinates, or no plan of the
+        CL files is possible.
     """
     if isinstance(files, str | os.PathLike | Toolpath) or is_stream(files):
         files = [files]
@@ -111,6 +113,8 @@ def _run_of(program: Path, machine: Machine, subprograms: Sequence[Path]) -> Run
         found = [Problem(each.file, each.line, each.text, code=each.code) for each in run.errors[:_MOST_NAMED]]
         what = f"{counted(len(run.errors), 'place')} not understood: where it goes is not known"
         raise RefusedError((*found, Problem(str(program), 0, what, code="PLC120")))
+    if beyond := tuple(_beyond_travel(run)):
+        raise RefusedError(beyond)
     return run
 
 
@@ -132,6 +136,15 @@ def _planned_tilted(
                 found = _planned(tilted, machine, settings, SILENT)
                 return replace(found, rows=found.rows.turned(about_x(-tilt)), toolpaths=tuple(toolpaths))
         raise
+
+
+def _beyond_travel(run: Run) -> Iterator[Problem]:
+    """Positions in machine coordinates that no place of the part brings into the travel."""
+    for found in positions_beyond_travel(run):
+        name, file = run.machine.names[found.column], run.files[run.state.file[found.row]]
+        what = f"{name} goes to {found.value:.3f} in machine coordinates, its limit is {found.limit:g} mm"
+        cure = "correct the block: no place of the part changes it"
+        yield Problem(file, run.lines[found.row], what, cure, code="PLC180")
 
 
 def _planned(

@@ -250,9 +250,10 @@ def _remarks(machine: Machine, placed: bool) -> list[Problem]:
     if missing:
         what = f"no limits of {' and '.join(missing)} are stated, so there is no volume of what it reaches"
         found.append(Problem(machine.key, 0, what, "write limits_mm into the definition", code="RCH210"))
-    if machine.tool_length is None and machine.has_rotary_head:
+    if machine.tool_length is None and any(machine.depends_on_length(column) for column in machine.linear):
         what = "the tool length is not known and counts as 0"
-        found.append(Problem(machine.key, 0, what, "give argument tool_length=MM: a head swings it", code="RCH140"))
+        cure = "give argument tool_length=MM: what is reached with a tilted tool depends on it"
+        found.append(Problem(machine.key, 0, what, cure, code="RCH140"))
     if placed and machine.workpiece_zero is None:
         what = "the workpiece zero is not known, so only tool axes are judged"
         found.append(Problem(machine.key, 0, what, "give argument zero=X,Y,Z", code="RCH130"))

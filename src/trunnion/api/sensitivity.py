@@ -9,7 +9,8 @@ import numpy as np
 
 from trunnion.api.arguments import wrong_argument
 from trunnion.api.feed_samples import feed_samples
-from trunnion.api.reading import FilePath, MachineLike, as_machine, as_run
+from trunnion.api.observer import SILENT
+from trunnion.api.reading import FilePath, MachineLike, as_machine, as_run, read_toolpaths
 from trunnion.api.settings import set_up_machine
 from trunnion.api.tip_errors import TipErrors, in_radians, joints_at_zero, tip_errors, zero_pose
 from trunnion.arrays import Floats, Ints
@@ -168,8 +169,7 @@ def sensitivity(
         for found in tip_errors(loaded, samples.joints, joints, amounts):
             totals.setdefault(found.number, _Total(found.number)).add(found, samples.row)
     if not count:
-        name = run.files[0] if run.files else "nc"
-        raise InputError(Problem(name, 0, "has no motion at feed", "give a program that cuts", code="RCH110"))
+        raise InputError(_without_cuts(run))
     numbers = [total.result(run, count, (length, angle)) for total in totals.values()]
     return Sensitivity(
         run,
@@ -252,6 +252,22 @@ class _Extent:
         row = self._row
         place = ProgramPlace(run.files[run.state.file[row]], int(run.lines[row]), int(run.block_numbers[row]))
         return ErrorExtent(math.sqrt(max(self._largest, 0.0)), math.sqrt(self._squares / count), place)
+
+
+def _without_cuts(run: Run) -> Problem:
+    """Why there is nothing to judge: no cut, or a CL file in place of a program."""
+    name = run.files[0] if run.files else "nc"
+    if run.errors and _is_cl_file(name):
+        return Problem(name, 0, "is a CL file, and no NC program", "post it, and give the program", code="RCH115")
+    return Problem(name, 0, "has no motion at feed", "give a program that cuts", code="RCH110")
+
+
+def _is_cl_file(name: str) -> bool:
+    try:
+        found = read_toolpaths(name, None, False, SILENT)
+    except InputError:
+        return False
+    return any(len(operation.moves) for toolpath in found for operation in toolpath.operations)
 
 
 def _amount(name: str, value: object) -> float:

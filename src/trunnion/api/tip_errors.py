@@ -71,12 +71,22 @@ def zero_pose(machine: Machine, zero_at: str | Mapping[str, float] | None) -> di
         given = zero_at
     else:
         raise wrong_argument("zero_at", zero_at, cure)
+    for name in given:
+        if name not in names:
+            raise wrong_argument(
+                "zero_at", str(zero_at), f"{name or 'no name'} is no rotary axis of the machine; {cure}"
+            )
     try:
         pose = home | {name: float(str(value)) for name, value in given.items()}
     except ValueError:
         raise wrong_argument("zero_at", str(zero_at), cure) from None
-    if len(pose) > len(home) or not all(abs(value) < 1e5 for value in pose.values()):  # NaN is none either
+    if not all(abs(value) < 1e5 for value in pose.values()):  # NaN is none either
         raise wrong_argument("zero_at", str(zero_at), cure)
+    for name, value in pose.items():
+        axis = machine.axis(name)
+        if not axis.low <= value <= axis.high:
+            limits = f"{name} goes from {axis.low:g} to {axis.high:g} degrees"
+            raise wrong_argument("zero_at", str(zero_at), f"{limits}; give an angle within them")
     return pose
 
 

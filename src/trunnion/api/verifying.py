@@ -217,6 +217,7 @@ def verify(
             span_tip=span_tip,
             absolute=frame == "absolute",
             rapid_feed=rapid_feed_of(loaded),
+            below_rapid_feed=below_rapid_feed(rapid_feed_of(loaded), control),
             rigid_tap=m_code(defaults.get("rigid_tap", "")),
             blocks_in_compensation=control.blocks_in_compensation if control else 1,
             stops_in_compensation=control.stops_in_compensation if control else False,
@@ -320,6 +321,11 @@ def written_control(machine: Machine) -> Control | None:
         return load_control(machine.control.unread_copy())
     except InputError:
         return None
+
+
+def below_rapid_feed(feed: float | None, control: Control | None) -> float | None:
+    """The feed that cuts at the feed of rapids have instead, mm/min; None where rapids are written as rapids."""
+    return None if feed is None or control is None else feed - control.formats["feed"].five_axis.digit
 
 
 def rapid_feed_of(machine: Machine) -> float | None:

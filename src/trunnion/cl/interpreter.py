@@ -26,8 +26,8 @@ _MAX_UNKNOWN_STATEMENTS = 1000
 
 _NOT_CL = "not a CL file: no statement in it is known"
 _GIVE_CL = (
-    "give a CL file: an NX CLSF, APTSOURCE, NCL or other APT CL data; if this is an NC program, verify, diff and"
-    " convert take it, with its machine"
+    "give a CL file: an NX CLSF, APTSOURCE, NCL or other APT CL data; if this is an NC program, verify, diff,"
+    " convert, fit and place take it, with its machine"
 )
 
 #: What blocks of NC programs begin with.

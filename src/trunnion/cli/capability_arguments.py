@@ -1,18 +1,14 @@
 """The arguments of the commands about what a machine can do: ``trunnion sensitivity``, ``reach`` and ``fit``."""
 
 import argparse
-import math
 
 
-def amount(text: str) -> float:
-    """A length or an angle above 0."""
+def number(text: str) -> float:
+    """A number; the functions that take it know its range."""
     try:
-        value = float(text)
+        return float(text)
     except ValueError:
-        value = 0.0
-    if not 0.0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number above 0; write one, such as 5")
-    return value
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number; write one, such as 5") from None
 
 
 def add_sensitivity(parser: argparse.ArgumentParser) -> None:
@@ -22,10 +18,14 @@ def add_sensitivity(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
     parser.add_argument(
-        "--length", type=amount, default=0.01, metavar="MM", help="how far points and lengths are off; 0.01"
+        "--length",
+        type=number,
+        default=0.01,
+        metavar="MM",
+        help="how far points and lengths are off; 0.01",
     )
     parser.add_argument(
-        "--angle", type=amount, default=5.0, metavar="ARCSEC",
+        "--angle", type=number, default=5.0, metavar="ARCSEC",
         help="how far directions and displayed angles are off, seconds of arc; 5",
     )  # fmt: skip
     parser.add_argument(
@@ -47,7 +47,11 @@ def add_reach(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
     parser.add_argument(
-        "--step", type=amount, default=5.0, metavar="DEG", help="degrees between tilts, and between azimuths; 5"
+        "--step",
+        type=number,
+        default=5.0,
+        metavar="DEG",
+        help="degrees between tilts, and between azimuths; 5",
     )
     parser.add_argument("--json", metavar="FILE", help="everything as data; - is stdout")
     parser.add_argument("--plot", metavar="FILE", help="tool axes on the sphere, and volumes over the tilt (.svg)")
@@ -65,6 +69,10 @@ def add_fit(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--zero", metavar="X,Y,Z", help="workpiece zero of the NC program on its own machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool on all machines, gauge point to tip")
     parser.add_argument(
-        "--turns", type=amount, default=90.0, metavar="DEG", help="try the part at every so many degrees about Z; 90"
+        "--turns",
+        type=number,
+        default=5.0,
+        metavar="DEG",
+        help="try the part at every so many degrees about Z; 5",
     )
     parser.add_argument("--json", metavar="FILE", help="everything as data; - is stdout")

@@ -185,6 +185,7 @@ class ModalState:
     plane       the row of ``Run.planes`` in whose coordinates words are; -1: in none of them
     compensation_plane  where radius compensation is on, the row of ``Run.compensation_planes``; -1: across the tool
     radius      the number by which radius compensation takes the radius (D); -1: it is that of the tool, or of the edge
+    machine_steps  in coordinates of the machine: bits of the slides that a block moves on from where they stand (G91)
     feed_path   a ``FeedPath``: the path that F refers to where rotary axes turn without TCP
     """
 
@@ -201,6 +202,7 @@ class ModalState:
     work_offset: StepColumn
     tcp: StepColumn
     machine_frame: StepColumn
+    machine_steps: StepColumn
     inches: StepColumn
     orientation: StepColumn
     xyz_is_tip: StepColumn

@@ -1,17 +1,15 @@
 """How far slides may go beyond their samples while rotary axes turn between them.
 
-Between two samples a slide is s(u) = a(u) . p(u) with the angles and the tip even in u, from 0 to 1. With the angle w
-that both rotary axes turn together, the tip's way d, and the longest arm L from a rotary axis to the tip,
-
-    |s''| <= k (w^2 L + 2 w d)
-
-where k is the largest norm of a slide's normal. A curve leaves its chord by at most an eighth of that.
+``model.turning_lines`` has the bound; between two samples angles and tip move evenly.
 """
+
+from dataclasses import replace
 
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, kinematic_parameters
+from trunnion.model.turning_lines import chord_excursion, longest_arms
 from trunnion.placing.moving_samples import STEP
 from trunnion.placing.path_rows import PathRows
 
@@ -26,7 +24,8 @@ def most_between(machine: Machine, rows: PathRows, positions: Floats, zero: Floa
     positions : (n, 2) float64
         Of the rotary axes, degrees.
     """
-    kinematics = kinematic_parameters(machine)
+    x, y, z = zero.tolist()
+    kinematics = kinematic_parameters(replace(machine, workpiece_zero=(x, y, z)))
     turn = np.abs(np.diff(positions, axis=0))
     pieces = np.maximum(np.ceil(turn.max(axis=1, initial=0.0) / STEP), 1.0)
     counts = rows.straight[1:] & ~rows.begins[1:] & (turn.max(axis=1, initial=0.0) > 0.0) & (pieces <= 180.0 / STEP)
@@ -36,8 +35,7 @@ def most_between(machine: Machine, rows: PathRows, positions: Floats, zero: Floa
         return np.nan
     angle = np.radians(turn.sum(axis=1) / pieces)[counts]
     way = (np.linalg.norm(np.diff(rows.tip, axis=0), axis=1) / pieces)[counts]
-    arm = np.linalg.norm(rows.tip + zero - np.array(machine.axes[machine.rotary[0]].point), axis=1)
+    arm = longest_arms(kinematics, rows.tip)
     arm = np.maximum(arm[1:], arm[:-1])[counts]
-    arm += np.linalg.norm(kinematics.second_offset) + np.linalg.norm(kinematics.tool_offset)
     slides = np.linalg.norm(np.array(kinematics.slides_inverse).reshape(3, 3), axis=1).max()
-    return float((slides * (angle**2 * arm + 2.0 * angle * way)).max() / 8.0)
+    return float((slides * chord_excursion(angle, way, arm)).max())

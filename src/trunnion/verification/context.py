@@ -31,6 +31,7 @@ class ExpectedValues:
     absolute               the program's coordinate system is the absolute one of the CAM, not that of the first
                            operation
     rapid_feed             feed of lines that replace rapids, mm/min; None: rapids are rapids
+    below_rapid_feed       feed that cuts at that very feed have instead, mm/min; None: none
     max_inverse_time_feed  largest inverse-time F of the control: no block need be quicker; None: no limit
     smoothing              widest tolerance for the control's own smoothing that the settings ask for, mm
     rigid_tap              M code before threads that are cut without a compensating chuck; None: the control has none
@@ -52,6 +53,7 @@ class ExpectedValues:
     span_tip: float | None = None
     absolute: bool = False
     rapid_feed: float | None = None
+    below_rapid_feed: float | None = None
     max_inverse_time_feed: float | None = None
     max_feed: float | None = None
     smoothing: float | None = None

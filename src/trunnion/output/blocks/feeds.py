@@ -20,7 +20,8 @@ FEED_WORDS: Final = ("feed", "feed_per_rev")
 class FeedWords:
     """Writes feeds, and knows the feed mode that is active.
 
-    rapid_feed  F of rapids on machines where rapids are lines at a high feed, as a count; ABSENT: rapids have no F
+    rapid_feed  F of rapids on machines where rapids are lines at a high feed, as a count; ABSENT: rapids have no F.
+                A cut at that very feed gets the next lower one, which is no rapid
     """
 
     def __init__(self, program: Program, writer: BlockWriter) -> None:
@@ -46,7 +47,8 @@ class FeedWords:
     def count(self, feed: float, per_rev: bool) -> tuple[str, int]:
         """Return the word of a feed, mm/min or mm/rev, and its count."""
         word = FEED_WORDS[per_rev and FEED_WORDS[1] in self._family.WORDS]
-        return word, self._writer.to_count(word, feed)
+        count = self._writer.to_count(word, feed)
+        return word, count - 1 if word == "feed" and count == self.rapid_feed else count
 
     def add_words(self, table: BlockTable, moves: Moves, rows: slice, rapid: Flags) -> None:
         """Put F, the feed mode and the motion words of a family into a table; ``rapid``: the rows that are rapids."""
@@ -55,6 +57,9 @@ class FeedWords:
             if word == "feed" or per_rev.any():
                 feed = np.where(absent, np.nan, moves.feed[rows])
                 table.columns[word] = self._writer.word(word).format.counts(feed)
+        if self.rapid_feed != ABSENT:
+            counts = table.columns["feed"]
+            counts[counts == self.rapid_feed] -= 1  # a cut at that feed would be read as a rapid
         table.columns["feed"][rapid] = self.rapid_feed
         table.columns |= self._family.row_words(rapid, per_rev, self._codes)
 

@@ -31,6 +31,23 @@ def missing_feed_problems(program: Program, motion: Motion) -> list[Problem]:
     return [Problem(program.file_of(motion.operation), int(moves.line[rows[0]]), what, cure, code="CTL310")]
 
 
+def rapid_feed_problems(program: Program, motion: Motion) -> list[Problem]:
+    """Return a warning for the first cut at the feed at which lines are rapids: it gets the next lower one."""
+    rapid_feed, moves = program.effective_setting("rapid_feed"), motion.operation.moves
+    if not rapid_feed:
+        return []
+    at_feed = (moves.kind != Kind.RAPID) & ~moves.per_rev
+    number_format = feed_format(program.control.number_formats(motion.three_axis), per_rev=False)
+    rows = np.flatnonzero(at_feed & (np.abs(moves.feed - float(rapid_feed)) < 0.5 * number_format.digit))
+    if not len(rows):
+        return []
+    lower = float(rapid_feed) - number_format.digit
+    what = f"lines at {float(rapid_feed):g} mm/min are rapids on this machine: cuts at that feed get {lower:g}"
+    cure = "give the cuts another feed, or rapids another one by the setting rapid_feed"
+    file, line = program.file_of(motion.operation), int(moves.line[rows[0]])
+    return [Problem(file, line, what, cure, Severity.WARNING, code="CTL315")]
+
+
 def rounded_feed_problems(program: Program, motion: Motion) -> list[Problem]:
     """Return the first feed of an operation that rounding makes another one, or else the first that it changes much.
 

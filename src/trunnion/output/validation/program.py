@@ -8,7 +8,7 @@ from trunnion.output.validation.compensation import compensation_problems
 from trunnion.output.validation.compensation_corners import corner_problems
 from trunnion.output.validation.cycles import cycle_problems
 from trunnion.output.validation.events import block_skip_problems, event_problems
-from trunnion.output.validation.feeds import missing_feed_problems, rounded_feed_problems
+from trunnion.output.validation.feeds import missing_feed_problems, rapid_feed_problems, rounded_feed_problems
 from trunnion.output.validation.machine import machine_problems
 from trunnion.output.validation.operations import (
     machining_mode_problems,
@@ -80,4 +80,5 @@ def _motion_problems(program: Program, motion: Motion) -> list[Problem]:
     problems += [*compensation_problems(program, motion), *corner_problems(program, motion)]
     if motion.mode is MachiningMode.WITHOUT_TCP and program.template_suffix(motion):
         problems += problems_without_tcp(program, motion)
-    return [*problems, *missing_feed_problems(program, motion), *rounded_feed_problems(program, motion)]
+    problems += [*missing_feed_problems(program, motion), *rounded_feed_problems(program, motion)]
+    return [*problems, *rapid_feed_problems(program, motion)]

@@ -26,6 +26,7 @@ class ModalBuilder:
         self.work_offset = StepColumnBuilder(0)
         self.tcp = StepColumnBuilder(False)
         self.machine_frame = StepColumnBuilder(False)
+        self.machine_steps = StepColumnBuilder(0)
         self.inches = StepColumnBuilder(False)
         self.orientation = StepColumnBuilder(ORIENTATION_FROM_WORDS)
         self.xyz_is_tip = StepColumnBuilder(False)
@@ -48,6 +49,7 @@ class ModalBuilder:
             work_offset=self.work_offset.steps(n, np.uint16),
             tcp=self.tcp.steps(n, np.bool_),
             machine_frame=self.machine_frame.steps(n, np.bool_),
+            machine_steps=self.machine_steps.steps(n, np.uint8),
             inches=self.inches.steps(n, np.bool_),
             orientation=self.orientation.steps(n, np.uint8),
             xyz_is_tip=self.xyz_is_tip.steps(n, np.bool_),

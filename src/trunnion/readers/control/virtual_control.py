@@ -235,17 +235,22 @@ class VirtualControl(CoordinateControl, ABC):
             self.note("a circle in machine positions is taken as a straight line", Severity.ERROR, "NC320")
         self.resolve_rows()
         slides = self.current_joints[self._slides].copy()
+        steps = 0
         for axis, name in enumerate("XYZ"):
             if name in axes:
                 value, mode = axes[name]
-                slides[axis] = value * self.length_unit + (slides[axis] if self._is_incremental(mode) else 0.0)
+                is_step = self._is_incremental(mode)
+                slides[axis] = value * self.length_unit + (slides[axis] if is_step else 0.0)
                 bits |= 1 << axis
+                steps |= is_step << axis
         tcp, self.tcp = self.tcp, False
         rotary = self.rotary_target(axes)
         self.tcp = tcp
         self.modal.machine_frame.set(self.row, True)
+        self.modal.machine_steps.set(self.row, steps)
         self.move_axes(self._line_kind, slides, rotary, bits)
         self.modal.machine_frame.set(self.row, False)
+        self.modal.machine_steps.set(self.row, 0)
 
     def move_axes(self, kind: Kind, slides: Floats, rotary: RotaryTarget = NO_ROTARY, bits: int = 0) -> None:
         """Add a row of slide positions (X, Y, Z) and rotary values, whatever X Y Z mean now, and resolve it.

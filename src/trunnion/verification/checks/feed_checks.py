@@ -136,6 +136,8 @@ def _compare_feeds(
     run, settings = context.run, context.settings
     feed = run.state.feed.at(nc)
     near = np.abs(feed - asked) <= feed_tolerance + 1e-9
+    if settings.below_rapid_feed is not None:
+        near |= (asked == settings.rapid_feed) & (np.abs(feed - settings.below_rapid_feed) <= 1e-9)
     slack = 2.0 * math.sqrt(3.0) * tip_tolerance
     timed = np.flatnonzero(run.state.feed_mode.at(nc) == 93)
     if len(timed):

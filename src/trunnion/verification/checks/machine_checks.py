@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from trunnion.machines import Axis
 from trunnion.verification.context import MAX_PLACES, Context
 from trunnion.verification.kinematics.axis_motion import AxisMotion
+from trunnion.verification.kinematics.machine_travel import positions_beyond_travel
 from trunnion.verification.kinematics.worst_rows import WorstRows
 from trunnion.verification.results import Check
 from trunnion.wording import counted
@@ -33,7 +34,7 @@ class _Margin:
 def check_travel(context: Context, motion: AxisMotion) -> Check:
     """Every axis is inside its limits; the summary has the smallest margin."""
     title = "travel of the axes"
-    margins = sorted(_margins(context, motion), key=lambda margin: margin.share)
+    margins = sorted([*_margins(context, motion), *_machine_margins(context)], key=lambda margin: margin.share)
     unchecked = _unchecked_axes(context)
     if not margins:
         return Check("travel", title, True, unchecked or "no axis with limits moves")
@@ -84,13 +85,31 @@ def _margins(context: Context, motion: AxisMotion) -> Iterator[_Margin]:
         below, above = low - axis.low, axis.high - high
         is_placed = machine.is_placed(k)
         if not is_placed and (machine.workpiece_zero is None or min(below, above) >= -_ROUNDING):
-            text = f"{axis.name} needs {high - low:.3f} of {axis.high - axis.low:g} mm"
+            within = _within(context, motion, k, (0, 1))
+            counted_too = f", counting what it does{within}" if within else ""
+            text = f"{axis.name} needs {high - low:.3f} of {axis.high - axis.low:g} mm{counted_too}"
             yield _Margin(axis, (axis.high - axis.low) - (high - low), text, high - low, rows[1])
             continue
         value, limit, row = (low, axis.low, rows[0]) if below < above else (high, axis.high, rows[1])
         tool = "" if is_placed else " with a tool 0 mm long"
-        text = f"{axis.name} goes to {value:.3f}{tool}, its limit is {limit:g} {'deg' if axis.is_rotary else 'mm'}"
+        unit, within = "deg" if axis.is_rotary else "mm", _within(context, motion, k, (0,) if below < above else (1,))
+        text = f"{axis.name} goes to {value:.3f}{within}{tool}, its limit is {limit:g} {unit}"
         yield _Margin(axis, min(below, above), text, value, row)
+
+
+def _within(context: Context, motion: AxisMotion, column: int, sides: Sequence[int]) -> str:
+    """Where a slide is farther out between the ends of a block than at them; empty if it is not."""
+    rows = [int(motion.extreme_rows[column, side]) for side in sides if motion.within_lines[column, side]]
+    names = " and ".join(dict.fromkeys(context.block_name(row) for row in rows))
+    return f" within {names}, while rotary axes turn" if names else ""
+
+
+def _machine_margins(context: Context) -> Iterator[_Margin]:
+    """Positions in machine coordinates beyond the travel; those within it are no measure of the room at the part."""
+    for found in positions_beyond_travel(context.run):
+        axis = context.run.machine.axes[found.column]
+        text = f"{axis.name} goes to {found.value:.3f} in machine coordinates, its limit is {found.limit:g} mm"
+        yield _Margin(axis, -found.beyond, text, found.value, found.row)
 
 
 def check_speed(context: Context, motion: AxisMotion) -> Check:

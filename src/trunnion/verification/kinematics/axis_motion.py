@@ -23,6 +23,7 @@ from trunnion.model.arc_extremes import run_reach
 from trunnion.model.feed_path import NO_ROTATION
 from trunnion.model.run import Orientation, PositionChunk, Run
 from trunnion.model.toolpath import Kind
+from trunnion.model.turning_lines import LineSearch, TurningLines
 from trunnion.timing import RowFeeds, RunTimer
 from trunnion.verification.kinematics.arc_speeds import ArcSpeeds
 from trunnion.verification.kinematics.axis_motion_kernel import AxisLimits, ChunkRows, axis_motion_rows
@@ -41,9 +42,10 @@ class AxisMotion:
     acceleration    for each axis, the share of its acceleration
     axis_deviation  degrees between the tool axis half-way and the great circle, in rows at feed
     tip_deviation   mm between the tip half-way and its straight line, in lines without TCP
-    extremes        (5, 2) lowest and highest values, mm or deg: of slides in workpiece motions, and on arcs between
-                    their ends; of rotary axes in all
+    extremes        (5, 2) lowest and highest values, mm or deg: of slides in workpiece motions, also between the ends
+                    of arcs and of lines on which rotary axes turn under TCP; of rotary axes in all
     extreme_rows    (5, 2) the rows that reach them, -1 for none
+    within_lines    (5, 2) bool: between the ends of a line on which rotary axes turn
     """
 
     seconds: Floats
@@ -55,6 +57,7 @@ class AxisMotion:
     tip_deviation: WorstRows
     extremes: Floats
     extreme_rows: Ints
+    within_lines: Flags
 
 
 class AxisMotionAnalyzer:
@@ -81,7 +84,12 @@ class AxisMotionAnalyzer:
             tip_deviation=WorstRows(math.inf, max_rows),
             extremes=np.column_stack((np.full(5, math.inf), np.full(5, -math.inf))),
             extreme_rows=np.full((5, 2), -1, np.int64),
+            within_lines=np.zeros((5, 2), np.bool_),
         )
+        motion = self._motion
+        self._line_search = LineSearch(run.machine, motion.extremes, motion.extreme_rows, motion.within_lines)
+        self._is_placed = all(run.machine.is_placed(column) for column in run.machine.linear)
+        self._counts_before = False
 
     def add(self, first: int, end: int, positions: PositionChunk) -> None:
         """Add rows, in order; ``positions`` is the ``Run.chunk`` of them."""
@@ -109,11 +117,14 @@ class AxisMotionAnalyzer:
             arcs.end,
         )
         shares, deviation = np.empty((2, 5, count)), np.empty(count)
+        extremes_before = motion.extremes.copy()
         axis_motion_rows(
             first, rows, self._limits, self._carry, motion.extremes, motion.extreme_rows, shares, deviation
         )
         self._add_arc_shares(arcs, first, feeds, shares)
         self._add_arcs(first, end, positions, machine_frame)
+        motion.within_lines[motion.extremes != extremes_before] = False
+        self._add_lines(first, positions, tcp, machine_frame)
         if self._timer is not None:
             self._timer.add(first, positions, feeds)
         for k, axis in enumerate(run.machine.axes):
@@ -151,6 +162,25 @@ class AxisMotionAnalyzer:
                 extremes[column, 0], extreme_rows[column, 0] = low[least, column], rows[least]
             if high[most, column] > extremes[column, 1]:
                 extremes[column, 1], extreme_rows[column, 1] = high[most, column], rows[most]
+
+    def _add_lines(self, first: int, positions: PositionChunk, tcp: Flags, machine_frame: Flags) -> None:
+        """Widen the extremes of slides by what they reach on lines on which rotary axes turn under TCP.
+
+        Where nobody knows where the machine stands, a line that comes from a position of the machine does not count.
+        """
+        counts = tcp & ~machine_frame
+        known = np.append(self._counts_before, ~machine_frame[:-1]) | self._is_placed
+        self._counts_before = not machine_frame[-1]
+        end = first + len(tcp)
+        counts &= known & (self._run.kind[first:end] != Kind.ARC)
+        by_vector = self._run.orientation_between(first, end) == Orientation.GREAT_CIRCLE
+        at = self._line_search.likely(positions.tip, positions.joints, counts, by_vector)
+        if not len(at):
+            return
+        tip, axis, joints = (
+            np.stack((each[at], each[at + 1]), axis=1) for each in (positions.tip, positions.axis, positions.joints)
+        )
+        self._line_search.add(TurningLines(first + at, tip, axis, joints, by_vector[at]))
 
     def _turns(self, positions: PositionChunk) -> Flags:
         """Which rows turn a rotary axis, (k,) bool."""
