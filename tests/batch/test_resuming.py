@@ -1,12 +1,14 @@
 """A batch that is run again: it does what is missing or has changed, and comes out as if it had never been stopped."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from tests.support.batches import InOrder, Interrupted, StoppingStore, run_simply, simple_batch, tree, write_files
+from tests.support.dask_clusters import needs_dask
 from trunnion.batch.records import FOLDER, record_name
-from trunnion.batch.stores import FolderStore
+from trunnion.batch.stores import FolderStore, open_store
 from trunnion.batch.task import Status
 
 TEXTS = {"a/x.cls": "one", "b/x.cls": "two", "c.cls": "fail", "d.cls": "several parts", "e.cls": "refuse"}
@@ -125,6 +127,56 @@ def test_a_file_of_somebody_else_is_never_replaced(tmp_path: Path, is_changed: b
         assert [(each.file, each.error and each.error.code) for each in result.failures()] == [("x.cls", "BAT320")]
     (tmp_path / "out/x.mpf").unlink()
     assert run_simply(simple_batch(tmp_path / "in"), store).passed
+
+
+@pytest.mark.parametrize("address", ["", pytest.param("file", marks=needs_dask)])
+def test_a_folder_in_the_place_of_a_result_concerns_its_file_only(tmp_path: Path, address: str) -> None:
+    write_files(tmp_path / "in", {"x.cls": "one", "y.cls": "two", "z/z.cls": "three"})
+    write_files(tmp_path / "out", {"x.mpf/mine": "mine", "z": "a file"})
+    store = open_store((tmp_path / "out").as_uri() if address else tmp_path / "out")
+    for _ in range(2):
+        result = run_simply(simple_batch(tmp_path / "in"), store)
+        assert [(each.file, each.error and each.error.code) for each in result.failures()] == [
+            ("x.cls", "BAT320"), ("z/z.cls", "BAT320"),
+        ]  # fmt: skip
+        assert (tmp_path / "out/y.mpf").read_bytes() == b"of two"
+        assert (tmp_path / "out/x.mpf/mine").read_bytes() == b"mine"
+    (tmp_path / "out/z").unlink()
+    (tmp_path / "out/x.mpf/mine").unlink()
+    (tmp_path / "out/x.mpf").rmdir()
+    assert run_simply(simple_batch(tmp_path / "in"), store).passed
+
+
+def test_a_job_with_another_name_is_not_done_again(tmp_path: Path) -> None:
+    write_files(tmp_path / "in", TEXTS)
+    store, again = FolderStore(tmp_path / "out"), InOrder()
+    batch = simple_batch(tmp_path / "in")
+    run_simply(batch, store)
+    renamed = replace(batch, jobs=[replace(batch.jobs[0], name="new")])
+    result = run_simply(renamed, store, again)
+    assert again.done == []
+    assert {record.job for record in result.records()} == {"new"}
+
+
+def test_links_lead_no_reading_out_of_the_folder(tmp_path: Path) -> None:
+    write_files(tmp_path, {"real.cls": "secret", "in/sub/same.cls": "inside", "in/x.cls": "one", "in/y.cls": "two"})
+    (tmp_path / "in/x.sub").symlink_to(tmp_path / "real.cls")
+    (tmp_path / "in/y.sub").symlink_to(tmp_path / "in/sub/same.cls")
+    batch = simple_batch(tmp_path / "in")
+    job = replace(batch.jobs[0], files=["x.cls", "y.cls"], beside={"subprograms": ["{folder}/{stem}.sub"]})
+    result = run_simply(replace(batch, jobs=[job]), FolderStore(tmp_path / "out"))
+    (failure,) = result.failures()
+    assert (failure.file, failure.error and failure.error.code) == ("x.cls", "FIL120")
+    assert failure.error is not None
+    assert "x.sub, which leads out of the folder by a link" in failure.error.what
+
+
+def test_a_file_that_leads_elsewhere_since_it_was_found_is_not_read(tmp_path: Path) -> None:
+    write_files(tmp_path, {"real.cls": "secret", "in/x.cls": "one"})
+    batch = simple_batch(tmp_path / "in")
+    (tmp_path / "in/x.cls").unlink()
+    (tmp_path / "in/x.cls").symlink_to(tmp_path / "real.cls")
+    assert run_simply(batch, FolderStore(tmp_path / "out")).counts == {Status.UNUSABLE: 1}
 
 
 def test_results_that_lost_their_records_are_taken_over_where_they_are_the_same(tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ from trunnion.api.input_files import machine_files
 from trunnion.api.job import prepare
 from trunnion.api.project_paths import is_file
 from trunnion.api.reading import as_machine
+from trunnion.batch.keys import home_of
 from trunnion.batch.patterns import matches
 from trunnion.batch.records import FOLDER
 from trunnion.batch.task import DEFINITIONS, FILES, Action
@@ -62,19 +63,30 @@ class Job:
 
 @dataclass(frozen=True, slots=True)
 class Batch:
-    """Jobs, and the folder beside which their files lie; ``results`` is where these go if nothing else is said."""
+    """Jobs, and the folder beside which their files lie.
+
+    results  where these go if nothing else is said
+    home     tells this batch from others (``keys.home_of``)
+    is_whole whether the jobs say all that is wanted: of a folder they may be but some of its files this time
+    """
 
     folder: Path
     jobs: Sequence[Job]
     results: Path | None = None
+    home: str = ""
+    is_whole: bool = False
 
 
 class Unit(NamedTuple):
-    """One file of one job, and the place of its result within the results."""
+    """One file of one job, and the place of its result within the results.
+
+    clash  the place that its result would share with that of another file: then it has none; empty: it has its own
+    """
 
     place: str
     job: int
     file: str
+    clash: str = ""
 
 
 def folder_files(folder: Path, without: Path | None = None) -> list[str]:
@@ -143,7 +155,7 @@ def folder_batch(
         cure = "name them by --files PATTERN, such as --files '**/*.nc'"
         raise InputError(Problem(str(folder), 0, what, cure, code="BAT120"))
     job = Job(str(action), action, files, said, shared, beside, "", extensions.written, report)
-    return Batch(folder, [job])
+    return Batch(folder, [job], home=home_of(folder))
 
 
 def _listed(value: Any) -> list[str]:

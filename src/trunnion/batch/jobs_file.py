@@ -12,6 +12,7 @@ from typing import Any, Final, TypeAlias
 from trunnion.api.project_paths import ProjectPaths
 from trunnion.api.settings import as_texts
 from trunnion.batch.jobs import Batch, Job, folder_files, judged
+from trunnion.batch.keys import home_of
 from trunnion.batch.patterns import matches, pattern_fault
 from trunnion.batch.task import Action
 from trunnion.cl import DIALECTS
@@ -187,7 +188,7 @@ def read_batch_table(root: Table, path: Path) -> Batch:
         table.report_unread_keys()
     root.report_unread_keys()
     root.raise_problems()
-    return Batch(path.parent, jobs, results)
+    return Batch(path.parent, jobs, results, home_of(path), is_whole=True)
 
 
 def _judged(

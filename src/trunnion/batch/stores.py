@@ -3,6 +3,7 @@
 A file appears whole or not at all. Names are relative, with ``/``.
 """
 
+import errno
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -51,6 +52,19 @@ class Store(Protocol):
         """The files in a folder and below, in order."""
 
 
+class TakenError(InputError):
+    """A name has no file, and cannot have one: something that is no file stands there, or in place of its folder."""
+
+
+#: What the system says where a folder is in place of a file, or a file in place of a folder; or of names too long.
+_TAKEN: Final = (errno.EEXIST, errno.ENOTDIR, errno.EISDIR, errno.ENAMETOOLONG)
+
+
+def _taken(name: str, error: OSError) -> TakenError:
+    what = f"its result would be {name[:200]}, which cannot be a file there: {error.strerror or error}"
+    return TakenError(Problem(name, 0, what, "rename what stands there, or choose another folder", code="BAT320"))
+
+
 class FolderStore:
     """A folder of this computer, which is made when something is written."""
 
@@ -67,6 +81,8 @@ class FolderStore:
         except (FileNotFoundError, NotADirectoryError):
             return None
         except OSError as error:
+            if (self._folder / name).is_dir() or error.errno in _TAKEN:
+                raise _taken(name, error) from None
             raise self._unusable(name, "cannot be read", error) from None
 
     def read_many(self, names: Sequence[str]) -> Iterator[bytes | None]:
@@ -79,10 +95,14 @@ class FolderStore:
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
+            if error.errno in _TAKEN and self._folder.is_dir():
+                raise _taken(name, error) from None
             raise self._unusable(name, "cannot be written", error) from None
         if not is_within(path.parent, self._folder):
-            what = "leads out of the folder of results by a link"
-            raise InputError(Problem(str(path), 0, what, "choose another folder", code="FIL230"))
+            what = f"its result would be {name}, which leads out of the folder of results by a link"
+            raise TakenError(Problem(name, 0, what, "remove the link, or choose another folder", code="BAT320"))
+        if path.is_dir():
+            raise _taken(name, IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR)))
         with atomic_file(path) as sink:
             sink.write(content)
 
@@ -138,6 +158,8 @@ class UrlStore:
         except (FileNotFoundError, NotADirectoryError):
             return None
         except OSError as error:
+            if error.errno in _TAKEN:
+                raise _taken(name, error) from None
             raise self._unusable(error) from None
 
     def read_many(self, names: Sequence[str]) -> Iterator[bytes | None]:
@@ -163,6 +185,8 @@ class UrlStore:
             self._files.pipe_file(part, content)
             self._files.mv(part, path)
         except OSError as error:
+            if error.errno in _TAKEN:
+                raise _taken(name, error) from None
             raise self._unusable(error) from None
 
     def remove(self, name: str) -> None:
