@@ -66,7 +66,11 @@ class LocalWorkers:
         self._stillborn = 0
 
     def __enter__(self) -> "LocalWorkers":
-        self._folder = TemporaryDirectory(prefix="trunnion-", ignore_cleanup_errors=True)
+        try:
+            self._folder = TemporaryDirectory(prefix="trunnion-", ignore_cleanup_errors=True)
+        except OSError as error:
+            what = f"the folder for temporary files does not take any: {error.strerror or error}"
+            raise InputError(Problem("batch", 0, what, "make space there, or set TMPDIR", code="BAT390")) from None
         return self
 
     def __exit__(self, *_: object) -> None:
