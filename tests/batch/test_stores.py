@@ -30,6 +30,8 @@ def test_a_store_gives_back_what_it_was_given(store: Store) -> None:
     assert list(store.read_many(["b", "no", "a/x"])) == [b"", None, b"one"]
     assert store.holds("a/x", 3, digest(b"one"))
     assert not store.holds("a/x", 4, digest(b"more"))
+    assert not store.holds("a/x", 3, digest(b"two"))
+    assert store.is_exact
     assert store.names("a") == ["a/x"]
     store.remove("a/x")
     store.remove("a/x")

@@ -41,6 +41,7 @@ class BatchResult:
     counts  how many became what
     done    how many were done already
     failed  indices of the units that did not pass
+    jobs    their names
     """
 
     units: Sequence[Unit]
@@ -48,6 +49,7 @@ class BatchResult:
     counts: Mapping[Status, int]
     done: int
     failed: Sequence[int] = field(repr=False)
+    jobs: Sequence[str] = ()
 
     @property
     def passed(self) -> bool:
@@ -94,7 +96,9 @@ def run_jobs(
                 record = outcome if isinstance(outcome, Record) else settle(store, assignment.record, outcome)
                 found.add(assignment.number, record.status)
                 advance(1)
-    return BatchResult(units, store, dict(found.counts), pending.done, sorted(found.failed))
+    return BatchResult(
+        units, store, dict(found.counts), pending.done, sorted(found.failed), [job.name for job in batch.jobs]
+    )
 
 
 class _Tally:

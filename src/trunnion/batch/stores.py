@@ -25,10 +25,12 @@ class Store(Protocol):
 
     label         what messages call it
     worker_url    by which workers write to it themselves; empty: they cannot
+    is_exact      whether ``holds`` looks at the content
     """
 
     label: str
     worker_url: str
+    is_exact: bool
 
     def read(self, name: str) -> bytes | None:
         """A file; None: there is none."""
@@ -69,6 +71,7 @@ class FolderStore:
     """A folder of this computer, which is made when something is written."""
 
     worker_url = ""
+    is_exact = True
 
     def __init__(self, folder: Path) -> None:
         self.label = str(folder)
@@ -149,6 +152,7 @@ class UrlStore:
         protocol = self._files.protocol
         self._protocol = protocol if isinstance(protocol, str) else protocol[0]
         self.worker_url = "" if self._protocol == "memory" else url
+        self.is_exact = self._protocol in ("file", "local", "memory")
         self._moves = self._protocol in ("file", "local", "sftp", "ssh", "ftp", "smb")
 
     def read(self, name: str) -> bytes | None:
@@ -200,10 +204,11 @@ class UrlStore:
         return None if content is None else digest(content)
 
     def holds(self, name: str, size: int, checksum: str) -> bool:
-        """Whether a file has the size with which it was written: its content would have to be fetched."""
+        """Whether a file is as it was written; far away only whether it has the size: its content had to be fetched."""
         try:
-            return bool(self._files.info(self._path(name)).get("size") == size)
-        except OSError:
+            is_as_long = bool(self._files.info(self._path(name)).get("size") == size)
+            return is_as_long and (not self.is_exact or self.digest(name) == checksum)
+        except (OSError, InputError):
             return False
 
     def names(self, folder: str) -> list[str]:
