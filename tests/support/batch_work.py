@@ -1,7 +1,8 @@
 """Work that takes no time in place of posts, in worker processes too, which import little for it.
 
 What it does stands in the file: ``fail``, ``refuse``, ``several …``, ``die PATH`` (ends its process, unless PATH is
-there, and makes it), ``always die``, ``sleep SECONDS``, ``cold PATH SECONDS`` (sleeps unless PATH is there, and makes it); anything else passes.
+there, and makes it), ``always die``, ``sleep SECONDS``, ``cold PATH SECONDS`` (sleeps unless PATH is there, and makes
+it); anything else passes.
 """
 
 import os

@@ -47,10 +47,10 @@ class StoppingStore(FolderStore):
         super().__init__(folder)
         self.changes, self._before = 0, before
 
-    def write(self, name: str, content: bytes) -> None:
+    def write(self, name: str, content: bytes, *, lasting: bool = True) -> None:
         """Write, or be interrupted."""
         self._count()
-        super().write(name, content)
+        super().write(name, content, lasting=lasting)
 
     def remove(self, name: str) -> None:
         """Remove, or be interrupted."""

@@ -174,7 +174,8 @@ def commit(store: Store, record: Record, outcome: Outcome) -> Record:
             what = f"its result would replace {name}, which this batch has not written as it is"
             return _keep_away(store, record, what, known)
     record = replace(record, replaces={name: (checksum,) for name, checksum in old.items()})
-    store.write(record_name(record.place), record_bytes(record))
+    # A record that is lost is made again; only one that names files must be there before these are.
+    store.write(record_name(record.place), record_bytes(record), lasting=bool(files or old))
     for name in old:
         if name not in files:
             store.remove(name)
@@ -185,7 +186,7 @@ def commit(store: Store, record: Record, outcome: Outcome) -> Record:
         return _keep_away(store, record, error.problems[0].what, known_of(record))
     if old:
         record = replace(record, replaces={})
-        store.write(record_name(record.place), record_bytes(record))
+        store.write(record_name(record.place), record_bytes(record), lasting=bool(files))
     return record
 
 

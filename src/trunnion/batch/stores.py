@@ -38,8 +38,8 @@ class Store(Protocol):
     def read_many(self, names: Sequence[str]) -> Iterator[bytes | None]:
         """Files one after another, in their order."""
 
-    def write(self, name: str, content: bytes) -> None:
-        """Write a file, or replace it."""
+    def write(self, name: str, content: bytes, *, lasting: bool = True) -> None:
+        """Write a file, or replace it; it is whole at once, and if ``lasting`` after a power failure, too."""
 
     def remove(self, name: str) -> None:
         """Remove a file, if it is there."""
@@ -92,7 +92,7 @@ class FolderStore:
         """Files one after another, in their order."""
         return map(self.read, names)
 
-    def write(self, name: str, content: bytes) -> None:
+    def write(self, name: str, content: bytes, *, lasting: bool = True) -> None:
         """Write a file, or replace it; what leads out of the folder by a link is refused."""
         path = self._folder / name
         try:
@@ -106,6 +106,14 @@ class FolderStore:
             raise TakenError(Problem(name, 0, what, "remove the link, or choose another folder", code="BAT320"))
         if path.is_dir():
             raise _taken(name, IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR)))
+        if not lasting:  # to wait for the disk takes longer than most of the work on a small file
+            part = path.with_name(f".{os.getpid()}.{os.urandom(4).hex()}.part")
+            try:
+                part.write_bytes(content)
+                part.replace(path)
+            except OSError as error:
+                raise self._unusable(name, "cannot be written", error) from None
+            return
         with atomic_file(path) as sink:
             sink.write(content)
 
@@ -177,7 +185,7 @@ class UrlStore:
                     raise self._unusable(content)
                 yield bytes(content) if isinstance(content, bytes | bytearray) else None
 
-    def write(self, name: str, content: bytes) -> None:
+    def write(self, name: str, content: bytes, *, lasting: bool = True) -> None:
         """Write a file, or replace it."""
         path = self._path(name)
         try:
