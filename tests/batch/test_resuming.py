@@ -1,5 +1,6 @@
 """A batch that is run again: it does what is missing or has changed, and comes out as if it had never been stopped."""
 
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,9 +8,10 @@ import pytest
 
 from tests.support.batches import InOrder, Interrupted, StoppingStore, run_simply, simple_batch, tree, write_files
 from tests.support.dask_clusters import needs_dask
-from trunnion.batch.records import FOLDER, record_name
+from trunnion.batch.records import FOLDER, Record, record_name
 from trunnion.batch.stores import FolderStore, open_store
-from trunnion.batch.task import Status
+from trunnion.batch.task import Outcome, Status, Task
+from trunnion.batch.workers import Assignment
 
 TEXTS = {"a/x.cls": "one", "b/x.cls": "two", "c.cls": "fail", "d.cls": "several parts", "e.cls": "refuse"}
 CHANGED = {"a/x.cls": "other", "b/x.cls": "fail", "c.cls": "mended", "d.cls": "single", "e.cls": "several now"}
@@ -145,6 +147,38 @@ def test_a_folder_in_the_place_of_a_result_concerns_its_file_only(tmp_path: Path
     (tmp_path / "out/x.mpf/mine").unlink()
     (tmp_path / "out/x.mpf").rmdir()
     assert run_simply(simple_batch(tmp_path / "in"), store).passed
+
+
+@pytest.mark.parametrize(("changed", "done"), [("x.sub", ["x.cls"]), ("tools.toml", ["x.cls", "y.cls"]), ("z.sub", [])])
+def test_what_goes_with_files_counts(tmp_path: Path, changed: str, done: list[str]) -> None:
+    texts = dict.fromkeys(("x.cls", "y.cls", "x.sub", "y.sub", "z.sub", "tools.toml"), "one")
+    write_files(tmp_path / "in", texts)
+    (job,) = simple_batch(tmp_path / "in").jobs
+    shared = {"files/tools.toml": tmp_path / "in/tools.toml"}
+    job = replace(job, shared=shared, beside={"subprograms": ["{folder}/{stem}.sub"]})
+    batch = replace(simple_batch(tmp_path / "in"), jobs=[job])
+    store, again = FolderStore(tmp_path / "out"), InOrder()
+    run_simply(batch, store)
+    write_files(tmp_path / "in", {changed: "other"})
+    run_simply(batch, store, again)
+    assert again.done == done
+
+
+def test_a_file_that_changes_while_it_is_worked_on_is_done_again(tmp_path: Path) -> None:
+    write_files(tmp_path / "in", {"x.cls": "one", "y.cls": "two"})
+
+    class Changing(InOrder):
+        def run(self, tasks: Iterable[tuple[Assignment, Task]]) -> Iterator[tuple[Assignment, Outcome | Record]]:
+            for each in super().run(tasks):
+                write_files(tmp_path / "in", {"x.cls": "changed"})
+                yield each
+
+    store, again = FolderStore(tmp_path / "out"), InOrder()
+    run_simply(simple_batch(tmp_path / "in"), store, Changing())
+    assert (tmp_path / "out/x.mpf").read_bytes() == b"of one"
+    run_simply(simple_batch(tmp_path / "in"), store, again)
+    assert again.done == ["x.cls"]
+    assert (tmp_path / "out/x.mpf").read_bytes() == b"of changed"
 
 
 def test_a_job_with_another_name_is_not_done_again(tmp_path: Path) -> None:
