@@ -1,4 +1,4 @@
-"""A batch of thousands of small programs: ``python -m benchmarks.batch [--files 10000] [--folder FOLDER]``.
+"""A batch of thousands of small programs: ``PYTHONPATH=. python benchmarks/batch.py [--files N]``.
 
 Posts N generated CL files of 20 to 99 points in a plain loop of one process, by two worker processes, and on a cluster
 of Dask on this computer: a scheduler and two workers. There a worker is killed three times, and the scheduler once;
@@ -21,10 +21,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from benchmarks import make_cls
 from tests.support.batches import run_simply, tree
 from tests.support.dask_clusters import Cluster
 
+import make_cls
 import trunnion
 from trunnion.api.observer import Observer
 from trunnion.batch import run_batch
