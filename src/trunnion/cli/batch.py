@@ -62,7 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
     except KeyboardInterrupt:
         tell("the batch goes on where it was stopped when it is run again")
         raise
-    print_result(*map(one_line, _lines(result)))
+    print_result(*map(one_line, result_lines(result)))
     return 0 if result.passed else 1
 
 
@@ -74,7 +74,7 @@ class _Terminal(Terminal):
         return progress(stage, total, unit, delay=0) if sys.stderr.isatty() else progress_lines(stage, total, unit)
 
 
-def _lines(result: BatchResult) -> Iterator[str]:
+def result_lines(result: BatchResult) -> Iterator[str]:
     """A batch in lines: what failed, and how many became what."""
     width = max((len(unit) for unit in result.jobs), default=0) if len(result.jobs) > 1 else 0
     if result.failed:
