@@ -10,7 +10,7 @@ from tests.support.batches import InOrder, Interrupted, StoppingStore, run_simpl
 from trunnion.api.observer import Observer
 from trunnion.batch.jobs import Batch
 from trunnion.batch.keys import home_of
-from trunnion.batch.records import FOLDER
+from trunnion.batch.records import FOLDER, record_name
 from trunnion.batch.stores import FolderStore
 from trunnion.errors import Problem
 
@@ -132,6 +132,21 @@ def test_a_folder_that_was_moved_is_the_same_batch_once_it_has_run(tmp_path: Pat
     assert again.done == []
     (tmp_path / "moved/d.cls").unlink()
     assert run(batch_of(tmp_path / "moved"), tmp_path / "out") == [("d.mpf", "BAT360")]
+
+
+@pytest.mark.parametrize("name", ["../mine", "/mine", "link/mine", "x/../../mine", ".trunnion-batch/../../mine"])
+def test_a_record_that_names_files_elsewhere_removes_none(tmp_path: Path, name: str) -> None:
+    write_files(tmp_path, {"mine": "of one", "in/x.cls": "one", "in/y.cls": "two"})
+    out = tmp_path / "out"
+    run(batch_of(tmp_path / "in"), out)
+    (out / "link").symlink_to(tmp_path, target_is_directory=True)
+    (out / "x").mkdir()
+    named_elsewhere = str(tmp_path / "mine") if name == "/mine" else name
+    record = out / record_name("x.mpf")
+    record.write_bytes(record.read_bytes().replace(b'"x.mpf": {', f'"{named_elsewhere}": {{'.encode()))
+    (tmp_path / "in/x.cls").unlink()
+    run(batch_of(tmp_path / "in"), out)
+    assert (tmp_path / "mine").read_bytes() == b"of one"
 
 
 def test_it_may_be_stopped_anywhere(tmp_path: Path) -> None:

@@ -87,7 +87,7 @@ def record_bytes(record: Record) -> bytes:
 
 
 def parse_record(content: bytes | None) -> Record | None:
-    """A record that was kept; None: there is none, or it is damaged."""
+    """A record that was kept; None: there is none, or it is damaged, or names files that are no results."""
     if content is None:
         return None
     try:
@@ -99,9 +99,17 @@ def parse_record(content: bytes | None) -> Record | None:
             "replaces": {name: tuple(each) for name, each in values["replaces"].items()},
         }
         home = costs.pop("home")
+        if not all(map(_is_result, (*values["outputs"], *values["replaces"]))):
+            return None
         return Record(**values, costs=Costs(**costs), home=home)
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
         return None
+
+
+def _is_result(name: str) -> bool:
+    """Whether a name is one within the results: what a record names may be removed."""
+    parts = name.split("/")
+    return not {"", ".", "..", FOLDER} & set(parts) and "\\" not in name and ":" not in name
 
 
 def _problem(values: dict[str, Any]) -> Problem:

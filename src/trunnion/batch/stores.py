@@ -118,9 +118,11 @@ class FolderStore:
             sink.write(content)
 
     def remove(self, name: str) -> None:
-        """Remove a file, if it is there."""
-        with suppress(FileNotFoundError, NotADirectoryError):
-            (self._folder / name).unlink()
+        """Remove a file, if it is there; what leads out of the folder by a link stays."""
+        path = self._folder / name
+        if is_within(path.parent, self._folder):
+            with suppress(FileNotFoundError, NotADirectoryError):
+                path.unlink()
 
     def digest(self, name: str) -> str | None:
         """SHA-256 of a file; None: there is none."""
