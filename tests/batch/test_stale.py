@@ -10,7 +10,7 @@ from tests.support.batches import InOrder, Interrupted, StoppingStore, run_simpl
 from trunnion.api.observer import Observer
 from trunnion.batch.jobs import Batch
 from trunnion.batch.keys import home_of
-from trunnion.batch.records import FOLDER, record_name
+from trunnion.batch.records import FOLDER, parse_record, record_name
 from trunnion.batch.stores import FolderStore
 from trunnion.errors import Problem
 
@@ -144,6 +144,7 @@ def test_a_record_that_names_files_elsewhere_removes_none(tmp_path: Path, name: 
     named_elsewhere = str(tmp_path / "mine") if name == "/mine" else name
     record = out / record_name("x.mpf")
     record.write_bytes(record.read_bytes().replace(b'"x.mpf": {', f'"{named_elsewhere}": {{'.encode()))
+    assert (parse_record(record.read_bytes()) is None) is (name != "link/mine")  # a link is told by the store
     (tmp_path / "in/x.cls").unlink()
     run(batch_of(tmp_path / "in"), out)
     assert (tmp_path / "mine").read_bytes() == b"of one"
