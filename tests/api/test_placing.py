@@ -9,7 +9,7 @@ import trunnion
 BLADE = "tests/golden/yl569/3_blade_finish.cls"
 
 
-@pytest.mark.parametrize("turns", [0.0, float("nan"), -5.0, True, [], ["x"], [float("inf")], [[0.0]], None])
+@pytest.mark.parametrize("turns", [0.0, float("nan"), -5.0, True, [], ["x"], [float("inf")], [[0.0]], b""])
 def test_turns_that_are_none_are_refused(turns: object) -> None:
     with pytest.raises(trunnion.InputError) as told:
         trunnion.place(BLADE, machine="yl569", turns=turns)  # type: ignore[arg-type]

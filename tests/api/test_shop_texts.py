@@ -405,7 +405,7 @@ def test_a_mode_at_places_behind_those_of_the_operation_is_refused(
 ) -> None:
     stop = "\nM{number}" if place == "stop" else ""
     problem = refusal(tmp_path, f"{place} = '''\n{text}{stop}\n'''", LEVEL_ONLY, extends=extends)
-    assert (problem.code, f"{place} writes {word}," in problem.what) == ("CTL455", True)
+    assert (problem.code, f"{place} writes {word}," in problem.what) == ("CTL457", True)
 
 
 @pytest.mark.parametrize(

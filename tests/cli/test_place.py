@@ -17,12 +17,17 @@ def test_text_names_the_place_its_margins_and_what_limits_it(capsys: pytest.Capt
     lines = capsys.readouterr().out.splitlines()
     assert code == 0
     assert lines[0].startswith("yl569: best zero ")
-    assert [line.split()[0] for line in lines[1:4]] == ["X", "Y", "Z"]
-    assert all("left" in line for line in lines[1:4])
-    assert lines[4].startswith("  it is held by ")
-    assert f"({HUB}:" in lines[4]
-    assert lines[5].startswith("  present zero 0.000,0.000,120.000: ")
-    assert lines[6] == "  it fits at 1 of 1 turn"
+    assert lines[1] == "  the part is clamped as it is drawn"
+    assert [line.split()[0] for line in lines[2:7]] == ["X", "Y", "Z", "C", "B"]
+    assert all("left" in line for line in lines[2:5])
+    assert lines[5].endswith("degrees, no limits")
+    assert "degrees of -11 to 100: " in lines[6]
+    assert lines[7].startswith("  it is held by ")
+    assert f"({HUB}:" in lines[7]
+    assert lines[8].startswith("  present zero 0.000,0.000,120.000: ")
+    assert lines[9] == "  it fits at 1 of 1 turn"
+    assert lines[10].startswith("  clamped so, the zero may be anywhere within X ")
+    assert lines[11].startswith("  and not beyond X ")
 
 
 def test_data_has_the_place_the_region_and_the_turns(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -103,9 +108,56 @@ def test_apply_posts_the_part_where_it_sits_best(tmp_path: Path, capsys: pytest.
     assert "travel        ok" in err
 
 
+def test_the_program_says_how_the_part_is_clamped_and_verify_takes_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    program, sheet = tmp_path / "placed.mpf", tmp_path / "placed.html"
+    machine = ["--machine", "yl569", "--tool-length", "90"]
+    angles = ["--turn", "45", "--tilt", "-10"]
+    assert main(["place", BLADE, *machine, *angles, "--apply", str(program), "--sheet", str(sheet)]) == 0
+    out = capsys.readouterr().out
+    lines = out.splitlines()
+    assert "tilted -10 degrees about X, then turned 45 degrees: " in lines[0]
+    assert "fixture angle of -10 degrees about X of the part, right-handed: its +Y side goes down" in lines[1]
+    assert lines[2] == "  then turn the part by 45 degrees about Z, counter-clockwise seen from above (from +Z)"
+    head = program.read_text("utf-8").splitlines()[:3]
+    assert head[0].endswith(";PART TILTED -10 DEG FIRST, ABOUT ITS X, RIGHT-HANDED, ITS +Y SIDE DOWN")
+    assert head[1].endswith(";PART TURNED 45 DEG ABOUT Z, COUNTER-CLOCKWISE SEEN FROM ABOVE, FROM +Z")
+    x, y, z = lines[0].split("best zero ")[1].split(", ")[0].split(",")
+    assert head[2].endswith(f";WORKPIECE ZERO X{x} Y{y} Z{z} MM ON THE MACHINE, AXES AT 0")
+    assert "PART TURNED 45 DEG" in sheet.read_text("utf-8")
+    verified = ["verify", str(program), "--cl", BLADE, *machine]
+    assert main(verified) == 1
+    told = capsys.readouterr().err
+    assert "tilted by -10 degrees about X and turned by 45 degrees about Z" in told
+    assert "PLC220" in told
+    assert main([*verified, *angles[:2]]) == 1
+    assert "PLC220" in capsys.readouterr().err
+
+
+def test_a_program_that_is_clamped_as_told_is_verified_without_a_word(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    program = tmp_path / "placed.mpf"
+    machine = ["--machine", "yl569", "--tool-length", "90"]
+    for angles in (["--turn", "45", "--tilt", "-10"], ["--turn", "-30"], ["--turn", "0"]):
+        assert main(["place", BLADE, *machine, *angles, "--apply", str(program)]) == 0
+        capsys.readouterr()
+        assert main(["verify", str(program), "--cl", BLADE, *machine, *angles]) == 0
+        assert "PLC220" not in capsys.readouterr().err
+    assert ";PART CLAMPED AS DRAWN, NOT TURNED" in program.read_text("utf-8")
+    assert main(["verify", str(program), *machine, "--turn", "5"]) == 2  # without CL files there is nothing to turn
+    assert "there are none" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        (["--tilt", "91"], "is no tilt"),
+        (["--tilt", "nan"], "is no tilt"),
+        (["--free", "--tilt", "5"], "not allowed with"),
+        (["--free", "--turns", "1"], "give wider steps"),
+        (["--sheet", "sheet.html"], "--apply"),
         (["--turns", "0"], "is no step of turns"),
         (["--turns", "nan"], "is no step of turns"),
         (["--turn", "inf"], "is no turn"),
@@ -137,3 +189,37 @@ def test_files_that_cannot_be_placed_are_refused(tmp_path: Path, capsys: pytest.
     assert "PLC110" in capsys.readouterr().err
     assert main(["place", program, "--machine", "yl569", "--turn", "0", "--apply", str(tmp_path / "x.mpf")]) == 2
     assert "PLC140" in capsys.readouterr().err
+
+
+def test_a_set_up_of_a_project_is_placed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The plate is 2 x 65 by 2 x 32 mm of path: travel less that is a box, and the whole region."""
+    project = "examples/project/part.toml"
+    assert main(["place", project, "--setup", "top", "--turn", "0"]) == 0
+    out = capsys.readouterr().out
+    assert "present zero 0.000,0.000,-160.000: 118.000 mm to the limits" in out
+    assert "may be anywhere within X -185.000 to 185.000, Y -118.000 to 118.000, Z -354.000 to 120.000" in out
+    assert "not beyond" not in out
+    assert main(["place", project]) == 2
+    assert "top, bottom [PLC170]" in capsys.readouterr().err
+    assert main(["place", project, "--setup", "side"]) == 2
+    assert "PLC170" in capsys.readouterr().err
+    assert main(["place", project, BLADE]) == 2
+    assert main(["place", BLADE, "--machine", "yl569", "--setup", "top"]) == 2
+    assert main(["place", BLADE]) == 2
+    assert "--machine" in capsys.readouterr().err
+    hooked = tmp_path / "hooked.toml"
+    (tmp_path / "blade.cls").write_text(Path(BLADE).read_text("utf-8"), "utf-8")
+    (tmp_path / "h.py").write_text("def on_operation(operation, context):\n    return None\n", "utf-8")
+    hooked.write_text('machine = "yl569"\ncl = ["blade.cls"]\noutput = "b.mpf"\nhooks = ["h.py"]\n', "utf-8")
+    assert main(["place", str(hooked)]) == 2
+    assert "PLC160" in capsys.readouterr().err
+
+
+def test_a_program_that_is_converted_still_says_how_the_part_is_clamped(tmp_path: Path) -> None:
+    program, other = tmp_path / "placed.mpf", tmp_path / "other.h"
+    machine = ["--machine", "yl569", "--tool-length", "90"]
+    assert main(["place", BLADE, *machine, "--turn", "30", "--apply", str(program)]) == 0
+    assert main(["convert", str(program), "--machine", "yl569", "--to-machine", "dmu65", "--output", str(other)]) == 0
+    head = other.read_text("utf-8").splitlines()[:4]
+    assert head[1].endswith("; PART TURNED 30 DEG ABOUT Z, COUNTER-CLOCKWISE SEEN FROM ABOVE, FROM +Z")
+    assert not any("WORKPIECE ZERO" in line for line in head)

@@ -126,7 +126,8 @@ def test_the_best_turn_is_the_best_of_all_turns(machine: Machine, seed: int) -> 
     grid = np.arange(0.0, 360.0, 60.0)
     assume(all(well_conditioned(path.at(turn)) for path in paths for turn in grid.tolist()))
     results, best = best_turns(paths, grid, lambda _: None, refine=True)
-    assert best.margin >= max(result.margin for result in results) - 1e-6
+    most = max(result.margin for result in results)
+    assert best.margin >= most - 0.01 * max(most, 0.0) - 1e-6  # that much is given up for the rotary axes
     for result in results[:4]:
         alone = best_of_turn(paths, result.turn)
         assert alone.margin == pytest.approx(result.margin, abs=1e-6)

@@ -9,10 +9,12 @@ from hypothesis import strategies as st
 
 from tests.support.placed_paths import random_rows
 from trunnion.machines import Machine, inverse, load_machine
+from trunnion.placing.best_turn import best_turns
 from trunnion.placing.goals import Goal, PlaceCost, rotary_travel
 from trunnion.placing.largest_margin import largest_margin
 from trunnion.placing.least_cost import least_cost
 from trunnion.placing.path_rows import PathRows, Stretch
+from trunnion.placing.planned_time import planned_seconds
 from trunnion.placing.rotary_angles import RotaryAngles, rotary_angles
 from trunnion.placing.travel_limits import CutSet
 from trunnion.placing.turns import Choice, TurnedPath
@@ -102,3 +104,49 @@ def test_rotary_travel_counts_from_the_start_of_each_stretch() -> None:
     positions = np.array([[10.0, 5.0], [20.0, 5.0], [-40.0, 0.0], [-40.0, 30.0]])
     # 10 + 5, 10; then, anew from 0 0: 40 + 0, 30
     assert rotary_travel(rows, positions) == 95.0
+
+
+def straight_rows(speed: float) -> PathRows:
+    """100 mm along X at a speed, mm/s, by a tool that stands upright."""
+    rows = random_rows(1, 2)
+    return replace(
+        rows,
+        tip=np.array([[0.0, 0.0, 0.0], [100.0, 0.0, 0.0]]),
+        axis=np.tile([0.0, 0.0, 1.0], (2, 1)),
+        branch=np.zeros(2, np.uint8),
+        seconds=np.array([0.0, 100.0 / speed if speed else 0.0]),
+    )
+
+
+@pytest.mark.parametrize(
+    ("speed", "seconds"),
+    [
+        (10.0, 10.0 + 10.0 / 50.0),  # v/a besides the time at the feed: half of it at each end
+        (50.0, 2.0 + 1.0),
+        (0.0, 2.0 * np.sqrt(2.0)),  # at rapid it speeds up for 50 mm, and slows down for 50 mm
+    ],
+)
+def test_planned_seconds_have_the_accelerations_of_the_axes(speed: float, seconds: float) -> None:
+    axes = tuple(axis if axis.is_rotary else replace(axis, acceleration=50.0, jerk=None) for axis in YL569.axes)
+    machine = replace(YL569, axes=axes, workpiece_zero=None)
+    rows = straight_rows(speed)
+    positions = positions_of(machine, rows)
+    assert planned_seconds(machine, rows, positions, np.zeros(3)) == pytest.approx(seconds, rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", [3, 8])
+def test_the_place_for_time_is_the_fastest_by_the_planner_of_those_it_judges(seed: int) -> None:
+    axes = tuple(replace(axis, acceleration=40.0, jerk=None) for axis in YL569.axes)
+    machine = replace(YL569, axes=axes)
+    rows = tilted_rows(seed)
+    path = TurnedPath.of(machine, Choice.AS_PLANNED, rows, np.zeros(3))
+    _, best = best_turns([path], np.array([0.0, 120.0]), lambda _: None, refine=False, goal=Goal.TIME)
+    assert best.best is not None
+    assert best.cost is not None
+    seconds = planned_seconds(path.machine, *path.rows_at(best.turn), best.best.zero)
+    assert seconds > best.cost  # accelerations cost something
+    for turn in (0.0, 120.0):
+        cuts = path.at(turn)
+        assert isinstance(cuts, CutSet)
+        widest = largest_margin(cuts, np.zeros(3)).zero
+        assert seconds <= planned_seconds(path.machine, *path.rows_at(turn), widest) * (1.0 + 2e-4)

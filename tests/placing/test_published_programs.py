@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import trunnion
-from trunnion.api.placing_post import turned_toolpaths
+from trunnion.api.turned_parts import turned_toolpaths
 
 FOLDER = Path("tests/golden/yl569")
 CONTOUR, HUB, BLADE = (FOLDER / f"{name}.cls" for name in ("1_contour_rough", "2_hub_rough", "3_blade_finish"))

@@ -6,11 +6,17 @@ import pytest
 
 import trunnion
 from tests.support.program_heads import HEADS
+from trunnion.api.builders_words import builders_words
 from trunnion.cli import main
 from trunnion.controls import load_control
 from trunnion.errors import InputError
 from trunnion.model.run import Run
 from trunnion.readers import known_words
+
+PLUNGE = (
+    "TOOL PATH/A,TOOL,T1\nTLDATA/MILL,10.0,0.0,50.0,0.0,0.0\nMSYS/0,0,0,1,0,0,0,1,0\nLOAD/TOOL,1\n"
+    "SPINDL/RPM,1000,CLW\nRAPID\nGOTO/0,0,50,0,0,1\nFEDRAT/MMPM,100\nGOTO/0,0,5\nRAPID\nGOTO/0,0,50\nEND-OF-PATH\n"
+)
 
 
 def read(folder: Path, base: str, lines: str, *known: str) -> Run:
@@ -64,6 +70,34 @@ def test_a_word_of_the_builder_that_nobody_declares_is_named_once(base: str, tmp
     assert check.summary == "every word is known"
 
 
+def test_post_and_verify_warn_of_words_of_the_builder_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "part.cls").write_text(PLUNGE)
+    machine = tmp_path / "machine.toml"
+    machine.write_text('extends = "matsuura_mx330"\n[control.templates]\nbefore_operation = "M61\\nM88\\nM61"\n')
+    part, program = str(tmp_path / "part.cls"), str(tmp_path / "part.nc")
+    assert main(["post", part, "--machine", str(machine), "--output", program]) == 0
+    lines = [line.split(" ")[-1] for line in Path(program).read_text().splitlines()]
+    expected = [
+        f"{program}:{lines.index(word) + 1}: warning: {word} belongs to the machine: what it does is not known;"
+        " look it up, and declare it in [control.known] [NC225]"
+        for word in ("M61", "M88")
+    ]
+    assert [line for line in capsys.readouterr().err.splitlines() if "belongs to the machine" in line] == expected
+    assert main(["verify", program, "--machine", str(machine), "--cl", part]) == 0
+    assert [line for line in capsys.readouterr().err.splitlines() if "belongs to the machine" in line] == expected
+    posted = trunnion.post(part, machine=machine, output=program)
+    assert [each.code for each in posted.problems] == ["NC225", "NC225"]
+    assert posted.passed
+
+
+def test_of_many_words_of_the_builder_the_first_are_told(tmp_path: Path) -> None:
+    run = read(tmp_path, "matsuura_mx330", "\n".join(f"M{number}" for number in range(301, 330)))
+    told = builders_words(run)
+    assert [each.what.split()[0] for each in told[:20]] == [f"M{number}" for number in range(301, 321)]
+    assert [each.what for each in told[20:]] == ["9 more words belong to the machine"]
+    assert told[20].line == told[19].line + 1
+
+
 @pytest.mark.parametrize("base", HEADS)
 def test_effects_are_those_that_the_definition_names(base: str, tmp_path: Path) -> None:
     run = read(tmp_path, base, "M77", 'M77 = "spindle off, coolant flood, stop"')
@@ -110,10 +144,7 @@ def test_mistakes_are_told_with_their_line(line: str, what: str, tmp_path: Path)
 
 
 def test_a_template_may_hold_a_declared_word(tmp_path: Path) -> None:
-    (tmp_path / "part.cls").write_text(
-        "TOOL PATH/A,TOOL,T1\nTLDATA/MILL,10.0,0.0,50.0,0.0,0.0\nMSYS/0,0,0,1,0,0,0,1,0\nLOAD/TOOL,1\n"
-        "SPINDL/RPM,1000,CLW\nRAPID\nGOTO/0,0,50,0,0,1\nFEDRAT/MMPM,100\nGOTO/0,0,5\nRAPID\nGOTO/0,0,50\nEND-OF-PATH\n"
-    )
+    (tmp_path / "part.cls").write_text(PLUNGE)
     machine = tmp_path / "machine.toml"
     text = load_control(trunnion.load_machine("matsuura_mx330").control).templates["tool_change"]
     lines = "\n".join([*text.lines, "G65 P9810", "G187 P1"])
@@ -132,10 +163,7 @@ def test_a_template_may_hold_a_declared_word(tmp_path: Path) -> None:
 
 
 def test_a_template_may_call_a_file_that_exists_already(tmp_path: Path) -> None:
-    (tmp_path / "part.cls").write_text(
-        "TOOL PATH/A,TOOL,T1\nTLDATA/MILL,10.0,0.0,50.0,0.0,0.0\nMSYS/0,0,0,1,0,0,0,1,0\nLOAD/TOOL,1\n"
-        "SPINDL/RPM,1000,CLW\nRAPID\nGOTO/0,0,50,0,0,1\nFEDRAT/MMPM,100\nGOTO/0,0,5\nRAPID\nGOTO/0,0,50\nEND-OF-PATH\n"
-    )
+    (tmp_path / "part.cls").write_text(PLUNGE)
     machine, macro = tmp_path / "machine.toml", tmp_path / "O9001"
     lines = load_control(trunnion.load_machine("matsuura_mx330").control).templates["first_tool"].lines
     text = "\n".join([*lines, "M98 P9001"])

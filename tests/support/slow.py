@@ -3,7 +3,7 @@
 #: Files that take more than some three seconds of processor time, and folders of them: whole matrices, judges, fuzzing,
 #: and long property tests.
 SLOW = (
-    "api/test_arc_travel.py", "api/test_fastest_feeds.py", "api/test_hole_travel.py",
+    "api/test_arc_travel.py", "api/test_fastest_feed_proof.py", "api/test_fastest_feeds.py", "api/test_hole_travel.py",
     "api/test_impeller_cutting.py", "api/test_impellers_on_machines.py", "api/test_papers.py",
     "api/test_project_papers.py", "api/test_project_posting.py",
     "api/test_same_as_command.py",

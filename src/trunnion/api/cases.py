@@ -134,8 +134,8 @@ class Case:
         papers = {} if self._project is None else {each.output: each.papers for each in self._project.setups}
         for program in programs:
             named = papers.get(program[0], NO_PAPERS).by_name().values()
-            places = [resolve_output(file).path for file in (*program, *named)]
-            EarlierJob(places[0]).remember(places)
+            places = [resolve_output(file).path for file in program]
+            EarlierJob(places[0]).remember(places, [resolve_output(file).path for file in named])
 
 
 @dataclass(frozen=True, slots=True)

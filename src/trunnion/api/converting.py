@@ -20,6 +20,7 @@ from trunnion.api.posting import post_toolpaths
 from trunnion.api.reading import FilePath, MachineLike, as_machine, read_program
 from trunnion.api.settings import Settings, control_setting_faults, set_up_machine
 from trunnion.api.targets import OutputLike, open_target, written_text
+from trunnion.api.turned_parts import carried_notices
 from trunnion.cl.writers import WRITERS
 from trunnion.controls import Control, load_control
 from trunnion.controls.vocabulary import INCH
@@ -183,7 +184,7 @@ def convert_beside(
     source = as_machine(machine)
     target_machine = source if to_machine is None else as_machine(to_machine, "to_machine")
     control = load_control(source.control)
-    job = prepare(target_machine, settings, force=force)
+    job = replace(prepare(target_machine, settings, force=force), notices=carried_notices(program))
     check_conversion_settings(job, to_cl)
     definitions = [*machine_files(machine, source), *machine_files(to_machine or target_machine, target_machine)]
     source = set_up_machine(source, zero, tool_length)

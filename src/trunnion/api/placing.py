@@ -1,15 +1,16 @@
 """Where on the table a part may sit: the feasible places of its workpiece zero, and the best of them."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from typing import Final
 
 import numpy as np
 
-from trunnion.api.arguments import check_choice, check_observer, check_paths, wrong_argument
+from trunnion.api.arguments import check_choice, check_observer, check_paths
 from trunnion.api.observer import SILENT, Observer
+from trunnion.api.orientations import orientations
 from trunnion.api.placing_inputs import PlacedInput, read_input
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.api.settings import Settings, as_texts, set_up_machine
@@ -17,11 +18,12 @@ from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
-from trunnion.placing.best_turn import TurnResult, best_turns
+from trunnion.placing.best_turn import TurnResult, best_orientations
 from trunnion.placing.between_rows import most_between
 from trunnion.placing.goals import Goal, PlaceCost, rotary_travel
-from trunnion.placing.path_rows import PathRows, about_z
-from trunnion.placing.placement import AxisUse, Limit, Place, Placement, TurnMargin
+from trunnion.placing.path_rows import PathRows, about_x, about_z
+from trunnion.placing.placement import AxisUse, Limit, Place, Placement, RotaryUse, TurnMargin
+from trunnion.placing.planned_time import planned_seconds
 from trunnion.placing.region import Region, region_of
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.travel_limits import Cut, CutSet
@@ -29,16 +31,14 @@ from trunnion.placing.turns import TurnedPath, choices_of
 
 GOALS: Final = tuple(str(goal) for goal in Goal)
 
-#: Turns are at most as many.
-_MOST_TURNS: Final = 3600
-
 
 def place(
     files: Iterable[ToolpathLike] | ToolpathLike,
     *,
     machine: MachineLike,
     goal: str = "margin",
-    turns: float | Sequence[float] = 5.0,
+    turns: float | Sequence[float] | None = None,
+    tilts: float | Sequence[float] = (),
     zero: str | Iterable[float] | None = None,
     tool_length: str | float | None = None,
     settings: Settings | None = None,
@@ -55,10 +55,15 @@ def place(
         A name, a path or a ``Machine``.
     goal
         What the best place is best for: ``"margin"``, the distance of the slides to their limits; or the least
-        ``"rotary"`` or ``"slides"`` travel, ``"time"`` at rapid speeds, or ``"overspeed"``, fewest rows whose feed the
+        ``"rotary"`` or ``"slides"`` travel, ``"time"``, or ``"overspeed"``, fewest rows whose feed the
         axes do not reach. Places with these goals keep a margin of 1 mm where they can.
     turns
         The part is tried at every so many degrees about Z, and more finely around the best; or the turns themselves.
+        By default each 5 degrees, with several tilts each 15.
+    tilts
+        Before it is turned the part is tilted about X of the program's coordinate system, right-handed, as by a fixture
+        with that angle: at every so many degrees from -90 to 90, and more finely around the best; or the tilts
+        themselves. By default it is not tilted.
     zero : (3,) float, mm
         The present place of the workpiece zero; by default that of the definition.
     tool_length
@@ -73,7 +78,8 @@ def place(
     Returns
     -------
     Placement
-        ``fits``, ``zero_mm``, ``turn_deg``, ``margin_mm``, ``limits``, the ``region`` of all places, and more.
+        ``fits``, ``zero_mm``, ``turn_deg``, ``tilt_deg``, ``margin_mm``, ``limits``, the ``region`` of all
+        places, and more.
 
     Raises
     ------
@@ -95,7 +101,7 @@ def place(
     """
     check_observer(observer)
     goal = check_choice("goal", goal, GOALS)
-    grid, refine = _turns(turns)
+    grid = orientations(turns, tilts)
     texts = as_texts(settings)
     zero = texts.pop("zero", None) if zero is None else zero
     tool_length = texts.get("tool_length") if tool_length is None else tool_length
@@ -103,32 +109,20 @@ def place(
     if not np.isfinite(loaded.limits[list(loaded.linear)]).any():
         what = f"no slide of {loaded.key} has limits: the part may sit anywhere"
         raise InputError(argument_problem("machine", what, "state limits_mm of its axes", code="PLC130"))
-    given = read_input(files, loaded, texts, check_paths("subprograms", subprograms), observer)
+    tilts_by_size = tuple(sorted(grid.tilts.tolist(), key=abs))
+    given = read_input(files, loaded, texts, check_paths("subprograms", subprograms), observer, tilts_by_size)
     problems = [*given.problems, *_unknown_length(loaded)]
     observer.problems(problems)
     near = _first_guess(loaded)
-    paths = [TurnedPath.of(loaded, choice, rows, near) for choice, rows in choices_of(given.rows)]
+
+    @lru_cache(maxsize=1)
+    def paths_at(tilt: float) -> list[TurnedPath]:
+        tilted = given.rows.turned(about_x(tilt))
+        return [TurnedPath.of(loaded, choice, rows, near) for choice, rows in choices_of(tilted)]
+
     with observer.progress("placing", len(grid), "turns") as advance:
-        results, best = best_turns(paths, grid, advance, refine=refine, goal=Goal(goal))
-    return _placement(loaded, given, goal, paths, results, best, problems)
-
-
-def _turns(turns: float | Sequence[float]) -> tuple[Floats, bool]:
-    """The turns that are tried, degrees, and whether they are refined."""
-    cure = f"give degrees between them, {360.0 / _MOST_TURNS:g} to 360, or a list of turns"
-    if isinstance(turns, bool):
-        raise wrong_argument("turns", turns, cure)
-    if isinstance(turns, int | float):
-        if not 360.0 / _MOST_TURNS <= turns <= 360.0:
-            raise wrong_argument("turns", turns, cure)
-        return np.arange(0.0, 360.0, float(turns)), True
-    try:
-        given = np.array(list(turns), np.float64)
-    except (TypeError, ValueError):
-        raise wrong_argument("turns", turns, cure) from None
-    if given.ndim != 1 or not 0 < len(given) <= _MOST_TURNS or not np.isfinite(given).all():
-        raise wrong_argument("turns", turns, cure)
-    return given, False
+        results, best = best_orientations(paths_at, grid, advance, goal=Goal(goal))
+    return _placement(loaded, given, goal, paths_at, results, best, problems)
 
 
 def _unknown_length(machine: Machine) -> list[Problem]:
@@ -151,7 +145,7 @@ def _placement(
     machine: Machine,
     given: PlacedInput,
     goal: str,
-    paths: Sequence[TurnedPath],
+    paths_at: Callable[[float], list[TurnedPath]],
     results: Sequence[TurnResult],
     best: TurnResult,
     problems: Sequence[Problem],
@@ -160,19 +154,21 @@ def _placement(
     found = None
     if best.best is not None and best.cuts is not None:
         found = place_at(machine, rows, best.cuts, _rounded(best.cuts, best.best.zero), best.turn)
-        found = _with_value(found, best.path, Goal(goal))
+        found = _with_value(replace(found, tilt_deg=best.tilt), best.path, Goal(goal))
     held = () if best.best is None else tuple(limit_of_cut(machine, rows, cut) for cut in best.best.holds)
 
     @lru_cache(maxsize=1)
     def region() -> Region | None:
-        return None if best.best is None or best.cuts is None else region_of(best.cuts, best.best)
+        if best.best is None or best.cuts is None or found is None:
+            return None
+        return region_of(best.cuts, best.best, np.array(found.zero_mm))
 
     @lru_cache(maxsize=2)
-    def turned(turn: float) -> list[CutSet]:
-        return [cuts for cuts in (path.at(turn) for path in paths) if isinstance(cuts, CutSet)]
+    def turned(turn: float, tilt: float) -> list[CutSet]:
+        return [cuts for cuts in (path.at(turn) for path in paths_at(tilt)) if isinstance(cuts, CutSet)]
 
-    def margin_at(zero: Floats, turn: float) -> float:
-        return float(max((cuts.at(zero).margins.min() for cuts in turned(turn)), default=-np.inf))
+    def margin_at(zero: Floats, turn: float, tilt: float) -> float:
+        return float(max((cuts.at(zero).margins.min() for cuts in turned(turn, tilt)), default=-np.inf))
 
     return Placement(
         machine.key,
@@ -180,7 +176,7 @@ def _placement(
         goal,
         found,
         held,
-        _present(machine, rows, paths, Goal(goal)),
+        _present(machine, rows, paths_at(0.0), Goal(goal)),
         tuple(_turn_margin(machine, rows, result) for result in results),
         between_mm=0.0 if found is None or best.path is None else _between(best.path, found),
         problems=tuple(problems),
@@ -204,10 +200,13 @@ def _with_value(place: Place, path: TurnedPath | None, goal: Goal) -> Place:
     if path is None or isinstance(angles, Obstacle) or angles is None:
         return place
     rows, positions = path.rows.turned(about_z(place.turn_deg)), angles.positions
+    place = replace(place, rotary=rotary_uses(path.machine, positions))
     if goal is Goal.MARGIN:
         return replace(place, value=place.margin_mm)
     if goal is Goal.ROTARY:
         return replace(place, value=rotary_travel(rows, positions))
+    if goal is Goal.TIME:
+        place = replace(place, planned_s=planned_seconds(path.machine, rows, positions, np.array(place.zero_mm)))
     return replace(place, value=PlaceCost.of(goal, path.machine, rows, positions).value(np.array(place.zero_mm)))
 
 
@@ -227,8 +226,9 @@ def _present(machine: Machine, rows: PathRows, paths: Sequence[TurnedPath], goal
 def _turn_margin(machine: Machine, rows: PathRows, result: TurnResult) -> TurnMargin:
     if result.best is None:
         assert result.obstacle is not None
-        return TurnMargin(result.turn, None, None, obstacle_text(machine, rows, result.obstacle))
-    return TurnMargin(result.turn, result.margin, vector(result.best.zero), value=result.cost)
+        obstacle = obstacle_text(machine, rows, result.obstacle)
+        return TurnMargin(result.turn, None, None, obstacle, tilt_deg=result.tilt)
+    return TurnMargin(result.turn, result.margin, vector(result.best.zero), value=result.cost, tilt_deg=result.tilt)
 
 
 def obstacle_text(machine: Machine, rows: PathRows, obstacle: Obstacle) -> str:
@@ -257,6 +257,16 @@ def _rounded(cuts: CutSet, zero: Floats) -> Floats:
     rounded = np.round(zero, 3)
     exact, near = (float(cuts.at(each).margins.min()) for each in (zero, rounded))
     return rounded if near >= 0.0 or exact < 0.0 else zero
+
+
+def rotary_uses(machine: Machine, positions: Floats) -> tuple[RotaryUse, ...]:
+    """How the rotary axes use their travel in positions (n, 2), degrees."""
+    uses = []
+    for k, column in enumerate(machine.rotary):
+        axis, least, greatest = machine.axes[column], float(positions[:, k].min()), float(positions[:, k].max())
+        margin = min(least - axis.low, axis.high - greatest)
+        uses.append(RotaryUse(axis.name, least, greatest, margin, axis.low, axis.high))
+    return tuple(uses)
 
 
 def limit_of_cut(machine: Machine, rows: PathRows, cut: Cut) -> Limit:

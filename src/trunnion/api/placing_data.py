@@ -28,6 +28,7 @@ def placement_data(found: Placement) -> dict[str, object]:
         "turns": [
             {
                 "turn_deg": _number(turn.turn_deg),
+                "tilt_deg": _number(turn.tilt_deg),
                 "fits": turn.fits,
                 "margin_mm": None if turn.margin_mm is None else _number(turn.margin_mm),
                 "zero_mm": None if turn.zero_mm is None else [_number(value) for value in turn.zero_mm],
@@ -39,6 +40,8 @@ def placement_data(found: Placement) -> dict[str, object]:
         "region": None
         if region is None
         else {
+            "inside_low_mm": _numbers(region.box.low),
+            "inside_high_mm": _numbers(region.box.high),
             "low_mm": _numbers(region.low),
             "high_mm": _numbers(region.high),
             "volume_mm3": _number(region.volume),
@@ -54,9 +57,15 @@ def _place(place: Place) -> dict[str, object]:
     return {
         "zero_mm": [_number(value) for value in place.zero_mm],
         "turn_deg": _number(place.turn_deg),
+        "tilt_deg": _number(place.tilt_deg),
         "margin_mm": _number(place.margin_mm),
         "value": None if place.value is None else _number(place.value),
+        "planned_s": None if place.planned_s is None else _number(place.planned_s),
         "axes": [_axis(axis) for axis in place.axes],
+        "rotary": [
+            {name: value if isinstance(value, str) else _number(value) for name, value in asdict(axis).items()}
+            for axis in place.rotary
+        ],
     }
 
 

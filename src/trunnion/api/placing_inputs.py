@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import cast
@@ -10,17 +11,18 @@ import numpy as np
 
 from trunnion import readers
 from trunnion.api.arguments import is_stream, wrong_argument
-from trunnion.api.observer import Observer
+from trunnion.api.observer import SILENT, Observer
 from trunnion.api.planning import plan
 from trunnion.api.reading import ToolpathLike, read_toolpaths
 from trunnion.api.settings import Settings, as_texts, number_setting
+from trunnion.api.turned_parts import turned_toolpaths
 from trunnion.arrays import Flags
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.machines import Machine
 from trunnion.model.arc_extremes import ArcPaths
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind, Toolpath
-from trunnion.placing.path_rows import PathRows, Stretch, joined_rows
+from trunnion.placing.path_rows import PathRows, Stretch, about_x, joined_rows
 from trunnion.placing.plan_rows import branches, rows_of_plan
 from trunnion.verification.kinematics.positioning_moves import approach_rows
 from trunnion.wording import counted
@@ -47,8 +49,12 @@ def read_input(
     settings: Settings | None,
     subprograms: Sequence[Path],
     observer: Observer,
+    tilts: Sequence[float] = (0.0,),
 ) -> PlacedInput:
     """Read CL files or NC programs; which they are is found out.
+
+    CL files are planned as they are; where rotary axes do not reach them so, at the first of the ``tilts``, degrees, at
+    which they do. The rows are those of the part as it is drawn.
 
     Raises
     ------
@@ -78,7 +84,7 @@ def read_input(
     if programs:
         runs = [_run_of(program, machine, subprograms) for program in programs]
         return PlacedInput(joined_rows([rows_of_run(run) for run in runs]))
-    return _planned(toolpaths, machine, texts, observer)
+    return _planned_tilted(toolpaths, machine, texts, observer, tilts)
 
 
 def _toolpaths_of(
@@ -106,6 +112,26 @@ def _run_of(program: Path, machine: Machine, subprograms: Sequence[Path]) -> Run
         what = f"{counted(len(run.errors), 'place')} not understood: where it goes is not known"
         raise RefusedError((*found, Problem(str(program), 0, what, code="PLC120")))
     return run
+
+
+def _planned_tilted(
+    toolpaths: Sequence[Toolpath],
+    machine: Machine,
+    settings: Mapping[str, str],
+    observer: Observer,
+    tilts: Sequence[float],
+) -> PlacedInput:
+    """The rows of CL files as they are, planned at the first tilt at which that is possible."""
+    try:
+        return _planned(toolpaths, machine, settings, observer)
+    except RefusedError:
+        absolute = settings.get("frame") == "absolute"
+        for tilt in (tilt for tilt in tilts if tilt):
+            with suppress(RefusedError):
+                tilted = turned_toolpaths(toolpaths, 0.0, tilt, absolute=absolute)
+                found = _planned(tilted, machine, settings, SILENT)
+                return replace(found, rows=found.rows.turned(about_x(-tilt)), toolpaths=tuple(toolpaths))
+        raise
 
 
 def _planned(

@@ -1,20 +1,14 @@
 """A part at the place that was found: its CL files turned, and posted with the workpiece zero there."""
 
-from collections.abc import Sequence
-from dataclasses import replace
-
-import numpy as np
-
 from trunnion.api.observer import SILENT, Observer
+from trunnion.api.paper_files import paper_files
 from trunnion.api.post_result import PostResult
-from trunnion.api.posting import post
-from trunnion.api.reading import MachineLike
+from trunnion.api.posting import post_beside
+from trunnion.api.reading import FilePath, MachineLike
 from trunnion.api.settings import Settings, as_texts
 from trunnion.api.targets import OutputLike
+from trunnion.api.turned_parts import placed_notices, turned_toolpaths
 from trunnion.errors import InputError, Problem
-from trunnion.model.frames import frame_from_vectors, into_frame, into_plane
-from trunnion.model.toolpath import Frame, Operation, Toolpath
-from trunnion.placing.path_rows import about_z
 from trunnion.placing.placement import Placement
 
 
@@ -24,6 +18,7 @@ def post_placed(
     machine: MachineLike,
     output: OutputLike = None,
     settings: Settings | None = None,
+    sheet: FilePath | None = None,
     observer: Observer = SILENT,
 ) -> PostResult:
     """Post the CL files of a placement with its best place.
@@ -31,10 +26,11 @@ def post_placed(
     Parameters
     ----------
     found
-        Of CL files. Where its best place is turned, so is the toolpath, about Z of the program's coordinate system.
+        Of CL files. Where its best place is tilted or turned, so is the toolpath: first about X, then about Z of the
+        program's coordinate system. Comments in the head of the program say so, and where the workpiece zero is.
     machine
         As ``trunnion.place`` had it.
-    output, settings, observer
+    output, settings, sheet, observer
         As ``trunnion.post`` takes them; the setting ``zero`` is that of the place.
 
     Returns
@@ -63,25 +59,10 @@ def post_placed(
         raise InputError(Problem(found.files[0], 0, "the part fits nowhere", "see what limits it", code="PLC150"))
     texts = as_texts(settings)
     absolute = texts.get("frame") == "absolute"
-    toolpaths = turned_toolpaths(found.toolpaths, found.best.turn_deg, absolute=absolute)
-    return post(
-        toolpaths, machine=machine, output=output, settings={**texts, "zero": found.best.zero_mm}, observer=observer
-    )
-
-
-def turned_toolpaths(toolpaths: Sequence[Toolpath], degrees: float, *, absolute: bool = False) -> list[Toolpath]:
-    """Toolpaths of a part that is turned about Z of the program's coordinate system, right-handed.
-
-    That is the coordinate system of the first operation with motion, or the ``absolute`` one of the CAM system.
-    """
-    if degrees % 360.0 == 0.0:
-        return list(toolpaths)
-    moving = (operation for path in toolpaths for operation in path.operations if len(operation.moves))
-    frame = Frame() if absolute else next(moving).frame
-    back = about_z(-degrees)
-    plane = frame_from_vectors(np.zeros(3), back[:, 0], back[:, 1])
-
-    def turned(operation: Operation) -> Operation:
-        return replace(into_plane(into_frame(operation, frame), plane), frame=frame)
-
-    return [replace(path, operations=tuple(map(turned, path.operations))) for path in toolpaths]
+    best = found.best
+    return post_beside(
+        turned_toolpaths(found.toolpaths, best.turn_deg, best.tilt_deg, absolute=absolute), (),
+        machine=machine, output=output, settings={**texts, "zero": best.zero_mm}, strict=False, force=False,
+        explain=False, papers=paper_files(None, sheet, None, None, output), columns=True, subprograms=(),
+        notices=placed_notices(best.zero_mm, best.turn_deg, best.tilt_deg), observer=observer,
+    )  # fmt: skip

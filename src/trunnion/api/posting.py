@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING
 
 from trunnion.api import kernels
 from trunnion.api.arguments import check_observer, check_paths
+from trunnion.api.builders_words import builders_words
 from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.forcing import Proof, Untold, write_forced
 from trunnion.api.hook_files import load_hooks
 from trunnion.api.hooks import Hooks
 from trunnion.api.input_files import cl_files, machine_files
 from trunnion.api.job import FORCING, PostJob, prepare
+from trunnion.api.left_over_files import left_over
 from trunnion.api.machining_times import new_time_token, operation_times, prints_times, write_times
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.paper_files import PaperFiles, paper_files
@@ -162,14 +164,16 @@ def post_beside(
     observer: Observer,
     simulation: "SimulationLike | None" = None,
     hooks: Sequence[FilePath] = (),
+    notices: Sequence[str] = (),
     group: OutputGroup | None = None,
     forcing: str = FORCING,
     later: list[PostPapers] | None = None,
 ) -> PostResult:
     """Post CL files as ``post`` does, and write over none of the other files of the same work.
 
-    The program appears with those of the ``group``, if there is one. What a refusal says of ``force`` is ``forcing``.
-    Papers are written, or go into the list ``later``: who gives it writes them.
+    The program appears with those of the ``group``, if there is one, and with ``notices`` as comments in its head. What
+    a refusal says of ``force`` is ``forcing``. Papers are written, or go into the list ``later``: who gives it writes
+    them.
     """
     check_observer(observer)
     loaded = as_machine(machine)
@@ -189,7 +193,8 @@ def post_beside(
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
         changes = Hooks(load_hooks(hook_files), job.machine.name, job.control.name, job.settings)
         toolpaths = load_toolpaths(cl, job, strict, observer, changes.change)
-        job = replace(job, notices=changes.notices, decisions=tuple(changes.decisions) if job.options.explain else ())
+        decisions = tuple(changes.decisions) if job.options.explain else ()
+        job = replace(job, notices=(*notices, *changes.notices), decisions=decisions)
         target.files.protect(file_on_disk(toolpath.file) for toolpath in toolpaths)
         return post_toolpaths(toolpaths, job, target, observer, later)
 
@@ -260,6 +265,9 @@ def post_toolpaths(
             observer.problems(simulated.remarks)
         problems += [remark for remark in simulated.remarks if remark.severity is Severity.WARNING]
     if verification is not None:
+        words = builders_words(verification.run)
+        problems += words
+        observer.problems(words)
         observer.verified(verification)
     remarks = [remark for toolpath in toolpaths for remark in toolpath.remarks]
     result = PostResult(tuple(toolpaths), planned, verification, (*remarks, *problems), simulation=simulated)
@@ -278,8 +286,17 @@ def post_toolpaths(
             papers.write()
         else:
             later.append(papers)
+    stay = left_over(
+        target, target.papers.values() if later is not None else [place for _, place in target.files.papers]
+    )
+    observer.problems(stay)
     return replace(
-        result, encoding=job.encoding, output=target.path, subprograms=target.subprograms, _memory=target.memory
+        result,
+        problems=(*result.problems, *stay),
+        encoding=job.encoding,
+        output=target.path,
+        subprograms=target.subprograms,
+        _memory=target.memory,
     )
 
 

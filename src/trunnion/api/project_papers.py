@@ -25,7 +25,7 @@ def write_setup_papers(papers: PostPapers, project: Project, number: int, found:
         problems += [remark for remark in simulation.remarks if remark.severity is Severity.WARNING]
         simulated = _as_simulated(project.simulation, number, simulation)
         files = [project.path, *(file for file in simulated_files(project, number) if Path(file).is_file())]
-    with papers.target.files.reopened():
+    with papers.target.files.filled():
         papers.with_checks(dict.fromkeys(problems), simulation, simulated, files).write()
 
 

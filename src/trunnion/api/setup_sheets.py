@@ -10,7 +10,7 @@ import numpy as np
 from trunnion.api.job import PostJob
 from trunnion.api.papers import MADE_BY
 from trunnion.api.post_result import PostResult
-from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD
+from trunnion.controls.vocabulary import PLACED_NOTICES, RADIUS_NUMBER_WORD
 from trunnion.errors import Severity
 from trunnion.machines import Machine
 from trunnion.model.motion import MachiningMode, Motion
@@ -216,6 +216,9 @@ def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> I
     machine = program.machine
     offsets = ", ".join(_offsets(run)) or "the machine's zero"
     yield f"Work offset {offsets} is set to the zero of the program, and turned as the part is clamped."
+    for notice in job.notices:
+        if notice.startswith(PLACED_NOTICES):
+            yield f"{notice}."
     if machine.workpiece_zero is None:
         yield "Travel: nobody said where the workpiece zero is, so the proof only knows that the motion fits somewhere."
     else:

@@ -9,11 +9,13 @@ from typing import Final, Literal
 from trunnion import readers, verification
 from trunnion.api import kernels
 from trunnion.api.arguments import check_choice, check_observer, check_paths, check_whole, wrong_argument
+from trunnion.api.builders_words import builders_words
 from trunnion.api.cl_statements import replace_unknown_statements
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.api.recording import as_recording
 from trunnion.api.settings import check_operation_names, check_tolerance, m_code, set_up_machine, work_offset_setting
+from trunnion.api.turned_parts import turned_toolpaths, unlike_head
 from trunnion.controls import Control, load_control
 from trunnion.controls.setting_rules import tool_number
 from trunnion.errors import InputError, argument_problem
@@ -66,6 +68,8 @@ def verify(
     feed_limit: float | None = None,
     columns: bool = True,
     hooks: Sequence[FilePath] = (),
+    turn: float = 0.0,
+    tilt: float = 0.0,
     observer: Observer = SILENT,
 ) -> Verification:
     """Verify an NC program: read it, run it, and compare it with the CL files that it was made from.
@@ -123,8 +127,12 @@ def verify(
     hooks
         The Python files that the program was posted with: they change the CL files as they did then. They are run:
         name none that you have not read.
+    turn, tilt
+        Of the part, degrees, where it is clamped otherwise than it is drawn, as ``trunnion.post_placed`` posts it:
+        first the tilt about X of the program's coordinate system, then the turn about Z, right-handed. The CL files are
+        turned so before they are compared.
     observer
-        Receives the progress of reading CL files, and warnings about them.
+        Receives the progress of reading CL files, and warnings about them and about the program.
 
     Returns
     -------
@@ -164,6 +172,10 @@ def verify(
     if hook_files and isinstance(cl, tuple | list) and not cl:
         what, cure = "change CL files, and there are none", "name them with cl"
         raise InputError(argument_problem("hooks", what, cure, code="ARG130"))
+    angles = _angles(turn, tilt)
+    if any(angles) and isinstance(cl, tuple | list) and not cl:
+        what, cure = "is that of CL files, and there are none", "name them with cl"
+        raise InputError(argument_problem("turn" if angles[0] else "tilt", what, cure, code="ARG130"))
     recording = None if recorded is None else as_recording(recorded)
     loaded = as_machine(machine)
     readers.reader_of(loaded)
@@ -173,6 +185,7 @@ def verify(
     defaults = default_settings(loaded)
     toolpaths = as_toolpaths(cl, units, False, observer, dialect)
     run = as_run(nc, loaded, subprograms)
+    observer.problems(builders_words(run))
     if len(run.normals):
         from trunnion.cl.surface_normals import with_normals
 
@@ -181,6 +194,9 @@ def verify(
         given = {"tool": tool, "work_offset": work_offset, "edge": edge, "cl_units": units, "dialect": dialect}
         toolpaths = _changed_by_hooks(toolpaths, hook_files, loaded, control, given)
     toolpaths = replace_unknown_statements(toolpaths, control, loaded)
+    if toolpaths:
+        toolpaths = turned_toolpaths(toolpaths, *angles, absolute=frame == "absolute")
+        observer.problems([] if isinstance(nc, Run) else unlike_head(Path(nc), *angles))
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     if edge is None and toolpaths and "edge" in defaults:
@@ -239,6 +255,16 @@ def _with_feed_digit(
     if isinstance(tolerances, Tolerances):
         return replace(tolerances, feed=digit)
     return lambda operation: replace(tolerances(operation), feed=digit)
+
+
+def _angles(turn: object, tilt: object) -> tuple[float, float]:
+    """Turn and tilt, checked."""
+    found = []
+    for name, value in (("turn", turn), ("tilt", tilt)):
+        if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= 360.0:
+            raise wrong_argument(name, value, "give degrees, -360 to 360")
+        found.append(float(value))
+    return found[0], found[1]
 
 
 def _feed_limit(limit: float | None, feed: str) -> float | None:

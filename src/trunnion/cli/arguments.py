@@ -10,7 +10,7 @@ from typing import Any, Final, NoReturn, cast
 from trunnion import __version__
 from trunnion.cli.batch_arguments import add_batch
 from trunnion.cli.capability_arguments import add_fit, add_reach, add_sensitivity
-from trunnion.cli.place_arguments import add_place
+from trunnion.cli.place_arguments import add_place, tilt, turn
 from trunnion.cli.post_arguments import post_mistake
 from trunnion.cli.twin_arguments import add_machine_access, add_record, add_twin
 
@@ -308,6 +308,13 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
         "--recorded-tolerance", type=_tolerance, default=0.05, metavar="MM",
         help="how far the recorded tip may be off the path, and in degrees its tool axis; 0.05",
     )  # fmt: skip
+    parser.add_argument(
+        "--turn", type=turn, metavar="DEG",
+        help="the part is turned so about Z, counter-clockwise seen from +Z, as the head of a placed program says",
+    )  # fmt: skip
+    parser.add_argument(
+        "--tilt", type=tilt, metavar="DEG", help="before that it is tilted about X of the program, right-handed"
+    )
     parser.add_argument("--report", metavar="FILE", help="what was checked, as a page (.html) or data (.json)")
     parser.set_defaults(run=_lazy_command("verify", "run"))
 

@@ -2,20 +2,30 @@
 
 import argparse
 from collections.abc import Iterator
-from typing import Final
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
 
 from trunnion.api.input_files import machine_files
 from trunnion.api.placing import place
 from trunnion.api.placing_data import placement_data
 from trunnion.api.placing_post import post_placed
-from trunnion.api.reading import load_machine
+from trunnion.api.reading import FilePath, load_machine
+from trunnion.api.settings import as_texts
+from trunnion.api.turned_parts import number
+from trunnion.arrays import Floats
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result, tell
 from trunnion.cli.terminal import Terminal, output_place
-from trunnion.errors import InputError, argument_problem
+from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.files import atomic_file, check_outputs
-from trunnion.placing.placement import AxisUse, Limit, Place, Placement
+from trunnion.placing.placement import AxisUse, Limit, Place, Placement, RotaryUse, TurnMargin
 from trunnion.wording import counted, format_duration, one_line
+
+if TYPE_CHECKING:  # imported where a project is placed
+    from trunnion.api.placing_project import PlacedSetup
+
+#: The step of the fixture angles of ``--free``, degrees.
+_FREE_STEP: Final = 15.0
 
 #: Turns out of reach that are told one by one.
 _MOST: Final = 3
@@ -23,24 +33,35 @@ _MOST: Final = 3
 
 def run(arguments: argparse.Namespace) -> int:
     """Place a part; 0 if it fits somewhere, else 1."""
+    project = _project(arguments)
+    read: list[FilePath] = [*named_files(arguments.files), *arguments.subprograms]
+    if project is not None:
+        read += project.read
+        arguments.files, arguments.machine = list(project.files), arguments.machine or project.machine
+    if arguments.machine is None:
+        raise InputError(argument_problem("machine", "is missing", "name the machine", code="ARG130"))
     machine = load_machine(arguments.machine)
-    read = [*named_files(arguments.files), *arguments.subprograms, *machine_files(arguments.machine, machine)]
+    read += machine_files(arguments.machine, machine)
     if arguments.plot is not None:
         from trunnion.api.placing_plot import check_placing_plot
 
         check_placing_plot(arguments.plot, read)
-    targets = (arguments.json, arguments.apply, arguments.plot)
+    if arguments.sheet is not None and arguments.apply is None:
+        what = "is that of the program of --apply, and there is none"
+        raise InputError(argument_problem("sheet", what, "give --apply too", code="ARG130"))
+    targets = (arguments.json, arguments.apply, arguments.plot, arguments.sheet)
     if arguments.json == arguments.apply == "-":
         what, cure = "go to stdout both", "let one of them go to a file"
         raise InputError(argument_problem("json", f"and apply {what}", cure, code="ARG140"))
     check_outputs([target for target in targets if target not in (None, "-")], read)
-    settings = dict(arguments.settings)
+    settings = {**({} if project is None else as_texts(project.settings)), **dict(arguments.settings)}
     length = arguments.tool_length or settings.get("tool_length")
     found = place(
         cl_inputs(arguments.files),
         machine=machine,
         goal=arguments.goal,
         turns=arguments.only or arguments.turns,
+        tilts=(_FREE_STEP if arguments.free else arguments.tilts) or (),
         zero=arguments.zero or settings.get("zero"),
         tool_length=length,
         settings=settings,
@@ -62,26 +83,46 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.apply is not None and found.fits:
         settings = settings if length is None else {**settings, "tool_length": length}
         output = output_place(arguments.apply)
-        post_placed(found, machine=machine, output=output, settings=settings, observer=Terminal())
+        post_placed(
+            found, machine=machine, output=output, settings=settings, sheet=arguments.sheet, observer=Terminal()
+        )
     return 0 if found.fits else 1
+
+
+def _project(arguments: argparse.Namespace) -> "PlacedSetup | None":
+    """The set-up of the project that is placed; None: files are."""
+    projects = [file for file in arguments.files if file.endswith(".toml")]
+    if not projects:
+        if arguments.setup is not None:
+            raise InputError(argument_problem("setup", "is that of a project", "give one (.toml)", code="ARG130"))
+        return None
+    if len(arguments.files) > 1:
+        raise InputError(Problem(projects[0], 0, "is a project, and others are named", "give it alone", code="ARG130"))
+    from trunnion.api.placing_project import placed_setup
+
+    return placed_setup(Path(projects[0]), arguments.setup)
 
 
 def placement_lines(found: Placement) -> Iterator[str]:
     """A placement in lines."""
     best, present = found.best, found.present
     if best is None:
-        yield f"{found.machine}: the rotary axes reach the path at no turn"
-        for turn in found.turns[:_MOST]:
-            yield f"  turned {turn.turn_deg:g} degrees: {turn.obstacle}"
+        yield f"{found.machine}: the rotary axes reach the path at no {_tried(found)}"
+        for turn in sorted(found.turns, key=lambda each: abs(each.tilt_deg))[:_MOST]:
+            yield f"  {_clamped(turn)}: {turn.obstacle}"
         return
     if not best.fits:
         off = f"{-best.margin_mm:.3f} mm too far at the least"
-        yield f"{found.machine}: the part fits nowhere: {off}, at {_point(best)}, turned {best.turn_deg:g} degrees"
+        yield f"{found.machine}: the part fits nowhere: {off}, at {_point(best)}, {_clamped(best)}"
     else:
         left = f"{best.margin_mm:.3f} mm to the limits"
-        yield f"{found.machine}: best zero {_point(best)}, turned {best.turn_deg:g} degrees: {left}"
+        yield f"{found.machine}: best zero {_point(best)}, {_clamped(best)}: {left}"
+    if best.fits:
+        yield from (f"  {line}" for line in _sense(best))
     for axis in best.axes:
         yield f"  {_use(axis)}"
+    for rotary in best.rotary:
+        yield f"  {_rotary_use(rotary)}"
     if found.limits:
         what = "it is held by" if best.fits else "these conflict:"
         yield f"  {what} {'; '.join(dict.fromkeys(map(_limit, found.limits)))}{_overlap(found)}"
@@ -91,16 +132,66 @@ def placement_lines(found: Placement) -> Iterator[str]:
         gained = "" if found.goal != "margin" else f"; the best place has {gain:.3f} mm more"
         yield f"  present zero {_point(present)}: {state}{gained}"
     if found.goal != "margin" and best.value is not None:
-        now = "" if present is None else f"; at the present zero {_number(found.goal, present)}"
+        now = "" if present is None else f"; at the present zero {_goal_number(found.goal, present)}"
         yield f"  {_value(found.goal, best)}{now}"
     fitting = sum(turn.fits for turn in found.turns)
-    yield f"  it fits at {fitting} of {counted(len(found.turns), 'turn')}"
+    yield f"  it fits at {fitting} of {counted(len(found.turns), _tried(found))}"
+    if best.tilt_deg and (plain := _without_tilt(found)) is not None:
+        yield f"  without a fixture angle: {plain}"
     if found.region is not None:
-        ends = (
-            f"{name} {low:.3f} to {high:.3f}"
-            for name, low, high in zip("XYZ", found.region.low, found.region.high, strict=True)
-        )
-        yield f"  at this turn the zero may be within {', '.join(ends)}"
+        box = found.region.box
+        yield f"  clamped so, the zero may be anywhere within {_ends(box.low, box.high)}"
+        if not found.region.is_box:
+            yield f"  and not beyond {_ends(found.region.low, found.region.high)}, where not every place fits"
+
+
+def _clamped(place: Place | TurnMargin) -> str:
+    tilted = f"tilted {number(place.tilt_deg)} degrees about X, then " if place.tilt_deg else ""
+    return f"{tilted}turned {number(place.turn_deg)} degrees"
+
+
+def _sense(best: Place) -> Iterator[str]:
+    """How the part is clamped: in words that do not ask for a rule of hands."""
+    if best.tilt_deg:
+        side = "up" if best.tilt_deg > 0.0 else "down"
+        angle = number(best.tilt_deg)
+        yield f"first a fixture angle of {angle} degrees about X of the part, right-handed: its +Y side goes {side}"
+    turn = number(best.turn_deg % 360.0)
+    if turn != "0":
+        then = "then " if best.tilt_deg else ""
+        yield f"{then}turn the part by {turn} degrees about Z, counter-clockwise seen from above (from +Z)"
+    elif not best.tilt_deg:
+        yield "the part is clamped as it is drawn"
+
+
+def _tried(found: Placement) -> str:
+    """What was tried, in a word."""
+    return "tilted turn" if len({turn.tilt_deg for turn in found.turns}) > 1 else "turn"
+
+
+def _without_tilt(found: Placement) -> str | None:
+    """The best place of those that need no fixture angle, in words; None if none was tried."""
+    flat = [turn for turn in found.turns if turn.tilt_deg == 0.0]
+    if not flat:
+        return None
+    best = max(flat, key=lambda turn: -float("inf") if turn.margin_mm is None else turn.margin_mm)
+    if best.margin_mm is None:
+        return "the rotary axes do not reach the path"
+    margin = best.margin_mm
+    left = f"{margin:.3f} mm to the limits" if margin >= 0.0 else f"it fits nowhere, {-margin:.3f} mm too far"
+    return f"{left}, {_clamped(best)}"
+
+
+def _ends(low: Floats, high: Floats) -> str:
+    ends = zip("XYZ", low.tolist(), high.tolist(), strict=True)
+    return ", ".join(f"{name} {least:.3f} to {most:.3f}" for name, least, most in ends)
+
+
+def _rotary_use(axis: RotaryUse) -> str:
+    text = f"{axis.axis} {axis.least_deg + 0.0:.3f} to {axis.greatest_deg + 0.0:.3f} degrees"
+    if axis.margin_deg == float("inf"):
+        return f"{text}, no limits"
+    return f"{text} of {axis.low_deg:g} to {axis.high_deg:g}: {max(axis.margin_deg, 0.0):.3f} left"
 
 
 def _point(place: Place) -> str:
@@ -120,16 +211,17 @@ def _value(goal: str, place: Place) -> str:
     what = {
         "rotary": "the rotary axes turn",
         "slides": "the slides travel",
-        "time": "at the speeds of the axes it takes",
+        "time": "as the planner of speeds has it, it takes",
         "overspeed": "the axes do not reach the feed in",
     }
-    return f"{what[goal]} {_number(goal, place)}"
+    return f"{what[goal]} {_goal_number(goal, place)}"
 
 
-def _number(goal: str, place: Place) -> str:
+def _goal_number(goal: str, place: Place) -> str:
     value = place.value or 0.0
     if goal == "time":
-        return format_duration(value)
+        planned = value if place.planned_s is None else place.planned_s
+        return f"{format_duration(planned)} ({format_duration(value)} by speeds alone)"
     return (
         counted(round(value), "row")
         if goal == "overspeed"

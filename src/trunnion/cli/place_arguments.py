@@ -30,12 +30,27 @@ def turn(text: str) -> float:
     return value
 
 
+def tilt(text: str) -> float:
+    """A tilt by a fixture."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = 1e9
+    if not -90.0 <= value <= 90.0:
+        raise argparse.ArgumentTypeError(f"{text!r} is no tilt; write degrees, -90 to 90, such as 30")
+    return value
+
+
 def add_place(parser: argparse.ArgumentParser, setting: type[argparse.Action], key_value: Callable[[str], Any]) -> None:
     """Add the options of the command."""
     parser.add_argument(
-        "files", nargs="+", metavar="CL|NC", help="CL files or NC programs; all must fit at one place of the part"
+        "files", nargs="+", metavar="CL|NC|PROJECT",
+        help="CL files or NC programs, which must all fit at one place of the part; or one project (.toml)",
+    )  # fmt: skip
+    parser.add_argument(
+        "--machine", metavar="NAME_OR_FILE", help="shipped machine, or a TOML file; by default that of the project"
     )
-    parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="shipped machine, or a TOML file")
+    parser.add_argument("--setup", metavar="NAME", help="the set-up of a project with several")
     parser.add_argument(
         "--goal", choices=GOALS, default="margin",
         help="what the best place is best for: margin to the limits, travel of rotary axes or slides, time, or"
@@ -43,12 +58,23 @@ def add_place(parser: argparse.ArgumentParser, setting: type[argparse.Action], k
     )  # fmt: skip
     turns = parser.add_mutually_exclusive_group()
     turns.add_argument(
-        "--turns", type=degrees, default=5.0, metavar="DEG",
-        help="try the part at every so many degrees about Z, and more finely around the best; 5",
+        "--turns", type=degrees, metavar="DEG",
+        help="try the part at every so many degrees about Z, counter-clockwise seen from above (from +Z), and more"
+        " finely around the best; 5, with several tilts 15",
     )  # fmt: skip
     turns.add_argument(
         "--turn", type=turn, action="append", metavar="DEG", dest="only",
         help="try this turn only; 0 leaves the part as it is; may be repeated",
+    )  # fmt: skip
+    tilts = parser.add_mutually_exclusive_group()
+    tilts.add_argument(
+        "--free", action="store_true",
+        help="tilt the part too, by a fixture angle about X of the program, right-handed, before the turn: at every 15"
+        " degrees from -90 to 90, and more finely around the best",
+    )  # fmt: skip
+    tilts.add_argument(
+        "--tilt", type=tilt, action="append", metavar="DEG", dest="tilts",
+        help="the fixture angles that there are; may be repeated",
     )  # fmt: skip
     parser.add_argument(
         "--zero", metavar="X,Y,Z", help="the present workpiece zero on the machine, mm, to compare with"
@@ -64,4 +90,9 @@ def add_place(parser: argparse.ArgumentParser, setting: type[argparse.Action], k
     )  # fmt: skip
     parser.add_argument("--json", metavar="FILE", help="all results as data; - is stdout")
     parser.add_argument("--plot", metavar="FILE.svg", help="the margin over the table and over the turns")
-    parser.add_argument("--apply", metavar="FILE|-", help="post the CL files with the best place, and prove it")
+    parser.add_argument(
+        "--apply", metavar="FILE|-",
+        help="post the CL files with the best place, and prove it; the head of the program says how the part is turned,"
+        " and where its zero is",
+    )  # fmt: skip
+    parser.add_argument("--sheet", metavar="FILE", help="setup sheet of that program (.html or .json)")

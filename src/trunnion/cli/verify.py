@@ -55,6 +55,8 @@ def run(arguments: argparse.Namespace) -> int:
         feed_limit=arguments.feed_limit,
         columns=arguments.report is not None,
         hooks=arguments.hooks,
+        turn=arguments.turn or 0.0,
+        tilt=arguments.tilt or 0.0,
         observer=Terminal(),
     )
     if hint := _control_hint(verification):
@@ -81,6 +83,8 @@ def _run_manifest(arguments: argparse.Namespace) -> int:
         "offset",
         "edge",
         "feed_limit",
+        "turn",
+        "tilt",
     )
     for name in (*others, "feed_limit", "units", "dialect"):
         if getattr(arguments, name):

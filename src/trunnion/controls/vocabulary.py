@@ -97,6 +97,10 @@ FORCED_NOTICE: Final = "MUST NOT RUN AS IT IS"
 #: The same in a program whose motion a user's hooks have changed.
 HOOKS_NOTICE: Final = "MOTION CHANGED BY HOOKS"
 
+#: The same in a program whose part is clamped otherwise than its CL files have it.
+PLACED_NOTICE: Final = "PART TURNED"
+PLACED_NOTICES: Final = (PLACED_NOTICE, "PART TILTED", "PART CLAMPED AS DRAWN", "WORKPIECE ZERO X")
+
 #: Values of the records of tools and of operations, for templates with expressions.
 TOOL_VALUES: Final = (
     "call", "number", "name", "kind", "diameter", "corner_radius", "length", "flute_length", "taper_angle", "tip_angle",

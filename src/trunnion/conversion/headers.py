@@ -11,7 +11,7 @@ import numpy as np
 
 from trunnion.arrays import Ints
 from trunnion.controls.definition import Control
-from trunnion.controls.vocabulary import FORCED_NOTICE, HOOKS_NOTICE
+from trunnion.controls.vocabulary import FORCED_NOTICE, HOOKS_NOTICE, PLACED_NOTICES
 from trunnion.conversion.program_events import ProgramEvent
 from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.sections import ProgramSection
@@ -133,7 +133,7 @@ class HeaderReader:
 
 def _is_notice(text: str) -> bool:
     """Whether a line of the head is a notice of this program, and no title."""
-    return FORCED_NOTICE in text or HOOKS_NOTICE in text
+    return any(notice in text for notice in (FORCED_NOTICE, HOOKS_NOTICE, *PLACED_NOTICES))
 
 
 def _matches_any(text: str, patterns: Iterable[LinePattern]) -> bool:

@@ -2,7 +2,8 @@
 
 from trunnion.files.earlier_job import EarlierJob
 from trunnion.files.names import name_fault
-from trunnion.files.output import OutputFiles, OutputGroup, atomic_file, atomic_output, output_group
+from trunnion.files.output import OutputFiles, atomic_file, atomic_output
+from trunnion.files.output_group import OutputGroup, output_group
 from trunnion.files.places import OutputPlace, check_outputs, file_on_disk, resolve_output
 from trunnion.files.streams import check_stream
 from trunnion.files.write_progress import WriteProgress, WritingStoppedError

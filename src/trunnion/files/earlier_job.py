@@ -1,9 +1,10 @@
 """What the last job at a place has written: all other files there belong to somebody, and nobody has named them.
 
 In:     the place of a job's first file.
-Out:    whether a file there is still what that job wrote.
+Out:    whether a file there is still what that job wrote, and which of its files are of another program.
 
-The record is in the user's cache, a small file for each place. Where it is missing every file is somebody else's.
+The record is in the user's cache, a small file for each place: of each file its size, its digest, and a digest of the
+program that was written with it. Where it is missing every file is somebody else's.
 """
 
 import hashlib
@@ -35,24 +36,41 @@ class EarlierJob:
         if file.parent != self._folder:
             return EarlierJob(file).wrote(file)
         known = self._digests.get(os.path.normcase(file.name))
-        if known is None:
-            return False
-        size, _, digest = known.rpartition(":")
-        # The size first: a file that is somebody else's may be endless.
-        return size in ("", str(file.stat().st_size)) and _digest(file) == digest
+        return known is not None and _is_as_known(file, known)
 
-    def remember(self, files: Iterable[Path]) -> None:
-        """Record files that have been written; it does no harm where that is not possible."""
+    def left_over(self, program: Iterable[Path], written: Iterable[Path]) -> list[Path]:
+        """Files that earlier jobs wrote with another program, that are as they wrote them, and that now stay.
+
+        Parameters
+        ----------
+        program
+            The files of the program that is written now, wherever they are.
+        written
+            The places of all files that are written now.
+        """
+        again = {self._key(file) for file in written}
+        stay = [
+            (self._folder / name, known)
+            for name, known in self._digests.items()
+            if name not in again and (self._folder / name).is_file() and _is_as_known(self._folder / name, known)
+        ]
+        job = _job(map(_digest, program)) if stay else ""
+        return [file for file, known in stay if known.split(":")[2:] != [job]]
+
+    def remember(self, program: Iterable[Path], papers: Iterable[Path] = ()) -> None:
+        """Record a program, and papers about it, that have been written; it does no harm where that is not possible."""
         if self._record is None:
             return
-        given = list(files)
-        files = [file for file in given if file.parent == self._folder]
-        for other in (file for file in given if file.parent != self._folder):
+        of_program = list(program)
+        files = [*of_program, *papers]
+        for other in (file for file in files if file.parent != self._folder):
             EarlierJob(other).remember([other])
         digests = {name: known for name, known in self._digests.items() if (self._folder / name).exists()}
-        for file in files:
-            if digest := _digest(file):
-                digests[os.path.normcase(file.name)] = f"{file.stat().st_size}:{digest}"
+        found = {file: _digest(file) for file in files}
+        job = _job(found[file] for file in of_program)
+        for file, digest in found.items():
+            if digest:
+                digests[self._key(file)] = f"{file.stat().st_size}:{digest}:{job}"
         text = json.dumps(digests)
         part = self._record.with_suffix(f".{os.getpid()}")
         with suppress(OSError):
@@ -61,12 +79,28 @@ class EarlierJob:
             part.replace(self._record)
             _forget_oldest(self._record.parent)
 
+    def _key(self, file: Path) -> str:
+        """What a file is called in the record: its name, or its whole path if it is in another folder."""
+        return os.path.normcase(file.name if file.parent == self._folder else file)
+
     def _read(self) -> dict[str, str]:
         try:
             found = json.loads(b"" if self._record is None else self._record.read_bytes())
         except (OSError, ValueError, RecursionError):
             return {}
         return {name: text for name, text in found.items() if isinstance(text, str)} if isinstance(found, dict) else {}
+
+
+def _is_as_known(file: Path, known: str) -> bool:
+    """Whether a file has the size and the digest of the record."""
+    size, digest = known.split(":")[:2] if ":" in known else ("", known)
+    # The size first: a file that is somebody else's may be endless.
+    return size in ("", str(file.stat().st_size)) and _digest(file) == digest
+
+
+def _job(digests: Iterable[str]) -> str:
+    """Digest of a program by those of its files."""
+    return hashlib.sha256("".join(sorted(digests)).encode()).hexdigest()
 
 
 def _digest(file: Path) -> str:

@@ -1,4 +1,4 @@
-"""Output files that appear complete or not at all, alone or several together."""
+"""Output files of a job, which appear complete or not at all."""
 
 import io
 import os
@@ -111,8 +111,8 @@ class OutputFiles:
         return sink
 
     @contextmanager
-    def reopened(self) -> Iterator["OutputFiles"]:
-        """Take further papers, although everything else is complete and closed; errors are those of ``sync``."""
+    def filled(self) -> Iterator["OutputFiles"]:
+        """Take files, or further papers of a program that is complete, and close them; errors are those of ``sync``."""
         yield from _fill(self)
 
     def protect(self, files: Iterable[str | os.PathLike[str]]) -> None:
@@ -197,14 +197,26 @@ class OutputFiles:
     def remember(self) -> None:
         """Record what has been written, once it is in its places, for later jobs of the same first file."""
         if self._earlier is not None:
-            written = [*self._program_files(), *self.papers]
-            self._earlier.remember(place.path for _, place in written if not place.is_stream)
+            papers = [place.path for _, place in self.papers if not place.is_stream]
+            self._earlier.remember([place.path for _, place in self._program_files()], papers)
 
     def remember_alone(self, paper: Path) -> None:
         """Record a paper that was written although the program is not."""
         place = resolve_output(paper)
         if self._earlier is not None and not place.is_stream:
-            self._earlier.remember([place.path])
+            self._earlier.remember([], [place.path])
+
+    def left_over(self, papers: Iterable[OutputPlace]) -> list[Path]:
+        """Files that earlier jobs of the first file wrote with another program, and that stay beside this one.
+
+        The program is complete, and ``papers`` are all that are written about it.
+        """
+        if self._earlier is None:
+            return []
+        self.flush()
+        files = self._program_files()
+        places = [*(place for _, place in files), *papers]
+        return self._earlier.left_over([path for path, _ in files], [place.path for place in places])
 
     def _program_files(self, *, main: bool = True) -> list[tuple[Path, OutputPlace]]:
         files = [(path, place) for path, (_, place) in self._subprograms.items()]
@@ -307,89 +319,6 @@ def _fill(files: OutputFiles) -> Iterator[OutputFiles]:
             files.close()
     finally:
         files.close()
-
-
-class OutputGroup:
-    """Several jobs, each with its files: all of them reach their places together."""
-
-    def __init__(self, *, remembers: bool = True) -> None:
-        self._remembers = remembers
-        self._claims = Claims()
-        self._folders: list[HiddenFolders] = []
-        self._complete: list[tuple[OutputFiles, HiddenFolders]] = []
-
-    @contextmanager
-    def open(
-        self,
-        place: OutputPlace,
-        *,
-        papers: Iterable[OutputPlace] = (),
-        inputs: Iterable[str | os.PathLike[str]] = (),
-    ) -> Iterator[OutputFiles]:
-        """The files of a job, as ``atomic_output`` has them; none appears before the group is published.
-
-        Raises
-        ------
-        InputError
-            As ``atomic_output``, also where another job of the group writes or reads the same file; or if a place is a
-            device, which takes what it gets at once.
-        """
-        places = [place, *papers]
-        for each in places:
-            if each.is_stream:
-                raise InputError(
-                    Problem(
-                        each.name, 0, "is a device, and several files appear together", "name a file", code="FIL210"
-                    )
-                )
-        self._claims.read(inputs)
-        for each in places:
-            self._claims.write(each)
-        hidden = HiddenFolders()
-        self._folders.append(hidden)
-        earlier = EarlierJob(place.path) if self._remembers else None
-        files = OutputFiles(hidden.beside(place), Path(place.name).name, place, self._claims, earlier)
-        yield from _fill(files)
-        self._complete.append((files, hidden))
-
-    def publish(self) -> None:
-        """Bring the files of all jobs to their places."""
-        moves = [move for files, hidden in self._complete for move in files.bring(hidden)]
-        if moves:
-            move_all(moves, [place for files, _ in self._complete for _, place in files.papers])
-        for files, _ in self._complete:
-            files.remember()
-
-    def remove(self) -> None:
-        """Remove what has not reached its place; can be called again if it was interrupted."""
-        for hidden in self._folders:
-            hidden.remove()
-
-
-@contextmanager
-def output_group(*, remembers: bool = True) -> Iterator[OutputGroup]:
-    """Jobs whose files reach their places together when the block ends, or not at all if it raises.
-
-    Parameters
-    ----------
-    remembers
-        Files that nobody has named replace only what earlier jobs have written, and these are remembered.
-
-    Raises
-    ------
-    InputError
-        If a file cannot be written. Earlier files of the same names stay as they were.
-    """
-    group = OutputGroup(remembers=remembers)
-    # An interruption of the first removal leaves the second one to do it.
-    try:
-        try:
-            yield group
-            group.publish()
-        finally:
-            group.remove()
-    finally:
-        group.remove()
 
 
 @contextmanager

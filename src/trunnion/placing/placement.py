@@ -48,14 +48,34 @@ class AxisUse:
 
 
 @dataclass(frozen=True, slots=True)
+class RotaryUse:
+    """How a rotary axis uses its travel at a place.
+
+    least_deg, greatest_deg  how far it goes, degrees
+    margin_deg               what is left to the nearer of its limits; infinite without limits
+    low_deg, high_deg        the limits
+    """
+
+    axis: str
+    least_deg: float
+    greatest_deg: float
+    margin_deg: float
+    low_deg: float
+    high_deg: float
+
+
+@dataclass(frozen=True, slots=True)
 class Place:
     """A place of the part, and what it leaves the slides.
 
     zero_mm    of the workpiece, machine frame, all axes at zero
     turn_deg   of the part about Z, right-handed
+    tilt_deg   of the part about X of the program's coordinate system, right-handed: the first of the two
     margin_mm  of the slide that is nearest to a limit; negative beyond it
     value      of the goal: mm of margin, mm or degrees of travel, seconds, blocks; None: the goal has none here
     axes       of all slides
+    rotary     of the rotary axes
+    planned_s  with the goal ``time``: seconds of the rows by the planner of speeds, with accelerations and jerks
     """
 
     zero_mm: Vector
@@ -63,6 +83,9 @@ class Place:
     margin_mm: float
     axes: tuple[AxisUse, ...]
     value: float | None = None
+    tilt_deg: float = 0.0
+    rotary: tuple[RotaryUse, ...] = ()
+    planned_s: float | None = None
 
     @property
     def fits(self) -> bool:
@@ -72,7 +95,7 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class TurnMargin:
-    """What a turn of the part allows.
+    """What a turn of the part allows, after a tilt.
 
     margin_mm  the largest one of any place; None: some row is out of reach of the rotary axes, as ``obstacle`` says
     zero_mm    the best place there
@@ -84,6 +107,7 @@ class TurnMargin:
     zero_mm: Vector | None = None
     obstacle: str = ""
     value: float | None = None
+    tilt_deg: float = 0.0
 
     @property
     def fits(self) -> bool:
@@ -118,7 +142,7 @@ class Placement:
     problems: tuple[Problem, ...] = ()
     toolpaths: tuple[Toolpath, ...] = ()
     _find_region: Callable[[], Region | None] = field(default=lambda: None, repr=False)
-    _margin_at: Callable[[Floats, float], float] = field(default=lambda zero, turn: np.nan, repr=False)
+    _margin_at: Callable[[Floats, float, float], float] = field(default=lambda *_: np.nan, repr=False)
 
     @property
     def region(self) -> Region | None:
@@ -141,20 +165,25 @@ class Placement:
         return None if self.best is None else self.best.turn_deg
 
     @property
+    def tilt_deg(self) -> float | None:
+        """The tilt of the best place about X, right-handed; it comes before the turn."""
+        return None if self.best is None else self.best.tilt_deg
+
+    @property
     def margin_mm(self) -> float | None:
         """The margin of the best place; negative: how far it is from fitting."""
         return None if self.best is None else self.best.margin_mm
 
     @property
     def seconds(self) -> float | None:
-        """With the goal ``time`` that of the best place, by speeds alone."""
-        return self.best.value if self.best is not None and self.goal == "time" else None
+        """With the goal ``time`` that of the best place, as the planner of speeds has it."""
+        return None if self.best is None else self.best.planned_s
 
     @property
     def share_of_turns(self) -> float:
-        """Of the turns that were tried, those at which the part fits somewhere, 0 to 1."""
+        """Of the turns and tilts that were tried, those at which the part fits somewhere, 0 to 1."""
         return sum(turn.fits for turn in self.turns) / max(len(self.turns), 1)
 
-    def margin_at(self, zero_mm: Vector, turn_deg: float) -> float:
+    def margin_at(self, zero_mm: Vector, turn_deg: float, tilt_deg: float = 0.0) -> float:
         """The margin of any place, exact; minus infinity where rotary axes do not reach the path."""
-        return self._margin_at(np.array(zero_mm, np.float64), float(turn_deg))
+        return self._margin_at(np.array(zero_mm, np.float64), float(turn_deg), float(tilt_deg))

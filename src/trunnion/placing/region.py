@@ -12,6 +12,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.extras import import_extra
+from trunnion.placing.inscribed_box import Box, inscribed_box
 from trunnion.placing.largest_margin import BestPlace
 from trunnion.placing.travel_limits import FARTHEST, CutSet
 
@@ -32,7 +33,8 @@ class Region:
     corners    (v, 3) of the polyhedron, mm, machine frame
     tolerance  how far they are outside at most, mm
     volume     mm^3; infinite where a slide without limits leaves it open
-    low, high  (3,) its extent, mm; infinite where it is open
+    low, high  (3,) its extent, mm; infinite where it is open: not every place within it fits
+    box        the largest box of places that all fit, around the best one
     cuts       its half-spaces
     """
 
@@ -42,18 +44,25 @@ class Region:
     low: Floats
     high: Floats
     cuts: CutSet
+    box: Box
+
+    @property
+    def is_box(self) -> bool:
+        """Whether all places within its extent fit."""
+        ends = ((self.low, self.box.low), (self.high, self.box.high))
+        return all(np.allclose(one, other, rtol=0.0, atol=TOLERANCE) for one, other in ends)
 
     def margin(self, zero: Floats) -> float:
         """What the slide nearest to a limit has left with the zero (3,) there, mm; negative: it does not fit."""
         return float(self.cuts.at(np.asarray(zero, np.float64)).margins.min())
 
 
-def region_of(cuts: CutSet, best: BestPlace) -> Region | None:
-    """The region around the best place; None if there is none."""
+def region_of(cuts: CutSet, best: BestPlace, inside: Floats | None = None) -> Region | None:
+    """The region around the best place, with a box around it or a place (3,) near it; None if there is none."""
     if best.margin < 0.0:
         return None
     if best.margin < _NO_INSIDE:
-        return Region(best.zero[None], 0.0, 0.0, best.zero, best.zero, cuts)
+        return Region(best.zero[None], 0.0, 0.0, best.zero, best.zero, cuts, Box(best.zero, best.zero))
     corners = _corners(cuts, best.zero)
     judged: dict[tuple[float, ...], float] = {}
     while len(cuts.cuts) < _MOST:
@@ -74,9 +83,9 @@ def region_of(cuts: CutSet, best: BestPlace) -> Region | None:
     low, high = corners.min(axis=0), corners.max(axis=0)
     open_low, open_high = low < -0.99 * FARTHEST, high > 0.99 * FARTHEST
     volume = np.inf if (open_low | open_high).any() else float(hull.volume)
-    return Region(
-        corners, max(off, 0.0), volume, np.where(open_low, -np.inf, low), np.where(open_high, np.inf, high), cuts
-    )
+    low, high = np.where(open_low, -np.inf, low), np.where(open_high, np.inf, high)
+    box = inscribed_box(cuts, best.zero if inside is None else inside, low, high)
+    return Region(corners, max(off, 0.0), volume, low, high, cuts, box)
 
 
 def _corners(cuts: CutSet, inside: Floats) -> Floats:

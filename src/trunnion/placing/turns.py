@@ -94,6 +94,18 @@ class TurnedPath:
         """Positions of the rotary axes at a turn."""
         return rotary_angles(self.machine, self.rows.turned(about_z(turn)))
 
+    def rows_at(self, turn: float) -> tuple[PathRows, Floats]:
+        """The rows at a turn that is within reach, and the positions (n, 2) of the rotary axes in them, degrees."""
+        angles = self.angles_at(turn)
+        assert not isinstance(angles, Obstacle)
+        return self.rows.turned(about_z(turn)), angles.positions
+
+    @property
+    def has_like_rotary_room(self) -> bool:
+        """Whether no turn changes what is left to the rotary axes: the first, which turns along, has no limits."""
+        first = self.machine.axes[self.machine.rotary[0]]
+        return self._turning is not Turning.OTHER and np.isinf(first.low) and np.isinf(first.high)
+
     @cached_property
     def _turning(self) -> Turning:
         return turning_of(self.machine)

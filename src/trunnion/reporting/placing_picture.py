@@ -66,7 +66,10 @@ def map_margins(found: Placement, fields: int = _FIELDS) -> tuple[Floats, Floats
     side = 1.12 * max(float((high - low).max()), 1.0)
     x, y = ((low[k] + high[k]) / 2.0 + side * ((np.arange(fields) + 0.5) / fields - 0.5) for k in range(2))
     margins = np.array(
-        [[found.margin_at((a, b, best.zero_mm[2]), best.turn_deg) for a in x.tolist()] for b in y.tolist()]
+        [
+            [found.margin_at((a, b, best.zero_mm[2]), best.turn_deg, best.tilt_deg) for a in x.tolist()]
+            for b in y.tolist()
+        ]
     )
     return x, y, margins
 
@@ -77,7 +80,8 @@ def _map(found: Placement) -> Iterator[str]:
     x, y, margins = map_margins(found)
     step = float(x[1] - x[0])
     top = max(float(margins.max()), best.margin_mm, 1e-9)
-    title = f"margin at Z {best.zero_mm[2]:g}, turned {best.turn_deg:g}°, mm"
+    tilted = f"tilted {best.tilt_deg:g}°, " if best.tilt_deg else ""
+    title = f"margin at Z {best.zero_mm[2]:g}, {tilted}turned {best.turn_deg:g}°, mm"
     yield f'<text x="{_LEFT:g}" y="24">{escape(found.machine)}: {title}</text>\n'
     size = _SIDE / len(x)
     band = np.where(margins < 0.0, -1, np.minimum(len(_BANDS) * margins / top, len(_BANDS) - 1).astype(np.int64))
@@ -141,7 +145,9 @@ def _legend(top: float, present: bool) -> Iterator[str]:
 def _turns(found: Placement) -> Iterator[str]:
     """The best margin over the turns; marks at the foot where rotary axes do not reach the path."""
     left, right, top, low = _LEFT + _SIDE + 120.0, _WIDTH - 24.0, _TOP, _TOP + _SIDE
-    turns = [turn for turn in found.turns if turn.margin_mm is not None]
+    tilt = 0.0 if found.best is None else found.best.tilt_deg
+    tried = [turn for turn in found.turns if turn.tilt_deg == tilt]
+    turns = [turn for turn in tried if turn.margin_mm is not None]
     margins = np.array([turn.margin_mm for turn in turns], np.float64)
     yield f'<text x="{left:g}" y="24">best margin over the turn, mm</text>\n'
     yield f'<path class="frame" d="M{left:g} {top:g}V{low:g}H{right:g}"/>\n'
@@ -150,7 +156,7 @@ def _turns(found: Placement) -> Iterator[str]:
     least, most = min(float(margins.min()), 0.0), max(float(margins.max()), 0.0)
     room = max(0.08 * (most - least), 1e-6)
     least, most = least - room, most + room
-    begin, end = found.turns[0].turn_deg, max(found.turns[-1].turn_deg, found.turns[0].turn_deg + 1e-9)
+    begin, end = tried[0].turn_deg, max(tried[-1].turn_deg, tried[0].turn_deg + 1e-9)
 
     def at(turn: float, margin: float) -> str:
         px = left + (turn - begin) / (end - begin) * (right - left)
@@ -158,7 +164,7 @@ def _turns(found: Placement) -> Iterator[str]:
 
     yield f'<path class="zero" d="M{at(begin, 0.0)}L{at(end, 0.0)}"/>\n'
     path, draws = "", "M"
-    for turn in found.turns:
+    for turn in tried:
         if turn.margin_mm is None:
             draws = "M"
             px = at(turn.turn_deg, least).split()[0]

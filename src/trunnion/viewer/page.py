@@ -30,8 +30,14 @@ MODULES: Final = (
     "stock",
     "listing",
     "curves",
+    "elements",
+    "strips",
+    "path_colours",
+    "program_text",
+    "controls",
     "twin",
     "live",
+    "page",
     "main",
 )
 

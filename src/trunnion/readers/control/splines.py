@@ -4,6 +4,7 @@ The second author's evaluation: it shares nothing with that of CL files and of w
 """
 
 import math
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -65,42 +66,60 @@ def nurbs_points(spline: Spline) -> Floats:
     for span in spline.spans.tolist():
         chords = _FIRST_CHORDS
         while True:
-            at = np.linspace(spline.knots[span], spline.knots[span + 1], 4 * chords + 1)
-            points = _de_boor(spline, span, at)
-            if _farthest_from_chords(points) <= CHORD:
+            at = np.linspace(spline.knots[span], spline.knots[span + 1], chords + 1)
+            pieces = _bezier_pieces(spline, span, at)
+            if _farthest_from_chords(pieces) <= CHORD:
                 break
             chords *= 2
             if not chords <= MOST_POINTS:
                 raise SplineError(f"a spline that takes more than {MOST_POINTS} points within {CHORD:g} mm")
-        found.append(points[4::4])
+        found.append(pieces[-1, :, :3] / pieces[-1, :, 3:])
         total += chords
         if total > _MOST_IN_ALL:
             raise SplineError(f"a spline that takes more than {_MOST_IN_ALL} points within {CHORD:g} mm")
     return np.concatenate(found)
 
 
-def _farthest_from_chords(points: Floats) -> float:
-    """How far points between every fourth one are from its chords, mm."""
-    begin, step = points[:-1:4], points[4::4] - points[:-1:4]
-    square = np.maximum(np.einsum("ij,ij->i", step, step), 1e-30)
-    farthest = 0.0
-    for k in (1, 2, 3):
-        arm = points[k::4] - begin
-        share = np.clip(np.einsum("ij,ij->i", arm, step) / square, 0.0, 1.0)
-        farthest = max(farthest, float(np.linalg.norm(arm - share[:, None] * step, axis=1).max()))
-    return farthest
+def _bezier_pieces(spline: Spline, span: int, at: Floats) -> Floats:
+    """(d + 1, k, 4): control points times weights, and weights, of the curves between k + 1 parameters of a span."""
+    begin, end, degree = at[:-1], at[1:], spline.degree
+    return np.stack([_blossom(spline, span, [begin] * (degree - i) + [end] * i) for i in range(degree + 1)])
 
 
-def _de_boor(spline: Spline, span: int, at: Floats) -> Floats:
-    """Points (k, 3) at parameters (k,) of the span that begins at a knot, by de Boor's triangle."""
+def _farthest_from_chords(pieces: Floats) -> float:
+    """How far curves of ``_bezier_pieces`` can be from their chords at most, mm.
+
+    The distance from a chord is convex, so that of a curve is at most the mean of its control points' distances with
+    their shares: that of the ends is 0, and the inner ones together have at most the share ``inner``. Points of the
+    curve bound nothing: a curve that goes out and comes back turns between them.
+    """
+    weights = pieces[..., 3]
+    points = pieces[..., :3] / weights[..., None]
+    if len(points) < 3:
+        return 0.0
+    step = points[-1] - points[0]
+    arm = points[1:-1] - points[0]
+    share = np.clip(np.einsum("dij,ij->di", arm, step) / np.maximum(np.einsum("ij,ij->i", step, step), 1e-30), 0.0, 1.0)
+    away = np.linalg.norm(arm - share[..., None] * step, axis=2).max(axis=0)
+    ends = 2.0 ** (2 - len(points))  # the least share of the ends where all weights are equal
+    heavy = (1.0 - ends) * weights[1:-1].max(axis=0)
+    inner = heavy / (heavy + ends * np.minimum(weights[0], weights[-1]))
+    return float((inner * away).max())
+
+
+def _blossom(spline: Spline, span: int, at: Sequence[Floats]) -> Floats:
+    """Points (k, 4) of de Boor's triangle with an own parameter for each level, times their weights, and these.
+
+    Of ``d - i`` times one and ``i`` times another parameter it is control point ``i`` of the curve between both.
+    """
     degree, knots = spline.degree, spline.knots
     triangle = [
-        np.tile(np.append(spline.poles[i] * spline.weights[i], spline.weights[i]), (len(at), 1))
+        np.tile(np.append(spline.poles[i] * spline.weights[i], spline.weights[i]), (len(at[0]), 1))
         for i in range(span - degree, span + 1)
     ]
     for level in range(1, degree + 1):
         for j in range(degree, level - 1, -1):
             low, high = knots[span - degree + j], knots[span + 1 + j - level]
-            right = ((at - low) / (high - low))[:, None]
+            right = ((at[level - 1] - low) / (high - low))[:, None]
             triangle[j] = triangle[j - 1] * (1.0 - right) + triangle[j] * right
-    return np.asarray(triangle[degree][:, :3] / triangle[degree][:, 3:])
+    return triangle[degree]

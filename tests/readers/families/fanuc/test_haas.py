@@ -37,6 +37,7 @@ def test_a_dwell_with_a_point_is_in_seconds(words: str, seconds: float, tmp_path
         ("G98 G83 X1. Z-5. R2. Q2. K3 F100.", "describes pecks or a retract"),
         ("G98 G84 X1. Z-5. R2. J2 F500.", "describes pecks or a retract"),
         ("G98 G81 X1. Z-5. R2. L3 F100.", "L repeats a cycle with G91 only"),
+        ("G98 G81\nX1. Z-5. R2. F100.", "a cycle without a position, Z and R"),
         ("G98 G86 X1. Z-5. R2. F100.", "unknown word G86"),
         ("G98 G88 X1. Z-5. R2. F100.", "unknown word G88"),
         ("G43.4 H5 Z60.", "unknown word G43.4"),
@@ -67,6 +68,7 @@ def test_what_is_not_settled_or_not_there_is_an_error(lines: str, what: str, tmp
 @pytest.mark.parametrize(
     "lines",
     [
+        "G98 G81 L0\nX1. Z-5. R2. F100.",
         "G98 G84 X1. Z-5. R2. F500.\nG80\nG0 Z60.\nM3\nG1 X5. F100.",
         "G98 G84 X1. Z-5. R2. F500.\nX5.\nG80\nG0 Z60.",
         "G0 B30. C-400.\nG254\nX0. Y0.\nZ60.\nG53 Z0.\nG255\nB0. C0.",

@@ -203,6 +203,36 @@ def test_cycles_make_the_motions_of_the_manual(block: str, run: Runner) -> None:
     assert got.diagnostics == ()
 
 
+@pytest.mark.parametrize("between", ["", "M8\n", "G99\nG98\n", "G82\nG81\n", "G4 P500\n"])
+def test_a_cycle_may_be_selected_before_its_words(between: str, run: Runner) -> None:
+    got = fanuc(run, f"G90 G0 X0. Y0. Z30.\nG98 G81\n{between}X1. Z-10. R2. F100.\nG80\n")
+    assert slides(got)[1:].tolist() == [[1, 0, 30], [1, 0, 2], [1, 0, -10], [1, 0, 30]]
+    assert got.diagnostics == ()
+
+
+@pytest.mark.parametrize(
+    ("lines", "at"),
+    [
+        ("G98 G81\nG80", [(2, "NC218")]),
+        ("G98 G81\nG0 X1.", [(2, "NC218")]),
+        ("G98 G81", [(2, "NC218")]),
+        ("G81\nG83\nG80", [(2, "NC218")]),
+        ("G81\nG80\nG81\nX1. Z-10. R2. F100.\nG80", [(2, "NC218")]),
+        ("G81\nX1. Y2.\nG80", [(2, "NC218"), (3, "NC210")]),
+        ("G81 X1. Z-10. R2. F100.\nG80\nG81\nX2.", [(4, "NC218"), (5, "NC210")]),
+    ],
+)
+def test_a_cycle_whose_words_never_come_is_an_error(lines: str, at: list[tuple[int, str]], run: Runner) -> None:
+    got = fanuc(run, f"G90 G0 X0. Y0. Z30.\n{lines}\n")
+    assert [(error.line, error.code) for error in got.errors] == at
+
+
+def test_words_of_a_block_that_drills_nothing_do_not_stay(run: Runner) -> None:
+    got = fanuc(run, "G90 G0 X0. Y0. Z30.\nG83\nQ4.\nX1. Z-10. R2. F100.\nG80\n")
+    assert [error.line for error in got.errors if "the cycle has no Q" in error.text] == [4]
+    assert [(each.line, each.code) for each in got.diagnostics if each.line == 3] == [(3, "NC213")]
+
+
 #: Where the tool is beside the hole, and where it waits: what the manual says of the cycles that shift it or dwell.
 ASIDE = {
     "G98 G76 X1. Z-10. R2. Q.5 P100 F100.": ([0, 0, 0, 0.5, 0.5, 0], {-10: 0.1}),

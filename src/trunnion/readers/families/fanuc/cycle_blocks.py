@@ -6,6 +6,7 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.machines import Machine
+from trunnion.model.run import Diagnostic
 from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.control.virtual_control import RAPID
 from trunnion.readers.families.fanuc import cycles
@@ -27,6 +28,8 @@ class CycleInterpreter(OffsetInterpreter):
         self._to_initial = True
         self._initial: float | None = None
         self._modal_words: dict[str, float] = {}
+        # What was reported of the cycle in force, which has no words yet.
+        self._waiting: Diagnostic | None = None
         # What has stopped the spindle besides M5, if the program has not started it since; else empty.
         self._spindle_stands = ""
         # Axes whose positions must be stated in a new plane before the tool cuts there.
@@ -46,15 +49,21 @@ class CycleInterpreter(OffsetInterpreter):
             self.motion_code = code
             return
         self._initial = None
+        self._waiting = None
         self.motion_code = control.motion * 10 if code == CANCEL else code
         if code in MOTIONS:
             control.motion = MOTIONS[code]
 
     def _cycle(self, block: Block, axes: dict[str, AxisWord]) -> None:
-        """Drill at the position of a block."""
+        """Drill at the position of a block; those without one and without R and Z drill nothing, and no word stays."""
         control = self.control
         along = "XYZ"[control.plane_axis]
         self._check_words(block)
+        letter = control.settings.repeat_letter
+        if not axes and "R" not in block.words:
+            if self.motion_code in block.g:
+                self._select_without_words(block.take(letter))
+            return
         given = {
             letter: value
             for letter in cycles.MODAL_WORDS
@@ -63,14 +72,8 @@ class CycleInterpreter(OffsetInterpreter):
         if along in axes:
             given["Z"] = axes[along][0]
         self._modal_words |= given
-        letter = control.settings.repeat_letter
         repeats = block.take(letter)
         block.take("L")
-        if not axes and not ({"R", "Z"} & given.keys()):
-            if self.motion_code in block.g and not self._modal_words:
-                # It drills at the next position without a G word, with words that nobody has written.
-                self._note("a cycle without a position, Z and R", Severity.ERROR, "NC218")
-            return
         self._report_rotary_words(axes)
         self._require_words(self._modal_words, "ZR" + "Q" * (self.motion_code in cycles.NEED_Q))
         holes = 1 if repeats is None else int(repeats)
@@ -78,6 +81,7 @@ class CycleInterpreter(OffsetInterpreter):
             raise BlockError(f"{letter} of a cycle is how often it drills")
         if letter == "L" and holes > 1 and control.absolute:
             raise BlockError("L repeats a cycle with G91 only")
+        self._withdraw_waiting()
         self._check_cycle_feed()
         hole = self._hole()
         motions = self._cycle_motions(lambda: cycles.cycle_motions(self.motion_code, hole))
@@ -90,6 +94,25 @@ class CycleInterpreter(OffsetInterpreter):
             control.move(in_plane, None)
             control.drill(motions, work)
         control.motion = motion
+
+    def _select_without_words(self, repeats: float | None) -> None:
+        """Report a cycle that has no words yet, until a block brings them.
+
+        Where L repeats, the block that selects a cycle drills at once, where the tool is, except with L0.
+        """
+        if self._modal_words or self._waiting is not None:
+            return
+        noted = len(self._diagnostics)
+        self._note("a cycle without a position, Z and R", Severity.ERROR, "NC218")
+        at_once = self.control.settings.repeat_letter == "L" and repeats != 0.0
+        if not at_once and len(self._diagnostics) > noted:
+            self._waiting = self._diagnostics[-1]
+
+    def _withdraw_waiting(self) -> None:
+        """Withdraw what was reported of a cycle without words: they have come before it drilled."""
+        if self._waiting is not None:
+            self._diagnostics.remove(self._waiting)
+            self._waiting = None
 
     def _check_cut(self, axes: Collection[str], *, of_machine: bool) -> None:
         """Report a cut that a thread has left without a spindle, or that a new plane has left without a position."""

@@ -1,0 +1,52 @@
+"""A set-up of a project as it is placed."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from trunnion.api.project import PostedSetup, Project
+from trunnion.api.project_file import load_project, project_inputs
+from trunnion.api.reading import FilePath
+from trunnion.api.settings import SettingValue
+from trunnion.errors import InputError, Problem, argument_problem
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlacedSetup:
+    """What a project states of the part that is placed; all as ``trunnion.place`` takes it.
+
+    read  all files that the project leads to, none of which may be written over
+    """
+
+    files: tuple[str, ...]
+    machine: str
+    settings: Mapping[str, SettingValue]
+    read: tuple[FilePath, ...]
+
+
+def placed_setup(project: Path, name: str | None = None) -> PlacedSetup:
+    """The CL files, the machine and the settings of a set-up, the zero among them.
+
+    Raises
+    ------
+    InputError
+        If the project cannot be read, has hooks, or it is not clear which set-up is meant.
+    """
+    loaded = load_project(project)
+    if loaded.hooks:
+        what, cure = "has hooks, which would change its CL files", "give the CL files that are to be placed"
+        raise InputError(Problem(str(project), 0, what, cure, code="PLC160"))
+    setup = _setup(loaded, project, name)
+    return PlacedSetup(setup.cl, setup.machine, setup.settings, tuple(project_inputs(loaded)))
+
+
+def _setup(loaded: Project, project: Path, name: str | None) -> PostedSetup:
+    """The set-up of a name, or the only one."""
+    found = [each for each in loaded.setups if name is None or each.name == name]
+    if len(found) == 1:
+        return found[0]
+    names = ", ".join(each.name for each in loaded.setups)
+    if name is None:
+        what, cure = f"has {len(found)} set-ups that post CL files", f"name one with setup: {names}"
+        raise InputError(Problem(str(project), 0, what, cure, code="PLC170"))
+    raise InputError(argument_problem("setup", f"is {name!r}", f"write one of {names}", code="PLC170"))

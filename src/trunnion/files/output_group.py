@@ -1,0 +1,96 @@
+"""Jobs whose files appear together, or none of them."""
+
+import os
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from trunnion.errors import InputError, Problem
+from trunnion.files.earlier_job import EarlierJob
+from trunnion.files.hidden_folders import HiddenFolders, move_all
+from trunnion.files.output import OutputFiles
+from trunnion.files.places import Claims, OutputPlace
+
+
+class OutputGroup:
+    """Several jobs, each with its files: all of them reach their places together."""
+
+    def __init__(self, *, remembers: bool = True) -> None:
+        self._remembers = remembers
+        self._claims = Claims()
+        self._folders: list[HiddenFolders] = []
+        self._complete: list[tuple[OutputFiles, HiddenFolders]] = []
+
+    @contextmanager
+    def open(
+        self,
+        place: OutputPlace,
+        *,
+        papers: Iterable[OutputPlace] = (),
+        inputs: Iterable[str | os.PathLike[str]] = (),
+    ) -> Iterator[OutputFiles]:
+        """The files of a job, as ``atomic_output`` has them; none appears before the group is published.
+
+        Raises
+        ------
+        InputError
+            As ``atomic_output``, also where another job of the group writes or reads the same file; or if a place is a
+            device, which takes what it gets at once.
+        """
+        places = [place, *papers]
+        for each in places:
+            if each.is_stream:
+                raise InputError(
+                    Problem(
+                        each.name, 0, "is a device, and several files appear together", "name a file", code="FIL210"
+                    )
+                )
+        self._claims.read(inputs)
+        for each in places:
+            self._claims.write(each)
+        hidden = HiddenFolders()
+        self._folders.append(hidden)
+        earlier = EarlierJob(place.path) if self._remembers else None
+        files = OutputFiles(hidden.beside(place), Path(place.name).name, place, self._claims, earlier)
+        with files.filled():
+            yield files
+        self._complete.append((files, hidden))
+
+    def publish(self) -> None:
+        """Bring the files of all jobs to their places."""
+        moves = [move for files, hidden in self._complete for move in files.bring(hidden)]
+        if moves:
+            move_all(moves, [place for files, _ in self._complete for _, place in files.papers])
+        for files, _ in self._complete:
+            files.remember()
+
+    def remove(self) -> None:
+        """Remove what has not reached its place; can be called again if it was interrupted."""
+        for hidden in self._folders:
+            hidden.remove()
+
+
+@contextmanager
+def output_group(*, remembers: bool = True) -> Iterator[OutputGroup]:
+    """Jobs whose files reach their places together when the block ends, or not at all if it raises.
+
+    Parameters
+    ----------
+    remembers
+        Files that nobody has named replace only what earlier jobs have written, and these are remembered.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be written. Earlier files of the same names stay as they were.
+    """
+    group = OutputGroup(remembers=remembers)
+    # An interruption of the first removal leaves the second one to do it.
+    try:
+        try:
+            yield group
+            group.publish()
+        finally:
+            group.remove()
+    finally:
+        group.remove()

@@ -1,0 +1,121 @@
+"""Papers and subprograms of the program before: a post that does not write them again names them."""
+
+from pathlib import Path
+
+import pytest
+
+import trunnion
+from trunnion.cli import main
+from trunnion.files.earlier_job import EarlierJob
+
+BLADE = Path("tests/golden/yl569/3_blade_finish.cls")
+HUB = Path("tests/golden/yl569/2_hub_rough.cls")
+
+
+@pytest.fixture
+def part(tmp_path: Path) -> Path:
+    """The place of a program that was posted with a sheet and a listing."""
+    place = tmp_path / "part.mpf"
+    post(place, HUB, sheet=tmp_path / "part.sheet.html", listing=tmp_path / "part.lst")
+    return place
+
+
+def post(place: Path, *files: Path, settings: dict[str, str] | None = None, **papers: Path) -> list[str]:
+    """Post, and return what is told of files of the program before."""
+    result = trunnion.post(files, machine="yl569", output=place, settings=settings, **papers)  # type: ignore[arg-type]
+    return [problem.what for problem in result.problems if problem.code == "FIL280"]
+
+
+def test_papers_that_stay_of_another_program_are_named(part: Path) -> None:
+    assert post(part, BLADE) == ["part.sheet.html, part.lst are of the program before"]
+    assert post(part, BLADE), "they are still of the program before"
+    assert post(part, BLADE, listing=part.with_suffix(".lst")) == ["part.sheet.html is of the program before"]
+    assert post(part, BLADE) == ["part.sheet.html is of the program before"]
+    part.with_suffix(".sheet.html").unlink()
+    assert post(part, BLADE) == []
+    assert post(part, HUB) == ["part.lst is of the program before"]
+
+
+def test_nothing_is_told_where_nothing_is_stale(part: Path) -> None:
+    papers = {"sheet": part.with_suffix(".sheet.html"), "listing": part.with_suffix(".lst")}
+    assert post(part, HUB) == [], "the same program"
+    assert post(part, BLADE, sheet=papers["sheet"], listing=papers["listing"]) == []
+    assert post(part.with_name("other.mpf"), HUB) == [], "another program of the folder"
+    papers["sheet"].write_text("by hand")
+    papers["listing"].unlink()
+    assert post(part, HUB) == [], "nobody knows of which program it is"
+
+
+def test_a_paper_in_another_folder_is_named_with_its_path(tmp_path: Path) -> None:
+    (tmp_path / "papers").mkdir()
+    report, place = tmp_path / "papers" / "part.html", tmp_path / "part.mpf"
+    post(place, HUB, report=report)
+    assert post(place, BLADE) == [f"{report} is of the program before"]
+    assert post(place, HUB) == []
+
+
+def test_subprograms_that_the_new_program_does_not_have_are_named(tmp_path: Path) -> None:
+    place = tmp_path / "part.mpf"
+    assert post(place, HUB, BLADE, settings={"programs": "operations"}) == []
+    files = {file.name for file in tmp_path.iterdir()}
+    told = post(place, HUB, settings={"programs": "operations"})
+    again = {file.name for file in tmp_path.iterdir()}
+    assert files == again
+    assert len(told) == 1
+    assert "part.mpf" not in told[0]
+    assert post(place, HUB, BLADE, settings={"programs": "operations"}) == []
+    assert len(post(place, HUB)) == 1, "no subprogram at all is written now"
+
+
+def test_the_report_of_a_refusal_is_stale_when_a_program_is_written(tmp_path: Path) -> None:
+    place, report = tmp_path / "part.mpf", tmp_path / "part.json"
+    wild = {"zero": "0,0,100000"}
+    with pytest.raises(trunnion.RefusedError):
+        post(place, HUB, settings=wild, report=report)
+    assert report.exists()
+    assert post(place, HUB) == ["part.json is of the program before"]
+
+
+def test_the_command_warns(part: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    part.with_suffix(".lst").unlink()
+    assert main(["post", str(BLADE), "--machine", "yl569", "--output", str(part)]) == 0
+    told = [line for line in capsys.readouterr().err.splitlines() if "FIL280" in line]
+    assert told == [
+        f"{part}: warning: part.sheet.html is of the program before; write it with this one, or delete it [FIL280]"
+    ]
+
+
+def test_a_project_warns_of_a_paper_that_it_no_longer_asks_for(tmp_path: Path) -> None:
+    project = tmp_path / "project.toml"
+    text = 'machine = "yl569"\ncl = ["part.cls"]\noutput = "part.mpf"\n'
+    (tmp_path / "part.cls").write_bytes(HUB.read_bytes())
+    project.write_text(text + 'sheet = "part.html"\n')
+
+    def told() -> list[str]:
+        (result,) = trunnion.post_project(project).results
+        return [problem.what for problem in result.problems if problem.code == "FIL280"]
+
+    assert told() == []
+    (tmp_path / "part.cls").write_bytes(BLADE.read_bytes())
+    assert told() == []
+    project.write_text(text)
+    assert told() == []
+    (tmp_path / "part.cls").write_bytes(HUB.read_bytes())
+    assert told() == ["part.html is of the program before"]
+
+
+def test_a_record_of_an_older_release_is_read(tmp_path: Path) -> None:
+    program, paper = tmp_path / "part.mpf", tmp_path / "part.html"
+    for file in (program, paper):
+        file.write_text(file.name)
+    job = EarlierJob(program)
+    job.remember([program], [paper])
+    assert job._record is not None
+    text = job._record.read_text()
+    for parts in (2, 1):
+        older = EarlierJob(program)
+        older._digests = {name: ":".join(known.split(":")[2 - parts : 2]) for name, known in job._read().items()}
+        assert older.wrote(paper)
+        assert older.left_over([program], [program]) == [paper]
+    assert text == job._record.read_text()
+    assert EarlierJob(program).left_over([program], [program]) == []
