@@ -33,7 +33,7 @@ from trunnion.batch.jobs import Batch, Job
 from trunnion.batch.keys import program_version
 from trunnion.batch.records import Record
 from trunnion.batch.running import run_jobs
-from trunnion.batch.stores import FolderStore
+from trunnion.batch.stores import FolderStore, Store, open_store
 from trunnion.batch.task import Action, Outcome, Status, Task
 
 MACHINE = "yl569"
@@ -101,7 +101,8 @@ def timed(what: str, count: int) -> Iterator[None]:
     started, used = time.perf_counter(), processor()
     yield
     seconds, own = time.perf_counter() - started, processor() - used
-    print(f"{what:<44} {seconds:8.1f} s {own:8.1f} s processor {count / seconds:8.1f} files/s", flush=True)
+    each = f"{own / count * 1e3:.2f} ms a file"
+    print(f"{what:<44} {seconds:8.1f} s {own:8.1f} s processor, {each}; {count / seconds:.1f} files/s", flush=True)
 
 
 def processor() -> float:
@@ -213,8 +214,24 @@ def costs(folder: Path, count: int) -> None:
         run_simply(batch, FolderStore(folder / "client"))
     with Cluster(folder, 2) as cluster:
         wait_for(cluster)
-        with timed("scheduler: tasks that do nothing", count):
-            run_jobs(batch, FolderStore(folder / "empty"), lambda _: DaskWorkers(cluster.address, nothing))
+        for what, place in (("results come here", folder / "empty"), ("workers write", (folder / "far").as_uri())):
+            store, used = open_store(place), processor_of(cluster.scheduler.pid)
+            with timed(f"client with tasks that do nothing: {what}", count):
+                run_jobs(batch, store, dask_workers(cluster, store))
+            spent = processor_of(cluster.scheduler.pid) - used
+            print(f"  scheduler: {spent / count * 1e3:.2f} ms of processor time a file", flush=True)
+
+
+def dask_workers(cluster: Cluster, store: Store) -> Callable[[int], DaskWorkers]:
+    """Makes workers that do nothing, and write to a store themselves where they reach it."""
+    return lambda _: DaskWorkers(cluster.address, nothing, writing=store.worker_url)
+
+
+def processor_of(process: int) -> float:
+    """Processor seconds of another process so far."""
+    psutil: Any = import_module("psutil")  # comes with Dask
+    found = psutil.Process(process).cpu_times()
+    return float(found.user + found.system)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """A small cluster of Dask: the results of a plain loop, although workers die and the scheduler is started again."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 
@@ -19,7 +19,7 @@ from trunnion.batch.running import run_jobs
 from trunnion.batch.stores import FolderStore, open_store
 from trunnion.batch.task import Action, OtherVersionError, Task
 from trunnion.batch.workers import Assignment
-from trunnion.errors import InputError
+from trunnion.errors import InputError, Problem
 
 pytestmark = needs_dask
 
@@ -84,6 +84,31 @@ def test_programs_are_those_of_a_plain_loop(cluster: Cluster, tmp_path: Path) ->
         tmp_path / "in", results=tmp_path / "out", action="post", machine="yl569", settings={"title": "X"}, workers=1
     )
     assert again.done == 4  # what a cluster has done, this computer need not do
+
+
+class Listener(Observer):
+    def __init__(self) -> None:
+        self.codes: list[str] = []
+
+    def problems(self, problems: Sequence[Problem]) -> None:
+        self.codes += [each.code for each in problems]
+
+
+def test_a_scheduler_without_workers_is_told_and_left_in_the_end(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("trunnion.batch.cluster.SILENCE", 0.0)
+    write_files(tmp_path / "in", {"x.cls": "one"})
+    listener = Listener()
+    with Cluster(tmp_path, 0) as cluster:
+        monkeypatch.setattr("trunnion.batch.cluster._ATTEMPT", 30.0)  # until the scheduler is there
+        with pytest.raises(InputError, match="BAT240"):
+            run_jobs(
+                simple_batch(tmp_path / "in"),
+                FolderStore(tmp_path / "out"),
+                lambda _: DaskWorkers(cluster.address, simple_work, wait=2.5, observer=listener),
+            )
+    assert listener.codes == ["BAT240"]
 
 
 def _other_version(task: Task) -> None:

@@ -1,5 +1,6 @@
 """Files of jobs, and folders: which files are taken, and what is refused with its line."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -54,6 +55,48 @@ def load_batch_of(folder: Path, text: str):  # type: ignore[no-untyped-def]
     return load(folder, text)
 
 
+SIMULATE = '[[job]]\nmachine = "yl569"\nfiles = ["**"]\naction = "simulate"\n'
+CONVERT = SIMULATE.replace("simulate", "convert")
+
+
+def test_tools_whose_diameters_cl_files_state_are_no_mistakes(tmp_path: Path) -> None:
+    text = SIMULATE + 'stock = "box:9,9,9"\ntools = ["1=ball:length=60,flutes=20"]\ncl = ["{folder}/{stem}.cls"]\n'
+    assert load_batch_of(tmp_path, text).jobs[0].arguments["tools"] == ["1=ball:length=60,flutes=20"]
+
+
+@pytest.mark.parametrize(
+    ("pattern", "told"),
+    [
+        ("link.cls", "link.cls is a link that leads out"), ("*.nc", "gone.nc is no file"), (".hid.cls", "is hidden"),
+        ("results/*.cls", "results/x.cls lies in a folder of results"), ("**/old/*", "lies in a folder of results"),
+        ("inner/x.cls", "links to folders are not followed"),
+    ],
+)  # fmt: skip
+def test_why_a_pattern_matches_no_file_is_told(tmp_path: Path, pattern: str, told: str) -> None:
+    names = ("in/a.cls", "in/.hid.cls", "in/results/x.cls", "in/old/x.apt", "in/old/.trunnion-batch/r", "far/x.cls")
+    write_files(tmp_path, dict.fromkeys(names, ""))
+    (tmp_path / "in/link.cls").symlink_to(tmp_path / "far/x.cls")
+    (tmp_path / "in/gone.nc").symlink_to(tmp_path / "in/no")
+    (tmp_path / "in/inner").symlink_to(tmp_path / "far", target_is_directory=True)
+    (found,) = problems(tmp_path / "in", f'[[job]]\nmachine = "yl569"\nfiles = ["{pattern}"]\n')
+    assert "matches no file" in found
+    assert told in found
+    with pytest.raises(InputError, match=re.escape(told)):
+        folder_batch(tmp_path / "in", Action.POST, {"machine": "yl569"}, tmp_path / "in/results", [pattern])
+
+
+def test_the_file_of_jobs_is_no_input(tmp_path: Path) -> None:
+    batch = load_batch_of(tmp_path, '[[job]]\nmachine = "yl569"\nfiles = ["**"]\n')
+    assert batch.jobs[0].files == ["a/x.cls", "b/x.cls", "b/y.nc"]
+
+
+@pytest.mark.parametrize("name", ["../{stem}.cls", "{nope}.cls", "?.cls", "/x.cls", ""])
+def test_names_of_cl_files_are_judged_before_any_work(tmp_path: Path, name: str) -> None:
+    write_files(tmp_path, {"x.mpf": ""})
+    with pytest.raises(InputError, match="cl"):
+        folder_batch(tmp_path, Action.VERIFY, {"machine": "yl569", "cl": [name]}, None)
+
+
 @pytest.mark.parametrize(
     ("text", "told"),
     [
@@ -73,6 +116,17 @@ def load_batch_of(folder: Path, text: str):  # type: ignore[no-untyped-def]
         ('[[job]]\nmachine = "yl569"\nfiles = ["**"]\nname = "a"\n' * 2, "twice"),
         ('[[job]]\nmachine = "yl569"\nfiles = ["**"]\nhooks = ["x.py"]', "hooks is not a key"),
         ('[[job]]\nmachine = "yl569"\nfiles = ["**"]\naction = "verify"\ncl = ["../{stem}.cls"]', "leads out"),
+        ('[[job]]\nmachine = "yl569"\nfiles = ["**"]\naction = "verify"\ncl = ["{nope}.cls"]', "has { or }"),
+        ('[[job]]\nmachine = "yl569"\nfiles = ["**"]\naction = "verify"\ncl = ["*.cls"]', "is a pattern"),
+        ('results = "~/x"\n[[job]]\nmachine = "yl569"\nfiles = ["**"]', "begins with ~"),
+        ('results = "CON"\n[[job]]\nmachine = "yl569"\nfiles = ["**"]', 'results "CON" is a device'),
+        ('[[job]]\nmachine = "yl569"\nfiles = ["jobs.toml"]', "is the file of jobs itself"),
+        (SIMULATE + 'stock = "box:1,2"', "has 2 numbers"),
+        (SIMULATE + 'stock = "box:9,9,9"\ncell_mm = 1e-9', "of memory"),
+        (SIMULATE + 'stock = "box:9,9,9"\ntools = ["1=bell:9"]', "1=bell:9"),
+        (CONVERT + 'to_machine = "dmu65"\nsettings = {cl_units = "mm"}', "cl_units has no meaning"),
+        (CONVERT + "to_cl = true\nsettings = {nosuch = 1}", "nosuch"),
+        (CONVERT + 'to_cl = true\nsettings = {units = "inch"}', "units has no meaning"),
     ],
 )
 def test_mistakes_are_told(tmp_path: Path, text: str, told: str) -> None:

@@ -51,10 +51,28 @@ def test_a_file_that_kills_every_worker_fails_alone_and_is_tried_again_next_time
 def test_a_file_that_takes_too_long_is_ended_and_tried_again_next_time(tmp_path: Path) -> None:
     write_files(tmp_path / "in", {"slow.cls": "sleep 600"})
     store = FolderStore(tmp_path / "out")
-    result = run_jobs(simple_batch(tmp_path / "in"), store, lambda _: LocalWorkers(2, simple_work, timeout=0.1))
+    result = run_jobs(
+        simple_batch(tmp_path / "in"), store, lambda _: LocalWorkers(2, simple_work, timeout=0.1, start=0.1)
+    )
     (failure,) = result.failures()
     assert (failure.status, failure.error and failure.error.code) == (Status.TIMED_OUT, "BAT350")
     assert not failure.status.is_final
+
+
+def test_the_start_of_a_process_does_not_count(tmp_path: Path) -> None:
+    mark = tmp_path / "mark"
+    write_files(tmp_path / "in", {"a.cls": f"cold {mark} 2.5", "b.cls": "quick"})
+    store = FolderStore(tmp_path / "out")
+    result = run_jobs(simple_batch(tmp_path / "in"), store, lambda _: LocalWorkers(1, simple_work, timeout=2.0))
+    assert result.counts == {Status.PASSED: 2}
+    assert mark.read_text(encoding="utf-8") == "cold"
+
+
+def test_a_first_file_that_is_slow_again_is_late(tmp_path: Path) -> None:
+    write_files(tmp_path / "in", {"slow.cls": "sleep 0.6"})
+    store = FolderStore(tmp_path / "out")
+    result = run_jobs(simple_batch(tmp_path / "in"), store, lambda _: LocalWorkers(1, simple_work, timeout=0.1))
+    assert result.counts == {Status.TIMED_OUT: 1}
 
 
 def test_no_process_is_started_where_nothing_is_to_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

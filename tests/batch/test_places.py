@@ -32,15 +32,25 @@ def test_results_lie_as_their_files_do() -> None:
     assert places("a/x.mpf", action=Action.VERIFY) == ["a/x.mpf.verification"]
 
 
-def test_results_of_one_name_keep_the_extensions_of_their_files() -> None:
-    assert places("x.cls", "x.ncl", "y.cls") == ["x.cls.mpf", "x.ncl.mpf", "y.mpf"]
+@pytest.mark.parametrize(
+    ("files", "clashing"),
+    [
+        (("x.cls", "x.ncl", "y.cls"), {"x.cls": "x.mpf", "x.ncl": "x.mpf", "y.cls": ""}),
+        (("x.cls", "X.cls"), {"x.cls": "x.mpf", "X.cls": "X.mpf"}),
+        (("a.cls", "a.mpf/b.cls", "b.cls"), {"a.cls": "a.mpf", "a.mpf/b.cls": "a.mpf/b.mpf", "b.cls": ""}),
+        (("a.cls", "A.MPF/c/b.cls"), {"a.cls": "a.mpf", "A.MPF/c/b.cls": "A.MPF/c/b.mpf"}),
+    ],
+)
+def test_files_whose_results_would_have_one_place_have_none(files: tuple[str, ...], clashing: dict[str, str]) -> None:
+    units = units_of([Job("job", Action.POST, files, {}, extension=".mpf")])
+    assert {unit.file: unit.clash for unit in units} == clashing
 
 
-def test_names_that_differ_in_capitals_only_get_a_checksum() -> None:
-    first, second = places("x.cls", "X.cls")
-    assert first.lower() != second.lower()
-    assert first.startswith("X.cls-")
-    assert second.startswith("x.cls-")
+def test_files_of_which_nothing_is_written_share_no_place() -> None:
+    jobs = [Job(name, Action.VERIFY, ["x.mpf"], {}) for name in ("one", "other")]
+    assert [unit.clash for unit in units_of(jobs)] == ["", ""]
+    reported = [Job(name, Action.VERIFY, ["x.mpf"], {}, report="html") for name in ("one", "other")]
+    assert [unit.clash for unit in units_of(reported)] == ["x.mpf.verification"] * 2
 
 
 def test_names_that_some_system_does_not_take_are_replaced() -> None:
@@ -57,6 +67,14 @@ def test_places_are_unique_and_safe_on_every_system(one: list[str], other: list[
     folded = [unicodedata.normalize("NFC", unit.place).casefold() for unit in units]
     assert len(set(folded)) == len(units) == len(one) + len(other)
     assert [name_fault(PurePosixPath(unit.place)) for unit in units] == [""] * len(units)
+    alone = [
+        unit
+        for job in jobs
+        for file in job.files
+        for unit in units_of([Job(job.name, job.action, [file], {}, extension=".mpf")])
+    ]
+    assert {unit.place for unit in units if not unit.clash} <= {unit.place for unit in alone}
+    assert {unit.clash for unit in units if unit.clash} <= {unit.place for unit in alone}
     turned = units_of([Job(job.name, job.action, job.files[::-1], {}, extension=".mpf") for job in jobs])
     assert turned == units
 

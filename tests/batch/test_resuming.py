@@ -1,13 +1,17 @@
 """A batch that is run again: it does what is missing or has changed, and comes out as if it had never been stopped."""
 
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from tests.support.batches import InOrder, Interrupted, StoppingStore, run_simply, simple_batch, tree, write_files
-from trunnion.batch.records import FOLDER, record_name
-from trunnion.batch.stores import FolderStore
-from trunnion.batch.task import Status
+from tests.support.dask_clusters import needs_dask
+from trunnion.batch.records import FOLDER, Record, record_name
+from trunnion.batch.stores import FolderStore, open_store
+from trunnion.batch.task import Outcome, Status, Task
+from trunnion.batch.workers import Assignment
 
 TEXTS = {"a/x.cls": "one", "b/x.cls": "two", "c.cls": "fail", "d.cls": "several parts", "e.cls": "refuse"}
 CHANGED = {"a/x.cls": "other", "b/x.cls": "fail", "c.cls": "mended", "d.cls": "single", "e.cls": "several now"}
@@ -125,6 +129,88 @@ def test_a_file_of_somebody_else_is_never_replaced(tmp_path: Path, is_changed: b
         assert [(each.file, each.error and each.error.code) for each in result.failures()] == [("x.cls", "BAT320")]
     (tmp_path / "out/x.mpf").unlink()
     assert run_simply(simple_batch(tmp_path / "in"), store).passed
+
+
+@pytest.mark.parametrize("address", ["", pytest.param("file", marks=needs_dask)])
+def test_a_folder_in_the_place_of_a_result_concerns_its_file_only(tmp_path: Path, address: str) -> None:
+    write_files(tmp_path / "in", {"x.cls": "one", "y.cls": "two", "z/z.cls": "three"})
+    write_files(tmp_path / "out", {"x.mpf/mine": "mine", "z": "a file"})
+    store = open_store((tmp_path / "out").as_uri() if address else tmp_path / "out")
+    for _ in range(2):
+        result = run_simply(simple_batch(tmp_path / "in"), store)
+        assert [(each.file, each.error and each.error.code) for each in result.failures()] == [
+            ("x.cls", "BAT320"), ("z/z.cls", "BAT320"),
+        ]  # fmt: skip
+        assert (tmp_path / "out/y.mpf").read_bytes() == b"of two"
+        assert (tmp_path / "out/x.mpf/mine").read_bytes() == b"mine"
+    (tmp_path / "out/z").unlink()
+    (tmp_path / "out/x.mpf/mine").unlink()
+    (tmp_path / "out/x.mpf").rmdir()
+    assert run_simply(simple_batch(tmp_path / "in"), store).passed
+
+
+@pytest.mark.parametrize(("changed", "done"), [("x.sub", ["x.cls"]), ("tools.toml", ["x.cls", "y.cls"]), ("z.sub", [])])
+def test_what_goes_with_files_counts(tmp_path: Path, changed: str, done: list[str]) -> None:
+    texts = dict.fromkeys(("x.cls", "y.cls", "x.sub", "y.sub", "z.sub", "tools.toml"), "one")
+    write_files(tmp_path / "in", texts)
+    (job,) = simple_batch(tmp_path / "in").jobs
+    shared = {"files/tools.toml": tmp_path / "in/tools.toml"}
+    job = replace(job, shared=shared, beside={"subprograms": ["{folder}/{stem}.sub"]})
+    batch = replace(simple_batch(tmp_path / "in"), jobs=[job])
+    store, again = FolderStore(tmp_path / "out"), InOrder()
+    run_simply(batch, store)
+    write_files(tmp_path / "in", {changed: "other"})
+    run_simply(batch, store, again)
+    assert again.done == done
+
+
+def test_a_file_that_changes_while_it_is_worked_on_is_done_again(tmp_path: Path) -> None:
+    write_files(tmp_path / "in", {"x.cls": "one", "y.cls": "two"})
+
+    class Changing(InOrder):
+        def run(self, tasks: Iterable[tuple[Assignment, Task]]) -> Iterator[tuple[Assignment, Outcome | Record]]:
+            for each in super().run(tasks):
+                write_files(tmp_path / "in", {"x.cls": "changed"})
+                yield each
+
+    store, again = FolderStore(tmp_path / "out"), InOrder()
+    run_simply(simple_batch(tmp_path / "in"), store, Changing())
+    assert (tmp_path / "out/x.mpf").read_bytes() == b"of one"
+    run_simply(simple_batch(tmp_path / "in"), store, again)
+    assert again.done == ["x.cls"]
+    assert (tmp_path / "out/x.mpf").read_bytes() == b"of changed"
+
+
+def test_a_job_with_another_name_is_not_done_again(tmp_path: Path) -> None:
+    write_files(tmp_path / "in", TEXTS)
+    store, again = FolderStore(tmp_path / "out"), InOrder()
+    batch = simple_batch(tmp_path / "in")
+    run_simply(batch, store)
+    renamed = replace(batch, jobs=[replace(batch.jobs[0], name="new")])
+    result = run_simply(renamed, store, again)
+    assert again.done == []
+    assert {record.job for record in result.records()} == {"new"}
+
+
+def test_links_lead_no_reading_out_of_the_folder(tmp_path: Path) -> None:
+    write_files(tmp_path, {"real.cls": "secret", "in/sub/same.cls": "inside", "in/x.cls": "one", "in/y.cls": "two"})
+    (tmp_path / "in/x.sub").symlink_to(tmp_path / "real.cls")
+    (tmp_path / "in/y.sub").symlink_to(tmp_path / "in/sub/same.cls")
+    batch = simple_batch(tmp_path / "in")
+    job = replace(batch.jobs[0], files=["x.cls", "y.cls"], beside={"subprograms": ["{folder}/{stem}.sub"]})
+    result = run_simply(replace(batch, jobs=[job]), FolderStore(tmp_path / "out"))
+    (failure,) = result.failures()
+    assert (failure.file, failure.error and failure.error.code) == ("x.cls", "FIL120")
+    assert failure.error is not None
+    assert "x.sub, which leads out of the folder by a link" in failure.error.what
+
+
+def test_a_file_that_leads_elsewhere_since_it_was_found_is_not_read(tmp_path: Path) -> None:
+    write_files(tmp_path, {"real.cls": "secret", "in/x.cls": "one"})
+    batch = simple_batch(tmp_path / "in")
+    (tmp_path / "in/x.cls").unlink()
+    (tmp_path / "in/x.cls").symlink_to(tmp_path / "real.cls")
+    assert run_simply(batch, FolderStore(tmp_path / "out")).counts == {Status.UNUSABLE: 1}
 
 
 def test_results_that_lost_their_records_are_taken_over_where_they_are_the_same(tmp_path: Path) -> None:

@@ -23,13 +23,16 @@ def test_a_store_gives_back_what_it_was_given(store: Store) -> None:
     assert (store.read("a/x"), store.digest("a/x")) == (None, None)
     assert not store.holds("a/x", 3, digest(b"one"))
     assert store.names("a") == []
-    for content in (b"other", b"one"):
-        store.write("a/x", content)
+    for content, lasting in ((b"other", True), (b"third", False), (b"one", True)):
+        store.write("a/x", content, lasting=lasting)
+        assert store.read("a/x") == content
     store.write("b", b"")
     assert (store.read("a/x"), store.digest("a/x")) == (b"one", digest(b"one"))
     assert list(store.read_many(["b", "no", "a/x"])) == [b"", None, b"one"]
     assert store.holds("a/x", 3, digest(b"one"))
     assert not store.holds("a/x", 4, digest(b"more"))
+    assert not store.holds("a/x", 3, digest(b"two"))
+    assert store.is_exact
     assert store.names("a") == ["a/x"]
     store.remove("a/x")
     store.remove("a/x")

@@ -4,6 +4,7 @@ import json
 import os
 import sqlite3
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,7 @@ import pytest
 
 from tests.support.batches import InOrder, run_simply, simple_batch, write_files
 from trunnion.batch.stores import FolderStore
-from trunnion.batch.summary import COLUMNS, COSTS, write_summary
+from trunnion.batch.summary import COLUMNS, COSTS, check_summary, write_summary
 from trunnion.errors import InputError
 
 TEXTS = {"b/x.cls": "one", "a/x.cls": "several", "c.cls": "fail", "ü'.cls": "refuse"}
@@ -65,6 +66,56 @@ def test_a_table_of_parquet_says_the_same(tmp_path: Path) -> None:
     write_summary(result, tmp_path / "s.parquet")
     assert parquet.read_table(tmp_path / "s.parquet").to_pylist() == rows(tmp_path / "s.sqlite")
     assert parquet.read_table(tmp_path / "s.costs.parquet").to_pylist() == rows(tmp_path / "s.sqlite", "costs")
+
+
+@pytest.mark.parametrize("ending", ["sqlite", "parquet"])
+def test_a_file_that_is_no_summary_is_never_replaced(tmp_path: Path, ending: str) -> None:
+    if ending == "parquet":
+        pytest.importorskip("pyarrow.parquet")
+    write_files(tmp_path / "in", TEXTS)
+    result = run_simply(simple_batch(tmp_path / "in"), FolderStore(tmp_path / "out"))
+    file = tmp_path / f"s.{ending}"
+    write_summary(result, file)
+    ours, added = file.read_bytes(), tmp_path / "added.sqlite"
+    with closing(sqlite3.connect(tmp_path / "mine")) as database:
+        database.execute("CREATE TABLE files (x)")
+        database.execute("CREATE TABLE costs (x)")
+    if ending == "sqlite":
+        added.write_bytes(ours)
+        with closing(sqlite3.connect(added)) as database:
+            database.execute("CREATE VIEW mine AS SELECT * FROM files")
+    others = [(tmp_path / "mine").read_bytes(), b"text", ours[:200], *([added.read_bytes()] if added.exists() else [])]
+    for other in others:
+        file.write_bytes(other)
+        with pytest.raises(InputError, match="FIL250"):
+            check_summary(file)
+        with pytest.raises(InputError, match="FIL250"):
+            write_summary(result, file)
+        assert file.read_bytes() == other
+    file.write_bytes(b"")
+    write_summary(result, file)
+    assert file.read_bytes() == ours
+
+
+def test_a_table_of_costs_that_is_somebody_elses_is_never_replaced(tmp_path: Path) -> None:
+    pytest.importorskip("pyarrow.parquet")
+    write_files(tmp_path, {"s.costs.parquet": "mine"})
+    with pytest.raises(InputError, match="FIL250"):
+        check_summary(tmp_path / "s.parquet")
+
+
+def test_names_that_are_no_utf_8_and_odd_texts_stand_in_the_table(tmp_path: Path) -> None:
+    odd = os.fsdecode(b"in\xff.cls") if os.name != "nt" else "in.cls"
+    write_files(tmp_path / "in", {odd: "one"})
+    (job,) = simple_batch(tmp_path / "in").jobs
+    batch = replace(simple_batch(tmp_path / "in"), jobs=[replace(job, name="job\udcff")])
+    result = run_simply(batch, FolderStore(tmp_path / "out"))
+    write_summary(result, tmp_path / "s.sqlite")
+    (row,) = rows(tmp_path / "s.sqlite")
+    assert (row["job"], row["status"]) == ("job\\udcff", "passed")
+    if os.name != "nt":
+        assert row["file"] == "in\\udcff.cls"
+    assert len(rows(tmp_path / "s.sqlite", "costs")) == 1
 
 
 def test_a_summary_replaces_the_one_before_as_a_whole(tmp_path: Path) -> None:

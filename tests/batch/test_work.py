@@ -1,5 +1,6 @@
 """The work on one file: what the library gives, whatever folder it is done in, and nothing left behind."""
 
+import errno
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
@@ -51,16 +52,54 @@ def test_a_post_is_that_of_the_library() -> None:
 def test_results_do_not_depend_on_the_folder() -> None:
     for action, files, report in (
         (Action.POST, {"a/x.cls": CL}, "x.mpf.html"), (Action.VERIFY, {"a/x.mpf": NC}, "x.mpf.json"),
+        (Action.VERIFY, {"a/x.mpf": NC, "a/x.cls": CL}, "x.mpf.json"),
+        (Action.VERIFY, {"a/x.mpf": NC, "a/x.cls": CL}, "x.mpf.html"),
         (Action.SIMULATE, {"a/x.mpf": NC}, "x.mpf.json"), (Action.CONVERT, {"a/x.mpf": NC}, ""),
     ):  # fmt: skip
-        arguments = dict(SIMULATED) if action is Action.SIMULATE else {"machine": "yl569"}
+        arguments: dict[str, Any] = dict(SIMULATED) if action is Action.SIMULATE else {"machine": "yl569"}
         arguments |= {"to_machine": "generic_head_head_ca"} if action is Action.CONVERT else {}
+        arguments |= {"cl": ["files/a/x.cls"]} if len(files) == 2 else {}
         one, other = (done(action, dict(arguments), files, report=report) for _ in range(2))
         assert len(one.files) == 1 + (action is Action.POST), action
         assert (one.status, one.problems, one.files, one.figures) == (
             other.status, other.problems, other.files, other.figures,
         )  # fmt: skip
         assert tempfile.gettempdir() not in repr((one.problems, one.files, one.figures)), action
+
+
+@pytest.mark.parametrize("code", [errno.ENOSPC, errno.EACCES, errno.EMFILE, errno.EIO])
+@pytest.mark.parametrize("where", ["atomic", "layout", "folder"])
+def test_what_the_computer_hinders_is_no_verdict_on_the_file(
+    monkeypatch: pytest.MonkeyPatch, code: int, where: str
+) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise OSError(code, "not now")
+
+    names = {
+        "atomic": "trunnion.files.hidden_folders.HiddenFolders._make", "layout": "trunnion.batch.work._lay_out",
+        "folder": "trunnion.batch.work.TemporaryDirectory",
+    }  # fmt: skip
+    monkeypatch.setattr(names[where], refuse)
+    found = done(Action.POST, {"machine": "yl569", "settings": {"title": "X"}}, {"a/x.cls": CL})
+    assert (found.status, [each.code for each in found.problems]) == (Status.HINDERED, ["BAT390"])
+    assert "not now" in found.problems[0].what
+    assert not found.status.is_final
+
+
+def test_full_memory_is_no_verdict_on_the_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("trunnion.batch.work.post_beside", refuse)
+    found = done(Action.POST, {"machine": "yl569"}, {"a/x.cls": CL})
+    assert (found.status, found.status.is_final) == (Status.HINDERED, False)
+
+
+def test_a_file_that_cannot_be_read_stays_a_verdict() -> None:
+    assert done(Action.POST, {"machine": "yl569"}, {"a/x.cls.gz": b"\x1f\x8bno"}).status is Status.UNUSABLE
+    files, machine = {"x.mpf": NC}, {"machine": "yl569"}
+    found = done(Action.VERIFY, machine | {"cl": ["files/in/no.cls"]}, files)
+    assert (found.status, found.problems[0].file) == (Status.UNUSABLE, "in/no.cls")
 
 
 def test_a_conversion_is_that_of_the_library() -> None:

@@ -1,11 +1,17 @@
 """``trunnion batch``: the results of the single commands, and a table of what failed."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from tests.support.batches import run_simply, simple_batch, write_files
 from tests.support.locations import YL569
+from trunnion.batch.stores import FolderStore
 from trunnion.cli import main
+from trunnion.cli.batch import result_lines
+from trunnion.cli.progress import progress_lines
 
 CL = (YL569 / "2_hub_rough.cls").read_bytes()
 
@@ -63,6 +69,7 @@ def test_a_folder_is_posted_as_the_single_command_does(tmp_path: Path, capsys: p
             "--workers",
         ),
         (["--action", "post", "--machine", "yl569", "--results", "x", "--tls-ca", "x"], "--tls-ca"),
+        (["--action", "post", "--machine", "yl569", "--results", "x", "--wait", "9"], "--wait"),
         (["--action", "post", "--machine", "yl569", "--results", "x", "--set", "nosuch=1"], "nosuch"),
         (["--action", "post", "--machine", "yl569", "--results", "x", "--summary", "s.csv"], ".sqlite or .parquet"),
         (["--action", "verify", "--machine", "yl569", "--results", "x"], "has no files .mpf"),
@@ -84,3 +91,31 @@ def test_a_file_of_jobs_states_everything_itself(tmp_path: Path, capsys: pytest.
     (tmp_path / "x.cls").write_bytes(CL)
     assert main(["batch", str(tmp_path / "jobs.toml"), "--machine", "yl569"]) == 2
     assert "states it itself" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("outputs", [["one"], ["one", "another"]])
+def test_the_table_names_the_jobs_where_there_are_several(tmp_path: Path, outputs: Sequence[str]) -> None:
+    write_files(tmp_path / "in", {"x.cls": "fail"})
+    batch = simple_batch(tmp_path / "in")
+    jobs = [replace(batch.jobs[0], name=f"job {output}", output=output) for output in outputs]
+    head, *rows, last = result_lines(run_simply(replace(batch, jobs=jobs), FolderStore(tmp_path / "out")))
+    assert [row.split()[: len(outputs) + 1] for row in rows] == (
+        [["x.cls", "CL310"]] if len(outputs) == 1 else [["job", "another", "x.cls"], ["job", "one", "x.cls"]]
+    )
+    assert head.split()[0] == ("file" if len(outputs) == 1 else "job")
+    assert {row.index("x.cls") for row in rows} == {head.index("file")}
+    assert (
+        last == f"{len(outputs)} file{'s'[: len(outputs) - 1]}: {len(outputs)} unusable; results in {tmp_path / 'out'}"
+    )
+
+
+def test_how_far_work_is_comes_line_by_line_in_a_pipe(capsys: pytest.CaptureFixture[str]) -> None:
+    told = ""
+    with progress_lines("batch", 3, "files", every=0.001) as advance:
+        advance(2)
+        while "batch: 2 of 3 files after" not in told:
+            told += capsys.readouterr().err
+    capsys.readouterr()
+    with progress_lines("batch", 3, "files", every=600.0) as advance:
+        advance(3)
+    assert capsys.readouterr().err == ""

@@ -26,6 +26,7 @@ def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> Non
     assert set(done.stdout.split()) == {
         "trunnion.cli",
         "trunnion.cli.arguments",
+        "trunnion.cli.batch_arguments",
         "trunnion.cli.capability_arguments",
         "trunnion.cli.place_arguments",
         "trunnion.cli.post_arguments",

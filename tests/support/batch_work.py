@@ -1,7 +1,8 @@
 """Work that takes no time in place of posts, in worker processes too, which import little for it.
 
 What it does stands in the file: ``fail``, ``refuse``, ``several …``, ``die PATH`` (ends its process, unless PATH is
-there, and makes it), ``always die``, ``sleep SECONDS``; anything else passes.
+there, and makes it), ``always die``, ``sleep SECONDS``, ``cold PATH SECONDS`` (sleeps unless PATH is there, and makes
+it); anything else passes.
 """
 
 import os
@@ -22,6 +23,9 @@ def simple_work(task: Task) -> Outcome:
         os.kill(os.getpid(), getattr(signal, "SIGKILL", signal.SIGTERM))
     if text == "always die":
         os.kill(os.getpid(), getattr(signal, "SIGKILL", signal.SIGTERM))
+    if word == "cold" and not Path(rest.split()[0]).exists():
+        time.sleep(float(rest.split()[1]))
+        Path(rest.split()[0]).write_text("cold", encoding="utf-8")
     if word == "sleep":
         time.sleep(float(rest))
     if word == "fail":

@@ -7,6 +7,7 @@ from pathlib import Path
 from types import TracebackType
 
 from tests.support.batch_work import simple_work
+from trunnion.api.observer import SILENT, Observer
 from trunnion.batch.jobs import Batch, Job
 from trunnion.batch.records import FOLDER, Record
 from trunnion.batch.running import BatchResult, run_jobs
@@ -46,10 +47,10 @@ class StoppingStore(FolderStore):
         super().__init__(folder)
         self.changes, self._before = 0, before
 
-    def write(self, name: str, content: bytes) -> None:
+    def write(self, name: str, content: bytes, *, lasting: bool = True) -> None:
         """Write, or be interrupted."""
         self._count()
-        super().write(name, content)
+        super().write(name, content, lasting=lasting)
 
     def remove(self, name: str) -> None:
         """Remove, or be interrupted."""
@@ -76,10 +77,10 @@ def simple_batch(folder: Path) -> Batch:
     return Batch(folder, [Job("job", Action.POST, files, {"machine": "yl569"}, extension=".mpf")])
 
 
-def run_simply(batch: Batch, store: Store, workers: InOrder | None = None) -> BatchResult:
+def run_simply(batch: Batch, store: Store, workers: InOrder | None = None, observer: Observer = SILENT) -> BatchResult:
     """Run a batch here."""
     team = workers or InOrder()
-    return run_jobs(batch, store, lambda _: nullcontext(team))
+    return run_jobs(batch, store, lambda _: nullcontext(team), observer)
 
 
 def tree(folder: Path) -> dict[str, object]:

@@ -185,7 +185,7 @@ def convert_beside(
     target_machine = source if to_machine is None else as_machine(to_machine, "to_machine")
     control = load_control(source.control)
     job = replace(prepare(target_machine, settings, force=force), notices=carried_notices(program))
-    _check_settings(job, to_cl)
+    check_conversion_settings(job, to_cl)
     definitions = [*machine_files(machine, source), *machine_files(to_machine or target_machine, target_machine)]
     source = set_up_machine(source, zero, tool_length)
     with open_target(output, inputs=[program, *others, *definitions], group=group) as target:
@@ -259,7 +259,7 @@ def _setting_faults(settings: Mapping[str, str], job: PostJob) -> dict[str, str]
     return {key: cure for key, cure in faults if key in settings}
 
 
-def _check_settings(job: PostJob, to_cl: bool) -> None:
+def check_conversion_settings(job: PostJob, to_cl: bool) -> None:
     """Raise ``InputError`` for settings that have no meaning in a conversion."""
     if "dialect" in job.settings:
         what, cure = "dialect has no meaning here", "an NC program is no CL file: leave it out"

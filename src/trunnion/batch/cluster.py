@@ -24,6 +24,7 @@ from trunnion.batch.task import OtherVersionError, Outcome, Status, Task
 from trunnion.batch.workers import Assignment, died
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.extras import import_extra
+from trunnion.wording import format_duration
 
 #: Where Dask's client logs.
 _LOG: Final = logging.getLogger("distributed.client")
@@ -39,6 +40,10 @@ _TOGETHER: Final = 64
 _LOOK: Final = 1.0
 _ATTEMPT: Final = 5.0
 PATIENCE: Final = 120.0
+
+#: Seconds without any worker after which that is told, and told again.
+SILENCE: Final = 5.0
+_REMIND: Final = 60.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,8 +79,10 @@ class DaskWorkers:
         Address of the store to which workers write themselves; empty: they give results back.
     patience
         Seconds for which a scheduler that is gone is awaited.
+    wait
+        Seconds for which it is without any worker before it ends; None: any time.
     observer
-        Is told that the scheduler is gone.
+        Is told that the scheduler is gone, or has no workers.
     """
 
     def __init__(
@@ -86,12 +93,14 @@ class DaskWorkers:
         tls: Tls | None = None,
         writing: str = "",
         patience: float = PATIENCE,
+        wait: float | None = None,
         observer: Observer = SILENT,
     ) -> None:
         self._observer = observer
         self._function = function
         self._distributed = import_extra("distributed", "cluster")
         self._address, self._tls, self._writing, self._patience = address, tls or Tls(), writing, patience
+        self._wait, self._alone_since, self._silent_for = wait, time.monotonic(), SILENCE
         self._client: Any = None
         self._blobs: dict[str, Any] = {}
         self._told: queue.SimpleQueue[str] = queue.SimpleQueue()
@@ -122,7 +131,7 @@ class DaskWorkers:
         """
         coming, asked = iter(tasks), dict[str, _Asked]()
         is_more = True
-        looked = time.monotonic()
+        looked = self._alone_since = time.monotonic()
         while True:
             while is_more and len(asked) < self._window():
                 each = next(coming, None)
@@ -136,6 +145,7 @@ class DaskWorkers:
             if time.monotonic() - looked >= _LOOK:
                 looked = time.monotonic()
                 self._look(asked)
+                self._miss_workers()
                 # A result that was lost with its worker and made again is told of once only.
                 yield from self._take(asked, [place for place in asked if _is_done(asked[place])][:_TOGETHER])
 
@@ -273,6 +283,22 @@ class DaskWorkers:
         self._connect(self._patience)
         for each in asked.values():
             each.future = self._submit(each.assignment, each.task)
+
+    def _miss_workers(self) -> None:
+        """Tell that there are no workers, after a while and then now and then."""
+        now = time.monotonic()
+        if self._threads:
+            self._alone_since, self._silent_for = now, SILENCE
+            return
+        alone = now - self._alone_since
+        cure = f"start some: dask worker {self._address}"
+        if self._wait is not None and alone >= self._wait:
+            what = f"the scheduler has had no worker for {format_duration(alone)}"
+            raise InputError(Problem(self._address, 0, what, cure, code="BAT240"))
+        if alone >= self._silent_for:
+            self._silent_for = alone + _REMIND
+            what = f"the scheduler has no worker yet, and the batch waits ({format_duration(alone)} so far)"
+            self._observer.problems([Problem(self._address, 0, what, cure, Severity.WARNING, code="BAT240")])
 
 
 def _is_done(each: _Asked) -> bool:

@@ -35,7 +35,6 @@ def verification_figures(found: Verification) -> dict[str, Any]:
     run = found.run
     arcs = RunArcs.of(run)
     axes = [axis_extent(run, k, axis, arcs) for k, axis in enumerate(run.machine.axes)]
-    worst = _worst(found.checks)
     return {
         **_run_figures(run),
         "seconds": _rounded(float(np.nansum(found.seconds))) if len(found.seconds) else None,
@@ -45,8 +44,6 @@ def verification_figures(found: Verification) -> dict[str, Any]:
         "tip_deviation_mm": _worst_of(found.checks, "tip"),
         "axis_deviation_deg": _worst_of(found.checks, "axis"),
         "failed_checks": [check.key for check in found.checks if not check.passed],
-        "worst_check": "" if worst is None else worst.key,
-        "worst_check_share": None if worst is None else _rounded(_share(worst)),
     }
 
 
@@ -75,19 +72,6 @@ def _extent(extent: AxisExtent) -> dict[str, Any]:
         "margin": _rounded(extent.margin),
         "zero_known": extent.zero_known,
     }
-
-
-def _worst(checks: Sequence[Check]) -> Check | None:
-    """The check that comes nearest to its limit, or goes furthest beyond it; one that failed without values first."""
-    return max(checks, key=_share, default=None)
-
-
-def _share(check: Check) -> float:
-    """How much of its limit a check reaches; of one that does not measure 0, or 1 where it failed."""
-    least = 0.0 if check.passed else 1.0
-    if check.worst is None or not check.limit or not math.isfinite(check.worst):
-        return least
-    return max(least, min(check.worst / check.limit, 1.0) if check.passed else check.worst / check.limit)
 
 
 def _worst_of(checks: Sequence[Check], key: str) -> float | None:

@@ -41,6 +41,7 @@ def run_batch(
     workers: int | None = None,
     timeout: float | None = None,
     scheduler: str | None = None,
+    wait: float | None = None,
     tls: Tls | None = None,
     summary: FilePath | None = None,
     observer: Observer = SILENT,
@@ -78,6 +79,8 @@ def run_batch(
         Seconds that a file may take on this computer; None: any time.
     scheduler
         Address of a scheduler of Dask, such as ``"tcp://host:8786"``, whose workers do the work.
+    wait
+        Seconds for which the scheduler may be without any worker; None: any time, which is told.
     tls
         Certificates for a scheduler at ``tls://``.
     summary
@@ -116,7 +119,7 @@ def run_batch(
     }  # fmt: skip
     if summary is not None:
         check_summary(summary)
-    team = _team(workers, timeout, scheduler, tls, observer)
+    team = _team(workers, timeout, scheduler, wait, tls, observer)
     batch = _batch(path, given, results)
     place = results if results is not None else batch.results
     if place is None:
@@ -146,12 +149,18 @@ def _batch(path: Path, given: Mapping[str, Any], results: FilePath | None) -> Ba
 
 
 def _team(
-    workers: int | None, timeout: float | None, scheduler: str | None, tls: Tls | None, observer: Observer
+    workers: int | None,
+    timeout: float | None,
+    scheduler: str | None,
+    wait: float | None,
+    tls: Tls | None,
+    observer: Observer,
 ) -> Callable[[Store], Callable[[int], AbstractContextManager[Workers]]]:
     """What makes the workers once the place of results is known."""
     if scheduler is None:
-        if tls is not None:
-            raise InputError(argument_problem("tls", "is for a scheduler", "leave it out", code="ARG130"))
+        for name, given in (("tls", tls), ("wait", wait)):
+            if given is not None:
+                raise InputError(argument_problem(name, "is for a scheduler", "leave it out", code="ARG130"))
         if workers is not None and not 1 <= workers <= _MOST_WORKERS:
             cure = f"give a number from 1 to {_MOST_WORKERS}"
             raise InputError(argument_problem("workers", f"is {workers}", cure, code="ARG140"))
@@ -162,4 +171,8 @@ def _team(
         if value is not None:
             what = "is for processes of this computer, and the workers of a scheduler are its own"
             raise InputError(argument_problem(name, what, "leave it out", code="ARG130"))
-    return lambda store: lambda _: DaskWorkers(scheduler, work, tls=tls, writing=store.worker_url, observer=observer)
+    if wait is not None and not wait > 0.0:
+        raise InputError(argument_problem("wait", f"is {wait}", "give seconds above 0", code="ARG140"))
+    return lambda store: (
+        lambda _: DaskWorkers(scheduler, work, tls=tls, writing=store.worker_url, wait=wait, observer=observer)
+    )

@@ -11,10 +11,14 @@ from functools import lru_cache
 from pathlib import Path, PurePosixPath
 from typing import Any, Final, NamedTuple
 
+from trunnion.api.converting import check_conversion_settings
 from trunnion.api.input_files import machine_files
 from trunnion.api.job import prepare
 from trunnion.api.project_paths import is_file
 from trunnion.api.reading import as_machine
+from trunnion.batch.argument_checks import beside_fault, check_simulation, check_to_cl
+from trunnion.batch.keys import home_of
+from trunnion.batch.left_out import left_out
 from trunnion.batch.patterns import matches
 from trunnion.batch.records import FOLDER
 from trunnion.batch.task import DEFINITIONS, FILES, Action
@@ -62,19 +66,30 @@ class Job:
 
 @dataclass(frozen=True, slots=True)
 class Batch:
-    """Jobs, and the folder beside which their files lie; ``results`` is where these go if nothing else is said."""
+    """Jobs, and the folder beside which their files lie.
+
+    results  where these go if nothing else is said
+    home     tells this batch from others (``keys.home_of``)
+    is_whole whether the jobs say all that is wanted: of a folder they may be but some of its files this time
+    """
 
     folder: Path
     jobs: Sequence[Job]
     results: Path | None = None
+    home: str = ""
+    is_whole: bool = False
 
 
 class Unit(NamedTuple):
-    """One file of one job, and the place of its result within the results."""
+    """One file of one job, and the place of its result within the results.
+
+    clash  the place that its result would share with that of another file: then it has none; empty: it has its own
+    """
 
     place: str
     job: int
     file: str
+    clash: str = ""
 
 
 def folder_files(folder: Path, without: Path | None = None) -> list[str]:
@@ -131,6 +146,11 @@ def folder_batch(
     """
     given = {name: value for name, value in arguments.items() if value}
     beside = {name: _listed(given.pop(name)) for name in ("cl", "subprograms") if given.get(name)}
+    for argument, names in beside.items():
+        for name in names:
+            if fault := beside_fault(name):
+                cure = 'write a name such as "{folder}/{stem}.cls"'
+                raise InputError(argument_problem(argument, f'"{name[:100]}" {fault}', cure, code="ARG140"))
     report = str(given.pop("report", ""))
     said, shared, extensions = judged(action, given, folder)
     sought = (extensions.read,) if extensions.read else CL_EXTENSIONS
@@ -140,10 +160,12 @@ def folder_batch(
     ]  # fmt: skip
     if not files:
         what = f"has no files that match {', '.join(patterns)}" if patterns else f"has no files {', '.join(sought)}"
+        reasons = (left_out(folder, each, results) for each in patterns or [f"**/*{each}" for each in sought])
+        what += next((f"; {why}" for why in reasons if why), "")
         cure = "name them by --files PATTERN, such as --files '**/*.nc'"
         raise InputError(Problem(str(folder), 0, what, cure, code="BAT120"))
     job = Job(str(action), action, files, said, shared, beside, "", extensions.written, report)
-    return Batch(folder, [job])
+    return Batch(folder, [job], home=home_of(folder))
 
 
 def _listed(value: Any) -> list[str]:
@@ -191,12 +213,15 @@ def judged(
             said[name] = _add_machine(str(value), machines[name], folder, shared)
     if action is not Action.CONVERT and "machine" not in machines:
         raise InputError(argument_problem("machine", "is missing", "name the machine of the programs", code="ARG130"))
+    if action is Action.SIMULATE:
+        if not said.get("stock"):
+            cure = "state a box, a cylinder or a mesh"
+            raise InputError(argument_problem("stock", "is missing", cure, code="ARG130"))
+        check_simulation(said)
     for name in ("stock", "part", "fixtures", "libraries"):
         if value := said.get(name):
             several = [_add_file(each, folder, shared) for each in ([value] if isinstance(value, str) else value)]
             said[name] = several[0] if isinstance(value, str) else several
-    if action is Action.SIMULATE and not said.get("stock"):
-        raise InputError(argument_problem("stock", "is missing", "state a box, a cylinder or a mesh", code="ARG130"))
     return said, shared, _extensions(action, said, machines)
 
 
@@ -222,11 +247,14 @@ def _extensions(action: Action, said: Mapping[str, Any], machines: Mapping[str, 
         cure = "give either a machine, or say that a CL file is wanted"
         raise InputError(argument_problem("to_machine", "and to_cl say where a conversion leads", cure, code="CNV110"))
     if said.get("to_cl"):
+        check_to_cl(said, machine)
         return Extensions(read, _WRITTEN[said.get("dialect", "clsf")])
     if machine is None:
         cure = "name the machine of the programs; post makes programs of CL files"
         raise InputError(argument_problem("machine", "is missing", cure, code="CNV110"))
-    return Extensions(read, prepare(machines["to_machine"], said.get("settings")).control.extension)
+    job = prepare(machines["to_machine"], said.get("settings"))
+    check_conversion_settings(job, to_cl=False)
+    return Extensions(read, job.control.extension)
 
 
 def _add_machine(name: str, machine: Machine, folder: Path, shared: dict[str, Path]) -> str:

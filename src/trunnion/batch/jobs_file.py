@@ -11,7 +11,10 @@ from typing import Any, Final, TypeAlias
 
 from trunnion.api.project_paths import ProjectPaths
 from trunnion.api.settings import as_texts
+from trunnion.batch.argument_checks import beside_fault
 from trunnion.batch.jobs import Batch, Job, folder_files, judged
+from trunnion.batch.keys import home_of
+from trunnion.batch.left_out import left_out
 from trunnion.batch.patterns import matches, pattern_fault
 from trunnion.batch.task import Action
 from trunnion.cl import DIALECTS
@@ -90,7 +93,7 @@ class _Tables:
         """Names of files that go with each input, which are not known yet."""
         found = list(table.texts(key, ()))
         for name in found:
-            if fault := pattern_fault(name.replace("{folder}/", "")):
+            if fault := beside_fault(name):
                 table.add_problem(key, f'"{name[:100]}" {fault}', 'write a name such as "{folder}/{stem}.cls"')
         return found
 
@@ -168,6 +171,7 @@ def read_batch_table(root: Table, path: Path) -> Batch:
         root.add_problem("job", f"has {len(own)} tables", f"write at most {_MOST_JOBS}")
         own = []
     found = folder_files(path.parent, results) if path.parent.is_dir() else []
+    found = [name for name in found if name != path.name]
     jobs: list[Job] = []
     for number, table in enumerate(own, 1):
         action = _action(table, default_action)
@@ -180,14 +184,14 @@ def read_batch_table(root: Table, path: Path) -> Batch:
         values = {key: value for key, value in default_values.items() if action in _OPTIONS[key].actions} | stated
         if "settings" in values:
             values["settings"] = default_values.get("settings", {}) | stated.get("settings", {})
-        inputs = _inputs(table, found)
+        inputs = _inputs(table, found, path, results)
         jobs += _judged(table, name, action, inputs, values, output, path.parent)
     defaults.report_unread_keys()
     for table in own:
         table.report_unread_keys()
     root.report_unread_keys()
     root.raise_problems()
-    return Batch(path.parent, jobs, results)
+    return Batch(path.parent, jobs, results, home_of(path), is_whole=True)
 
 
 def _judged(
@@ -233,9 +237,10 @@ def _folder_name(table: Table, key: str) -> str:
     name = table.text(key, "").rstrip("/")
     if not name:
         return ""
-    fault = pattern_fault(name) or name_fault(PurePosixPath(name))
+    fault = pattern_fault(name) or ("begins with ~, which stands for no folder here" if name[0] == "~" else "")
+    fault = f'"{name[:100]}" {fault}' if fault else name_fault(PurePosixPath(name))
     if fault:
-        table.add_problem(key, f'"{name[:100]}" {fault}', 'name a folder, such as "out"', code="FIL340")
+        table.add_problem(key, fault, 'name a folder, such as "out"', code="FIL340")
         return ""
     return name
 
@@ -255,7 +260,7 @@ def _refuse_keys(table: Table, action: Action, stated: Collection[str]) -> None:
             table.add_problem(key, f'has no meaning with action = "{action}"', f"it is for {words}", code="BAT110")
 
 
-def _inputs(table: Table, names: Collection[str]) -> list[str]:
+def _inputs(table: Table, names: Collection[str], path: Path, results: Path) -> list[str]:
     """The files of a job."""
     patterns = table.texts("files")
     if len(patterns) > _MOST_PATTERNS:
@@ -270,6 +275,10 @@ def _inputs(table: Table, names: Collection[str]) -> list[str]:
             continue
         matched = [name for name in names if matches(name, pattern)]
         if not matched:
-            table.add_problem("files", f'"{pattern[:100]}" matches no file', "look for its name", code="BAT120")
+            why = left_out(path.parent, pattern, results)
+            if not why and matches(path.name, pattern):
+                why = f"{path.name} is the file of jobs itself"
+            what = f'"{pattern[:100]}" matches no file' + (f"; {why}" if why else "")
+            table.add_problem("files", what, "look for its name, or put it elsewhere", code="BAT120")
         found.update(matched)
     return sorted(found)

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import os
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
@@ -28,6 +29,11 @@ def program_version() -> str:
 
 def _counts(path: Path) -> bool:
     return path.is_file() and "__pycache__" not in path.parts
+
+
+def home_of(path: Path) -> str:
+    """What tells one batch from others that keep results in the same place: its file of jobs, or its folder."""
+    return digest(os.fsencode(os.path.realpath(path)))[:16]
 
 
 def key_of(program: str, said: Mapping[str, Any], digests: Mapping[str, str]) -> str:

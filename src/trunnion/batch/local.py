@@ -24,19 +24,27 @@ from trunnion.errors import InputError, Problem
 #: How often a file is tried whose worker dies: the first time another one may have taken the memory.
 TRIES: Final = 2
 
+#: Seconds that the start of a process may take: imports, and the kernels, which are compiled once on a computer.
+START: Final = 120.0
+
 #: Workers that end before they can begin, one after another: then none will.
 _MOST_STILLBORN: Final = 3
 
 
 @dataclass(slots=True, eq=False)
 class _Worker:
-    """A process, and what it works on; ``since`` is when it was given that."""
+    """A process, and what it works on.
+
+    since    when it was given that
+    is_warm  whether it has ended a task before: with the first one it loads libraries and kernels
+    """
 
     process: BaseProcess
     pipe: "Connection[Any, Any]"
     is_ready: bool = False
     given: "_Given | None" = None
     since: float = 0.0
+    is_warm: bool = False
 
 
 @dataclass(slots=True)
@@ -56,17 +64,26 @@ class LocalWorkers:
     function
         What they do; it must be importable.
     timeout
-        Seconds that a task may take; None: any time. It is ended by ending its process.
+        Seconds that a task may take; None: any time. It is ended by ending its process. The start of a process does not
+        count: if its first task took too long, it does it once more.
+    start
+        Seconds that a start may take beyond that.
     """
 
-    def __init__(self, count: int, function: Callable[[Task], Outcome], timeout: float | None = None) -> None:
-        self._count, self._function, self._timeout = count, function, timeout
+    def __init__(
+        self, count: int, function: Callable[[Task], Outcome], timeout: float | None = None, start: float = START
+    ) -> None:
+        self._count, self._function, self._timeout, self._start_time = count, function, timeout, start
         self._context = multiprocessing.get_context("spawn")
         self._workers: list[_Worker] = []
         self._stillborn = 0
 
     def __enter__(self) -> "LocalWorkers":
-        self._folder = TemporaryDirectory(prefix="trunnion-", ignore_cleanup_errors=True)
+        try:
+            self._folder = TemporaryDirectory(prefix="trunnion-", ignore_cleanup_errors=True)
+        except OSError as error:
+            what = f"the folder for temporary files does not take any: {error.strerror or error}"
+            raise InputError(Problem("batch", 0, what, "make space there, or set TMPDIR", code="BAT390")) from None
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -119,7 +136,7 @@ class LocalWorkers:
         seconds = None
         if self._timeout is not None:
             now = time.monotonic()
-            left = [worker.since + self._timeout - now for worker in self._workers if worker.given is not None]
+            left = [self._deadline(worker) - now for worker in self._workers if worker.given is not None]
             seconds = max(0.0, min(left, default=self._timeout))
         by_pipe = {worker.pipe: worker for worker in self._workers}
         return [by_pipe[pipe] for pipe in wait(list(by_pipe), seconds)]  # type: ignore[index]
@@ -134,8 +151,18 @@ class LocalWorkers:
             raise InputError(Problem("batch", 0, f"a worker cannot work: {told}", code="BAT210"))
         worker.is_ready = True
         if worker.given is not None and isinstance(told, Outcome):
-            assignment, worker.given = worker.given.assignment, None
-            yield assignment, told
+            was_warm, worker.is_warm = worker.is_warm, True
+            given, worker.given = worker.given, None
+            if not was_warm and self._timeout is not None and time.monotonic() - worker.since > self._timeout:
+                given.tries -= 1
+                self._give(worker, given)
+                return
+            yield given.assignment, told
+
+    def _deadline(self, worker: _Worker) -> float:
+        """When the time of a worker's task is over."""
+        assert self._timeout is not None
+        return worker.since + self._timeout + (0.0 if worker.is_warm else self._start_time)
 
     def _bury(self, worker: _Worker, again: deque[_Given]) -> Iterator[tuple[Assignment, Outcome]]:
         """Take leave of a worker that has died, and try its task again, or tell that it cannot be done."""
@@ -164,7 +191,7 @@ class LocalWorkers:
             return
         now = time.monotonic()
         for worker in list(self._workers):
-            if worker.given is not None and now - worker.since >= self._timeout:
+            if worker.given is not None and now >= self._deadline(worker):
                 self._workers.remove(worker)
                 _end(worker)
                 problem = timed_out(worker.given.task.file, self._timeout)

@@ -1,8 +1,8 @@
-"""Places of results: unique, safe on every system, and the same whatever else is done with them.
+"""Places of results: unique, safe on every system, and the same whatever other files there are.
 
 A result lies as its file does: of ``a/x.cls`` and ``b/x.cls`` come ``a/x.mpf`` and ``b/x.mpf``. Where two would be
-one, on a system that takes capitals for small letters too, each keeps the extension of its file (``x.cls.mpf``), and
-if that is not enough a checksum of its name.
+one, on a system that takes capitals for small letters too, or where a file would have the name of a folder, none of
+them has a result: names that depend on neighbours would leave old programs beside new ones.
 """
 
 import re
@@ -30,6 +30,9 @@ _PACKED: Final = frozenset({".gz", ".bz2"})
 def units_of(jobs: Sequence[Job]) -> list[Unit]:
     """The files of all jobs with the places of their results, in the order of these.
 
+    Files whose results would have one place get another one, by which they are known but at which nothing is written
+    (``Unit.clash``); only of those that write nothing, it is all they need.
+
     Raises
     ------
     InputError
@@ -37,31 +40,41 @@ def units_of(jobs: Sequence[Job]) -> list[Unit]:
     """
     files = [(number, file) for number, job in enumerate(jobs) for file in job.files]
     places = [_place(jobs[number], file) for number, file in files]
-    for other in (_with_extension, _with_checksum):
-        for k in _alike(places):
-            number, file = files[k]
-            places[k] = other(jobs[number], file)
+    clashes = dict.fromkeys(range(len(files)), "")
+    for k in _alike(places):
+        number, file = files[k]
+        clashes[k] = places[k] if _writes(jobs[number]) else ""
+        places[k] = _with_checksum(jobs[number], file)
     if twice := _alike(places):
         file = files[twice[0]][1]
         raise InputError(Problem(file, 0, "has no place of its own for its result", "rename it", code="BAT120"))
-    return sorted(Unit(place, number, file) for place, (number, file) in zip(places, files, strict=True))
+    return sorted(Unit(places[k], number, file, clashes[k]) for k, (number, file) in enumerate(files))
+
+
+def _writes(job: Job) -> bool:
+    return bool(job.report) or job.action not in NOTED
 
 
 def _alike(places: Sequence[str]) -> list[int]:
-    """The places that some system takes for the same as another one."""
+    """The places that some system takes for the same as another one, or as a folder of it."""
     by_name: dict[str, list[int]] = {}
     for k, place in enumerate(places):
-        by_name.setdefault(unicodedata.normalize("NFC", place).casefold(), []).append(k)
-    return [k for same in by_name.values() if len(same) > 1 for k in same]
+        by_name.setdefault(_folded(place), []).append(k)
+    found = {k for same in by_name.values() if len(same) > 1 for k in same}
+    for k, place in enumerate(places):
+        above = [same for folder in PurePosixPath(_folded(place)).parents if (same := by_name.get(folder.as_posix()))]
+        if above:
+            found.update((k, *(other for same in above for other in same)))
+    return sorted(found)
+
+
+def _folded(place: str) -> str:
+    return unicodedata.normalize("NFC", place).casefold()
 
 
 def _place(job: Job, file: str) -> str:
     name = PurePosixPath(file).name
     return _named(job, file, lambda: _stem(name) if job.action in (Action.POST, Action.CONVERT) else name)
-
-
-def _with_extension(job: Job, file: str) -> str:
-    return _named(job, file, lambda: PurePosixPath(file).name)
 
 
 def _with_checksum(job: Job, file: str) -> str:

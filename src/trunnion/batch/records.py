@@ -14,7 +14,7 @@ from pathlib import PurePosixPath
 from typing import Any, Final
 
 from trunnion.batch.keys import digest
-from trunnion.batch.stores import Store
+from trunnion.batch.stores import Store, TakenError
 from trunnion.batch.task import NO_COSTS, Costs, Outcome, Status
 from trunnion.errors import InputError, Problem, Severity
 
@@ -42,6 +42,8 @@ class Record:
     key       of all that it was made from; empty: not known
     outputs   files that were written, by name
     replaces  checksums of files of before that may still stand in their places
+    home      what the files lie beside (``keys.home_of``): the same place of the same computer, so that it is no part
+              of what is the same everywhere
     """
 
     place: str
@@ -56,6 +58,7 @@ class Record:
     figures: Mapping[str, Any] = field(default_factory=dict)
     replaces: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     costs: Costs = NO_COSTS
+    home: str = ""
 
     @property
     def error(self) -> Problem | None:
@@ -78,13 +81,13 @@ def record_name(place: str) -> str:
 def record_bytes(record: Record) -> bytes:
     """A record as it is kept."""
     values = asdict(record)
-    costs = values.pop("costs")
+    costs = {**values.pop("costs"), "home": values.pop("home")}
     lines = (json.dumps(each, ensure_ascii=False, allow_nan=False, sort_keys=True) for each in (values, costs))
     return ("\n".join(lines) + "\n").encode("utf-8", "backslashreplace")
 
 
 def parse_record(content: bytes | None) -> Record | None:
-    """A record that was kept; None: there is none, or it is damaged."""
+    """A record that was kept; None: there is none, or it is damaged, or names files that are no results."""
     if content is None:
         return None
     try:
@@ -95,9 +98,18 @@ def parse_record(content: bytes | None) -> Record | None:
             "outputs": {name: Written(**each) for name, each in values["outputs"].items()},
             "replaces": {name: tuple(each) for name, each in values["replaces"].items()},
         }
-        return Record(**values, costs=Costs(**costs))
+        home = costs.pop("home")
+        if not all(map(_is_result, (*values["outputs"], *values["replaces"]))):
+            return None
+        return Record(**values, costs=Costs(**costs), home=home)
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
         return None
+
+
+def _is_result(name: str) -> bool:
+    """Whether a name is one within the results: what a record names may be removed."""
+    parts = name.split("/")
+    return not {"", ".", "..", FOLDER} & set(parts) and "\\" not in name and ":" not in name
 
 
 def _problem(values: dict[str, Any]) -> Problem:
@@ -148,11 +160,16 @@ def commit(store: Store, record: Record, outcome: Outcome) -> Record:
         record, status=outcome.status, problems=outcome.problems, warnings=outcome.warnings, figures=outcome.figures,
         outputs={name: Written(len(data), digest(data)) for name, data in files.items()}, costs=outcome.costs,
     )  # fmt: skip
-    known = _known(parse_record(store.read(record_name(record.place))))
+    known = known_of(parse_record(store.read(record_name(record.place))))
     old: dict[str, str] = {}
     missing = []
     for name in sorted({*known, *files}):
-        there = store.digest(name)
+        try:
+            there = store.digest(name)
+        except TakenError as error:
+            if name in files:
+                return _keep_away(store, record, error.problems[0].what, known)
+            continue
         if name in files and there == record.outputs[name].sha256:
             continue
         if name in files:
@@ -162,21 +179,26 @@ def commit(store: Store, record: Record, outcome: Outcome) -> Record:
         if there in known.get(name, ()):
             old[name] = there
         elif name in files:
-            return _keep_away(store, record, name, known)
+            what = f"its result would replace {name}, which this batch has not written as it is"
+            return _keep_away(store, record, what, known)
     record = replace(record, replaces={name: (checksum,) for name, checksum in old.items()})
-    store.write(record_name(record.place), record_bytes(record))
+    # A record that is lost is made again; only one that names files must be there before these are.
+    store.write(record_name(record.place), record_bytes(record), lasting=bool(files or old))
     for name in old:
         if name not in files:
             store.remove(name)
-    for name in missing:
-        store.write(name, files[name])
+    try:
+        for name in missing:
+            store.write(name, files[name])
+    except TakenError as error:
+        return _keep_away(store, record, error.problems[0].what, known_of(record))
     if old:
         record = replace(record, replaces={})
-        store.write(record_name(record.place), record_bytes(record))
+        store.write(record_name(record.place), record_bytes(record), lasting=bool(files))
     return record
 
 
-def _known(record: Record | None) -> dict[str, tuple[str, ...]]:
+def known_of(record: Record | None) -> dict[str, tuple[str, ...]]:
     """Checksums of files that a batch has written."""
     if record is None:
         return {}
@@ -186,9 +208,8 @@ def _known(record: Record | None) -> dict[str, tuple[str, ...]]:
     return found
 
 
-def _keep_away(store: Store, record: Record, name: str, known: Mapping[str, tuple[str, ...]]) -> Record:
+def _keep_away(store: Store, record: Record, what: str, known: Mapping[str, tuple[str, ...]]) -> Record:
     """Keep a record of a file whose result cannot have its place."""
-    what = f"its result would replace {name}, which this batch has not written as it is"
     problem = Problem(record.file, 0, what, "remove that file, or choose another folder for results", code="BAT320")
     record = replace(record, status=Status.UNUSABLE, key="", problems=(problem,), outputs={}, replaces=known)
     store.write(record_name(record.place), record_bytes(record))

@@ -9,16 +9,27 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from trunnion.api.observer import SILENT, Observer
+from trunnion.api.project_paths import is_file
 from trunnion.batch.jobs import Batch, Job, Unit
 from trunnion.batch.keys import digest, key_of, program_version
 from trunnion.batch.local import LocalWorkers
 from trunnion.batch.places import units_of
-from trunnion.batch.records import Record, check_store, commit, read_records, settle
+from trunnion.batch.records import (
+    Record,
+    check_store,
+    commit,
+    read_records,
+    record_bytes,
+    record_name,
+    settle,
+)
+from trunnion.batch.stale import remove_stale
 from trunnion.batch.stores import Store
 from trunnion.batch.task import FILES, Outcome, Status, Task
 from trunnion.batch.work import work
 from trunnion.batch.workers import Assignment, Workers
-from trunnion.errors import Problem
+from trunnion.definitions.extends import is_within
+from trunnion.errors import InputError, Problem
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,6 +41,7 @@ class BatchResult:
     counts  how many became what
     done    how many were done already
     failed  indices of the units that did not pass
+    jobs    their names
     """
 
     units: Sequence[Unit]
@@ -37,6 +49,7 @@ class BatchResult:
     counts: Mapping[Status, int]
     done: int
     failed: Sequence[int] = field(repr=False)
+    jobs: Sequence[str] = ()
 
     @property
     def passed(self) -> bool:
@@ -74,6 +87,7 @@ def run_jobs(
     """
     units = units_of(batch.jobs)
     check_store(store)
+    remove_stale(batch, units, store, observer)
     found = _Tally(units)
     with observer.progress("batch", len(units), "files") as advance:
         pending = _Pending(batch, store, units, found, advance)
@@ -82,7 +96,9 @@ def run_jobs(
                 record = outcome if isinstance(outcome, Record) else settle(store, assignment.record, outcome)
                 found.add(assignment.number, record.status)
                 advance(1)
-    return BatchResult(units, store, dict(found.counts), pending.done, sorted(found.failed))
+    return BatchResult(
+        units, store, dict(found.counts), pending.done, sorted(found.failed), [job.name for job in batch.jobs]
+    )
 
 
 class _Tally:
@@ -119,22 +135,28 @@ class _Pending:
         records = read_records(self._store, [unit.place for unit in self._units])
         for number, (unit, before) in enumerate(zip(self._units, records, strict=True)):
             job = self._batch.jobs[unit.job]
-            record = Record(unit.place, unit.file, job.name, str(job.action), "", Status.BROKEN)
+            record = Record(unit.place, unit.file, job.name, str(job.action), "", Status.BROKEN, home=self._batch.home)
             try:
                 task = task_of(self._batch.folder, job, unit, self._shared[unit.job])
-            except OSError as error:
-                problem = Problem(unit.file, 0, f"cannot be read: {error.strerror or error}", code="FIL120")
-                commit(self._store, record, Outcome(Status.UNUSABLE, (problem,)))
+            except InputError as error:
+                commit(self._store, record, Outcome(Status.UNUSABLE, error.problems))
                 self._found.add(number, Status.UNUSABLE)
                 self._advance(1)
                 continue
             key = _key(task, self._digests[unit.job])
             if before is not None and before.is_done(key, self._store):
+                self._take_over(before, record)
                 self.done += 1
                 self._found.add(number, before.status)
                 self._advance(1)
                 continue
             yield Assignment(number, replace(record, key=key)), task
+
+    def _take_over(self, before: Record, record: Record) -> None:
+        """A record that is done, with the name that its job has now."""
+        if (before.job, before.home) != (record.job, record.home):
+            renamed = replace(before, job=record.job, home=record.home)
+            self._store.write(record_name(record.place), record_bytes(renamed))
 
 
 def task_of(folder: Path, job: Job, unit: Unit, shared: Mapping[str, bytes]) -> Task:
@@ -142,23 +164,40 @@ def task_of(folder: Path, job: Job, unit: Unit, shared: Mapping[str, bytes]) -> 
 
     Raises
     ------
-    OSError
-        If the file cannot be read.
+    InputError
+        If a file cannot be read, leads out of the folder, or its result has no place.
     """
+    if unit.clash:
+        what = f"its result would be {unit.clash}, as that of another file of this batch, or a folder of its result"
+        cure = "rename one of them, name only one by its pattern, or give jobs an output of their own"
+        raise InputError(Problem(unit.file, 0, what, cure, code="BAT380"))
     arguments: dict[str, Any] = dict(job.arguments)
     name = FILES + unit.file
-    own = {name: (folder / unit.file).read_bytes()}
+    own = {name: _read(folder, unit.file, unit.file)}
     for argument, patterns in job.beside.items():
         arguments[argument] = []
         for pattern in patterns:
             beside = _beside(pattern, unit.file)
             arguments[argument].append(FILES + beside)
-            path = folder / beside
-            if path.is_file():
-                own[FILES + beside] = path.read_bytes()
+            if is_file(folder / beside):
+                own[FILES + beside] = _read(folder, beside, unit.file)
     result = PurePosixPath(unit.place).name
     report = f"{result}.{job.report}" if job.report else ""
     return Task(program_version(), job.action, arguments, name, own, shared, result, report)
+
+
+def _read(folder: Path, name: str, file: str) -> bytes:
+    """The content of a file that the work on ``file`` reads; links are followed within the folder."""
+    path = folder / name
+    if not is_within(path, folder):
+        what = f"{'' if name == file else f'goes with {name}, which '}leads out of the folder by a link"
+        cure = "put the file itself there, or give the folder that has both"
+        raise InputError(Problem(file, 0, what, cure, code="FIL120"))
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        what = f"{'' if name == file else f'goes with {name}, which '}cannot be read: {error.strerror or error}"
+        raise InputError(Problem(file, 0, what, code="FIL120")) from None
 
 
 def _beside(pattern: str, file: str) -> str:

@@ -3,6 +3,7 @@
 A file appears whole or not at all. Names are relative, with ``/``.
 """
 
+import errno
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -24,10 +25,12 @@ class Store(Protocol):
 
     label         what messages call it
     worker_url    by which workers write to it themselves; empty: they cannot
+    is_exact      whether ``holds`` looks at the content
     """
 
     label: str
     worker_url: str
+    is_exact: bool
 
     def read(self, name: str) -> bytes | None:
         """A file; None: there is none."""
@@ -35,8 +38,8 @@ class Store(Protocol):
     def read_many(self, names: Sequence[str]) -> Iterator[bytes | None]:
         """Files one after another, in their order."""
 
-    def write(self, name: str, content: bytes) -> None:
-        """Write a file, or replace it."""
+    def write(self, name: str, content: bytes, *, lasting: bool = True) -> None:
+        """Write a file, or replace it; it is whole at once, and if ``lasting`` after a power failure, too."""
 
     def remove(self, name: str) -> None:
         """Remove a file, if it is there."""
@@ -51,10 +54,24 @@ class Store(Protocol):
         """The files in a folder and below, in order."""
 
 
+class TakenError(InputError):
+    """A name has no file, and cannot have one: something that is no file stands there, or in place of its folder."""
+
+
+#: What the system says where a folder is in place of a file, or a file in place of a folder; or of names too long.
+_TAKEN: Final = (errno.EEXIST, errno.ENOTDIR, errno.EISDIR, errno.ENAMETOOLONG)
+
+
+def _taken(name: str, error: OSError) -> TakenError:
+    what = f"its result would be {name[:200]}, which cannot be a file there: {error.strerror or error}"
+    return TakenError(Problem(name, 0, what, "rename what stands there, or choose another folder", code="BAT320"))
+
+
 class FolderStore:
     """A folder of this computer, which is made when something is written."""
 
     worker_url = ""
+    is_exact = True
 
     def __init__(self, folder: Path) -> None:
         self.label = str(folder)
@@ -67,29 +84,45 @@ class FolderStore:
         except (FileNotFoundError, NotADirectoryError):
             return None
         except OSError as error:
+            if (self._folder / name).is_dir() or error.errno in _TAKEN:
+                raise _taken(name, error) from None
             raise self._unusable(name, "cannot be read", error) from None
 
     def read_many(self, names: Sequence[str]) -> Iterator[bytes | None]:
         """Files one after another, in their order."""
         return map(self.read, names)
 
-    def write(self, name: str, content: bytes) -> None:
+    def write(self, name: str, content: bytes, *, lasting: bool = True) -> None:
         """Write a file, or replace it; what leads out of the folder by a link is refused."""
         path = self._folder / name
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
+            if error.errno in _TAKEN and self._folder.is_dir():
+                raise _taken(name, error) from None
             raise self._unusable(name, "cannot be written", error) from None
         if not is_within(path.parent, self._folder):
-            what = "leads out of the folder of results by a link"
-            raise InputError(Problem(str(path), 0, what, "choose another folder", code="FIL230"))
+            what = f"its result would be {name}, which leads out of the folder of results by a link"
+            raise TakenError(Problem(name, 0, what, "remove the link, or choose another folder", code="BAT320"))
+        if path.is_dir():
+            raise _taken(name, IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR)))
+        if not lasting:  # to wait for the disk takes longer than most of the work on a small file
+            part = path.with_name(f".{os.getpid()}.{os.urandom(4).hex()}.part")
+            try:
+                part.write_bytes(content)
+                part.replace(path)
+            except OSError as error:
+                raise self._unusable(name, "cannot be written", error) from None
+            return
         with atomic_file(path) as sink:
             sink.write(content)
 
     def remove(self, name: str) -> None:
-        """Remove a file, if it is there."""
-        with suppress(FileNotFoundError, NotADirectoryError):
-            (self._folder / name).unlink()
+        """Remove a file, if it is there; what leads out of the folder by a link stays."""
+        path = self._folder / name
+        if is_within(path.parent, self._folder):
+            with suppress(FileNotFoundError, NotADirectoryError):
+                path.unlink()
 
     def digest(self, name: str) -> str | None:
         """SHA-256 of a file; None: there is none."""
@@ -129,6 +162,7 @@ class UrlStore:
         protocol = self._files.protocol
         self._protocol = protocol if isinstance(protocol, str) else protocol[0]
         self.worker_url = "" if self._protocol == "memory" else url
+        self.is_exact = self._protocol in ("file", "local", "memory")
         self._moves = self._protocol in ("file", "local", "sftp", "ssh", "ftp", "smb")
 
     def read(self, name: str) -> bytes | None:
@@ -138,6 +172,8 @@ class UrlStore:
         except (FileNotFoundError, NotADirectoryError):
             return None
         except OSError as error:
+            if error.errno in _TAKEN:
+                raise _taken(name, error) from None
             raise self._unusable(error) from None
 
     def read_many(self, names: Sequence[str]) -> Iterator[bytes | None]:
@@ -151,7 +187,7 @@ class UrlStore:
                     raise self._unusable(content)
                 yield bytes(content) if isinstance(content, bytes | bytearray) else None
 
-    def write(self, name: str, content: bytes) -> None:
+    def write(self, name: str, content: bytes, *, lasting: bool = True) -> None:
         """Write a file, or replace it."""
         path = self._path(name)
         try:
@@ -163,6 +199,8 @@ class UrlStore:
             self._files.pipe_file(part, content)
             self._files.mv(part, path)
         except OSError as error:
+            if error.errno in _TAKEN:
+                raise _taken(name, error) from None
             raise self._unusable(error) from None
 
     def remove(self, name: str) -> None:
@@ -176,10 +214,11 @@ class UrlStore:
         return None if content is None else digest(content)
 
     def holds(self, name: str, size: int, checksum: str) -> bool:
-        """Whether a file has the size with which it was written: its content would have to be fetched."""
+        """Whether a file is as it was written; far away only whether it has the size: its content had to be fetched."""
         try:
-            return bool(self._files.info(self._path(name)).get("size") == size)
-        except OSError:
+            is_as_long = bool(self._files.info(self._path(name)).get("size") == size)
+            return is_as_long and (not self.is_exact or self.digest(name) == checksum)
+        except (OSError, InputError):
             return False
 
     def names(self, folder: str) -> list[str]:

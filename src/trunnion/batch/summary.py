@@ -6,7 +6,7 @@ the work cost differs from run to run: it stands in a table of its own (``costs`
 
 import json
 import sqlite3
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import closing
 from itertools import islice
 from pathlib import Path
@@ -15,7 +15,7 @@ from typing import Any, Final
 from trunnion.api.targets import check_output_name
 from trunnion.batch.records import Record
 from trunnion.batch.running import BatchResult
-from trunnion.errors import Problem
+from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
 from trunnion.files import OutputPlace, output_group
 
@@ -25,16 +25,20 @@ COLUMNS: Final = {
     "code": "TEXT", "told_file": "TEXT", "line": "INTEGER", "message": "TEXT", "warnings": "INTEGER",
     "blocks": "INTEGER", "points": "INTEGER", "motions": "INTEGER", "seconds": "REAL", "tools": "TEXT",
     "axes": "TEXT", "margin_mm": "REAL", "margin_deg": "REAL",
-    "tip_deviation_mm": "REAL", "axis_deviation_deg": "REAL", "worst_check": "TEXT", "worst_check_share": "REAL",
+    "tip_deviation_mm": "REAL", "axis_deviation_deg": "REAL",
     "failed_checks": "TEXT", "removed_mm3": "REAL", "findings": "INTEGER", "gouge_mm": "REAL",
     "outputs": "TEXT", "bytes": "INTEGER", "sha256": "TEXT", "key": "TEXT",
 }  # fmt: skip
 
 #: The same of what the work cost.
-COSTS: Final = {"file": "TEXT", "job": "TEXT", "place": "TEXT", "processor_s": "REAL", "seconds": "REAL"}
+COSTS: Final = {"file": "TEXT", "job": "TEXT", "place": "TEXT", "processor_s": "REAL", "wall_s": "REAL"}
 
 #: Rows that are written at once.
 _ROWS: Final = 1000
+
+#: By these a summary is known: SQLite's ``application_id``, and a key of Parquet's metadata.
+_APPLICATION: Final = int.from_bytes(b"TrBa")
+_MARK: Final = b"trunnion.batch"
 
 _ENDINGS: Final = (".sqlite", ".parquet")
 
@@ -45,12 +49,47 @@ def check_summary(file: object) -> OutputPlace:
     Raises
     ------
     InputError
-        If its name ends otherwise, it cannot be written, or the package that writes it is not installed.
+        If its name ends otherwise, it cannot be written, a file stands there that is no summary, or the package that
+        writes it is not installed.
     """
     place = check_output_name("summary", file, _ENDINGS, "a summary is a database or a table")
     if place.path.suffix.lower() == ".parquet":
         import_extra("pyarrow", "twin")
+        _refuse_other(place.path, _is_parquet)
+        _refuse_other(_costs_path(place.path), _is_parquet)
+    else:
+        _refuse_other(place.path, _is_database)
     return place
+
+
+def _refuse_other(path: Path, is_own: Callable[[Path], bool]) -> None:
+    """Refuse to replace what is no summary; an empty file is nobody's loss."""
+    if path.exists() and path.stat().st_size and not is_own(path):
+        what = "is there already, and is no summary of a batch as Trunnion writes it"
+        raise InputError(Problem(str(path), 0, what, "name another file, or remove it", code="FIL250"))
+
+
+def _is_database(path: Path) -> bool:
+    """Whether a file is a summary, with nothing in it that somebody else has added."""
+    try:
+        with closing(sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro&immutable=1", uri=True)) as database:
+            (mark,) = database.execute("PRAGMA application_id").fetchone()
+            names = {name for (name,) in database.execute("SELECT name FROM sqlite_master")}
+    except sqlite3.Error:
+        return False
+    return mark == _APPLICATION and names == {"files", "costs"}
+
+
+def _is_parquet(path: Path) -> bool:
+    pyarrow, parquet = import_extra("pyarrow", "twin"), import_extra("pyarrow.parquet", "twin")
+    try:
+        return _MARK in (parquet.read_schema(path).metadata or {})
+    except (OSError, pyarrow.ArrowException):
+        return False
+
+
+def _costs_path(path: Path) -> Path:
+    return path.with_suffix(".costs.parquet")
 
 
 def write_summary(result: BatchResult, file: object) -> None:
@@ -63,7 +102,7 @@ def write_summary(result: BatchResult, file: object) -> None:
     """
     place = check_summary(file)
     if place.path.suffix.lower() == ".parquet":
-        costs = check_output_name("summary", place.path.with_suffix(".costs.parquet"), _ENDINGS, "")
+        costs = check_output_name("summary", _costs_path(place.path), _ENDINGS, "")
         with output_group(remembers=False) as group:
             with group.open(place) as files:
                 _write_parquet(_rows(result), COLUMNS, files.path)
@@ -77,6 +116,7 @@ def write_summary(result: BatchResult, file: object) -> None:
 def _write_sqlite(result: BatchResult, path: Path) -> None:
     with closing(sqlite3.connect(path)) as database:
         database.execute("PRAGMA journal_mode = OFF")  # it appears whole, or not at all
+        database.execute(f"PRAGMA application_id = {_APPLICATION}")
         for table, columns, rows in (("files", COLUMNS, _rows(result)), ("costs", COSTS, _costs(result))):
             database.execute(f"CREATE TABLE {table} ({', '.join(f'{name} {kind}' for name, kind in columns.items())})")
             marks = ", ".join("?" * len(columns))
@@ -87,7 +127,7 @@ def _write_sqlite(result: BatchResult, path: Path) -> None:
 def _write_parquet(rows: Iterator[tuple[Any, ...]], columns: dict[str, str], path: Path) -> None:
     pyarrow, parquet = import_extra("pyarrow", "twin"), import_extra("pyarrow.parquet", "twin")
     kinds = {"TEXT": pyarrow.string(), "INTEGER": pyarrow.int64(), "REAL": pyarrow.float64()}
-    schema = pyarrow.schema([(name, kinds[kind]) for name, kind in columns.items()])
+    schema = pyarrow.schema([(name, kinds[kind]) for name, kind in columns.items()], {_MARK: b"1"})
     with path.open("wb") as stream, parquet.ParquetWriter(stream, schema) as writer:
         while some := list(islice(rows, _ROWS)):
             arrays = [
@@ -103,7 +143,7 @@ def _rows(result: BatchResult) -> Iterator[tuple[Any, ...]]:
 
 def _costs(result: BatchResult) -> Iterator[tuple[Any, ...]]:
     for record in _by_file(result):
-        yield record.file, record.job, record.place, record.costs.processor_s, record.costs.seconds
+        yield *map(_text, (record.file, record.job, record.place)), record.costs.processor_s, record.costs.seconds
 
 
 def _by_file(result: BatchResult) -> Iterable[Record]:
@@ -118,21 +158,22 @@ def _values(record: Record) -> dict[str, Any]:
     found: dict[str, Any] = dict.fromkeys(COLUMNS)
     found |= {key: _plain(value) for key, value in record.figures.items() if key in COLUMNS}
     found |= _error(record.error)
-    return found | {
-        "file": _text(record.file), "job": record.job, "action": record.action, "place": record.place,
+    found |= {
+        "file": record.file, "job": record.job, "action": record.action, "place": record.place,
         "status": str(record.status), "warnings": record.warnings, "key": record.key,
         "outputs": _plain(sorted(record.outputs)),
         "bytes": sum(each.bytes for each in record.outputs.values()) if record.outputs else None,
         "sha256": None if main is None else main.sha256,
     }  # fmt: skip
+    return {key: _text(value) if isinstance(value, str) else value for key, value in found.items()}
 
 
 def _error(error: Problem | None) -> dict[str, Any]:
     """The first error by the names of columns."""
     if error is None:
         return {}
-    message = _text(f"{error.what}; {error.cure}".removesuffix("; "))
-    return {"code": error.code, "told_file": _text(error.file), "line": error.line, "message": message}
+    message = f"{error.what}; {error.cure}".removesuffix("; ")
+    return {"code": error.code, "told_file": error.file, "line": error.line, "message": message}
 
 
 def _plain(value: object) -> object:

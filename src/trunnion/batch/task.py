@@ -42,6 +42,7 @@ class Status(StrEnum):
     PASSED     done, and what came of it may run
     FAILED     understood, and it must not run
     UNUSABLE   a file or an argument cannot be used
+    HINDERED   the computer did not let the work be done: no space, no memory, no rights
     BROKEN     the work ended by an error of Trunnion
     DIED       the process that worked on it ended, again and again
     TIMED_OUT  it took longer than it may
@@ -50,6 +51,7 @@ class Status(StrEnum):
     PASSED = "passed"
     FAILED = "failed"
     UNUSABLE = "unusable"
+    HINDERED = "hindered"
     BROKEN = "broken"
     DIED = "died"
     TIMED_OUT = "timed out"

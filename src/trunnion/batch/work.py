@@ -35,7 +35,7 @@ from trunnion.batch.task import (
     Status,
     Task,
 )
-from trunnion.batch.workers import died, shown
+from trunnion.batch.workers import hindered, hindrance, shown
 from trunnion.errors import Problem, RefusedError, Severity, TrunnionError
 from trunnion.files import output_group
 from trunnion.machines import Machine
@@ -70,8 +70,13 @@ def work(task: Task) -> Outcome:
     if task.program != program_version():
         raise OtherVersionError(f"a worker has Trunnion {program_version()}, and this computer {task.program}")
     started, used = time.perf_counter(), time.process_time()
-    with TemporaryDirectory(prefix="trunnion-", ignore_cleanup_errors=True) as folder:
-        found = _work_in(Path(folder).resolve(), task)
+    try:
+        with TemporaryDirectory(prefix="trunnion-", ignore_cleanup_errors=True) as folder:
+            found = _work_in(Path(folder).resolve(), task)
+    except OSError as error:
+        if (why := hindrance(error)) is None:
+            raise
+        found = Outcome(Status.HINDERED, (hindered(task.file, why),))
     return replace(found, costs=Costs(time.process_time() - used, time.perf_counter() - started))
 
 
@@ -90,10 +95,12 @@ def _work_in(folder: Path, task: Task) -> Outcome:
             _add_proof(figures, error.result.verification, error.result.toolpaths)
     except TrunnionError as error:
         status, own = Status.UNUSABLE, error.problems
-    except MemoryError:
-        status, own = Status.DIED, (died(task.file, "the memory of the worker was full"),)
+        if (why := hindrance(error)) is not None:
+            status, own = Status.HINDERED, [hindered(task.file, why)]
     except Exception as error:
         status, own = Status.BROKEN, (_broken(task.file, error),)
+        if (why := hindrance(error)) is not None:
+            status, own = Status.HINDERED, [hindered(task.file, why)]
     files = {each.name: each.read_bytes() for each in sorted(result.iterdir()) if each.is_file()}
     if status is not Status.PASSED:
         files = {name: data for name, data in files.items() if name == task.report}

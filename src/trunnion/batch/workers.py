@@ -1,8 +1,9 @@
 """What workers are, and what all of them tell of a file alike."""
 
+import errno
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Final, Protocol
 
 from trunnion.batch.records import Record
 from trunnion.batch.task import DEFINITIONS, FILES, Outcome, Task
@@ -36,7 +37,39 @@ def died(file: str, why: str) -> Problem:
     return Problem(shown(file), 0, why, cure, code="BAT310")
 
 
+#: Errors of the system that say nothing about a file: no space, no memory, no rights, a disk that fails.
+_HINDRANCES: Final = frozenset(
+    code
+    for code, name in errno.errorcode.items()
+    if name in ("EACCES", "EAGAIN", "EDQUOT", "EIO", "EMFILE", "ENFILE", "ENODEV", "ENOMEM", "ENOSPC", "ENXIO", "EPERM")
+    or name in ("EROFS", "ESTALE")
+)
+
+
+def hindrance(error: BaseException | None) -> str | None:
+    """What of the computer is behind an error, which may be another one's consequence; None: it has to do with files.
+
+    >>> hindrance(OSError(errno.ENOSPC, "No space left on device")), hindrance(ValueError("x"))
+    ('No space left on device', None)
+    """
+    seen = set[int]()
+    while error is not None and id(error) not in seen:
+        if isinstance(error, MemoryError):
+            return "the memory of the worker is full"
+        if isinstance(error, OSError) and error.errno in _HINDRANCES:
+            return error.strerror or str(error)
+        seen.add(id(error))
+        error = error.__cause__ or error.__context__
+    return None
+
+
+def hindered(file: str, why: str) -> Problem:
+    """The problem of a file on which the computer did not let work be done."""
+    what = f"the work could not be done on this computer: {why}"
+    return Problem(shown(file), 0, what, "run the batch again once that is mended", code="BAT390")
+
+
 def timed_out(file: str, seconds: float) -> Problem:
     """The problem of a file that took too long."""
-    what = f"took longer than {format_duration(seconds)}"
-    return Problem(shown(file), 0, what, "give it more time with --timeout, or work on it alone", code="BAT350")
+    what = f"was not done within the {format_duration(seconds)} that each file has"
+    return Problem(shown(file), 0, what, "give more time with --timeout, or work on it alone", code="BAT350")

@@ -1,7 +1,9 @@
 """``trunnion batch``: many files posted, converted, verified or simulated."""
 
 import argparse
-from collections.abc import Iterator
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager
 from itertools import islice
 from pathlib import Path
 from typing import Final
@@ -11,6 +13,7 @@ from trunnion.batch.front import run_batch
 from trunnion.batch.records import Record
 from trunnion.batch.running import BatchResult
 from trunnion.batch.task import Status
+from trunnion.cli.progress import progress, progress_lines
 from trunnion.cli.results import print_result, tell
 from trunnion.cli.terminal import Terminal
 from trunnion.cli.wording import in_command_words
@@ -51,27 +54,40 @@ def run(arguments: argparse.Namespace) -> int:
             workers=arguments.workers,
             timeout=arguments.timeout,
             scheduler=arguments.scheduler,
+            wait=arguments.wait,
             tls=Tls(*files) if any(given.values()) else None,
             summary=arguments.summary,
-            observer=Terminal(),
+            observer=_Terminal(),
         )
     except KeyboardInterrupt:
         tell("the batch goes on where it was stopped when it is run again")
         raise
-    print_result(*map(one_line, _lines(result)))
+    print_result(*map(one_line, result_lines(result)))
     return 0 if result.passed else 1
 
 
-def _lines(result: BatchResult) -> Iterator[str]:
+class _Terminal(Terminal):
+    """Shows from the start how far a batch is."""
+
+    def progress(self, stage: str, total: int, unit: str) -> AbstractContextManager[Callable[[int], None]]:
+        """Show a bar, or print a line now and then."""
+        return progress(stage, total, unit, delay=0) if sys.stderr.isatty() else progress_lines(stage, total, unit)
+
+
+def result_lines(result: BatchResult) -> Iterator[str]:
     """A batch in lines: what failed, and how many became what."""
+    width = max((len(unit) for unit in result.jobs), default=0) if len(result.jobs) > 1 else 0
     if result.failed:
-        yield f"{'file':<{_FILE_WIDTH}}  {'code':<{_CODE_WIDTH}}  line  message"
-    yield from map(_row, islice(result.failures(), _MOST))
+        job = f"{'job':<{width}}  " if width else ""
+        yield f"{job}{'file':<{_FILE_WIDTH}}  {'code':<{_CODE_WIDTH}}  line  message"
+    for record in islice(result.failures(), _MOST):
+        yield (f"{record.job:<{width}}  " if width else "") + _row(record)
     if len(result.failed) > _MOST:
         yield f"and {len(result.failed) - _MOST} more; --summary FILE.sqlite has all of them"
     parts = ", ".join(f"{result.counts[status]} {status}" for status in Status if result.counts.get(status))
     before = f"; {result.done} of them done before" if result.done else ""
-    yield f"{counted(len(result.units), 'file')}: {parts}{before}; results in {result.store.label}"
+    judged = "" if result.store.is_exact or not result.done else ", which are judged by their sizes"
+    yield f"{counted(len(result.units), 'file')}: {parts}{before}; results in {result.store.label}{judged}"
 
 
 def _row(record: Record) -> str:

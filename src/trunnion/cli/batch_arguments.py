@@ -33,6 +33,9 @@ def add_batch(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--scheduler", metavar="ADDRESS", help="let the workers of Dask do it: tcp://HOST:PORT or tls://"
     )
+    parser.add_argument(
+        "--wait", type=_seconds, metavar="SECONDS", help="end if the scheduler is without workers for so long"
+    )
     parser.add_argument("--tls-ca", metavar="FILE", help="certificate of the authority, for tls://")
     parser.add_argument("--tls-cert", metavar="FILE", help="certificate of this computer")
     parser.add_argument("--tls-key", metavar="FILE", help="its key")

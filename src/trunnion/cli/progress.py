@@ -1,21 +1,48 @@
-"""A progress bar on a terminal when work takes longer than a second; nothing in a pipe."""
+"""A progress bar on a terminal when work takes longer than a second; in a pipe nothing, or a line now and then."""
 
 import sys
+import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from trunnion.wording import format_duration
+
 
 @contextmanager
-def progress(what: str, total: int, unit: str) -> Iterator[Callable[[int], None]]:
-    """Yield a function that takes how much more has been done."""
+def progress(what: str, total: int, unit: str, *, delay: float = 1) -> Iterator[Callable[[int], None]]:
+    """Yield a function that takes how much more has been done; the bar comes after some seconds."""
     if not sys.stderr.isatty():
         yield lambda more: None
         return
     from tqdm import tqdm  # imported late: it takes as long as posting a small file
 
-    with tqdm(total=total, unit=unit, unit_scale=True, desc=what, delay=1, leave=False) as bar:
+    with tqdm(total=total, unit=unit, unit_scale=True, desc=what, delay=delay, leave=False) as bar:
 
         def advance(more: int) -> None:
             bar.update(more)
 
         yield advance
+
+
+@contextmanager
+def progress_lines(what: str, total: int, unit: str, *, every: float = 30.0) -> Iterator[Callable[[int], None]]:
+    """Yield the same, and print to stderr how much has been done whenever so many seconds have gone by."""
+    done, started, is_over = 0, time.monotonic(), threading.Event()
+
+    def advance(more: int) -> None:
+        nonlocal done
+        done += more
+
+    def watch() -> None:
+        while not is_over.wait(every):
+            passed = format_duration(time.monotonic() - started)
+            print(f"{what}: {done} of {total} {unit} after {passed}", file=sys.stderr, flush=True)
+
+    watcher = threading.Thread(target=watch, daemon=True)
+    watcher.start()
+    try:
+        yield advance
+    finally:
+        is_over.set()
+        watcher.join()

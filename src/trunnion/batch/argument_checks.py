@@ -1,0 +1,81 @@
+"""Arguments that single files would be refused for, one like the other: judged once, before any work."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Final
+
+from trunnion.api.converting import check_conversion_settings
+from trunnion.api.job import prepare
+from trunnion.batch.patterns import pattern_fault
+from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.machines import Machine
+from trunnion.simulation.stock.solids import check_cell, is_mesh, stock_shape
+from trunnion.simulation.tools.text import parse_tool
+
+#: Diameters for tools that state none, which CL files may state, mm: a tool is wrong if it is with each.
+_DIAMETERS: Final = (None, 10.0, 1000.0)
+
+
+def beside_fault(name: str) -> str:
+    """What is wrong with the name of a file that goes with each input; empty if it can be used.
+
+    >>> beside_fault("{folder}/{stem}.cls"), beside_fault("{name}.cls"), beside_fault("*.cls")
+    ('', 'has { or } elsewhere than in {folder} and {stem}', 'is a pattern')
+    """
+    if fault := pattern_fault(name.replace("{folder}/", "", 1) or name):
+        return fault
+    rest = name.replace("{folder}", "").replace("{stem}", "")
+    if "{" in rest or "}" in rest:
+        return "has { or } elsewhere than in {folder} and {stem}"
+    return "is a pattern" if "*" in rest or "?" in rest else ""
+
+
+def check_to_cl(said: Mapping[str, Any], machine: Machine | None) -> None:
+    """Judge the settings of a conversion to CL files.
+
+    Raises
+    ------
+    InputError
+        With what a conversion does not take.
+    """
+    if machine is not None:
+        check_conversion_settings(prepare(machine, said.get("settings")), to_cl=True)
+
+
+def check_simulation(said: Mapping[str, Any]) -> None:
+    """Judge stock, cells and tools of a simulation, as far as that takes no file.
+
+    Raises
+    ------
+    InputError
+        With all that is wrong.
+    """
+    problems: list[Problem] = []
+    for text in said.get("tools", ()):
+        problems += _tool_faults(str(text))
+    stock = str(said["stock"])
+    try:
+        if not is_mesh(stock):
+            shape = stock_shape(stock)
+            if (cell := said.get("cell")) is not None:
+                check_cell(shape, cell)
+        elif not Path(stock).is_file():
+            problems.append(argument_problem("stock", f"names {stock}, and there is no such file", code="FIL110"))
+    except InputError as error:
+        problems += error.problems
+    if problems:
+        raise InputError(problems)
+
+
+def _tool_faults(text: str) -> tuple[Problem, ...]:
+    number = text.partition("=")[0].strip()
+    found: list[tuple[Problem, ...]] = []
+    for diameter in _DIAMETERS:
+        try:
+            is_known = diameter is not None and number.isdecimal() and number.isascii() and len(number) < 10
+            parse_tool(text, {int(number): diameter} if is_known and diameter is not None else {})
+        except InputError as error:
+            found.append(tuple(error.problems))
+        else:
+            return ()
+    return found[0]

@@ -1,0 +1,52 @@
+"""Why a pattern matches no file although there is one: what a batch leaves out."""
+
+import os
+from pathlib import Path, PurePosixPath
+
+from trunnion.api.project_paths import is_file
+from trunnion.batch.patterns import matches
+from trunnion.batch.records import FOLDER
+from trunnion.definitions.extends import is_within
+
+#: Files that are looked at.
+_MOST = 100_000
+
+
+def left_out(folder: Path, pattern: str, results: Path | None) -> str:
+    """Which file of a folder a pattern means that is none of the inputs, and why; empty: there is none."""
+    looked = 0
+    for at, folders, names in os.walk(folder):
+        here = PurePosixPath(Path(at).relative_to(folder).as_posix())
+        for name in sorted([*folders, *names]):
+            looked += 1
+            if looked > _MOST:
+                return ""
+            file = (here / name).as_posix()
+            if matches(file, pattern) and (why := _reason(folder, file, results)):
+                return f"{file[:200]} {why}"
+        if any((Path(at) / name).is_symlink() and _leads_there(here / name, pattern) for name in folders):
+            return f"links to folders are not followed, such as {pattern[:200]}"
+    return ""
+
+
+def _leads_there(link: PurePosixPath, pattern: str) -> bool:
+    """Whether a pattern begins with the name of a link."""
+    return pattern.removeprefix("./").startswith(f"{link.as_posix()}/")
+
+
+def _reason(folder: Path, file: str, results: Path | None) -> str:
+    path = folder / file
+    if path.is_symlink() and not is_within(path, folder):
+        return "is a link that leads out of the folder"
+    if not is_file(path):
+        return "" if path.is_dir() else "is no file that can be read to its end"
+    if any(part.startswith(".") for part in PurePosixPath(file).parts):
+        return "is hidden, as names that begin with a point are"
+    above = [folder / each for each in PurePosixPath(file).parents][:-1]
+    if any((each / FOLDER).is_dir() or (results is not None and _is_same(each, results)) for each in above):
+        return "lies in a folder of results"
+    return ""
+
+
+def _is_same(one: Path, other: Path) -> bool:
+    return one.resolve() == other.resolve()

@@ -1,0 +1,68 @@
+"""Results that no file owns any more: their file is gone, or its result now has another name.
+
+They are removed before any work where they are as the batch has written them, for an old program beside the new one
+is one that somebody may run. What somebody has changed stays, and is told each time, as are results of other batches.
+"""
+
+from collections.abc import Iterator, Sequence
+
+from trunnion.api.observer import Observer
+from trunnion.api.project_paths import is_file
+from trunnion.batch.jobs import Batch, Unit
+from trunnion.batch.records import FOLDER, Record, known_of, parse_record, record_name
+from trunnion.batch.stores import Store, TakenError
+from trunnion.errors import Problem, Severity
+from trunnion.wording import counted
+
+#: Files that are told one by one.
+_MOST_TOLD = 100
+
+
+def remove_stale(batch: Batch, units: Sequence[Unit], store: Store, observer: Observer) -> None:
+    """Remove what earlier runs of this batch have written of files that no unit owns now."""
+    owned = {record_name(unit.place) for unit in units}
+    names = [name for name in store.names(FOLDER) if name.endswith(".json") and name not in owned]
+    if not names:
+        return
+    now = {(str(batch.jobs[unit.job].action), unit.file) for unit in units}
+    told: list[Problem] = []
+    others = 0
+    for name, content in zip(names, store.read_many(names), strict=True):
+        record = parse_record(content)
+        if record is None:
+            continue
+        if record.home != batch.home:
+            others += bool(record.outputs)
+        elif batch.is_whole or (record.action, record.file) in now or not is_file(batch.folder / record.file):
+            found = list(_removed(record, store))
+            told += found
+            if not any(problem.code == "BAT370" for problem in found):
+                store.remove(name)
+    told.sort(key=lambda problem: problem.file)
+    if len(told) > _MOST_TOLD:
+        more = Problem(store.label, 0, f"and {len(told) - _MOST_TOLD} more", "", Severity.WARNING, code="BAT360")
+        told[_MOST_TOLD:] = [more]
+    if others:
+        what = f"has results of {counted(others, 'file')} of another batch, which stay"
+        told.append(Problem(store.label, 0, what, "give each batch its own folder", Severity.WARNING, code="BAT370"))
+    if told:
+        observer.problems(told)
+
+
+def _removed(record: Record, store: Store) -> Iterator[Problem]:
+    """Remove the files of a record; what was done with each."""
+    for name, checksums in sorted(known_of(record).items()):
+        try:
+            there = store.digest(name)
+        except TakenError:
+            continue
+        if there is None:
+            continue
+        if there in checksums:
+            store.remove(name)
+            yield Problem(
+                name, 0, f"is removed: {record.file} has no such result any more", "", Severity.WARNING, code="BAT360"
+            )
+        else:
+            what = f"stays, although {record.file} has no such result any more: somebody has changed it"
+            yield Problem(name, 0, what, "remove it yourself", Severity.WARNING, code="BAT370")
