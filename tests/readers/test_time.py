@@ -117,6 +117,22 @@ def test_holes_of_a_loop_are_bounded_by_its_lines(tmp_path: Path, monkeypatch: p
         run_program(path, load_machine("matsuura_mx330"), step_limit=100)
 
 
+def test_calls_of_a_macro_in_many_lines_are_sound(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    macro = "O9\n" + 9 * "G91 G1 X.001\nX-.001\n" + "Y.01\nG90\nM99\n%\n"
+    path = tmp_path / "A.NC"
+    path.write_text("%\nO1\nG21 G94 F100.\n" + 300 * "M98 P9\n" + "M30\n" + macro, encoding="utf-8")
+    # 300 calls of 22 blocks, 100 of which every program may execute.
+    run = run_program(path, load_machine("matsuura_mx330"), step_limit=100)
+    assert len(run) == 300 * 19
+    monkeypatch.setattr(limits, "BLOCKS_PER_LINE", 10)
+    with pytest.raises(InputError, match=r"executes more than 3[0-9]{3} blocks; does it end\? if it does, divide it"):
+        run_program(path, load_machine("matsuura_mx330"), step_limit=100)
+    monkeypatch.undo()
+    monkeypatch.setattr(limits, "MOST_BLOCKS", 1_000)
+    with pytest.raises(InputError, match="executes more than 1100 blocks"):
+        run_program(path, load_machine("matsuura_mx330"), step_limit=100)
+
+
 def test_turns_of_helices_are_bounded_by_the_lines(tmp_path: Path) -> None:
     path = tmp_path / "A.MPF"
     begin = "G17 G90 G94 G710\nG0 X10 Y0 Z0\nF1000\n"

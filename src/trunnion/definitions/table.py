@@ -25,6 +25,10 @@ REQUIRED: Final = Required()
 #: Keys that are not known and are told one by one: for each a similar one is looked for.
 _MOST_UNREAD: Final = 100
 
+#: Keys that stand above all tables, and tables of the control that people write without its name.
+_OF_WHOLE_FILE: Final = frozenset({"schema", "extends", "description"})
+_OF_CONTROL: Final = frozenset({"templates", "settings", "known", "reading", "between_points"})
+
 #: How the names of shipped files begin.
 _SHIPPED: Final = str(files("trunnion"))
 
@@ -172,6 +176,14 @@ class Table:
         if len(unread) > _MOST_UNREAD:
             self.add_problem("", f"has {len(unread)} keys that are not known here; the first are told")
         for key in unread[:_MOST_UNREAD]:
+            if self.path and key in _OF_WHOLE_FILE:
+                self.add_problem(
+                    key, "belongs to the whole file", f"write {key} above the first table", code="DEF320"
+                )
+                continue
+            if not self.path and key in _OF_CONTROL and "control" in self.read_keys:
+                self.add_problem(key, "belongs to the control", f"write [control.{key}]", code="DEF320")
+                continue
             same_stem = (known for known in self.read_keys if without_unit(known) == without_unit(key))
             similar = next((known for known in same_stem if unit_of(known)), "")
             if similar and unit_of(key) != unit_of(similar):

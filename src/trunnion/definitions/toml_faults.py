@@ -16,6 +16,7 @@ _DECIMAL_COMMA: Final = re.compile(rf"({_SIGNED}),([0-9]+)(?![0-9,]*\])")
 _BARE_POINT: Final = re.compile(r"([-+]?)(?:\.([0-9]+)|([0-9]+)\.(?![0-9]))$")
 _LEADING_ZERO: Final = re.compile(r"([-+]?)0+([1-9][0-9]*(?:\.[0-9]+)?|0)$")
 _WITH_UNIT: Final = re.compile(rf"({_SIGNED}(?:\.[0-9]+)?)[ \t]*([A-Za-zµ°%/\"']+[A-Za-z0-9²/]*)$")
+_UNIT_IN_LIST: Final = re.compile(rf"({_SIGNED}(?:\.[0-9]+)?)[ \t]*(mm|cm|in|inch|deg|rad|[°%\"'])(?![A-Za-z0-9])")
 _ANSWERS: Final = {"true": "true", "yes": "true", "on": "true", "false": "false", "no": "false", "off": "false"}
 _SECOND_KEY: Final = re.compile(r"[\s,;][ \t]*[A-Za-z0-9_-]+[ \t]*=")
 _SHOWN: Final = 60
@@ -46,7 +47,7 @@ def toml_fault(text: str, line: int, message: str) -> TomlFault:
         return found
     at = line if 1 <= line <= len(lines) else len(lines)
     content = lines[at - 1].strip()
-    fault = _of_line(content, message)
+    fault = _of_line(content, message, _header_above(lines, at))
     if fault is None:
         return TomlFault(line, f"{message[:1].lower()}{message[1:]}", "correct the line, or the one before it")
     what, cure = fault
@@ -63,6 +64,9 @@ def _unclosed(lines: list[str], line: int, message: str) -> TomlFault | None:
     if message == "Unclosed array":
         begins = [k for k, each in enumerate(lines[:line], 1) if re.match(r"[^#\"']*=[ \t]*\[", each)]
         at = begins[-1] if begins else line
+        for where in range(at, min(line, len(lines)) + 1):
+            if fault := _of_list(lines[where - 1]):
+                return TomlFault(where, *fault)
         return TomlFault(at, "the list that begins with [ does not end", "write ] behind it, and , between its values")
     if message == "Unclosed inline table":
         cure = "write all of it in one line, with } behind it and , between its keys"
@@ -79,8 +83,32 @@ def _unclosed(lines: list[str], line: int, message: str) -> TomlFault | None:
     return None
 
 
-def _of_line(content: str, message: str) -> tuple[str, str] | None:
-    """What is wrong with a line, and the cure; None if that is not known."""
+def _of_list(content: str) -> tuple[str, str] | None:
+    """What is wrong with the values in a line of a list, and the cure; None if that is not known."""
+    key, equals, values = content.rpartition("=")
+    values = _without_comment(values.strip())
+    if {'"', "'"} & set(values):
+        return None
+    number = _UNIT_IN_LIST.search(values)
+    without = _UNIT_IN_LIST.sub(r"\1", values).replace(";", ",")
+    wanted = f"write {f'{key.strip()} = ' if equals else ''}{without[:_SHOWN]}"
+    if number:
+        return f"the list has {number[2][:_SHOWN]} behind a number", f"{wanted}; keys name the unit"
+    if ";" in values:
+        return "the list has ; between its values", wanted
+    return None
+
+
+def _header_above(lines: list[str], line: int) -> str:
+    """The name of the table that a line stands in; empty for the top of the file."""
+    for each in reversed(lines[: line - 1]):
+        if each.lstrip().startswith("["):
+            return each.partition("#")[0].strip(" \t\r[]")
+    return ""
+
+
+def _of_line(content: str, message: str, table: str = "") -> tuple[str, str] | None:
+    """What is wrong with a line of a table, and the cure; None if that is not known."""
     if content.startswith("["):
         return _of_header(content)
     if _COMMENT.match(content):
@@ -92,6 +120,8 @@ def _of_line(content: str, message: str) -> tuple[str, str] | None:
         return _without_equals(content)
     if not _KEY.fullmatch(key):
         shown = key[:_SHOWN]
+        if table.endswith("known") and not {'"', "'"} & set(key):
+            return f"has {shown} without quotation marks", f'write "{shown}" = {value[:_SHOWN]}'
         return (
             f"has the key {shown!r}, which is none",
             "write keys of letters from A to Z, digits and _, without blanks, and = behind it",

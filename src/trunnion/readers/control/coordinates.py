@@ -48,6 +48,9 @@ class CoordinateControl(RowRecorder):
         self.tcp = False
         self.tilted = False
         self._tilted_from = self._shifted_from = -1
+        # Work offsets that were written since the last motion: row, line, file and word; and the first row of each.
+        self._stored_offsets: list[tuple[int, int, int, str]] = []
+        self._stored_systems: dict[int, int] = {}
         self._plane = AffineMap()
         self._program = AffineMap()
         # Programmed values of axes that incremental words still count from after a frame change, by axis.
@@ -162,6 +165,37 @@ class CoordinateControl(RowRecorder):
         Others may be left on: many sound programs begin with one and never cancel it.
         """
         return self.row == self._shifted_from
+
+    def note_stored_offset(self, word: str, system: int, *, clears: bool) -> None:
+        """Remember where the program wrote a work offset that the control keeps beyond its end.
+
+        Parameters
+        ----------
+        word
+            Of the block, for messages.
+        system
+            Which offset it wrote.
+        clears
+            Whether it is zero now: that only tidies up an offset which the program wrote before it moved.
+        """
+        first = self._stored_systems.setdefault(system, self.row)
+        if self._stored_offsets and self._stored_offsets[0][0] != self.row:
+            self._stored_offsets.clear()
+        if self.row and not (clears and first < self.row):
+            self._stored_offsets.append((self.row, self.line, self.modal.file.current, word))
+
+    def report_unused_offsets(self) -> None:
+        """Report each stored work offset that was written behind the last motion: only the next program moves with it.
+
+        A program without motions sets up the machine, and may write them.
+        """
+        here = self.line
+        for row, line, file, word in self._stored_offsets:
+            if row == self.row:
+                self.line = line if file == self.modal.file.current else here
+                text = f"{word} behind the last motion changes the work offset of the next program"
+                self.note(f"{text}: write it before the motions that need it", Severity.ERROR, "NC351")
+        self.line = here
 
     # Modes
 

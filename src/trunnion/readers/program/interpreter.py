@@ -264,8 +264,8 @@ class Interpreter(ABC, Generic[A]):
     def _open_sources(self) -> list[SourceText]:
         return [self._stack[0].source, *(source for source, _ in self._sources.values())]
 
-    def _limit_error(self, what: str) -> InputError:
-        return self._stack[-1].source.problem(self.control.line, f"the program {what}", "does it end?", code="NC140")
+    def _limit_error(self, what: str, cure: str = "does it end?") -> InputError:
+        return self._stack[-1].source.problem(self.control.line, f"the program {what}", cure, code="NC140")
 
     def _check_depth(self) -> None:
         if len(self._stack) >= MAX_CALL_DEPTH:

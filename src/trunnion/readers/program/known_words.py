@@ -37,6 +37,8 @@ _OWN: Final = (
     "is a word of the control itself, or begins with one: the declaration would hide it",
     "leave it out: only words that the control does not know can be declared",
 )
+#: So many letters and points are shown of a key.
+_MOST_LETTERS: Final = 40
 _LEADING_ZEROS: Final = re.compile(r"^([GM])0+([0-9])")
 _M_CODE: Final = re.compile(r"M0*([0-9]{1,9})")
 #: A G code without tenths: one with them is another word.
@@ -90,7 +92,14 @@ def check_known_words(machine: Machine, is_own_word: Callable[[str], bool]) -> N
 
 def _read(table: Table, is_own_word: Callable[[str], bool] | None) -> tuple[KnownWord, ...]:
     found: dict[str, KnownWord] = {}
+    plain = table.to_dict()
     for key in table.names():
+        if isinstance(inner := plain[key], dict):
+            # TOML takes G54.4 without quotation marks as a key 4 of a table G54.
+            whole = ".".join((key, *_first_path(inner)))
+            table.mark_read(key)
+            table.add_problem(key, "is a table: the word has a point", f'write "{whole}" = "…", in quotes', code="NC190")
+            continue
         word = _known_word(table, key)
         normal = plain_code(word.word)
         if is_own_word is not None and is_own_word(normal):
@@ -101,6 +110,16 @@ def _read(table: Table, is_own_word: Callable[[str], bool] | None) -> tuple[Know
     report_twins(table, lambda key: plain_code(_normal(key)))
     table.raise_problems()
     return tuple(found.values())
+
+
+def _first_path(table: dict[str, object]) -> list[str]:
+    """The keys to the first value in a table of tables."""
+    path: list[str] = []
+    inner: object = table
+    while isinstance(inner, dict) and inner:
+        key, inner = next(iter(inner.items()))
+        path.append(str(key)[:_MOST_LETTERS])
+    return path[:_MOST_LETTERS]
 
 
 def _known_word(table: Table, key: str) -> KnownWord:

@@ -29,6 +29,11 @@ RESOLUTIONS_PER_LINE: Final = 4
 MOTIONS_PER_LINE: Final = 250
 MOST_MOTIONS: Final = 10_000_000
 
+#: Blocks that a program may execute for each line of its files, besides its limit, and how many that may be: a call in
+#: each line, of a macro of so many blocks, is sound. One that goes nowhere new is ended sooner.
+BLOCKS_PER_LINE: Final = 50
+MOST_BLOCKS: Final = 2_000_000
+
 #: Whole turns of helices that a program may make for each line of its files, besides as many as it may execute blocks,
 #: and how many that may be: the checks look at every turn.
 TURNS_PER_LINE: Final = 50
@@ -53,13 +58,18 @@ MAX_SUBPROGRAMS: Final = 1000
 MAX_CALL_DEPTH: Final = 16
 
 
+#: Cures of a program that goes on too long: whether it ends is to be seen first.
+_ENDS: Final = "does it end?"
+_DOES_LESS: Final = "does it end? if it does, divide it: no more are followed in files of so many lines"
+
+
 class StepCounter:
     """Counts the blocks that a program executes, and the comments and events that it makes.
 
     Going once through each file is free, and so is everything that a file contains once.
 
     sources    returns the files that are in use, the program first
-    fail       returns the error of a program that does too much
+    fail       returns the error of a program that does too much: what it does, and the cure
     positions  returns where the tool goes in the rows from one on, (n, k) mm, degrees and whole numbers
     """
 
@@ -67,7 +77,7 @@ class StepCounter:
         self,
         limit: int,
         sources: Callable[[], Sequence[SourceText]],
-        fail: Callable[[str], InputError],
+        fail: Callable[[str, str], InputError],
         positions: Callable[[int], Floats],
     ) -> None:
         self._limit = limit
@@ -90,33 +100,34 @@ class StepCounter:
             self._check_circles()
         if self._blocks <= self._limit:
             return
-        if self._blocks > self._limit + self._blocks_of_files():
-            raise self._fail(f"executes more than {self._limit} blocks")
+        most = self._limit + min(BLOCKS_PER_LINE * self._lines(), MOST_BLOCKS)
+        if self._blocks > most + self._blocks_of_files():
+            raise self._fail(f"executes more than {most} blocks", _DOES_LESS)
 
     def count_motions(self, motions: int) -> None:
         """Count motions that have no block of their own: a program of many holes has a line for each, and ends."""
         self._motions += motions
         if self._motions <= self._limit:
             return
-        lines = sum(source.known_lines for source in self._sources())
-        most = self._limit + min(MOTIONS_PER_LINE * lines, MOST_MOTIONS)
+        most = self._limit + min(MOTIONS_PER_LINE * self._lines(), MOST_MOTIONS)
         if self._motions > most:
-            raise self._fail(f"makes more than {most} motions in cycles and curves")
+            raise self._fail(f"makes more than {most} motions in cycles and curves", _DOES_LESS)
 
     def check_turns(self, turns: int) -> None:
         """Check how many whole turns the helices have."""
         if turns <= self._limit:
             return
-        lines = sum(source.known_lines for source in self._sources())
-        most = self._limit + min(TURNS_PER_LINE * lines, MOST_TURNS)
+        most = self._limit + min(TURNS_PER_LINE * self._lines(), MOST_TURNS)
         if turns > most:
-            raise self._fail(f"makes more than {most} turns in helices")
+            raise self._fail(f"makes more than {most} turns in helices", _DOES_LESS)
+
+    def _lines(self) -> int:
+        """The lines of all files, as far as they are known."""
+        return sum(source.known_lines for source in self._sources())
 
     def _blocks_of_files(self) -> int:
         """The blocks of going once through each file."""
-        sources = self._sources()
-        lines = sum(source.known_lines for source in sources)
-        return lines + sum(source.size // CHARACTERS_PER_STEP for source in sources)
+        return self._lines() + sum(source.size // CHARACTERS_PER_STEP for source in self._sources())
 
     def _check_circles(self) -> None:
         """Check whether the program has been anywhere new lately, once it repeats blocks of its files."""
@@ -130,23 +141,25 @@ class StepCounter:
         self._visited.update(counts[k].tobytes() for k in range(len(counts)))
         self._in_circles = self._in_circles + passed if len(self._visited) == before else 0
         if self._in_circles > MOST_BLOCKS_IN_CIRCLES:
-            raise self._fail(f"has executed {MOST_BLOCKS_IN_CIRCLES} blocks and goes nowhere new")
+            raise self._fail(f"has executed {MOST_BLOCKS_IN_CIRCLES} blocks and goes nowhere new", _ENDS)
 
     def check_resolutions(self, resolutions: int) -> None:
         """Check how often the control has worked out its axes, which takes as long as many blocks."""
         least = self._limit // BLOCKS_PER_RESOLUTION
         if resolutions <= least:
             return
-        if resolutions > least + RESOLUTIONS_PER_LINE * sum(source.known_lines for source in self._sources()):
-            raise self._fail(f"makes the control work out its axes more than {least} times")
+        most = least + RESOLUTIONS_PER_LINE * self._lines()
+        if resolutions > most:
+            raise self._fail(f"makes the control work out its axes more than {most} times", _DOES_LESS)
 
     def count_records(self, records: int, characters: int) -> None:
         """Count comments or events with so many characters."""
         self._records += records + characters // CHARACTERS_PER_STEP
         if self._records <= self._limit:
             return
-        if self._records > self._limit + sum(source.size for source in self._sources()):
-            raise self._fail(f"makes more than {self._limit} comments and events")
+        most = self._limit + sum(source.size for source in self._sources())
+        if self._records > most:
+            raise self._fail(f"makes more than {most} comments and events", _DOES_LESS)
 
     def count_events(self, events: Sequence[RunEvent]) -> None:
         """Count the events that are new since the last call."""

@@ -257,6 +257,7 @@ class Rs274Interpreter(Interpreter[A]):
         elif code == iso_m_codes.TOOL_CHANGE:
             control.change_tool()
         elif code in iso_m_codes.PROGRAM_ENDS:
+            control.report_unused_offsets()
             if left := control.left_on():
                 self._note(f"ends with {left} on: the next program begins with it", Severity.ERROR, "NC351")
             control.add_event("end", f"M{code}")

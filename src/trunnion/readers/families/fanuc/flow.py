@@ -49,6 +49,8 @@ class Flow:
 
     def __init__(self, note: Note, variables: Variables) -> None:
         self._note = note
+        # File and line of the jumps to block numbers that stand twice.
+        self._jumps_to_doubled: set[tuple[int, int]] = set()
         self._variables = variables
 
     def accept(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> bool:
@@ -96,12 +98,16 @@ class Flow:
             active.source.jumps_back = 0
         self.jump(active, line, _whole(reader.signed_value()[0]))
 
-    @staticmethod
-    def jump(active: ActiveProgram, line: int, number: int) -> None:
+    def jump(self, active: ActiveProgram, line: int, number: int) -> None:
         """Continue at a block number."""
         target = active.source.number(number, line)
         if target is None:
             raise BlockError(f"there is no block N{number} to go to", code="NC133")
+        doubled = active.source.doubled_number(number, line)
+        if doubled and (active.file, line) not in self._jumps_to_doubled:
+            self._jumps_to_doubled.add((active.file, line))
+            what = f"goes to N{number}, which lines {doubled[0]} and {doubled[1]} both have"
+            self._note(f"{what}: which one the control finds is up to its parameters", Severity.ERROR, "NC163")
         active.source.jump_without_choice(target)
 
     def _while(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> None:

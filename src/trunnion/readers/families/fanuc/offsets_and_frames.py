@@ -145,7 +145,9 @@ class OffsetInterpreter(CallInterpreter):
             value if control.absolute or value is None else value + float(was)
             for value, was in zip(values, old, strict=True)
         ]
-        control.set_values(system, _changed(old, added))
+        new = _changed(old, added)
+        control.note_stored_offset(f"G10 L{kind:g} P{number:g}", system, clears=not new.any())
+        control.set_values(system, new)
 
     # Home
 

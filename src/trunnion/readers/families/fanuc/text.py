@@ -63,6 +63,17 @@ class FanucText(SourceText):
 
     def number(self, number: int, here: int) -> int | None:
         """Return the line of a block number: the next one after ``here``, else the first of the program."""
+        lines, begin, end = self._lines_of_number(number, here)
+        at = bisect_right(lines, here, begin, end)
+        return lines[at if at < end else begin] if begin < end else None
+
+    def doubled_number(self, number: int, here: int) -> tuple[int, int] | None:
+        """Return the first two lines of a block number that the program of a line has more than once, or None."""
+        lines, begin, end = self._lines_of_number(number, here)
+        return (lines[begin], lines[begin + 1]) if end - begin > 1 else None
+
+    def _lines_of_number(self, number: int, here: int) -> tuple[list[int], int, int]:
+        """Return the lines with a block number, and from and before which of them they are in the program of a line."""
         if self._jump_targets.numbers is None:
             numbers: dict[int, list[int]] = {}
             for match in _N_NUMBER.finditer(self.whole_bytes()):
@@ -70,10 +81,7 @@ class FanucText(SourceText):
             self._jump_targets.numbers = numbers
         first, end = self.program_lines(here)
         lines = self._jump_targets.numbers.get(number, [])
-        for at in (bisect_right(lines, here), bisect_left(lines, first)):
-            if at < len(lines) and first <= lines[at] < end:
-                return lines[at]
-        return None
+        return lines, bisect_left(lines, first), bisect_left(lines, end)
 
     def partner(self, line: int) -> int:
         """Return the line of the END of a DO, or of the DO of an END."""

@@ -90,6 +90,7 @@ class HeidenhainControl(PlaneControl):
         that cancels it elsewhere has lost a block. What cycles 7, 8, 10, 11 and 26 have set ends with it on some
         controls only, and so does a tilted plane.
         """
+        self.report_unused_offsets()
         if left := self.left_on():
             self.note(f"ends with {left} on: the next program may begin with it", Severity.ERROR, "NC351")
         if self.shortest_path and not self._cancels_shortest_path:

@@ -50,6 +50,7 @@ class FlowInterpreter(Interpreter[ActiveProgram]):
     control: HeidenhainControl
 
     def _label(self, active: ActiveProgram, rest: str) -> None:
+        active.source.pass_label(self._raw, self.control.line)
         if _label_name(rest, active.parameters) == "0" and active.returns:
             active.source.jump(active.returns.pop())
 
@@ -73,6 +74,16 @@ class FlowInterpreter(Interpreter[ActiveProgram]):
             raise active.source.problem(self.control.line, what, "does one call itself?", code="NC141")
         active.returns.append(here)
         active.source.jump(target)
+
+    def _report_doubled_labels(self, source: KlartextText) -> None:
+        """Report labels that are set more than once: the control checks a whole program before it runs."""
+        here = self.control.line
+        for name, line, first in source.take_doubled_labels():
+            self.control.line = line
+            shown = name if name.isdigit() else f'"{name[:40]}"'
+            what = f"LBL {shown} is set in line {first} already: the control takes each label once"
+            self._note(f"{what}; give this one another number", Severity.ERROR, "NC163")
+        self.control.line = here
 
     @staticmethod
     def _repeat(active: ActiveProgram, here: int, target: int, repeats: int) -> None:

@@ -159,6 +159,8 @@ class HeidenhainInterpreter(FlowInterpreter):
             self._finish_block(self._stack[-1])
             return
         program_frame.check_end_of_file(self._stack[-1], self._note)
+        if len(self._stack) > 1:
+            self._report_doubled_labels(self._stack[-1].source)
         super()._leave_program()
 
     def _check_rest(self, main: SourceText) -> None:
@@ -168,6 +170,7 @@ class HeidenhainInterpreter(FlowInterpreter):
 
         program_frame.check_rest(self._main, main, note, self._raw)
         program_frame.check_end_of_file(self._main, note)
+        self._report_doubled_labels(self._main.source)
 
     def _has_words(self, raw: str) -> bool:
         return bool(split_line(raw).statement)

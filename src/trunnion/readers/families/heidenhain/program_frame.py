@@ -54,6 +54,7 @@ def check_rest(active: ActiveProgram, source: SourceText, note: Note, end: str) 
     while source.fill():
         raw = source.next_line()
         if not active.ended:
+            active.source.pass_label(raw, source.line - 1)
             active.ended = _END.match(raw) is not None
             if active.ended and active.name is None:
                 note("the program has no BEGIN PGM: no control loads it", Severity.ERROR, "NC160")

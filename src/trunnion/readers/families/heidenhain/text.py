@@ -1,7 +1,7 @@
 """Targets of the jumps in a Klartext program: labels."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final
 
@@ -18,9 +18,17 @@ _LABEL = re.compile(
 
 @dataclass(slots=True)
 class _JumpTargets:
-    """Lines of labels; found on first use."""
+    """Lines of labels, found on first use.
+
+    passed   lines of the labels that were passed so far, in a program without jumps
+    doubled  label, line and first line of each that is set once more and has not been taken
+    told     lines of those that were found
+    """
 
     labels: dict[str, int] | None = None
+    passed: dict[str, int] = field(default_factory=dict)
+    doubled: list[tuple[str, int, int]] = field(default_factory=list)
+    told: set[int] = field(default_factory=set)
 
 
 class KlartextText(SourceText):
@@ -37,8 +45,24 @@ class KlartextText(SourceText):
         if labels is None:
             labels = self._jump_targets.labels = {}
             for match in _LABEL.finditer(self.whole_bytes()):
-                number, text = match.groups()
-                key = str(int(number)) if number is not None else self.text_of(text).upper()
-                labels.setdefault(key, self.line_of(match.start(1 if number is not None else 2)))
-            labels.pop("0", None)
+                self._set(labels, self._name_of(match), self.line_of(match.start(1 if match[1] is not None else 2)))
         return labels.get(name)
+
+    def pass_label(self, raw: str, line: int) -> None:
+        """Remember the label that a line sets, if it sets one and no jump has found them all."""
+        if self._jump_targets.labels is None and (match := _LABEL.match(raw.encode("latin-1", "replace"))):
+            self._set(self._jump_targets.passed, self._name_of(match), line)
+
+    def take_doubled_labels(self) -> list[tuple[str, int, int]]:
+        """Return each label that is set more than once, its line, and the line that set it first; at most once."""
+        found, self._jump_targets.doubled = self._jump_targets.doubled, []
+        return found
+
+    def _name_of(self, match: re.Match[bytes]) -> str:
+        return str(int(match[1])) if match[1] is not None else self.text_of(match[2]).upper()
+
+    def _set(self, labels: dict[str, int], name: str, line: int) -> None:
+        """Set a label; label 0 ends subprograms and is no target."""
+        if name != "0" and labels.setdefault(name, line) != line and line not in self._jump_targets.told:
+            self._jump_targets.told.add(line)
+            self._jump_targets.doubled.append((name, line, labels[name]))

@@ -6,6 +6,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.errors import Severity
 from trunnion.machines import Axis, Machine, forward
 from trunnion.model import axis_positions
 from trunnion.readers.control import arcs
@@ -25,6 +26,9 @@ ORDER: Final = "XYZABC"
 _FINE: Final = 0.005
 _RATIO: Final = 0.001
 _COARSE: Final = 0.5
+
+#: Axes within this of zero, degrees, carry no length sideways; directions within this are parallel.
+_STILL: Final = 1e-9
 
 
 def settings_of(machine: Machine) -> tuple[str, WordMeanings]:
@@ -124,6 +128,29 @@ class LinuxcncControl(Rs274Control):
         offset = self.offset_of(self.system).values
         total = offset + self.axis_offset if self.axis_offset_active else offset
         return {name: float(total[ORDER.index(name)]) for name in self.rotary_names if name in ORDER}
+
+    def judge_new_length(self, word: str) -> None:
+        """Note another tool length where the kinematics turn it: LinuxCNC moves the slides there at once, unplanned."""
+        if not self.tcp:
+            return
+        turned = self._turned_off_spindle()
+        if turned:
+            text = f"{word} changes the tool length with TCP on and {' and '.join(turned)} turned: the slides jump"
+            cure = "after TCP is off" if word == "G49" else "before TCP is switched on"
+            self.note(f"{text}; write it {cure}", Severity.ERROR, "NC364")
+
+    def _turned_off_spindle(self) -> list[str]:
+        """Names of the rotary axes that stand turned, except those about the tool at zero, which carry no length."""
+        self.resolve_rows()
+        turned = []
+        for which, name in enumerate(self.rotary_names):
+            column = self.machine.rotary[which]
+            angle = float(self.current_joints[column])
+            off = abs(angle - 360.0 * round(angle / 360.0)) > _STILL
+            along = abs(float(np.dot(self.machine.axes[column].direction, self.machine.spindle_direction)))
+            if off and along < 1.0 - _STILL:
+                turned.append(name)
+        return turned
 
     # Positions
 

@@ -185,8 +185,11 @@ class LinuxcncInterpreter(CycleInterpreter):
         elif code in (980, 990):
             self._to_initial = code == 980
         elif code in words.LENGTHS:
+            number = self._length_number(block) if words.LENGTHS[code] else -1
+            if number != control.modal.edge.current:
+                control.judge_new_length(g_code_text(code))
             control.set_length(words.LENGTHS[code])
-            control.modal.edge.set(control.row, self._length_number(block) if words.LENGTHS[code] else -1)
+            control.modal.edge.set(control.row, number)
         elif code in (901, 911):
             control.relative_centres = code == 911
         elif code in words.TAKEN_AS_LINES:

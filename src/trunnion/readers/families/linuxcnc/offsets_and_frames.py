@@ -113,6 +113,8 @@ class OffsetInterpreter(OWordInterpreter):
         if float(np.abs(offset.values).max()) > MAX_POSITION or abs(offset.rotation) > MAX_POSITION:
             raise BlockError("an offset is larger than any machine", code="NC215")
         control.note_shift()
+        clears = not offset.values.any() and not offset.rotation
+        control.note_stored_offset(f"G10 L{kind:g} P{system:g}", number, clears=clears)
         control.set_values(number, offset)
 
     def _offset_change(self, offset: Offset, block: Block) -> Floats:

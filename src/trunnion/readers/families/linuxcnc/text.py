@@ -108,8 +108,9 @@ class LinuxcncText(SourceText):
                 by_line[line] = structure
             else:
                 structure = Structure(word, line)
-                if word == "SUB":
-                    subprograms[label] = structure
+                if word == "SUB" and (other := subprograms.setdefault(label, structure)) is not structure:
+                    what = f"defines O{label[:60]} SUB, which line {other.begin} has defined"
+                    raise self.problem(line, what, "give each subprogram a number or name of its own", code="NC163")
                 by_line[line] = structure
                 open_.append((label, structure))
                 if len(open_) > MAX_NESTING:

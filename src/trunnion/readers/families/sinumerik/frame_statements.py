@@ -1,10 +1,14 @@
 """Frame statements TRANS, ROT, SCALE and MIRROR as affine maps."""
 
 from collections.abc import Mapping
+from typing import Final
 
 import numpy as np
 
 from trunnion.readers.control.affine_map import AffineMap, rotation_matrix
+
+#: Frames are the same within this, mm and parts of one.
+_SAME: Final = 1e-9
 
 
 def frame_of_statement(word: str, values: Mapping[str, float], plane: int) -> AffineMap:
@@ -34,3 +38,13 @@ def frame_of_statement(word: str, values: Mapping[str, float], plane: int) -> Af
             return AffineMap(np.diag([1.0 if factor is None else factor for factor in (x, y, z)]))
         case _:
             return AffineMap(np.diag([1.0 if value is None else -1.0 for value in (x, y, z)]))
+
+
+def state_of_frame(word: str, frame: AffineMap) -> str:
+    """Return what is on behind a statement: "" if its frame changes nothing, TRANS if it only shifts, else the word.
+
+    ``TRANS X0 Y0 Z0`` and statements that undo each other switch a frame off as TRANS alone does.
+    """
+    if not np.allclose(frame.linear, np.eye(3), rtol=0.0, atol=_SAME):
+        return word
+    return "TRANS" if np.abs(frame.shift).max() > _SAME else ""

@@ -25,7 +25,7 @@ from trunnion.readers.families.sinumerik.cycle800 import swivel
 from trunnion.readers.families.sinumerik.cycle832 import smooth
 from trunnion.readers.families.sinumerik.expressions import ExpressionError, ExpressionReader, Value
 from trunnion.readers.families.sinumerik.flow import ActiveProgram
-from trunnion.readers.families.sinumerik.frame_statements import frame_of_statement
+from trunnion.readers.families.sinumerik.frame_statements import frame_of_statement, state_of_frame
 from trunnion.readers.families.sinumerik.polynomials import move_along_polynomials
 from trunnion.readers.families.sinumerik.text import SinumerikText
 from trunnion.readers.families.sinumerik.tokens import MAX_LENGTH, Token, TokenKind, split_comment, tokenize
@@ -380,8 +380,9 @@ class SinumerikInterpreter(CallInterpreter):
             else:
                 self._note(f"{word}: {name} is not simulated", Severity.ERROR, "NC220")
         frame = frame_of_statement(statement, values, control.plane_axis)
-        control.set_program_frame(control.program_frame.compose(frame) if additive else frame)
-        control.add_event("frame", "" if not additive and not values else word)
+        result = control.program_frame.compose(frame) if additive else frame
+        control.set_program_frame(result)
+        control.add_event("frame", state_of_frame(word, result))
 
     # Cycles and messages
 
