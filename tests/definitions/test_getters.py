@@ -94,7 +94,7 @@ def test_every_getter_notes_what_is_missing_and_reading_goes_on(tmp_path: Path) 
         ("7", "vector", "write [a, b, c] with 3 numbers in millimetres"),
         ("[3, 3]", "interval", "write [low, high] with low < high, in millimetres"),
         ("[1]", "interval", "write [low, high] with low < high, in millimetres"),
-        ('"ab"', "texts", 'write ["one", "two"]'),
+        ('"ab"', "texts", 'write ["ab"]'),
         ('["a", 1]', "texts", 'write ["one", "two"]'),
         ("1", "table", "write a table [k_mm]"),
         ("[1]", "tables", "write tables [[k_mm]]"),

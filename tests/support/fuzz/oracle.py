@@ -16,7 +16,7 @@ from trunnion.machines import Machine, load_machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.readers import run_program
-from trunnion.readers.program.limits import MAX_DIAGNOSTICS
+from trunnion.readers.program.limits import MAX_DIAGNOSTICS, MOTIONS_PER_LINE
 
 #: Blocks that loops and calls may execute.
 LIMIT: Final = 1500
@@ -127,7 +127,7 @@ def _check_run(run: Run, folder: Path, limit: int) -> None:
     total = sum(lines.values())
     size = sum(Path(file).stat().st_size for file in run.files)
     n = len(run)
-    assert n <= limit + total
+    assert n <= limit + (1 + MOTIONS_PER_LINE) * total
     assert len(run.diagnostics) <= MAX_DIAGNOSTICS + 1
     assert len(run.events) + len(run.comments) <= limit + size
     assert len(run.tools) <= limit + size + 1

@@ -10,6 +10,7 @@ from trunnion.machines import Machine
 from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.control.coordinates import INCH
 from trunnion.readers.control.hole_motion import CycleExecutionError
+from trunnion.readers.control.row_recorder import Note
 from trunnion.readers.control.virtual_control import LINEAR, RAPID
 from trunnion.readers.families.heidenhain import program_frame
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
@@ -158,16 +159,22 @@ class HeidenhainInterpreter(FlowInterpreter):
             # The last line announces a continuation that does not follow.
             self._finish_block(self._stack[-1])
             return
-        program_frame.check_end_of_file(self._stack[-1], self._note)
+        program_frame.check_end_of_file(self._stack[-1], self._note_at_last_line(self._stack[-1].source))
         if len(self._stack) > 1:
             self._report_doubled_labels(self._stack[-1].source)
         super()._leave_program()
 
-    def _check_rest(self, main: SourceText) -> None:
+    def _note_at_last_line(self, source: SourceText) -> Note:
+        """What notes faults at the line that was read last."""
+
         def note(text: str, severity: Severity, code: str) -> None:
-            self.control.line = main.line - 1
+            self.control.line = source.line - 1
             self._note(text, severity, code)
 
+        return note
+
+    def _check_rest(self, main: SourceText) -> None:
+        note = self._note_at_last_line(main)
         program_frame.check_rest(self._main, main, note, self._raw)
         program_frame.check_end_of_file(self._main, note)
         self._report_doubled_labels(self._main.source)
