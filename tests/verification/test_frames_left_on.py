@@ -38,7 +38,9 @@ def test_a_frame_that_changes_nothing_is_off(statements: str, left: bool, where:
 def test_rotary_axes_may_turn_where_a_rotation_was_turned_back(tmp_path: Path) -> None:
     file = tmp_path / "a.mpf"
     for angle, passes in ((-30, True), (-20, False)):
-        text = f"T1 M6\nG54 D1\nG0 X1 Y1 Z50\nTRANS X1\nAROT Z30\nAROT Z{angle}\nSUPA G0 Z0 D0\nG0 B20 C10\nTRANS\nM30\n"
+        text = (
+            f"T1 M6\nG54 D1\nG0 X1 Y1 Z50\nTRANS X1\nAROT Z30\nAROT Z{angle}\nSUPA G0 Z0 D0\nG0 B20 C10\nTRANS\nM30\n"
+        )
         file.write_text(text, encoding="utf-8")
         places = check(verify(file, machine="yl569"), "turns").places
         assert any("in a tilted plane" in place.text for place in places) is not passes

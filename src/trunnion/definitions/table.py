@@ -177,9 +177,7 @@ class Table:
             self.add_problem("", f"has {len(unread)} keys that are not known here; the first are told")
         for key in unread[:_MOST_UNREAD]:
             if self.path and key in _OF_WHOLE_FILE:
-                self.add_problem(
-                    key, "belongs to the whole file", f"write {key} above the first table", code="DEF320"
-                )
+                self.add_problem(key, "belongs to the whole file", f"write {key} above the first table", code="DEF320")
                 continue
             if not self.path and key in _OF_CONTROL and "control" in self.read_keys:
                 self.add_problem(key, "belongs to the control", f"write [control.{key}]", code="DEF320")

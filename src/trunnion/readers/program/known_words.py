@@ -98,7 +98,9 @@ def _read(table: Table, is_own_word: Callable[[str], bool] | None) -> tuple[Know
             # TOML takes G54.4 without quotation marks as a key 4 of a table G54.
             whole = ".".join((key, *_first_path(inner)))
             table.mark_read(key)
-            table.add_problem(key, "is a table: the word has a point", f'write "{whole}" = "…", in quotes', code="NC190")
+            table.add_problem(
+                key, "is a table: the word has a point", f'write "{whole}" = "…", in quotes', code="NC190"
+            )
             continue
         word = _known_word(table, key)
         normal = plain_code(word.word)
