@@ -66,7 +66,7 @@ def told(folder: Path, text: str) -> Problem:
         ("limits_deg = [-11°, 100.5 °] # B\n", 2, "° behind a number", "limits_deg = [-11, 100.5]"),
         ("limits_deg = [-11; 100]\n", 2, "; between its values", "limits_deg = [-11, 100]"),
         ("limits_deg = [\n-11,\n100 deg\n]\n", 4, "deg behind a number", "write 100;"),
-        ("[control.known]\nG65 P9020 = 'comes back'\n", 3, "G65 P9020 without quotation", "write \"G65 P9020\" = 'comes"),
+        ("[control.known]\nG65 P9020 = 'comes back'\n", 3, "G65 P9020 without", "write \"G65 P9020\" = 'comes"),
         ("[control.known] # ours\nM60 = 'stop'\nCYCL DEF 392 = 'stop'\n", 4, "CYCL DEF 392", 'write "CYCL DEF 392"'),
         ("\r\na = 4,5\r\n", 3, "a comma in a number", "a = 4.5"),
     ],
