@@ -103,7 +103,8 @@ def test_a_program_without_end_is_stopped_with_a_message(folder: Path, text: str
     path = folder / "MAIN.MPF"
     path.write_text(text)
     with pytest.raises(
-        InputError, match=r"(executes more than [0-9]+ blocks|no condition ends it); does it end"
+        InputError,
+        match=r"(more than [0-9]+ (blocks|motions in .*)|no condition ends it); does it end",
     ) as caught:
         interpreter_run(path, 3000)
     (problem,) = caught.value.problems

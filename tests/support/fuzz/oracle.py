@@ -127,7 +127,8 @@ def _check_run(run: Run, folder: Path, limit: int) -> None:
     total = sum(lines.values())
     size = sum(Path(file).stat().st_size for file in run.files)
     n = len(run)
-    assert n <= limit + total
+    # 50 blocks for each line, besides going once through the files.
+    assert n <= limit + 51 * total
     assert len(run.diagnostics) <= MAX_DIAGNOSTICS + 1
     assert len(run.events) + len(run.comments) <= limit + size
     assert len(run.tools) <= limit + size + 1

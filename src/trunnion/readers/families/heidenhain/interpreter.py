@@ -158,6 +158,8 @@ class HeidenhainInterpreter(FlowInterpreter):
             # The last line announces a continuation that does not follow.
             self._finish_block(self._stack[-1])
             return
+        # A scan leaves the line at that behind the last one.
+        self.control.line = min(self.control.line, max(self._stack[-1].source.line - 1, 1))
         program_frame.check_end_of_file(self._stack[-1], self._note)
         if len(self._stack) > 1:
             self._report_doubled_labels(self._stack[-1].source)
