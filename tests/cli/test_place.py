@@ -126,6 +126,7 @@ def test_the_program_says_how_the_part_is_clamped_and_verify_takes_it(
     x, y, z = lines[0].split("best zero ")[1].split(", ")[0].split(",")
     assert head[2].endswith(f";WORKPIECE ZERO X{x} Y{y} Z{z} MM ON THE MACHINE, AXES AT 0")
     assert "PART TURNED 45 DEG" in sheet.read_text("utf-8")
+    assert "and not turned: the program is for the turned part" in sheet.read_text("utf-8")
     verified = ["verify", str(program), "--cl", BLADE, *machine]
     assert main(verified) == 1
     told = capsys.readouterr().err
@@ -223,3 +224,21 @@ def test_a_program_that_is_converted_still_says_how_the_part_is_clamped(tmp_path
     head = other.read_text("utf-8").splitlines()[:4]
     assert head[1].endswith("; PART TURNED 30 DEG ABOUT Z, COUNTER-CLOCKWISE SEEN FROM ABOVE, FROM +Z")
     assert not any("WORKPIECE ZERO" in line for line in head)
+
+
+def test_a_zero_that_begins_below_nothing_needs_no_equals_sign(capsys: pytest.CaptureFixture[str]) -> None:
+    for zero in (["--zero", "-31,0,-77.5"], ["--zero=-31,0,-77.5"]):
+        assert main(["place", HUB, "--machine", "yl569", "--tool-length", "120", "--turn", "0", *zero]) == 0
+        assert "present zero -31.000,0.000,-77.500" in capsys.readouterr().out
+
+
+def test_a_simulation_says_that_nothing_turns_its_bodies(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    program, machine = tmp_path / "turned.mpf", ["--machine", "yl569"]
+    angles = ["--tool-length", "120", "--turn", "45"]
+    assert main(["place", HUB, *machine, *angles, "--apply", str(program)]) == 0
+    capsys.readouterr()
+    body = ["--stock", "box:80,40,40,-10,-20,-40", "--tool", "2=ball:8,length=80,flutes=40", "--cell", "4"]
+    main(["simulate", str(program), *machine, *body])
+    told = capsys.readouterr().err
+    assert "turned.mpf: warning: its head says that the part is turned by 45 degrees about Z" in told
+    assert "nothing turns them here [PLC230]" in told

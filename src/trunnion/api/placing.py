@@ -130,7 +130,10 @@ def unknown_length(machine: Machine) -> list[Problem]:
     if machine.tool_length is not None or not any(machine.depends_on_length(k) for k in machine.linear):
         return []
     names = ", ".join(machine.axes[k].name for k in machine.linear if machine.depends_on_length(k))
-    what, cure = f"the tool counts as 0 mm long, and places depend on its length ({names})", "give tool_length"
+    what, cure = (
+        f"the tool counts as 0 mm long, and places depend on its length ({names})",
+        "give the length of the tool",
+    )
     return [argument_problem("tool_length", what, cure, Severity.WARNING, code="PLC210")]
 
 

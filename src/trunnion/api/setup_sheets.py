@@ -215,7 +215,9 @@ def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> I
     """What the proof cannot see."""
     machine = program.machine
     offsets = ", ".join(_offsets(run)) or "the machine's zero"
-    yield f"Work offset {offsets} is set to the zero of the program, and turned as the part is clamped."
+    is_placed = any(notice.startswith(PLACED_NOTICES) for notice in job.notices)
+    turned = "and not turned: the program is for the turned part" if is_placed else "and turned as the part is clamped"
+    yield f"Work offset {offsets} is set to the zero of the program, {turned}."
     for notice in job.notices:
         if notice.startswith(PLACED_NOTICES):
             yield f"{notice}."

@@ -20,6 +20,7 @@ from trunnion.api.observer import Observer
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.api.settings import set_up_machine, work_offset_setting
 from trunnion.api.simulation_result import NO_CALL
+from trunnion.api.turned_parts import turned_bodies
 from trunnion.api.verifying import rapid_feed_of
 from trunnion.errors import ArgumentName, InputError, Problem, argument_problem
 from trunnion.machines import Machine
@@ -120,6 +121,9 @@ def prepare_setup(
     others, rapid_feed = check_paths("subprograms", given.subprograms), rapid_feed_of(machine)
     runs = tuple(restore_rapids(as_run(program, machine, others), rapid_feed) for program in programs)
     _check_programs(runs, machine)
+    for program in programs:
+        if not isinstance(program, Run):
+            remarks += turned_bodies(Path(program))
     toolpaths = as_toolpaths(given.cl, None, False, observer)
     tools = _tools(runs, given.tools, _libraries(given.libraries, given.unit), toolpaths)
     if given.work_offset is not None:

@@ -88,11 +88,24 @@ def unlike_head(program: Path, turn: float, tilt: float) -> list[Problem]:
     off = abs((turns - turn + 180.0) % 360.0 - 180.0)
     if off < _SAME and abs(tilts - tilt) < _SAME:
         return []
-    tilted = f"tilted by {number(tilts)} degrees about X and " if tilts else ""
-    what = f"its head says that the part is {tilted}turned by {number(turns)} degrees about Z"
-    told = f"turn={number(turns)}" + (f" and tilt={number(tilts)}" if tilts else "")
+    told = f"the turn {number(turns)}" + (f" and the tilt {number(tilts)}" if tilts else "")
     cure = f"give {told}, so that the CL files are turned before they are compared"
-    return [Problem(str(program), 0, what, cure, Severity.WARNING, code="PLC220")]
+    return [Problem(str(program), 0, _said(turns, tilts), cure, Severity.WARNING, code="PLC220")]
+
+
+def turned_bodies(program: Path) -> list[Problem]:
+    """A warning where the head of a program says that its part is turned: bodies must be so, too; else none."""
+    stated = _stated(program)
+    if stated is None or not any(stated):
+        return []
+    cure = "give stock, part and fixtures as they are clamped: nothing turns them here"
+    return [Problem(str(program), 0, _said(*stated), cure, Severity.WARNING, code="PLC230")]
+
+
+def _said(turn: float, tilt: float) -> str:
+    """What a head says of its part, in words; degrees."""
+    tilted = f"tilted by {number(tilt)} degrees about X and " if tilt else ""
+    return f"its head says that the part is {tilted}turned by {number(turn)} degrees about Z"
 
 
 def _stated(program: Path) -> tuple[float, float] | None:

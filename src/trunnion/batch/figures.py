@@ -39,7 +39,7 @@ def verification_figures(found: Verification) -> dict[str, Any]:
         **_run_figures(run),
         "seconds": _rounded(float(np.nansum(found.seconds))) if len(found.seconds) else None,
         "axes": {each.name: _extent(each) for each in axes},
-        "margin_mm": _least(each.margin for each in axes if each.unit == "mm"),
+        "margin_mm": _least(each.margin for each in axes if each.unit == "mm" and each.zero_known),
         "margin_deg": _least(each.margin for each in axes if each.unit != "mm"),
         "tip_deviation_mm": _worst_of(found.checks, "tip"),
         "axis_deviation_deg": _worst_of(found.checks, "axis"),

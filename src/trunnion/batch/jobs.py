@@ -162,7 +162,7 @@ def folder_batch(
         what = f"has no files that match {', '.join(patterns)}" if patterns else f"has no files {', '.join(sought)}"
         reasons = (left_out(folder, each, results) for each in patterns or [f"**/*{each}" for each in sought])
         what += next((f"; {why}" for why in reasons if why), "")
-        cure = "name them by --files PATTERN, such as --files '**/*.nc'"
+        cure = "name them by a pattern of files, such as '**/*.nc'"
         raise InputError(Problem(str(folder), 0, what, cure, code="BAT120"))
     job = Job(str(action), action, files, said, shared, beside, "", extensions.written, report)
     return Batch(folder, [job], home=home_of(folder))

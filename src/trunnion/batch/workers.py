@@ -72,4 +72,4 @@ def hindered(file: str, why: str) -> Problem:
 def timed_out(file: str, seconds: float) -> Problem:
     """The problem of a file that took too long."""
     what = f"was not done within the {format_duration(seconds)} that each file has"
-    return Problem(shown(file), 0, what, "give more time with --timeout, or work on it alone", code="BAT350")
+    return Problem(shown(file), 0, what, "give each file more time, or work on it alone", code="BAT350")

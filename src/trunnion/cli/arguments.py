@@ -54,6 +54,7 @@ _USAGE: Final = "ARG120"
 
 #: An option in a line of usage.
 _OPTION: Final = re.compile(r"--[a-z][a-z-]*")
+_NEGATIVE_LIST: Final = re.compile(r"-[0-9.]+(?:,[-+0-9.eE]+)+")
 
 #: Dialects of CL files; listed here, so that a command line is taken apart before any reader is imported.
 DIALECTS = ("clsf", "ncl", "solidworks", "clt", "catia", "fusion", "apt")
@@ -134,6 +135,7 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
     Ends the process with exit code 2 and a usage line when they cannot be understood.
     """
     parser, commands = _parsers()
+    argv = _with_negative_values(argv)
     if not argv:
         parser.error("name a command; trunnion --help lists them")
     if argv and argv[0] in commands:  # before argparse, which first tells what is missing
@@ -151,6 +153,17 @@ def parse_arguments(argv: Sequence[str]) -> argparse.Namespace:
                 parser.error(f"--{key} and --set {key}=… are the same: give one of them")
             arguments.settings = [*arguments.settings, (key, getattr(arguments, key))]
     return arguments
+
+
+def _with_negative_values(words: Sequence[str]) -> list[str]:
+    """Words with ``--zero -31,0,5`` as ``--zero=-31,0,5``: argparse takes a list that begins so for an option."""
+    joined: list[str] = []
+    for word in words:
+        if joined and _OPTION.fullmatch(joined[-1]) and _NEGATIVE_LIST.fullmatch(word):
+            joined[-1] += f"={word}"
+        else:
+            joined.append(word)
+    return joined
 
 
 def _unknown_option(words: Sequence[str], command: argparse.ArgumentParser) -> str:

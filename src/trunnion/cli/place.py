@@ -129,7 +129,11 @@ def placement_lines(found: Placement) -> Iterator[str]:
     if present is not None:
         gain = best.margin_mm - present.margin_mm
         state = f"{present.margin_mm:.3f} mm to the limits" if present.fits else f"{-present.margin_mm:.3f} mm too far"
-        gained = "" if found.goal != "margin" else f"; the best place has {gain:.3f} mm more"
+        gained = (
+            ""
+            if found.goal != "margin"
+            else f"; the best place has {abs(gain):.3f} mm {'more' if gain >= 0 else 'less'}"
+        )
         yield f"  present zero {_point(present)}: {state}{gained}"
     if found.goal != "margin" and best.value is not None:
         now = "" if present is None else f"; at the present zero {_goal_number(found.goal, present)}"
