@@ -421,7 +421,9 @@ def test_a_mode_at_places_behind_those_of_the_operation_is_refused(
     ],
 )  # fmt: skip
 def test_what_is_left_to_the_next_program_is_refused(tmp_path: Path, extends: str, text: str) -> None:
-    with pytest.raises(trunnion.RefusedError, match=r"ends (the program )?with|ends the program in"):
+    with pytest.raises(
+        trunnion.RefusedError, match=r"ends (the program )?with|ends the program in|behind the last motion"
+    ):
         program(tmp_path, f"after_operation = '''\n{text}\n'''", LEVEL_ONLY, extends=extends)
 
 

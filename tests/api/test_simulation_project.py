@@ -154,7 +154,7 @@ def test_every_mistake_is_told_at_once_with_its_line(folder: Path) -> None:
         ("[simulations]\n", 0, "is no project"),
         ("[simulation]\nstock = [\n", 3, "is not TOML"),
         (SETUPS.replace("[simulation]", '[simulation]\nprograms = ["nc/slot.ngc"]', 1), 2, "beside set-ups"),
-        (PROJECT + 'extends = "/etc/passwd"\n', 7, "not a key"),
+        (PROJECT + 'extends = "/etc/passwd"\n', 7, "write extends above the first table"),
     ],
     ids=["stock", "tool", "cell", "machine", "none", "table", "toml", "programs", "extends"],
 )

@@ -1,11 +1,13 @@
 """Warnings of M and H words of the machine's builder that a program has and its definition does not declare.
 
-In:     a program that was run.
+In:     a program that was run, and the words that the definition of its control states as its own.
 Out:    a warning for each word, where it stands first.
 """
 
+from collections.abc import Mapping
 from typing import Final
 
+from trunnion.controls import Control
 from trunnion.errors import Problem, Severity
 from trunnion.model.run import Run
 
@@ -15,9 +17,14 @@ _CODE: Final = "NC225"
 _MOST_TOLD: Final = 20
 
 
-def builders_words(run: Run) -> list[Problem]:
-    """Return the warnings; the reader has noted each word once."""
-    noted = [each for each in run.diagnostics if each.code == _CODE]
+def stated_words(control: Control, settings: Mapping[str, str]) -> frozenset[str]:
+    """The words that a definition states for coolant, and in settings such as that of rigid tapping."""
+    return frozenset((*(f"M{number}" for number in control.coolant.values()), *settings.values()))
+
+
+def builders_words(run: Run, stated: frozenset[str] = frozenset()) -> list[Problem]:
+    """Return the warnings but for words that are stated; the reader has noted each word once."""
+    noted = [each for each in run.diagnostics if each.code == _CODE and each.text.partition(" ")[0] not in stated]
     cure = "look it up, and declare it in [control.known]"
     told = [
         Problem(each.file or run.files[0], each.line, each.text, cure, Severity.WARNING, code=_CODE)

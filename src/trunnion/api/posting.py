@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from trunnion.api import kernels
 from trunnion.api.arguments import check_observer, check_paths
-from trunnion.api.builders_words import builders_words
+from trunnion.api.builders_words import builders_words, stated_words
 from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.forcing import Proof, Untold, write_forced
 from trunnion.api.hook_files import load_hooks
@@ -265,7 +265,7 @@ def post_toolpaths(
             observer.problems(simulated.remarks)
         problems += [remark for remark in simulated.remarks if remark.severity is Severity.WARNING]
     if verification is not None:
-        words = builders_words(verification.run)
+        words = builders_words(verification.run, stated_words(job.control, {**job.control.settings, **job.settings}))
         problems += words
         observer.problems(words)
         observer.verified(verification)
