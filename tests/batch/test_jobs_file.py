@@ -6,13 +6,13 @@ from pathlib import Path
 import pytest
 
 from tests.support.batches import write_files
-from trunnion.batch.jobs import folder_batch
+from trunnion.batch.jobs import Batch, folder_batch
 from trunnion.batch.jobs_file import load_batch
 from trunnion.batch.task import Action
 from trunnion.errors import InputError
 
 
-def load(folder: Path, text: str, *names: str) -> object:
+def load(folder: Path, text: str, *names: str) -> Batch:
     write_files(folder, dict.fromkeys(names or ("a/x.cls", "b/x.cls", "b/y.nc"), "") | {"jobs.toml": text})
     return load_batch(folder / "jobs.toml")
 
@@ -40,7 +40,7 @@ files = ["b/*.nc"]
 machine = "dmu65"
 cl = ["{folder}/x.cls"]
 """
-    batch = load_batch_of(tmp_path, text)
+    batch = load(tmp_path, text)
     post, check = batch.jobs
     assert batch.results == tmp_path / "out"
     assert (post.name, post.action, list(post.files)) == ("job 1", Action.POST, ["a/x.cls", "b/x.cls"])
@@ -51,17 +51,13 @@ cl = ["{folder}/x.cls"]
     assert check.beside == {"cl": ["{folder}/x.cls"]}
 
 
-def load_batch_of(folder: Path, text: str):  # type: ignore[no-untyped-def]
-    return load(folder, text)
-
-
 SIMULATE = '[[job]]\nmachine = "yl569"\nfiles = ["**"]\naction = "simulate"\n'
 CONVERT = SIMULATE.replace("simulate", "convert")
 
 
 def test_tools_whose_diameters_cl_files_state_are_no_mistakes(tmp_path: Path) -> None:
     text = SIMULATE + 'stock = "box:9,9,9"\ntools = ["1=ball:length=60,flutes=20"]\ncl = ["{folder}/{stem}.cls"]\n'
-    assert load_batch_of(tmp_path, text).jobs[0].arguments["tools"] == ["1=ball:length=60,flutes=20"]
+    assert load(tmp_path, text).jobs[0].arguments["tools"] == ["1=ball:length=60,flutes=20"]
 
 
 @pytest.mark.parametrize(
@@ -86,7 +82,7 @@ def test_why_a_pattern_matches_no_file_is_told(tmp_path: Path, pattern: str, tol
 
 
 def test_the_file_of_jobs_is_no_input(tmp_path: Path) -> None:
-    batch = load_batch_of(tmp_path, '[[job]]\nmachine = "yl569"\nfiles = ["**"]\n')
+    batch = load(tmp_path, '[[job]]\nmachine = "yl569"\nfiles = ["**"]\n')
     assert batch.jobs[0].files == ["a/x.cls", "b/x.cls", "b/y.nc"]
 
 
@@ -141,7 +137,7 @@ def test_mistakes_are_told_together_with_their_lines(tmp_path: Path) -> None:
 
 def test_results_are_no_inputs(tmp_path: Path) -> None:
     text = '[[job]]\nmachine = "yl569"\nfiles = ["**/*.cls"]\n'
-    batch = load_batch_of(tmp_path, text + "")
+    batch = load(tmp_path, text + "")
     write_files(tmp_path, {"results/old.cls": ""})
     assert batch.jobs[0].files == load_batch(tmp_path / "jobs.toml").jobs[0].files
 

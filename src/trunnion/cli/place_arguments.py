@@ -10,34 +10,27 @@ GOALS = ("margin", "rotary", "slides", "time", "overspeed")
 
 def degrees(text: str) -> float:
     """A step between turns."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0.1 <= value <= 360.0:
-        raise argparse.ArgumentTypeError(f"{text!r} is no step of turns; write degrees, 0.1 to 360, such as 5")
-    return value
+    return _angle(text, "step of turns", 0.1, 360.0, "5")
 
 
 def turn(text: str) -> float:
     """A turn."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = 1e9
-    if not -360.0 <= value <= 360.0:
-        raise argparse.ArgumentTypeError(f"{text!r} is no turn; write degrees, -360 to 360, such as 45")
-    return value
+    return _angle(text, "turn", -360.0, 360.0, "45")
 
 
 def tilt(text: str) -> float:
     """A tilt by a fixture."""
+    return _angle(text, "tilt", -90.0, 90.0, "30")
+
+
+def _angle(text: str, what: str, low: float, high: float, such_as: str) -> float:
     try:
         value = float(text)
     except ValueError:
-        value = 1e9
-    if not -90.0 <= value <= 90.0:
-        raise argparse.ArgumentTypeError(f"{text!r} is no tilt; write degrees, -90 to 90, such as 30")
+        value = float("nan")
+    if not low <= value <= high:
+        cure = f"write degrees, {low:g} to {high:g}, such as {such_as}"
+        raise argparse.ArgumentTypeError(f"{text!r} is no {what}; {cure}")
     return value
 
 
