@@ -165,7 +165,8 @@ class DaskWorkers:
                 self._blobs.clear()
                 self._count_threads()
                 return
-            except (OSError, ValueError, TypeError, ImportError) as error:
+            # Dask asserts where a client that takes its time is not there in time.
+            except (OSError, ValueError, TypeError, ImportError, AssertionError) as error:
                 if time.monotonic() >= deadline or not isinstance(error, OSError):
                     cure = "look for the scheduler, and run the batch again: what is done stays done"
                     what = f"no scheduler of Dask answers: {str(error)[:200]}"
@@ -265,7 +266,7 @@ class DaskWorkers:
             return None
         is_other = isinstance(error, OtherVersionError | ImportError)
         what = str(error) if is_other else f"a worker cannot work: {name}: {str(error)[:300]}"
-        cure = "install the same Trunnion on all workers"
+        cure = "install the same Trunnion on all workers" if is_other else "its log says more"
         raise InputError(Problem(self._address, 0, what, cure, code="BAT210"))
 
     def _look(self, asked: "Mapping[str, _Asked]") -> None:
