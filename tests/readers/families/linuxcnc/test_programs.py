@@ -80,7 +80,8 @@ def test_switched_kinematics_bring_the_joints_where_linuxcnc_does(
 def test_real_programs_are_read_whole(name: str) -> None:
     path = FOLDER / f"{name}.ngc"
     run = run_program(path, XYZBC if "xyzbc" in name else XYZAC)
-    assert run.diagnostics == ()
+    # One of them takes its tool length with the table turned, where the slides jump in LinuxCNC as well.
+    assert [(each.code, each.line) for each in run.diagnostics] == ([("NC364", 12)] if name == "boat-xyzbc" else [])
     assert run.tcp.all()
     # Every line with an axis word is a motion, and positions are the numbers that a plain look at the text finds.
     lines = [re.sub(r"\(.*?\)|;.*", "", line) for line in path.read_text().splitlines()]
