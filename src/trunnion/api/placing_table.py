@@ -77,7 +77,8 @@ def _corners(low: Floats, high: Floats) -> Floats:
 def _round(radius: float) -> Floats:
     """A polygon around a circle, of which no point is beyond by more than a hundred-thousandth of the radius."""
     angles = (np.arange(_SIDES) + 0.5) * (2.0 * np.pi / _SIDES)
-    return radius / np.cos(np.pi / _SIDES) * np.column_stack((np.cos(angles), np.sin(angles)))
+    outer = radius / float(np.cos(np.pi / _SIDES))
+    return outer * np.column_stack((np.cos(angles), np.sin(angles)))
 
 
 def larger_than_table(machine: Machine, outline: tuple[float, float]) -> str:
