@@ -42,6 +42,7 @@ class BatchResult:
     done    how many were done already
     failed  indices of the units that did not pass
     jobs    their names
+    new     indices of the units that passed in this run
     """
 
     units: Sequence[Unit]
@@ -50,6 +51,7 @@ class BatchResult:
     done: int
     failed: Sequence[int] = field(repr=False)
     jobs: Sequence[str] = ()
+    new: Sequence[int] = field(default=(), repr=False)
 
     @property
     def passed(self) -> bool:
@@ -63,6 +65,10 @@ class BatchResult:
     def failures(self) -> Iterator[Record]:
         """The same of those that did not pass."""
         return self._read([self.units[k] for k in self.failed])
+
+    def written(self) -> Iterator[Record]:
+        """The same of those of which this run has written files."""
+        return (record for record in self._read([self.units[k] for k in self.new]) if record.outputs)
 
     def _read(self, units: Sequence[Unit]) -> Iterator[Record]:
         for record in read_records(self.store, [unit.place for unit in units]):
@@ -88,17 +94,17 @@ def run_jobs(
     units = units_of(batch.jobs)
     check_store(store)
     remove_stale(batch, units, store, observer)
-    found = _Tally(units)
+    found, new = _Tally(units), list[int]()
     with observer.progress("batch", len(units), "files") as advance:
         pending = _Pending(batch, store, units, found, advance)
         with workers(len(units)) as team:
             for assignment, outcome in team.run(pending.tasks()):
                 record = outcome if isinstance(outcome, Record) else settle(store, assignment.record, outcome)
                 found.add(assignment.number, record.status)
+                new += [assignment.number] if record.status is Status.PASSED else []
                 advance(1)
-    return BatchResult(
-        units, store, dict(found.counts), pending.done, sorted(found.failed), [job.name for job in batch.jobs]
-    )
+    names = [job.name for job in batch.jobs]
+    return BatchResult(units, store, dict(found.counts), pending.done, sorted(found.failed), names, sorted(new))
 
 
 class _Tally:

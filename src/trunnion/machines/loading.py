@@ -36,6 +36,18 @@ SCHEMA: Final = 1
 
 _AXIS_NAME: Final = "[A-Za-z][A-Za-z0-9_]{0,7}"
 
+#: Shipped definitions of no builder's machine: chains to extend, and the examples of LinuxCNC.
+EXAMPLES: Final = frozenset(
+    (
+        "generic_head_head_ca",
+        "generic_head_table_bc",
+        "generic_nutated_b45_c",
+        "linuxcnc_5axis",
+        "xyzac_trt",
+        "xyzbc_trt",
+    )
+)
+
 _VECTOR_FALLBACK: Vector = (0.0, 0.0, 1.0)
 
 
@@ -47,6 +59,11 @@ def machine_library() -> Traversable:
 def shipped_machines() -> list[str]:
     """Names of the shipped machines, sorted."""
     return definition_names(machine_library())
+
+
+def is_example(name: str) -> bool:
+    """Whether a name is that of a shipped definition of no builder's machine."""
+    return name in EXAMPLES
 
 
 def check_is_shipped(name: str) -> None:
