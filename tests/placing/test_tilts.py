@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import trunnion
 from tests.support.placed_paths import brute_margin, limited_machines, random_rows, turned_by
-from trunnion.api.turned_parts import placed_notices, unlike_head
+from trunnion.api.placed_heads import placed_notices, unlike_head
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, load_machine
 from trunnion.placing.best_turn import Grid, best_of_turn, best_orientations

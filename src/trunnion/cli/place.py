@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from trunnion.api.input_files import machine_files
+from trunnion.api.placed_heads import number
 from trunnion.api.placing import place
 from trunnion.api.placing_data import placement_data
 from trunnion.api.placing_post import post_placed
 from trunnion.api.reading import FilePath, load_machine
 from trunnion.api.settings import as_texts
-from trunnion.api.turned_parts import number
 from trunnion.arrays import Floats
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result, tell
