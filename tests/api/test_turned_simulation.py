@@ -12,7 +12,9 @@ from hypothesis import strategies as st
 import trunnion
 from tests.support.reports import waves
 from tests.support.simulating import SLOT, cuboid, simulate
+from trunnion.api.observer import SILENT
 from trunnion.api.simulation_result import SimulationFinding
+from trunnion.api.simulation_setups import SetupInput, prepare_setup
 from trunnion.machines import load_machine
 from trunnion.model.columns import StepColumn
 from trunnion.placing.path_rows import turn_and_tilt
@@ -73,7 +75,13 @@ def test_the_head_hits_a_fixture_where_it_is_clamped(tmp_path: Path, turn: float
     )
     drawn = cuboid((-5, -130, -10), (5, -120, 20))  # with a turn of 90 degrees at X120 to X130 of the machine
     found = simulate(
-        tmp_path, SLOT, stock=DRAWN, fixtures=drawn, turn=turn, zero="0,0,100", machine=tmp_path / "own.toml",
+        tmp_path,
+        SLOT,
+        stock=DRAWN,
+        fixtures=drawn,
+        turn=turn,
+        zero="0,0,100",
+        machine=tmp_path / "own.toml",
         cell=2.0,
     )
     pairs = {one.between for one in found.findings if one.kind == "collision"}
@@ -162,7 +170,12 @@ def test_a_turned_program_with_its_angles_does_what_the_unturned_one_does(
     is_tip=st.booleans(),
 )
 def test_the_run_past_the_drawn_part_has_the_same_axes_and_its_tips_turned_back(
-    machine: str, turn: float, tilt: float, zero: tuple[float, float, float] | None, joints: list[list[float]], is_tip: bool
+    machine: str,
+    turn: float,
+    tilt: float,
+    zero: tuple[float, float, float] | None,
+    joints: list[list[float]],
+    is_tip: bool,
 ) -> None:
     placed = replace(load_machine(machine), workpiece_zero=zero, tool_length=70.0)
     run = waves(len(joints), machine=placed).run
@@ -196,6 +209,51 @@ def test_a_word_of_the_turned_program_makes_known_what_it_names(tmp_path: Path) 
         assert [(one.code, one.line) for one in found.remarks] == [(one.code, one.line) for one in straight.remarks]
 
 
+def test_a_circle_is_cut_where_the_part_is_clamped(tmp_path: Path) -> None:
+    """A full circle in XY of the program, radius 10 about X25 Y0, 5 deep: a ring of 5 to 15 mm."""
+    ring = math.pi * (15.0**2 - 5.0**2) * 5.0
+    path = "N50 G0 X15 Y0\nN55 G1 Z-5 F500\nN60 G2 X15 Y0 I10 J0 F500\nN70 G0 Z20\n"
+    program = SLOT.replace("N50 G0 Z-5\nN60 G1 X70 F500\nN70 G0 Z20\n", path)
+    for angles, stock in (({"turn": 90.0}, DRAWN), ({"tilt": 90.0}, "box:50,10,40,0,-10,-20")):
+        assert simulate(tmp_path, program, stock=stock, **angles).removed == pytest.approx(ring, rel=5e-3)
+
+
+def test_a_post_simulates_the_part_as_it_clamps_it(tmp_path: Path) -> None:
+    cl, project = tmp_path / "cut.cls", tmp_path / "part.toml"
+    cl.write_text(_operation([(-5.0, 0.0, -2.0), (5.0, 3.0, -3.0)], 0.0, 0.0), "utf-8")
+    body = {"stock": "box:30,20,8,-15,-10,-8", "tools": ["1=ball:10,length=60,flutes=40"], "cell": 0.5}
+    plain = trunnion.post(cl, machine="yl569", simulation=body).simulation
+    turned = trunnion.post(cl, machine="yl569", simulation=body, turn=70.0, tilt=20.0).simulation
+    assert plain is not None
+    assert turned is not None
+    assert turned.removed == pytest.approx(plain.removed, rel=2e-3)
+    assert (turned.turn, turned.tilt) == (70.0, 20.0)
+    project.write_text(
+        'machine = "yl569"\nstock = "box:30,20,8,-15,-10,-8"\ncell_mm = 0.5\ntools = ["1=ball:10,length=60,flutes=40"]\n'
+        'cl = ["cut.cls"]\noutput = "cut.mpf"\nturn_deg = 70\ntilt_deg = 20\n[checks]\nsimulate = "refuse"\n'
+    )
+    posted = trunnion.post_project(project)
+    assert posted.simulation is not None
+    assert posted.simulation.removed == pytest.approx(plain.removed, rel=2e-3)
+    assert "PART TURNED 70 DEG" in (tmp_path / "cut.mpf").read_text("utf-8")
+    again = trunnion.simulate(project)
+    assert again.removed == pytest.approx(posted.simulation.removed, rel=1e-9)
+    assert not [each for each in again.remarks if each.code == "PLC230"]
+    with pytest.raises(trunnion.InputError, match=r"turn_deg is 70, and the part of the post is clamped at 0"):
+        trunnion.post(cl, machine="yl569", simulation={"project": project})
+    assert trunnion.post(cl, machine="yl569", simulation={"project": project}, turn=70.0, tilt=20.0).passed
+
+
+def test_cl_files_are_turned_as_the_part_is() -> None:
+    given = SetupInput(
+        ["tests/golden/yl569/2_hub_rough.expected.mpf"], "yl569", cl="tests/golden/yl569/2_hub_rough.cls", turn=90.0
+    )
+    drawn = trunnion.read_cl("tests/golden/yl569/2_hub_rough.cls").operations[0].moves
+    turned = prepare_setup(given, [], SILENT).toolpaths[0].operations[0].moves
+    np.testing.assert_allclose(turned.tip, drawn.tip @ [[0, 1, 0], [-1, 0, 0], [0, 0, 1]], atol=1e-4)
+    np.testing.assert_allclose(turned.axis, drawn.axis @ [[0, 1, 0], [-1, 0, 0], [0, 0, 1]], atol=1e-9)
+
+
 def test_angles_that_are_none_and_angles_of_several_set_ups_are_refused(tmp_path: Path) -> None:
     for name, value in (("turn", math.nan), ("turn", 361.0), ("tilt", "5"), ("tilt", True)):
         with pytest.raises(trunnion.InputError, match=name):
@@ -215,4 +273,3 @@ def test_a_project_states_how_each_set_up_is_clamped(tmp_path: Path) -> None:
     found = trunnion.simulate(tmp_path / "part.toml")
     assert [round(each.removed, -1) for each in found.setups] == [2500.0, 2500.0]
     assert [each.turn for each in found.setups] == [90.0, 90.0]
-

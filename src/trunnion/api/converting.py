@@ -200,7 +200,7 @@ def convert_beside(
         if to_cl:
             if run.state.inches.values[-1] and control.settings.get("units") != INCH:
                 carried["units"] = INCH
-            comments = [f"--set {key}={value}" for key, value in carried.items()]
+            comments = [*job.notices, *(f"--set {key}={value}" for key, value in carried.items())]
             converter.report(write_and_prove(converted.toolpath, target, dialect, comments=comments))
             posted = None
         else:

@@ -2,6 +2,7 @@
 
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.paper_files import paper_files
+from trunnion.api.placing_inputs import nc_program_stays
 from trunnion.api.post_result import PostResult
 from trunnion.api.posting import post_beside
 from trunnion.api.reading import FilePath, MachineLike
@@ -52,8 +53,7 @@ def post_placed(
     True
     """
     if not found.toolpaths:
-        what, cure = "an NC program stays as it is", "set its work offset to the place, or give the CL files"
-        raise InputError(Problem(found.files[0], 0, what, cure, code="PLC140"))
+        raise InputError(nc_program_stays(found.files[0]))
     if found.best is None or not found.fits:
         raise InputError(Problem(found.files[0], 0, "the part fits nowhere", "see what limits it", code="PLC150"))
     texts = as_texts(settings)

@@ -68,7 +68,9 @@ def simulation_input(
     else:
         base = _of_project(check_path("simulation", project), machine, stated, angles)
     own = dict(zip(("turn", "tilt"), angles, strict=True))
-    setup = replace(base.setups[0], machine=machine, **own, **{name: stated[name] for name in _OF_SETUP if name in stated})
+    setup = replace(
+        base.setups[0], machine=machine, **own, **{name: stated[name] for name in _OF_SETUP if name in stated}
+    )
     found = replace(base, setups=[setup], **{name: stated[name] for name in _WHOLE if name in stated})
     if not found.stock:
         raise InputError(
@@ -164,7 +166,9 @@ def simulate_posted(
     if run is None:
         what = "nobody reads programs of this control, and what is not read cannot be simulated"
         raise InputError(argument_problem("simulation", what, "leave it out", code="SIM115"))
-    setup = replace(given.setups[0], programs=(named_run(run, name),), machine=run.machine, cl=toolpaths, cl_is_turned=True)
+    setup = replace(
+        given.setups[0], programs=(named_run(run, name),), machine=run.machine, cl=toolpaths, cl_is_turned=True
+    )
     return simulate_setups(replace(given, setups=[setup]), observer)
 
 
