@@ -68,10 +68,11 @@ def test_a_tilt_comes_first_and_lifts_the_y_side(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("turn", "hits"), [(90.0, True), (0.0, False), (-90.0, False)])
 def test_the_head_hits_a_fixture_where_it_is_clamped(tmp_path: Path, turn: float, hits: bool) -> None:
-    """A box on the head stands beside the tip, 100 mm before it in X, and passes what is clamped at X120 to X130, Y0."""
+    """A box on the head stands 100 mm before the tip in X, and passes what is clamped at X120 to X130, Y0."""
     (tmp_path / "own.toml").write_text(
         'extends = "xyzac_trt"\n[spindle]\ngauge_point_mm = [0, 0, 0]\n'
-        '[[body]]\nname = "nozzle"\nlink = "spindle"\nshape = "box"\nsize_mm = [10, 10, 10]\ncentre_mm = [100, 0, -105]\n'
+        '[[body]]\nname = "nozzle"\nlink = "spindle"\nshape = "box"\n'
+        "size_mm = [10, 10, 10]\ncentre_mm = [100, 0, -105]\n"
     )
     drawn = cuboid((-5, -130, -10), (5, -120, 20))  # with a turn of 90 degrees at X120 to X130 of the machine
     found = simulate(
@@ -229,7 +230,8 @@ def test_a_post_simulates_the_part_as_it_clamps_it(tmp_path: Path) -> None:
     assert turned.removed == pytest.approx(plain.removed, rel=2e-3)
     assert (turned.turn, turned.tilt) == (70.0, 20.0)
     project.write_text(
-        'machine = "yl569"\nstock = "box:30,20,8,-15,-10,-8"\ncell_mm = 0.5\ntools = ["1=ball:10,length=60,flutes=40"]\n'
+        'machine = "yl569"\nstock = "box:30,20,8,-15,-10,-8"\ncell_mm = 0.5\n'
+        'tools = ["1=ball:10,length=60,flutes=40"]\n'
         'cl = ["cut.cls"]\noutput = "cut.mpf"\nturn_deg = 70\ntilt_deg = 20\n[checks]\nsimulate = "refuse"\n'
     )
     posted = trunnion.post_project(project)

@@ -4,6 +4,7 @@ Comments state the tilt, the turn, the workpiece zero on the machine and the too
 are read again wherever the program is compared or simulated, and held against what is given there.
 """
 
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -116,9 +117,8 @@ def _other_zero(program: Path, stated: StatedPlace, machine: Machine) -> list[Pr
     """A warning where zero or tool length of the machine are known, and the head states others."""
     said = []
     zero, length = machine.workpiece_zero, machine.tool_length
-    if stated.zero is not None and zero is not None:
-        if any(abs(one - other) >= _SAME for one, other in zip(stated.zero, zero, strict=True)):
-            said.append(f"the workpiece zero is at {','.join(map(number, stated.zero))}")
+    if stated.zero is not None and zero is not None and math.dist(stated.zero, zero) >= _SAME:
+        said.append(f"the workpiece zero is at {','.join(map(number, stated.zero))}")
     if stated.tool_length is not None and length is not None and abs(stated.tool_length - length) >= _SAME:
         said.append(f"its zero holds for a tool length of {number(stated.tool_length)} mm")
     if not said:

@@ -183,7 +183,8 @@ def _post(
             str(file), (), machine=_machine(arguments["machine"]), output=output,
             settings=arguments.get("settings"), strict=arguments.get("strict", False), force=False, explain=False,
             papers=paper_files(report, None, None, None, output), columns=True,
-            turn=arguments.get("turn"), tilt=arguments.get("tilt"), subprograms=arguments.get("subprograms", ()), observer=observer, group=group,
+            subprograms=arguments.get("subprograms", ()), turn=arguments.get("turn"), tilt=arguments.get("tilt"),
+            observer=observer, group=group,
         )  # fmt: skip
     if found.verification is not None:
         _add_proof(figures, found.verification, found.toolpaths)
