@@ -292,8 +292,10 @@ def test_what_is_converted_from_a_placed_program_says_how_the_part_is_clamped_an
     tmp_path: Path, source: str
 ) -> None:
     program = tmp_path / "placed.nc"
-    setup = {"zero": (1.0, 2.0, -33.25), "tool_length": 100.0}
-    trunnion.post(HUB, machine=source, output=program, turn=30.5, tilt=-10.0, settings=setup, force=True)
+    trunnion.post(
+        HUB, machine=source, output=program, turn=30.5, tilt=-10.0, force=True,
+        settings={"zero": (1.0, 2.0, -33.25), "tool_length": 100.0},
+    )  # fmt: skip
     assert stated_place(program) == StatedPlace(30.5, -10.0, (1.0, 2.0, -33.25), 100.0)
     for machine in FAMILIES:
         other = tmp_path / f"{machine}.nc"

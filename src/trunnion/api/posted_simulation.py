@@ -67,10 +67,8 @@ def simulation_input(
         base = SimulationInput("", [SetupInput((), machine)])
     else:
         base = _of_project(check_path("simulation", project), machine, stated, angles)
-    own = dict(zip(("turn", "tilt"), angles, strict=True))
-    setup = replace(
-        base.setups[0], machine=machine, **own, **{name: stated[name] for name in _OF_SETUP if name in stated}
-    )
+    own = {name: stated[name] for name in _OF_SETUP if name in stated}
+    setup = replace(base.setups[0], machine=machine, turn=angles[0], tilt=angles[1], **own)
     found = replace(base, setups=[setup], **{name: stated[name] for name in _WHOLE if name in stated})
     if not found.stock:
         raise InputError(

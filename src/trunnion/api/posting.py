@@ -206,7 +206,7 @@ def post_beside(
         toolpaths = load_toolpaths(cl, job, strict, observer, changes.change)
         toolpaths = turned_toolpaths(toolpaths, *angles, absolute=job.options.absolute_frame)
         decisions = tuple(changes.decisions) if job.options.explain else ()
-        notices = ()
+        notices: tuple[str, ...] = ()
         if is_placed or is_turned(*angles):
             notices = placed_notices(*angles, job.machine.workpiece_zero, job.machine.tool_length)
         job = replace(job, notices=(*notices, *changes.notices), decisions=decisions)
