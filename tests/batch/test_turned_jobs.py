@@ -2,18 +2,38 @@
 
 import json
 import sqlite3
+from collections.abc import Iterable, Iterator
 from contextlib import closing
 from pathlib import Path
 
 import pytest
 
 import trunnion
+from tests.support.batches import InOrder
 from tests.support.locations import YL569
-from trunnion.batch import run_batch
-from trunnion.batch.task import Status
+from trunnion.batch.jobs_file import load_batch
+from trunnion.batch.records import Record
+from trunnion.batch.running import BatchResult, run_jobs
+from trunnion.batch.stores import FolderStore
+from trunnion.batch.summary import write_summary
+from trunnion.batch.task import Outcome, Status, Task
+from trunnion.batch.work import work
+from trunnion.batch.workers import Assignment
 from trunnion.cli.batch import result_lines
 
 HUB = YL569 / "2_hub_rough.cls"
+
+
+class Here(InOrder):
+    """Does the real work in this process: another one would take seconds to start."""
+
+    def run(self, tasks: Iterable[tuple[Assignment, Task]]) -> Iterator[tuple[Assignment, Outcome | Record]]:
+        for assignment, task in tasks:
+            yield assignment, work(task)
+
+
+def run(file: Path, results: Path) -> BatchResult:
+    return run_jobs(load_batch(file), FolderStore(results), lambda _: Here())
 
 
 def jobs(folder: Path, text: str) -> Path:
@@ -29,7 +49,7 @@ def posted(tmp_path_factory: pytest.TempPathFactory) -> Path:
     for name in ("a.cls", "b.cls"):
         (folder / name).write_bytes(HUB.read_bytes())
     post = jobs(folder, '[[job]]\nfiles = ["*.cls"]\nturn_deg = 45\ntilt_deg = -10\n')
-    assert run_batch(post, workers=1).passed
+    assert run(post, folder / "results").passed
     for name in ("a.mpf", "b.mpf"):
         (folder / name).write_bytes((folder / "results" / name).read_bytes())
     return folder
@@ -47,12 +67,11 @@ def test_verify_and_simulate_take_the_angles_and_warn_without(posted: Path) -> N
     angles = "turn_deg = 45\ntilt_deg = -10\n"
     verify = '[[job]]\nname = "v"\naction = "verify"\nfiles = ["*.mpf"]\noutput = "v"\ncl = ["{stem}.cls"]\n'
     simulate = '[[job]]\nname = "s"\naction = "simulate"\nfiles = ["*.mpf"]\noutput = "s"\n' + body
-    sound = run_batch(jobs(posted, verify + angles + simulate + angles), results=posted / "sound", workers=1)
+    sound = run(jobs(posted, verify + angles + simulate + angles), posted / "sound")
     assert not {each.code for each in sound.warned} & {"PLC220", "PLC230"}
     assert [each.status for each in sound.records() if each.job == "v"] == [Status.PASSED] * 2
-    plain = run_batch(
-        jobs(posted, verify + simulate), results=posted / "plain", workers=1, summary=posted / "plain.sqlite"
-    )
+    plain = run(jobs(posted, verify + simulate), posted / "plain")
+    write_summary(plain, posted / "plain.sqlite")
     of_code = {each.code: each for each in plain.warned}
     assert (of_code["PLC220"].files, of_code["PLC220"].file) == (2, "a.mpf")
     assert of_code["PLC230"].files == 2
@@ -65,7 +84,7 @@ def test_verify_and_simulate_take_the_angles_and_warn_without(posted: Path) -> N
     for action, count, codes in found:
         assert count >= 1
         assert ("PLC230" if action == "simulate" else "PLC220") in json.loads(codes)
-    again = run_batch(jobs(posted, verify + simulate), results=posted / "plain", workers=1)
+    again = run(jobs(posted, verify + simulate), posted / "plain")
     assert again.done == 4
     assert [(each.code, each.files) for each in again.warned] == [(each.code, each.files) for each in plain.warned]
 
@@ -74,10 +93,10 @@ def test_angles_without_cl_files_and_beyond_a_turn_are_told_with_their_lines(tmp
     (tmp_path / "a.mpf").write_text("M30\n")
     text = '[[job]]\naction = "verify"\nfiles = ["*.mpf"]\nturn_deg = 45\n'
     with pytest.raises(trunnion.InputError, match=r"jobs.toml:6: .*turn_deg.*the job has none"):
-        run_batch(jobs(tmp_path, text))
+        load_batch(jobs(tmp_path, text))
     text = '[[job]]\naction = "verify"\nfiles = ["*.mpf"]\ncl = ["a.cls"]\ntilt_deg = 91\n'
     with pytest.raises(trunnion.InputError, match=r"jobs.toml:7: .*tilt_deg"):
-        run_batch(jobs(tmp_path, text))
+        load_batch(jobs(tmp_path, text))
     text = '[[job]]\naction = "convert"\nfiles = ["*.mpf"]\nto_cl = true\nturn_deg = 45\n'
     with pytest.raises(trunnion.InputError, match="BAT110"):
-        run_batch(jobs(tmp_path, text))
+        load_batch(jobs(tmp_path, text))
