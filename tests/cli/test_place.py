@@ -27,7 +27,7 @@ def test_text_names_the_place_its_margins_and_what_limits_it(capsys: pytest.Capt
     assert lines[7].startswith("  it is held by ")
     assert f"({HUB}:" in lines[7]
     assert lines[8].startswith("  present zero 0.000,0.000,120.000: ")
-    assert lines[9] == "  it fits at 1 of the 1 turn asked for"
+    assert lines[9] == "  it fits at 1 of 1 turn"
     assert lines[10].startswith("  clamped so, the zero may be anywhere within X ")
     assert lines[11].startswith("  and not beyond X ")
 

@@ -175,9 +175,10 @@ def _share(found: Placement) -> str:
     """At how many of the turns that were asked for the part fits, and at how many more around the best."""
     asked = [turn for turn in found.turns if turn.is_asked]
     more = [turn for turn in found.turns if not turn.is_asked]
-    text = f"it fits at {sum(turn.fits for turn in asked)} of the {counted(len(asked), _tried(found))} asked for"
+    fits = sum(turn.fits for turn in asked)
     if not more:
-        return text
+        return f"it fits at {fits} of {counted(len(asked), _tried(found))}"
+    text = f"it fits at {fits} of the {counted(len(asked), _tried(found))} asked for"
     return f"{text}; around the best, {len(more)} more were tried, {sum(turn.fits for turn in more)} fit"
 
 
