@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.model.clamping import clamping_data
 from trunnion.placing.placement import AxisUse, Limit, Place, Placement
 
 _DECIMALS: Final = 6
@@ -50,6 +51,8 @@ def placement_data(found: Placement) -> dict[str, object]:
             "tolerance_mm": _number(region.tolerance),
         },
         "between_mm": _number(found.between_mm),
+        "stated": clamping_data(found.clamping),
+        "clamped": clamping_data(found.clamped),
         "remarks": [asdict(each) | {"severity": str(each.severity)} for each in found.problems],
     }
 

@@ -21,11 +21,12 @@ from trunnion.api.placed_heads import unlike_bodies
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.api.settings import set_up_machine, work_offset_setting
 from trunnion.api.simulation_result import NO_CALL
-from trunnion.api.turned_parts import checked_angles, is_turned, turned_toolpaths
+from trunnion.api.turned_parts import checked_angles, is_turned, toolpaths_clamped
 from trunnion.api.verifying import rapid_feed_of
 from trunnion.arrays import Floats
 from trunnion.errors import ArgumentName, InputError, Problem, argument_problem
 from trunnion.machines import Machine
+from trunnion.model.clamping import Clamping
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.placing.path_rows import turn_and_tilt
@@ -142,10 +143,10 @@ def prepare_setup(
     _check_programs(runs, machine)
     for program in programs:
         if not isinstance(program, Run):
-            remarks += unlike_bodies(Path(program), *angles, machine)
+            remarks += unlike_bodies(Path(program), Clamping(*angles), machine)
     toolpaths = as_toolpaths(given.cl, None, False, observer)
     if not given.cl_is_turned:
-        toolpaths = turned_toolpaths(toolpaths, *angles)
+        toolpaths = toolpaths_clamped(toolpaths, *angles)
     tools = _tools(runs, given.tools, _libraries(given.libraries, given.unit), toolpaths)
     if given.work_offset is not None:
         remarks += _other_offsets(runs, given.work_offset, machine)

@@ -6,9 +6,9 @@ from itertools import groupby
 import numpy as np
 
 from trunnion.arrays import Ints
-from trunnion.controls.vocabulary import PLACED_NOTICES
 from trunnion.conversion.program_events import ProgramEvent
 from trunnion.conversion.unsupported import Warnings
+from trunnion.model.clamping import PLACED_NOTICES
 from trunnion.model.run import Run
 from trunnion.model.toolpath import (
     BlockSkip,

@@ -11,12 +11,13 @@ import numpy as np
 
 from trunnion.arrays import Ints
 from trunnion.controls.definition import Control
-from trunnion.controls.vocabulary import FORCED_NOTICE, HOOKS_NOTICE, PLACED_NOTICES
+from trunnion.controls.vocabulary import FORCED_NOTICE, HOOKS_NOTICE
 from trunnion.conversion.program_events import ProgramEvent
 from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.sections import ProgramSection
 from trunnion.conversion.settings import parse_number
 from trunnion.conversion.template_matching import LinePattern, TemplatePatterns, match_lines
+from trunnion.model.clamping import PLACED_NOTICES
 from trunnion.model.run import ProgrammedWord, Run
 
 _MM_PER_INCH = 25.4

@@ -8,6 +8,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Problem
 from trunnion.machines.machine import Vector
+from trunnion.model.clamping import Clamping
 from trunnion.model.toolpath import Toolpath
 from trunnion.placing.region import Region
 
@@ -137,6 +138,7 @@ class Placement:
     between_mm  how far slides may go beyond that between rows where rotary axes turn
     problems  warnings
     toolpaths  of CL files; empty for NC programs
+    clamping  how the part is clamped, as the files state; turns and tilts come after that. None: they state nothing
     """
 
     machine: str
@@ -149,6 +151,7 @@ class Placement:
     between_mm: float = 0.0
     problems: tuple[Problem, ...] = ()
     toolpaths: tuple[Toolpath, ...] = ()
+    clamping: Clamping | None = None
     _find_region: Callable[[], Region | None] = field(default=lambda: None, repr=False)
     _margin_at: Callable[[Floats, float, float], float] = field(default=lambda *_: np.nan, repr=False)
 
@@ -176,6 +179,11 @@ class Placement:
     def tilt_deg(self) -> float | None:
         """The tilt of the best place about X, right-handed; it comes before the turn."""
         return None if self.best is None else self.best.tilt_deg
+
+    @property
+    def clamped(self) -> Clamping | None:
+        """How the part is clamped against its drawing at the best place, as far as the files state it."""
+        return None if self.best is None else (self.clamping or Clamping()).then(self.best.turn_deg, self.best.tilt_deg)
 
     @property
     def margin_mm(self) -> float | None:
