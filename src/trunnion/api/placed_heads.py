@@ -5,8 +5,6 @@ the program is compared or simulated.
 """
 
 import math
-import re
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
@@ -19,6 +17,7 @@ from trunnion.model.clamping import (
     StatedPlace,
     are_one_angle,
     clamped_notices,
+    head_comments,
     number,
     read_place,
     zero_notices,
@@ -26,15 +25,6 @@ from trunnion.model.clamping import (
 
 #: So much of a program is its head at most, bytes.
 _HEAD: Final = 1 << 16
-
-#: A line that is nothing but a comment, behind its block number; its text is the group.
-_COMMENT: Final = re.compile(r"\s*/?\s*(?:N?\d+\s*)?(?:;|\()\s*(.*?)[\s)]*")
-
-#: Lines with which a program begins and that move nothing: names, numbers and marks of the file.
-_MARK: Final = re.compile(r"\s*(?:%.*|[O:]\d+.*|(?:\d+\s+)?BEGIN PGM .*|<.*>|)\s*")
-
-#: Lines before which a control may allow nothing, not even a comment.
-_FIRST_LINES: Final = 3
 
 
 def placed_notices(clamping: Clamping, zero: Vector | None = None, tool_length: float | None = None) -> tuple[str, ...]:
@@ -54,16 +44,7 @@ def stated_place(program: Path) -> StatedPlace:
             head = stream.read(_HEAD).decode("latin-1")
     except OSError:
         return StatedPlace()
-    return read_place(list(_head_comments(head)))
-
-
-def _head_comments(text: str) -> Iterator[tuple[int, str]]:
-    """The comments of a head, each with its line; the text of an operation stands behind its first block."""
-    for line, each in enumerate(text.splitlines(), 1):
-        if found := _COMMENT.fullmatch(each):
-            yield line, found[1]
-        elif line > _FIRST_LINES and not _MARK.fullmatch(each.upper()):
-            return
+    return read_place(list(head_comments(enumerate(head.splitlines(), 1))))
 
 
 def damaged_notices(program: Path, stated: StatedPlace) -> list[Problem]:

@@ -19,7 +19,7 @@ from trunnion.api.settings import check_operation_names, check_tolerance, m_code
 from trunnion.api.turned_parts import checked_angles, clamped_after, stated_clamping, turned_toolpaths
 from trunnion.controls import Control, load_control
 from trunnion.controls.setting_rules import tool_number
-from trunnion.errors import InputError, argument_problem
+from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.jit import compile_ahead
 from trunnion.machines import Machine
 from trunnion.model.axis_tolerance import AxisTolerance
@@ -240,6 +240,9 @@ def verify(
         columns=columns,
     )
     found = replace(found, clamping=clamped)
+    if not len(run):
+        what, cure = "there is no motion in it: nothing of a path was checked", "give the program that moves the tool"
+        observer.problems([Problem(run.files[0], 0, what, cure, Severity.WARNING, code="NC185")])
     return found if recording is None else verification.with_recording(found, recording, recorded_tolerance)
 
 

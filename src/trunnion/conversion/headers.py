@@ -17,7 +17,7 @@ from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.sections import ProgramSection
 from trunnion.conversion.settings import parse_number
 from trunnion.conversion.template_matching import LinePattern, TemplatePatterns, match_lines
-from trunnion.model.clamping import PLACED_NOTICES
+from trunnion.model.clamping import head_comments, may_be_notice
 from trunnion.model.run import ProgrammedWord, Run
 
 _MM_PER_INCH = 25.4
@@ -66,7 +66,12 @@ class HeaderReader:
             first, last = self._path_lines(section, next_line)
             if section is sections[0]:
                 head = self._text.line_texts(1, section.line if section.line > 1 else first)
-                program_start = [(number, text) for number, text in head if not _is_notice(text)]
+                of_part = {number for number, text in head_comments(head) if may_be_notice(text)}
+                program_start = [
+                    (number, text) for number, text in head if number not in of_part and not _is_notice(text)
+                ]
+                # How the part is clamped goes into the head of what is made of it; its zero is that of this machine.
+                self.template_lines |= of_part
                 self.forced_line = next((number for number, text in head if FORCED_NOTICE in text), 0)
                 self.template_lines |= match_lines(program_start, self._patterns.of("program_start"), program_values)
             self.template_lines |= match_lines(self._text.line_texts(section.line, first), header, section.values)
@@ -134,7 +139,7 @@ class HeaderReader:
 
 def _is_notice(text: str) -> bool:
     """Whether a line of the head is a notice of this program, and no title."""
-    return any(notice in text for notice in (FORCED_NOTICE, HOOKS_NOTICE, *PLACED_NOTICES))
+    return any(notice in text for notice in (FORCED_NOTICE, HOOKS_NOTICE))
 
 
 def _matches_any(text: str, patterns: Iterable[LinePattern]) -> bool:

@@ -8,7 +8,7 @@ Units: degrees, mm.
 """
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -25,6 +25,15 @@ _BEGINNINGS: Final = (TURNED_NOTICE, TILTED_NOTICE, "PART CLAMPED", "WORKPIECE Z
 
 #: Angles and lengths that differ by less are the same: they are printed in thousandths.
 SAME: Final = 2e-3
+
+#: A line that is nothing but a comment, behind its block number; its text is the group.
+_COMMENT: Final = re.compile(r"\s*/?\s*(?:N?\d+\s*)?[;(]\s*(.*?)[\s)]*", re.IGNORECASE)
+
+#: Lines with which a program begins and that move nothing: names, numbers and marks of the file.
+_MARK: Final = re.compile(r"\s*(?:%.*|[O:]\d+.*|(?:\d+\s+)?BEGIN PGM .*|<.*>|)\s*", re.IGNORECASE)
+
+#: Lines before which a control may allow nothing, not even a comment.
+_FIRST_LINES: Final = 3
 
 _NUMBER: Final = r"(-?[0-9]{1,6}(?:\.[0-9]{1,6})?)"
 _TILTED: Final = re.compile(rf"{TILTED_NOTICE} {_NUMBER} DEG FIRST, ABOUT ITS X, RIGHT-HANDED, ITS \+Y SIDE (UP|DOWN)")
@@ -120,13 +129,26 @@ def zero_notices(zero: tuple[float, float, float], tool_length: float | None) ->
 
 def clamping_data(clamping: Clamping | None) -> dict[str, float | None]:
     """The keys of a clamping in data, degrees; null: nobody said it."""
-    known = clamping is not None
-    return {"turn_deg": clamping.turn if known else None, "tilt_deg": clamping.tilt if known else None}
+    if clamping is None:
+        return {"turn_deg": None, "tilt_deg": None}
+    return {"turn_deg": clamping.turn, "tilt_deg": clamping.tilt}
 
 
 def may_be_notice(comment: str) -> bool:
     """Whether a comment begins as one of the notices does."""
     return " ".join(comment.split()).upper().startswith(_BEGINNINGS)
+
+
+def head_comments(lines: Iterable[tuple[int, str]]) -> Iterator[tuple[int, str]]:
+    """The comments in the head of a program, whose numbered ``lines`` begin with its first one.
+
+    The head ends before the first block that does something; texts of operations stand behind that.
+    """
+    for line, text in lines:
+        if found := _COMMENT.fullmatch(text):
+            yield line, found[1]
+        elif line > _FIRST_LINES and not _MARK.fullmatch(text):
+            return
 
 
 def read_place(comments: Sequence[tuple[int, str]]) -> StatedPlace:
