@@ -1,0 +1,234 @@
+"""Of all turns of a part, and all choices of branches, the place at which bodies stay farthest apart."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats, Ints
+from trunnion.machines import Machine
+from trunnion.placing.best_turn import KEPT, Grid, TurnResult
+from trunnion.placing.collisions.clearance import Clearance, Nearest
+from trunnion.placing.collisions.guarded_pairs import Changes, GuardedPair
+from trunnion.placing.collisions.moments import Moments, moments_of
+from trunnion.placing.collisions.search import FarthestPlace, FarthestSearch, tolerance
+from trunnion.placing.largest_margin import largest_margin
+from trunnion.placing.path_rows import turn_and_tilt
+from trunnion.placing.rotary_angles import Obstacle
+from trunnion.placing.travel_limits import Cut, CutSet
+from trunnion.placing.turns import TurnedPath
+
+#: Moments that are asked first.
+_COARSE: Final = 1500
+
+#: Steps to which the best turn is refined, degrees.
+_FINEST: Final = 0.1
+
+#: Orientations count in whole thousandths of a degree.
+_DECIMALS: Final = 3
+
+#: A half-space with no more left than what is kept and this, mm, holds a place.
+_HOLDS: Final = 0.05
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Guard:
+    """What is kept apart: pairs of bodies, the tool of each row (n,), and lengths of tools, mm."""
+
+    pairs: tuple[GuardedPair, ...]
+    tool: Ints
+    lengths: Mapping[int, float]
+
+    def that(self, *changes: Changes) -> list[GuardedPair]:
+        """The pairs that something changes."""
+        return [pair for pair in self.pairs if pair.changes in changes]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Found:
+    """What was found of bodies.
+
+    nearest  of pairs that place or turn change, at the place; None: there are none
+    row      of the path, and that of ``fixed``
+    fixed    of pairs that nothing changes
+    bound    no place at a turn that was tried keeps the first farther apart, mm
+    """
+
+    nearest: Nearest | None
+    row: int
+    fixed: Nearest | None
+    fixed_row: int
+    bound: float
+
+    @property
+    def distance(self) -> float:
+        """The least distance of all, mm."""
+        return min((each.distance for each in (self.nearest, self.fixed) if each is not None), default=np.inf)
+
+
+class Oriented:
+    """A path at a turn, with what asks about its bodies; made when it is needed."""
+
+    def __init__(self, path: TurnedPath, guard: Guard, turn: float, tilt: float, near: Floats) -> None:
+        self._path, self._guard, self._near = path, guard, near
+        self._turn, self._tilt = turn, tilt
+
+    @cached_property
+    def moments(self) -> Moments:
+        """All moments."""
+        rows, positions = self._path.rows_at(self._turn)
+        return moments_of(self._path.machine, rows, positions, self._guard.tool, self._guard.lengths)
+
+    @cached_property
+    def coarse(self) -> Moments:
+        """Some of them."""
+        return self.moments.some(max(1, len(self.moments) // _COARSE))
+
+    def asked(self, moments: Moments, *changes: Changes) -> Clearance:
+        """Asks pairs that something changes."""
+        turn = turn_and_tilt(self._turn, self._tilt)
+        return Clearance(self._path.machine, moments, self._guard.that(*changes), turn, self._near)
+
+
+class ClearanceSearch:
+    """Judges orientations, each of them once, and keeps the best."""
+
+    def __init__(self, paths_at: Callable[[float], Sequence[TurnedPath]], guard: Guard) -> None:
+        self._paths_at, self._guard = paths_at, guard
+        self.results: dict[tuple[float, float], TurnResult] = {}
+        self.best: tuple[TurnResult, Oriented, FarthestPlace, FarthestSearch] | None = None
+        self.known, self.bound = 0.0, 0.0
+
+    def judge(self, turn: float, tilt: float) -> TurnResult:
+        """The result at an orientation, degrees: its cost is the distance, where that is larger than all before."""
+        key = (round(turn, _DECIMALS), round(tilt, _DECIMALS))
+        if key not in self.results:
+            found = [self._judge(path, *key) for path in self._paths_at(key[1])]
+            best = max(found, key=lambda one: (one.cost or 0.0, one.margin))
+            self.results[key] = replace(best, path=None, cuts=None)
+        return self.results[key]
+
+    def _judge(self, path: TurnedPath, turn: float, tilt: float) -> TurnResult:
+        cuts = path.at(turn)
+        if isinstance(cuts, Obstacle):
+            return TurnResult(turn, obstacle=cuts, tilt=tilt)
+        best = largest_margin(cuts, path.near, settled=False)
+        result = TurnResult(turn, path, cuts, best, choice=path.choice, tilt=tilt)
+        if result.margin < 0.0:
+            return result
+        oriented = Oriented(path, self._guard, turn, tilt, best.zero)
+        of_turn = self._of_turn(oriented, best.zero)
+        if of_turn is not None and of_turn.distance <= self.known:
+            return result
+        margin = min(KEPT, best.margin)
+        search = FarthestSearch(
+            cuts, margin, best.zero, oriented.asked(oriented.coarse, Changes.PLACE),
+            lambda: oriented.asked(oriented.moments, Changes.PLACE),
+        )  # fmt: skip
+        found = search.search(self.known)
+        above = search.bound if of_turn is None else min(search.bound, of_turn.distance)
+        self.bound = max(self.bound, above)
+        if found is None:
+            return result
+        distance = found.nearest.distance if of_turn is None else min(found.nearest.distance, of_turn.distance)
+        if distance <= self.known:
+            return result
+        self.known = distance
+        result = replace(result, cost=distance, best=replace(best, zero=found.zero, reached=cuts.at(found.zero)))
+        self.best = result, oriented, found, search
+        return result
+
+    def _of_turn(self, oriented: Oriented, zero: Floats) -> Nearest | None:
+        """The nearest of pairs that the turn alone changes; what is found first suffices if it is no better."""
+        if not self._guard.that(Changes.TURN):
+            return None
+        some = oriented.asked(oriented.coarse, Changes.TURN).nearest(zero)
+        if some is not None and some.distance <= self.known:
+            return some
+        asked = oriented.asked(oriented.moments, Changes.TURN)
+        return asked.inside(zero) or asked.nearest(zero)
+
+    def refine(self, turn_step: float, tilt_step: float, limits: tuple[float, float]) -> None:
+        """Go on around the best orientation with steps that are halved, degrees; tilts stay within limits."""
+        while self.best is not None and max(turn_step, tilt_step) / 2.0 >= _FINEST:
+            turn_step, tilt_step = turn_step / 2.0, tilt_step / 2.0
+            turn, tilt = self.best[0].turn, self.best[0].tilt
+            for tilted in dict.fromkeys((tilt, tilt - tilt_step, tilt + tilt_step)):
+                for side in (-1.0, 0.0, 1.0) if turn_step else (0.0,):
+                    if limits[0] <= tilted <= limits[1]:
+                        self.judge((turn + side * turn_step) % 360.0 if side else turn, tilted)
+
+
+def farthest_orientations(
+    paths_at: Callable[[float], Sequence[TurnedPath]], grid: Grid, guard: Guard, advance: Callable[[int], None]
+) -> tuple[list[TurnResult], TurnResult, Found | None]:
+    """What each orientation allows, by tilt and turn, refined about the best; the best, and its bodies.
+
+    Where bodies touch everywhere, the best is that with the largest margin, and what touches there is told; None where
+    the path fits nowhere.
+    """
+    search = ClearanceSearch(paths_at, guard)
+    by_nearness = sorted(grid.tilts.tolist(), key=abs)
+    for tilt in by_nearness:
+        for turn in grid.turns.tolist():
+            search.judge(turn, tilt)
+            advance(1)
+    if guard.that(Changes.PLACE, Changes.TURN):
+        search.refine(*grid.steps(), (min(by_nearness), max(by_nearness)))
+    results = sorted(search.results.values(), key=lambda one: (one.tilt, one.turn))
+    if search.best is None:
+        best = max(search.results.values(), key=lambda one: one.margin)
+        path, settled = with_largest_margin(paths_at, best, guard)
+        found = None if path is None or settled.margin < 0.0 else bodies_at(path, guard, settled)
+        return results, settled, found and replace(found, bound=tolerance(0.0))
+    result, oriented, place, asked = search.best
+    place = asked.settled(place)
+    assert result.cuts is not None
+    assert result.best is not None
+    reached = result.cuts.at(place.zero)
+    best_place = replace(
+        result.best, zero=place.zero, margin=float(reached.margins.min()), reached=reached,
+        holds=_holding(result.cuts, place.zero, min(KEPT, result.margin)),
+    )  # fmt: skip
+    result = replace(result, best=best_place)
+    assert result.path is not None
+    found = bodies_at(result.path, guard, result)
+    return results, result, replace(found, bound=search.bound)
+
+
+def with_largest_margin(
+    paths_at: Callable[[float], Sequence[TurnedPath]], result: TurnResult, guard: Guard
+) -> tuple[TurnedPath | None, TurnResult]:
+    """A result with its path and half-spaces again, at the place with the largest margin."""
+    for path in paths_at(result.tilt):
+        cuts = path.at(result.turn)
+        if path.choice is result.choice and isinstance(cuts, CutSet):
+            return path, replace(result, path=path, cuts=cuts, best=largest_margin(cuts, path.near))
+    return None, result
+
+
+def bodies_at(path: TurnedPath, guard: Guard, result: TurnResult, zero: Floats | None = None) -> Found:
+    """The bodies that are nearest to each other at a place (3,), by default the best of a result."""
+    assert result.best is not None
+    zero = result.best.zero if zero is None else zero
+    oriented = Oriented(path, guard, result.turn, result.tilt, zero)
+    rows, found = oriented.moments.row, list[Nearest | None]()
+    for changes in ((Changes.PLACE, Changes.TURN), (Changes.NOTHING,)):
+        asked = oriented.asked(oriented.moments, *changes)
+        found.append((asked.inside(zero) or asked.nearest(zero)) if guard.that(*changes) else None)
+    numbers = [-1 if each is None else int(rows[each.moment]) for each in found]
+    return Found(found[0], numbers[0], found[1], numbers[1], np.inf)
+
+
+def _holding(cuts: CutSet, zero: Floats, margin: float) -> tuple[Cut, ...]:
+    """The half-spaces that hold a place (3,), the nearest first, one for each end of a slide."""
+    lefts = sorted(((cut.bound - float(np.dot(cut.normal, zero)), k) for k, cut in enumerate(cuts.cuts)))
+    held: dict[tuple[int, int], Cut] = {}
+    for left, k in lefts:
+        if left <= margin + _HOLDS:
+            held.setdefault((cuts.cuts[k].slide, cuts.cuts[k].side), cuts.cuts[k])
+    return tuple(held.values())
+
+
