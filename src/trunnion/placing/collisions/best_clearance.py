@@ -10,10 +10,10 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.machines import Machine
 from trunnion.placing.best_turn import KEPT, Grid, TurnResult
-from trunnion.placing.collisions.clearance import Clearance, Nearest
+from trunnion.placing.collisions.clearance import ENOUGH, Clearance, Nearest
 from trunnion.placing.collisions.guarded_pairs import Changes, GuardedPair
 from trunnion.placing.collisions.moments import Moments, moments_of
-from trunnion.placing.collisions.search import FarthestPlace, FarthestSearch, tolerance
+from trunnion.placing.collisions.search import FarthestSearch, tolerance
 from trunnion.placing.largest_margin import largest_margin
 from trunnion.placing.path_rows import turn_and_tilt
 from trunnion.placing.rotary_angles import Obstacle
@@ -98,7 +98,7 @@ class ClearanceSearch:
     def __init__(self, paths_at: Callable[[float], Sequence[TurnedPath]], guard: Guard) -> None:
         self._paths_at, self._guard = paths_at, guard
         self.results: dict[tuple[float, float], TurnResult] = {}
-        self.best: tuple[TurnResult, Oriented, FarthestPlace, FarthestSearch] | None = None
+        self.best: tuple[TurnResult, Oriented, FarthestSearch | None] | None = None
         self.known, self.bound = 0.0, 0.0
 
     def judge(self, turn: float, tilt: float) -> TurnResult:
@@ -122,9 +122,12 @@ class ClearanceSearch:
         of_turn = self._of_turn(oriented, best.zero)
         if of_turn is not None and of_turn.distance <= self.known:
             return result
+        if not self._guard.that(Changes.PLACE):
+            return self._kept(result, oriented, of_turn)
         margin = min(KEPT, best.margin)
         search = FarthestSearch(
-            cuts, margin, best.zero, oriented.asked(oriented.coarse, Changes.PLACE),
+            cuts, margin, best.zero, ENOUGH if of_turn is None else of_turn.distance,
+            oriented.asked(oriented.coarse, Changes.PLACE),
             lambda: oriented.asked(oriented.moments, Changes.PLACE),
         )  # fmt: skip
         found = search.search(self.known)
@@ -132,12 +135,19 @@ class ClearanceSearch:
         self.bound = max(self.bound, above)
         if found is None:
             return result
-        distance = found.nearest.distance if of_turn is None else min(found.nearest.distance, of_turn.distance)
-        if distance <= self.known:
+        result = replace(result, best=replace(best, zero=found.zero, reached=cuts.at(found.zero)))
+        return self._kept(result, oriented, min_of(found.nearest, of_turn), search)
+
+    def _kept(
+        self, result: TurnResult, oriented: Oriented, nearest: Nearest | None, search: FarthestSearch | None = None
+    ) -> TurnResult:
+        """The result with its distance, if that is the largest so far."""
+        if nearest is None or nearest.distance <= self.known:
             return result
-        self.known = distance
-        result = replace(result, cost=distance, best=replace(best, zero=found.zero, reached=cuts.at(found.zero)))
-        self.best = result, oriented, found, search
+        self.known = nearest.distance
+        self.bound = max(self.bound, self.known)
+        result = replace(result, cost=self.known)
+        self.best = result, oriented, search
         return result
 
     def _of_turn(self, oriented: Oriented, zero: Floats) -> Nearest | None:
@@ -183,19 +193,27 @@ def farthest_orientations(
         path, settled = with_largest_margin(paths_at, best, guard)
         found = None if path is None or settled.margin < 0.0 else bodies_at(path, guard, settled)
         return results, settled, found and replace(found, bound=tolerance(0.0))
-    result, oriented, place, asked = search.best
-    place = asked.settled(place)
-    assert result.cuts is not None
-    assert result.best is not None
-    reached = result.cuts.at(place.zero)
-    best_place = replace(
-        result.best, zero=place.zero, margin=float(reached.margins.min()), reached=reached,
-        holds=_holding(result.cuts, place.zero, min(KEPT, result.margin)),
-    )  # fmt: skip
-    result = replace(result, best=best_place)
+    result, _, asked = search.best
     assert result.path is not None
+    assert result.best is not None
+    assert result.cuts is not None
+    if asked is None:
+        result = replace(result, best=largest_margin(result.cuts, result.path.near))
+    else:
+        zero, kept = asked.settled(), min(KEPT, result.margin)
+        reached = result.cuts.at(zero)
+        best_place = replace(
+            result.best, zero=zero, margin=float(reached.margins.min()), reached=reached,
+            holds=_holding(result.cuts, zero, kept),
+        )  # fmt: skip
+        result = replace(result, best=best_place)
     found = bodies_at(result.path, guard, result)
     return results, result, replace(found, bound=search.bound)
+
+
+def min_of(one: Nearest, other: Nearest | None) -> Nearest:
+    """The nearer of two."""
+    return one if other is None or one.distance <= other.distance else other
 
 
 def with_largest_margin(

@@ -63,14 +63,21 @@ class FarthestSearch:
     cuts    half-spaces of places at which slides keep their limits
     margin  that is kept, mm
     start   (3,) a place
+    cap     a larger distance is no better, mm
     coarse  asks some moments; whole, which is made when it is first needed, asks all of them
     bound   after the search: no place has a larger distance, mm
     """
 
     def __init__(
-        self, cuts: CutSet, margin: float, start: Floats, coarse: Clearance, whole: Callable[[], Clearance]
+        self,
+        cuts: CutSet,
+        margin: float,
+        start: Floats,
+        cap: float,
+        coarse: Clearance,
+        whole: Callable[[], Clearance],
     ) -> None:
-        self._cuts, self._margin, self._start = cuts, margin, start
+        self._cuts, self._margin, self._start, self._cap = cuts, margin, start, cap
         self._coarse, self._whole = coarse, whole
         self._best: tuple[Floats, Nearest] | None = None
         self._programs = 0
@@ -90,24 +97,27 @@ class FarthestSearch:
         zero, nearest = self._best
         return FarthestPlace(zero, nearest)
 
-    def settled(self, found: FarthestPlace) -> FarthestPlace:
-        """Of places with nearly that distance one with the largest margin."""
-        wanted = found.nearest.distance - tolerance(found.nearest.distance)
-        whole, zero, nearest = self._whole(), found.zero, found.nearest
+    def settled(self) -> Floats:
+        """Of places with nearly the distance of the best one that with the largest margin, (3,)."""
+        assert self._best is not None
+        best, nearest = self._best
+        wanted = min(nearest.distance, self._cap)
+        wanted -= tolerance(wanted)
+        whole, zero = self._whole(), best
         floors: list[Plane] = []
         while len(floors) < _SETTLING:
             floors.append(Witness.of(whole, nearest).floor(zero))
             try:
                 zero = self._with_margin(floors, wanted)
             except ArithmeticError:
-                return found
+                return best
             asked = whole.nearest(zero)
             if asked is None or whole.inside(zero) is not None:
-                return found
+                return best
             if asked.distance >= wanted:
-                return FarthestPlace(zero, asked)
+                return zero
             nearest = asked
-        return found
+        return best
 
     def _with_margin(self, floors: list[Plane], wanted: float) -> Floats:
         """The place with the largest margin at which all floors are at a height, (3,)."""
@@ -177,7 +187,7 @@ class FarthestSearch:
 
     def _highest(self, cell: _Cell, planes: list[Plane]) -> tuple[Floats, float]:
         """The place of a cell (3,) that is highest under all planes, and its height."""
-        ranges = [*zip(cell.low.tolist(), cell.high.tolist(), strict=True), (None, ENOUGH)]
+        ranges = [*zip(cell.low.tolist(), cell.high.tolist(), strict=True), (None, self._cap)]
         while True:
             normals, bounds, _ = self._cuts.table()
             slopes, heights = _rows(planes)
