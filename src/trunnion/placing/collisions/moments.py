@@ -91,7 +91,7 @@ def moments_of(
     order = np.lexsort((np.arange(len(row)), is_end, row))
     tip, angles, row, is_end = tip[order], np.ascontiguousarray(angles[order]), row[order], is_end[order]
     way = np.abs(np.diff(positions, axis=0, prepend=positions[:1])).max(axis=1)
-    breaks = rows.begins | (way > _REWINDS)
+    breaks = rows.begins | (rows.straight & (way > _REWINDS))
     is_first = np.append(True, row[1:] != row[:-1])
     own = tool[row]
     normals, offsets = np.empty((len(row), 3, 3)), np.empty((len(row), 3))

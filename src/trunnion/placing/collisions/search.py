@@ -106,7 +106,7 @@ class FarthestSearch:
         whole, zero = self._whole(), best
         floors: list[Plane] = []
         while len(floors) < _SETTLING:
-            floors.append(Witness.of(whole, nearest).floor(zero))
+            floors.append(Witness.of(whole, nearest).floor(best))
             try:
                 zero = self._with_margin(floors, wanted)
             except ArithmeticError:
