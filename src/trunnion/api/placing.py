@@ -4,13 +4,16 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import lru_cache
-from typing import Final
+from pathlib import Path
+from typing import Final, Literal
 
 import numpy as np
 
 from trunnion.api.arguments import check_choice, check_observer, check_paths
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.orientations import orientations
+from trunnion.api.placing_bodies import BodiesInput, read_bodies
+from trunnion.api.placing_distances import with_bodies, with_distance
 from trunnion.api.placing_inputs import PlacedInput, read_input
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.api.settings import Settings, as_texts, set_up_machine
@@ -20,6 +23,7 @@ from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
 from trunnion.placing.best_turn import TurnResult, best_orientations
 from trunnion.placing.between_rows import most_between
+from trunnion.placing.collisions.best_clearance import farthest_orientations
 from trunnion.placing.goals import Goal, PlaceCost, rotary_travel
 from trunnion.placing.path_rows import PathRows, about_x, about_z
 from trunnion.placing.placement import AxisUse, Limit, Place, Placement, RotaryUse, TurnMargin
@@ -28,6 +32,8 @@ from trunnion.placing.region import Region, region_of
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.travel_limits import Cut, CutSet
 from trunnion.placing.turns import TurnedPath, choices_of
+from trunnion.simulation.meshes import TriangleMesh
+from trunnion.simulation.tools.profile import ToolShape
 
 GOALS: Final = tuple(str(goal) for goal in Goal)
 
@@ -43,6 +49,12 @@ def place(
     tool_length: str | float | None = None,
     settings: Settings | None = None,
     subprograms: Sequence[FilePath] = (),
+    fixtures: str | Path | TriangleMesh | Iterable[str | Path | TriangleMesh] = (),
+    part: str | Path | TriangleMesh | None = None,
+    stock: str | Path | TriangleMesh | None = None,
+    tools: Iterable[str | ToolShape] = (),
+    libraries: Sequence[FilePath] = (),
+    unit: Literal["mm", "inch"] | None = None,
     observer: Observer = SILENT,
 ) -> Placement:
     """Find where on the table a part may sit, and where it sits best.
@@ -56,7 +68,8 @@ def place(
     goal
         What the best place is best for: ``"margin"``, the distance of the slides to their limits; or the least
         ``"rotary"`` or ``"slides"`` travel, ``"time"``, or ``"overspeed"``, fewest rows whose feed the
-        axes do not reach. Places with these goals keep a margin of 1 mm where they can.
+        axes do not reach; or ``"collisions"``, the largest least distance between bodies of the spindle's side and
+        those of the table's. Places with these goals keep a margin of 1 mm where they can.
     turns
         The part is tried at every so many degrees about Z, and more finely around the best; or the turns themselves.
         By default each 5 degrees, with several tilts each 15.
@@ -72,6 +85,9 @@ def place(
         Of CL files, as ``trunnion.post`` takes them.
     subprograms
         Files of the subprograms that NC programs call.
+    fixtures, part, stock, tools, libraries, unit
+        Bodies besides those of the machine, as ``trunnion.simulate`` takes them: as the part is drawn. They are tilted
+        and turned with it. With any of them the least distance at the best place is told with every goal.
     observer
         Receives the progress and warnings.
 
@@ -111,7 +127,12 @@ def place(
         raise InputError(argument_problem("machine", what, "state limits_mm of its axes", code="PLC130"))
     tilts_by_size = tuple(sorted(grid.tilts.tolist(), key=abs))
     given = read_input(files, loaded, texts, check_paths("subprograms", subprograms), observer, tilts_by_size)
-    problems = [*given.problems, *unknown_length(loaded)]
+    bodies = None
+    among = BodiesInput(fixtures, part, stock, tools, libraries, unit)
+    if goal == Goal.COLLISIONS or among.are_given:
+        bodies = read_bodies(among, given, loaded)
+        loaded = bodies.machine
+    problems = [*given.problems, *(() if bodies is None else bodies.problems), *unknown_length(loaded)]
     observer.problems(problems)
     near = _first_guess(loaded)
 
@@ -121,8 +142,15 @@ def place(
         return [TurnedPath.of(loaded, choice, rows, near) for choice, rows in choices_of(tilted)]
 
     with observer.progress("placing", len(grid), "turns") as advance:
-        results, best = best_orientations(paths_at, grid, advance, goal=Goal(goal))
-    return _placement(loaded, given, goal, paths_at, results, best, problems)
+        if bodies is not None and goal == Goal.COLLISIONS:
+            results, best, most = farthest_orientations(paths_at, grid, bodies.guard, advance)
+        else:
+            results, best = best_orientations(paths_at, grid, advance, goal=Goal(goal))
+    found = _placement(loaded, given, goal, paths_at, results, best, problems)
+    if bodies is None:
+        return found
+    found = with_bodies(found, given.rows, bodies.guard, best.path, paths_at(0.0))
+    return found if goal != Goal.COLLISIONS else with_distance(found, most)
 
 
 def unknown_length(machine: Machine) -> list[Problem]:
@@ -204,6 +232,8 @@ def _with_value(place: Place, path: TurnedPath | None, goal: Goal) -> Place:
         return place
     rows, positions = path.rows.turned(about_z(place.turn_deg)), angles.positions
     place = replace(place, rotary=rotary_uses(path.machine, positions))
+    if goal is Goal.COLLISIONS:
+        return place
     if goal is Goal.MARGIN:
         return replace(place, value=place.margin_mm)
     if goal is Goal.ROTARY:

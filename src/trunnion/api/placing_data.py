@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.placing.placement import AxisUse, Limit, Place, Placement
+from trunnion.placing.placement import AxisUse, BodyDistance, Limit, Place, Placement
 
 _DECIMALS: Final = 6
 
@@ -49,6 +49,9 @@ def placement_data(found: Placement) -> dict[str, object]:
             "tolerance_mm": _number(region.tolerance),
         },
         "between_mm": _number(found.between_mm),
+        "distance_mm": None if found.distance_mm is None else _number(found.distance_mm),
+        "nearest_anywhere": _nearest(found.nearest_anywhere),
+        "most_distance_mm": None if found.most_distance_mm is None else _number(found.most_distance_mm),
         "remarks": [asdict(each) | {"severity": str(each.severity)} for each in found.problems],
     }
 
@@ -61,12 +64,17 @@ def _place(place: Place) -> dict[str, object]:
         "margin_mm": _number(place.margin_mm),
         "value": None if place.value is None else _number(place.value),
         "planned_s": None if place.planned_s is None else _number(place.planned_s),
+        "nearest": _nearest(place.nearest),
         "axes": [_axis(axis) for axis in place.axes],
         "rotary": [
             {name: value if isinstance(value, str) else _number(value) for name, value in asdict(axis).items()}
             for axis in place.rotary
         ],
     }
+
+
+def _nearest(found: BodyDistance | None) -> dict[str, object] | None:
+    return None if found is None else asdict(found) | {"distance_mm": _number(found.distance_mm)}
 
 
 def _axis(axis: AxisUse) -> dict[str, object]:

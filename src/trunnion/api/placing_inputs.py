@@ -16,7 +16,7 @@ from trunnion.api.planning import plan
 from trunnion.api.reading import ToolpathLike, read_toolpaths
 from trunnion.api.settings import Settings, as_texts, number_setting
 from trunnion.api.turned_parts import turned_toolpaths
-from trunnion.arrays import Flags
+from trunnion.arrays import Flags, Ints
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.machines import Machine
 from trunnion.model.arc_extremes import ArcPaths
@@ -37,9 +37,15 @@ _ROTARY_WORDS = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWor
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlacedInput:
-    """What is placed: rows, and the toolpaths that they come from, of CL files; none, of NC programs."""
+    """What is placed: rows, and the toolpaths that they come from, of CL files; none, of NC programs.
+
+    tool   (n,) which of ``tools`` is in the spindle in each row
+    tools  numbers and names as the files have them; empty: none was called
+    """
 
     rows: PathRows
+    tool: Ints
+    tools: tuple[str, ...]
     toolpaths: tuple[Toolpath, ...] = ()
     problems: tuple[Problem, ...] = ()
 
@@ -85,7 +91,7 @@ def read_input(
         raise InputError(Problem(str(programs[0]), 0, what, "give CL files or NC programs, not both", code="PLC110"))
     if programs:
         runs = [_run_of(program, machine, subprograms) for program in programs]
-        return PlacedInput(joined_rows([rows_of_run(run) for run in runs]))
+        return _of_runs(runs)
     return _planned_tilted(toolpaths, machine, texts, observer, tilts)
 
 
@@ -158,7 +164,20 @@ def _planned(
     )
     planned = plan(toolpaths, machine=free, settings={**settings, "cycles": "off"}, explain=False, observer=observer)
     warnings = tuple(problem for problem in planned.problems if problem.severity is Severity.WARNING)
-    return PlacedInput(rows_of_plan(free, planned.motions), tuple(toolpaths), warnings)
+    rows = rows_of_plan(free, planned.motions)
+    tools = tuple(dict.fromkeys(stretch.tool for stretch in rows.stretches))
+    ends = np.diff([*(stretch.first for stretch in rows.stretches), len(rows)])
+    tool = np.repeat([tools.index(stretch.tool) for stretch in rows.stretches], ends)
+    return PlacedInput(rows, tool, tools, tuple(toolpaths), warnings)
+
+
+def _of_runs(runs: Sequence[Run]) -> PlacedInput:
+    tools = tuple(dict.fromkeys(run.tools[int(k)] for run in runs for k in run.state.tool.distinct()))
+    parts = []
+    for run in runs:
+        own = np.array([tools.index(name) if name in tools else 0 for name in run.tools])
+        parts.append(own[run.state.tool.column().astype(np.int64)[_rows_at_workpiece(run)]])
+    return PlacedInput(joined_rows([rows_of_run(run) for run in runs]), np.concatenate(parts), tools)
 
 
 def rows_of_run(run: Run) -> PathRows:

@@ -9,11 +9,13 @@ from trunnion.api.input_files import machine_files
 from trunnion.api.placing import place
 from trunnion.api.placing_data import placement_data
 from trunnion.api.placing_post import post_placed
+from trunnion.api.project_file import library_files
 from trunnion.api.reading import FilePath, load_machine
 from trunnion.api.settings import as_texts
 from trunnion.api.turned_parts import number
 from trunnion.arrays import Floats
 from trunnion.cli.cl_files import cl_inputs, named_files
+from trunnion.cli.place_bodies import body_lines, touch_line
 from trunnion.cli.results import as_json, print_result, tell
 from trunnion.cli.terminal import Terminal, output_place
 from trunnion.errors import InputError, Problem, argument_problem
@@ -35,6 +37,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Place a part; 0 if it fits somewhere, else 1."""
     project = _project(arguments)
     read: list[FilePath] = [*named_files(arguments.files), *arguments.subprograms]
+    read += [mesh for mesh in (arguments.part, arguments.stock, *arguments.fixtures) if mesh is not None]
+    read += library_files(arguments.libraries)
     if project is not None:
         read += project.read
         arguments.files, arguments.machine = list(project.files), arguments.machine or project.machine
@@ -66,6 +70,12 @@ def run(arguments: argparse.Namespace) -> int:
         tool_length=length,
         settings=settings,
         subprograms=arguments.subprograms,
+        fixtures=arguments.fixtures,
+        part=arguments.part,
+        stock=arguments.stock,
+        tools=arguments.tools,
+        libraries=arguments.libraries,
+        unit=arguments.unit,
         observer=Terminal(),
     )
     lines = tell if arguments.apply == "-" else print_result
@@ -111,7 +121,10 @@ def placement_lines(found: Placement) -> Iterator[str]:
         for turn in sorted(found.turns, key=lambda each: abs(each.tilt_deg))[:_MOST]:
             yield f"  {_clamped(turn)}: {turn.obstacle}"
         return
-    if not best.fits:
+    if (touching := touch_line(found)) is not None:
+        yield touching
+        yield f"  the place with the largest margin is {_point(best)}, {_clamped(best)}"
+    elif not best.fits:
         off = f"{-best.margin_mm:.3f} mm too far at the least"
         yield f"{found.machine}: the part fits nowhere: {off}, at {_point(best)}, {_clamped(best)}"
     else:
@@ -123,6 +136,7 @@ def placement_lines(found: Placement) -> Iterator[str]:
         yield f"  {_use(axis)}"
     for rotary in best.rotary:
         yield f"  {_rotary_use(rotary)}"
+    yield from (f"  {line}" for line in body_lines(found))
     if found.limits:
         what = "it is held by" if best.fits else "these conflict:"
         yield f"  {what} {'; '.join(dict.fromkeys(map(_limit, found.limits)))}{_overlap(found)}"
@@ -135,7 +149,7 @@ def placement_lines(found: Placement) -> Iterator[str]:
             else f"; the best place has {abs(gain):.3f} mm {'more' if gain >= 0 else 'less'}"
         )
         yield f"  present zero {_point(present)}: {state}{gained}"
-    if found.goal != "margin" and best.value is not None:
+    if found.goal not in ("margin", "collisions") and best.value is not None:
         now = "" if present is None else f"; at the present zero {_goal_number(found.goal, present)}"
         yield f"  {_value(found.goal, best)}{now}"
     fitting = sum(turn.fits for turn in found.turns)

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 #: Goals; listed here, so that a command line is taken apart before anything is imported.
-GOALS = ("margin", "rotary", "slides", "time", "overspeed")
+GOALS = ("margin", "rotary", "slides", "time", "overspeed", "collisions")
 
 
 def degrees(text: str) -> float:
@@ -46,8 +46,8 @@ def add_place(parser: argparse.ArgumentParser, setting: type[argparse.Action], k
     parser.add_argument("--setup", metavar="NAME", help="the set-up of a project with several")
     parser.add_argument(
         "--goal", choices=GOALS, default="margin",
-        help="what the best place is best for: margin to the limits, travel of rotary axes or slides, time, or"
-        " fewest blocks whose feed the axes cannot reach; margin",
+        help="what the best place is best for: margin to the limits, travel of rotary axes or slides, time, fewest"
+        " blocks whose feed the axes cannot reach, or bodies farthest apart; margin",
     )  # fmt: skip
     turns = parser.add_mutually_exclusive_group()
     turns.add_argument(
@@ -81,6 +81,21 @@ def add_place(parser: argparse.ArgumentParser, setting: type[argparse.Action], k
         "--with", nargs="+", action="extend", default=[], metavar="NC", dest="subprograms",
         help="files of the subprograms that the programs call; no others are opened",
     )  # fmt: skip
+    parser.add_argument(
+        "--fixture", action="append", default=[], metavar="MESH", dest="fixtures",
+        help="a fixture as the part is drawn, clamped and turned with it; may be repeated",
+    )  # fmt: skip
+    parser.add_argument("--part", metavar="MESH", help="the finished part, which shanks and holders stay clear of")
+    parser.add_argument("--stock", metavar="STOCK", help="box:X,Y,Z[,x0,y0,z0], cylinder:D,H[,z0], or a mesh file; mm")
+    parser.add_argument(
+        "--tool", action="append", default=[], metavar="N=KIND:SIZES", dest="tools",
+        help="a tool, such as 3=ball:10,length=60,flutes=20,shank=12,holder=40x50; may be repeated",
+    )  # fmt: skip
+    parser.add_argument(
+        "--tools", action="append", default=[], metavar="LIBRARY", dest="libraries",
+        help="tool library, as simulate takes it; may be repeated",
+    )  # fmt: skip
+    parser.add_argument("--unit", choices=("mm", "inch"), help="length unit of tool tables, which state none")
     parser.add_argument("--json", metavar="FILE", help="all results as data; - is stdout")
     parser.add_argument("--plot", metavar="FILE.svg", help="the margin over the table and over the turns")
     parser.add_argument(

@@ -13,8 +13,8 @@ from trunnion.placing.best_turn import KEPT, Grid, TurnResult
 from trunnion.placing.collisions.clearance import ENOUGH, Clearance, Nearest
 from trunnion.placing.collisions.guarded_pairs import Changes, GuardedPair
 from trunnion.placing.collisions.moments import Moments, moments_of
-from trunnion.placing.collisions.search import FarthestSearch, tolerance
-from trunnion.placing.largest_margin import largest_margin
+from trunnion.placing.collisions.search import FarthestSearch
+from trunnion.placing.largest_margin import BestPlace, largest_margin
 from trunnion.placing.path_rows import turn_and_tilt
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.travel_limits import Cut, CutSet
@@ -47,25 +47,12 @@ class Guard:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Found:
-    """What was found of bodies.
+class NearestRow:
+    """Two bodies where they are nearest to each other at a place: their names, their distance, mm, and the row."""
 
-    nearest  of pairs that place or turn change, at the place; None: there are none
-    row      of the path, and that of ``fixed``
-    fixed    of pairs that nothing changes
-    bound    no place at a turn that was tried keeps the first farther apart, mm
-    """
-
-    nearest: Nearest | None
+    names: tuple[str, str]
+    distance: float
     row: int
-    fixed: Nearest | None
-    fixed_row: int
-    bound: float
-
-    @property
-    def distance(self) -> float:
-        """The least distance of all, mm."""
-        return min((each.distance for each in (self.nearest, self.fixed) if each is not None), default=np.inf)
 
 
 class Oriented:
@@ -173,11 +160,11 @@ class ClearanceSearch:
 
 def farthest_orientations(
     paths_at: Callable[[float], Sequence[TurnedPath]], grid: Grid, guard: Guard, advance: Callable[[int], None]
-) -> tuple[list[TurnResult], TurnResult, Found | None]:
-    """What each orientation allows, by tilt and turn, refined about the best; the best, and its bodies.
+) -> tuple[list[TurnResult], TurnResult, float]:
+    """What each orientation allows, by tilt and turn, refined about the best; the best; and the distance that no place
+    at any of these is above, mm.
 
-    Where bodies touch everywhere, the best is that with the largest margin, and what touches there is told; None where
-    the path fits nowhere.
+    Where bodies touch everywhere, or nothing changes how far they are apart, the best is that with the largest margin.
     """
     search = ClearanceSearch(paths_at, guard)
     by_nearness = sorted(grid.tilts.tolist(), key=abs)
@@ -185,30 +172,22 @@ def farthest_orientations(
         for turn in grid.turns.tolist():
             search.judge(turn, tilt)
             advance(1)
-    if guard.that(Changes.PLACE, Changes.TURN):
-        search.refine(*grid.steps(), (min(by_nearness), max(by_nearness)))
+    search.refine(*grid.steps(), (min(by_nearness), max(by_nearness)))
     results = sorted(search.results.values(), key=lambda one: (one.tilt, one.turn))
     if search.best is None:
         best = max(search.results.values(), key=lambda one: one.margin)
-        path, settled = with_largest_margin(paths_at, best, guard)
-        found = None if path is None or settled.margin < 0.0 else bodies_at(path, guard, settled)
-        return results, settled, found and replace(found, bound=tolerance(0.0))
+        return results, _with_largest_margin(paths_at, best), search.bound
     result, _, asked = search.best
     assert result.path is not None
     assert result.best is not None
     assert result.cuts is not None
     if asked is None:
-        result = replace(result, best=largest_margin(result.cuts, result.path.near))
+        place = largest_margin(result.cuts, result.path.near)
     else:
-        zero, kept = asked.settled(), min(KEPT, result.margin)
-        reached = result.cuts.at(zero)
-        best_place = replace(
-            result.best, zero=zero, margin=float(reached.margins.min()), reached=reached,
-            holds=_holding(result.cuts, zero, kept),
-        )  # fmt: skip
-        result = replace(result, best=best_place)
-    found = bodies_at(result.path, guard, result)
-    return results, result, replace(found, bound=search.bound)
+        zero = asked.settled()
+        reached, holds = result.cuts.at(zero), _holding(result.cuts, zero, min(KEPT, result.margin))
+        place = BestPlace(zero, float(reached.margins.min()), reached, holds)
+    return results, replace(result, best=place), search.bound
 
 
 def min_of(one: Nearest, other: Nearest | None) -> Nearest:
@@ -216,28 +195,25 @@ def min_of(one: Nearest, other: Nearest | None) -> Nearest:
     return one if other is None or one.distance <= other.distance else other
 
 
-def with_largest_margin(
-    paths_at: Callable[[float], Sequence[TurnedPath]], result: TurnResult, guard: Guard
-) -> tuple[TurnedPath | None, TurnResult]:
+def _with_largest_margin(paths_at: Callable[[float], Sequence[TurnedPath]], result: TurnResult) -> TurnResult:
     """A result with its path and half-spaces again, at the place with the largest margin."""
     for path in paths_at(result.tilt):
         cuts = path.at(result.turn)
         if path.choice is result.choice and isinstance(cuts, CutSet):
-            return path, replace(result, path=path, cuts=cuts, best=largest_margin(cuts, path.near))
-    return None, result
+            return replace(result, path=path, cuts=cuts, best=largest_margin(cuts, path.near))
+    return result
 
 
-def bodies_at(path: TurnedPath, guard: Guard, result: TurnResult, zero: Floats | None = None) -> Found:
-    """The bodies that are nearest to each other at a place (3,), by default the best of a result."""
-    assert result.best is not None
-    zero = result.best.zero if zero is None else zero
-    oriented = Oriented(path, guard, result.turn, result.tilt, zero)
-    rows, found = oriented.moments.row, list[Nearest | None]()
-    for changes in ((Changes.PLACE, Changes.TURN), (Changes.NOTHING,)):
-        asked = oriented.asked(oriented.moments, *changes)
-        found.append((asked.inside(zero) or asked.nearest(zero)) if guard.that(*changes) else None)
-    numbers = [-1 if each is None else int(rows[each.moment]) for each in found]
-    return Found(found[0], numbers[0], found[1], numbers[1], np.inf)
+def nearest_at(
+    path: TurnedPath, guard: Guard, turn: float, tilt: float, zero: Floats, *changes: Changes
+) -> NearestRow | None:
+    """Of pairs that something changes the two bodies that are nearest to each other at a place (3,); None: no pairs."""
+    if not guard.that(*changes):
+        return None
+    oriented = Oriented(path, guard, turn, tilt, zero)
+    asked = oriented.asked(oriented.moments, *changes)
+    found = asked.inside(zero) or asked.nearest(zero)
+    return found and NearestRow(found.pair.names, found.distance, int(oriented.moments.row[found.moment]))
 
 
 def _holding(cuts: CutSet, zero: Floats, margin: float) -> tuple[Cut, ...]:
