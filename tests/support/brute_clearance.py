@@ -1,6 +1,6 @@
-"""The least distance of bodies over a path, asked of python-fcl at many poses: shares nothing with placing by collisions.
+"""The least distance of bodies over a path, as python-fcl tells it at many poses.
 
-Slides come from the inverse map, bodies are moved by the links of the machine in the machine frame.
+Shares nothing with placing by collisions: slides come from the inverse map, bodies are moved by the links of the machine in the machine frame.
 """
 
 from collections.abc import Sequence

@@ -97,8 +97,8 @@ class Place:
     axes       of all slides
     rotary     of the rotary axes
     planned_s  with the goal ``time``: seconds of the rows by the planner of speeds, with accelerations and jerks
-    nearest    of bodies whose distance the place or the turn changes the two that come nearest to each other; None: none
-               were given
+    nearest    of bodies whose distance the place or the turn changes the two that come nearest to each other; None:
+               none were given
     """
 
     zero_mm: Vector
@@ -185,7 +185,8 @@ class Placement:
     @property
     def nearest(self) -> BodyDistance | None:
         """At the best place the two bodies that come nearest to each other; None: none were given."""
-        found = [each for each in (self.best and self.best.nearest, self.nearest_anywhere) if each is not None]
+        own = None if self.best is None else self.best.nearest
+        found = [each for each in (own, self.nearest_anywhere) if each is not None]
         return min(found, key=lambda each: each.distance_mm, default=None)
 
     @property

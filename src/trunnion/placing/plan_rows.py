@@ -16,9 +16,7 @@ from trunnion.planning.holes.hole_ends import hole_ends
 
 def rows_of_plan(machine: Machine, motions: Sequence[Motion]) -> PathRows:
     """The rows of all motions; of holes that are cycles also their bottoms, and where the tool leaves them."""
-    parts = [
-        _rows_of_motion(machine, motion, tool) for motion, tool in zip(motions, _tools(motions), strict=True)
-    ]
+    parts = [_rows_of_motion(machine, motion, tool) for motion, tool in zip(motions, _tools(motions), strict=True)]
     home = machine.home[list(machine.rotary)][None]
     rows = joined_rows([replace(part, start=home) for part in parts])
     rows.straight[rows.begins] = False  # the tool comes from elsewhere

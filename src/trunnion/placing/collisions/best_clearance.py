@@ -213,7 +213,9 @@ def nearest_at(
     oriented = Oriented(path, guard, turn, tilt, zero)
     asked = oriented.asked(oriented.moments, *changes)
     found = asked.inside(zero) or asked.nearest(zero)
-    return found and NearestRow(found.pair.names, found.distance, int(oriented.moments.row[found.moment]))
+    if found is None:
+        return None
+    return NearestRow(found.pair.names, found.distance, int(oriented.moments.row[found.moment]))
 
 
 def _holding(cuts: CutSet, zero: Floats, margin: float) -> tuple[Cut, ...]:
@@ -224,5 +226,3 @@ def _holding(cuts: CutSet, zero: Floats, margin: float) -> tuple[Cut, ...]:
         if left <= margin + _HOLDS:
             held.setdefault((cuts.cuts[k].slide, cuts.cuts[k].side), cuts.cuts[k])
     return tuple(held.values())
-
-

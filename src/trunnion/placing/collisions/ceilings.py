@@ -46,8 +46,7 @@ class Witness:
     def of(clearance: Clearance, nearest: Nearest) -> "Witness":
         """The witness of what was found."""
         poses = [
-            clearance.pose(nearest.pair, zero, nearest.moment, nearest.share)
-            for zero in (np.zeros(3), *np.eye(3))
+            clearance.pose(nearest.pair, zero, nearest.moment, nearest.share) for zero in (np.zeros(3), *np.eye(3))
         ]
         shift = np.stack([pose[:3, 3] - poses[0][:3, 3] for pose in poses[1:]], axis=1)
         return Witness(nearest, poses[0], shift)

@@ -212,20 +212,6 @@ def _is_hollow(guarded: Guarded) -> bool:
     return any(piece.hollow for piece in guarded.pieces)
 
 
-def _course(self, pair: GuardedPair) -> Course:
-        key = (id(pair.one), pair.other.body.link if not pair.other.carried else "", pair.other.carried)
-        if key not in self._courses:
-            self._courses[key] = _course(self.machine, self.moments, pair, self.turn, self.near)
-        return self._courses[key]
-
-
-def _is_hollow(guarded: Guarded) -> bool:
-    """Whether pieces are only the surface of a body."""
-    return len(guarded.pieces) > 1 and not guarded.body.kind.is_tool and any(
-        not piece.exact or piece.mesh.volume < 1e-9 * math.prod(np.ptp(piece.corners, axis=0) + 1.0) for piece in guarded.pieces
-    )
-
-
 def _course(machine: Machine, moments: Moments, pair: GuardedPair, turn: Floats, near: Floats) -> Course:
     """How the first body of a pair moves in the frame of the second, with bounds for zeros around ``near``."""
     chain, body, other = link_chain(machine), pair.one.body, pair.other.body

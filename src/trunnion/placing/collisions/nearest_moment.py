@@ -77,9 +77,7 @@ def _pose_at(
 
 
 @kernel(writes="pose")
-def course_pose(
-    chain: LinkChain, course: Course, zero: Floats, moment: int, share: float, pose: Floats2
-) -> None:
+def course_pose(chain: LinkChain, course: Course, zero: Floats, moment: int, share: float, pose: Floats2) -> None:
     """Write the map (4, 4) from the frame of the first body to that of the second, on the way to a moment."""
     _pose_at(chain, course, zero, moment, share, np.zeros(5), pose)
 
@@ -91,9 +89,7 @@ def pose_gap(one: Floats2, other: Floats2, pose: Floats2, direction: Floats) -> 
 
 
 @kernel(writes="gaps")
-def gaps_at(
-    one: Floats2, other: Floats2, pose: Floats2, shifts: Floats2, direction: Floats, gaps: Floats
-) -> None:
+def gaps_at(one: Floats2, other: Floats2, pose: Floats2, shifts: Floats2, direction: Floats, gaps: Floats) -> None:
     """Write upper bounds of the distance of two hulls, (k,) mm, when the first is shifted by (k, 3)."""
     moved, guess, work = pose.copy(), direction.copy(), np.zeros((7, 3))
     for k in range(shifts.shape[0]):
@@ -197,7 +193,8 @@ def nearest_moment(
 @inner
 def _moved(course: Course, moment: int, after: int, away: float) -> float:
     """How far points of the bodies can move between two moments, mm."""
-    return course.way[after] - course.way[moment] + away * (course.drift[after] - course.drift[moment])
+    moved: float = course.way[after] - course.way[moment] + away * (course.drift[after] - course.drift[moment])
+    return moved
 
 
 @inner

@@ -26,19 +26,18 @@ def plane_gap(one: Floats2, other: Floats2, pose: Floats2, direction: Floats) ->
     a = pose[0, 0] * direction[0] + pose[1, 0] * direction[1] + pose[2, 0] * direction[2]
     b = pose[0, 1] * direction[0] + pose[1, 1] * direction[1] + pose[2, 1] * direction[2]
     c = pose[0, 2] * direction[0] + pose[1, 2] * direction[1] + pose[2, 2] * direction[2]
-    least, most = math.inf, -math.inf
+    least: float = math.inf
+    most: float = -math.inf
     for k in range(one.shape[0]):
         least = min(least, a * one[k, 0] + b * one[k, 1] + c * one[k, 2])
     for k in range(other.shape[0]):
         most = max(most, direction[0] * other[k, 0] + direction[1] * other[k, 1] + direction[2] * other[k, 2])
-    shift = pose[0, 3] * direction[0] + pose[1, 3] * direction[1] + pose[2, 3] * direction[2]
+    shift: float = pose[0, 3] * direction[0] + pose[1, 3] * direction[1] + pose[2, 3] * direction[2]
     return least + shift - most
 
 
 @inner
-def gap_between(
-    one: Floats2, other: Floats2, pose: Floats2, direction: Floats, work: Floats2
-) -> tuple[float, float]:
+def gap_between(one: Floats2, other: Floats2, pose: Floats2, direction: Floats, work: Floats2) -> tuple[float, float]:
     """Return a lower and an upper bound of the distance of two hulls, mm; the lower is negative where they may overlap.
 
     one, other  points (n, 3) whose hulls are meant
@@ -79,9 +78,7 @@ def gap_between(
 
 
 @inner
-def _support(
-    one: Floats2, other: Floats2, pose: Floats2, x: float, y: float, z: float, work: Floats2
-) -> None:
+def _support(one: Floats2, other: Floats2, pose: Floats2, x: float, y: float, z: float, work: Floats2) -> None:
     """Write the corner of the difference of the hulls that lies farthest against a unit vector into ``work[6]``."""
     a = pose[0, 0] * x + pose[1, 0] * y + pose[2, 0] * z
     b = pose[0, 1] * x + pose[1, 1] * y + pose[2, 1] * z
@@ -153,7 +150,7 @@ def _is_behind(corners: Floats2, i: int, j: int, m: int, away: int) -> bool:
         + nz * (corners[away, 2] - corners[i, 2])
     )
     size = math.sqrt(nx * nx + ny * ny + nz * nz)
-    return abs(fourth) > 1e-10 * size and origin * fourth > 0.0
+    return bool(abs(fourth) > 1e-10 * size and origin * fourth > 0.0)
 
 
 @inner

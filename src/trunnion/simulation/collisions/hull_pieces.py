@@ -7,6 +7,7 @@ decide.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -45,7 +46,7 @@ def section_pieces(section: Section, pose: Floats) -> tuple[HullPiece, ...]:
     """Return the frustums of a section of a tool; ``pose`` (4, 4) maps the frame of the tool into that of the body."""
     outline = section_outline(section)
     found = []
-    for (r0, z0), (r1, z1) in zip(outline[:-1], outline[1:], strict=True):
+    for (r0, z0), (r1, z1) in pairwise(outline.tolist()):
         if z1 - z0 > 1e-9:
             mesh = revolved_mesh(np.array([(0.0, z0), (r0, z0), (r1, z1), (0.0, z1)])).moved(pose)
             found.append(HullPiece(_hull_corners(mesh.vertices), mesh, exact=True))
