@@ -1,6 +1,6 @@
 """The least distance of bodies over a path, as python-fcl tells it at many poses.
 
-Shares nothing with placing by collisions: slides come from the inverse map, bodies are moved by the links of the machine in the machine frame.
+Shares nothing with placing by collisions: slides come from the inverse map, and the links of the machine move bodies.
 """
 
 from collections.abc import Sequence

@@ -8,7 +8,6 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
-from trunnion.machines import Machine
 from trunnion.placing.best_turn import KEPT, Grid, TurnResult
 from trunnion.placing.collisions.clearance import ENOUGH, Clearance, Nearest
 from trunnion.placing.collisions.guarded_pairs import Changes, GuardedPair

@@ -128,7 +128,7 @@ def _touch_by_construction(machine: Machine, one: Body, other: Body) -> bool:
 def _changes(machine: Machine, one: Guarded, other: Guarded) -> Changes:
     between = set(axes_between(machine, one.body.link, other.body.link))
     slides = len(between & set(machine.linear))
-    if other.carried and slides < len(machine.linear) or not other.carried and slides:
+    if (other.carried and slides < len(machine.linear)) or (not other.carried and slides):
         return Changes.PLACE
     return Changes.NOTHING if one.body.kind.is_tool and other.carried else Changes.TURN
 

@@ -1,7 +1,7 @@
 """A path at one turn as moments, between which every axis moves evenly.
 
-While rotary axes turn under TCP, moments are half a degree apart at most; on arcs they are as dense as a chord tolerance
-asks. Slides are linear functions of the workpiece zero in each of them.
+While rotary axes turn under TCP, moments are half a degree apart at most; on arcs a chord tolerance says how far. Slides
+are linear functions of the workpiece zero in each of them.
 """
 
 import math
