@@ -12,7 +12,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.placing.collisions.clearance import Clearance, Nearest
-from trunnion.placing.collisions.nearest_moment import gaps_at, pose_gap
+from trunnion.simulation.collisions.hull_gap import gaps_at, pose_gap
 
 _CORNERS: Final = np.array(list(product((0.0, 1.0), repeat=3)))
 

@@ -83,22 +83,6 @@ def course_pose(chain: LinkChain, course: Course, zero: Floats, moment: int, sha
 
 
 @kernel(writes="direction")
-def pose_gap(one: Floats2, other: Floats2, pose: Floats2, direction: Floats) -> tuple[float, float]:
-    """Bounds of the distance of two hulls in a pose, mm, as ``gap_between`` has them."""
-    return gap_between(one, other, pose, direction, np.zeros((7, 3)))
-
-
-@kernel(writes="gaps")
-def gaps_at(one: Floats2, other: Floats2, pose: Floats2, shifts: Floats2, direction: Floats, gaps: Floats) -> None:
-    """Write upper bounds of the distance of two hulls, (k,) mm, when the first is shifted by (k, 3)."""
-    moved, guess, work = pose.copy(), direction.copy(), np.zeros((7, 3))
-    for k in range(shifts.shape[0]):
-        for j in range(3):
-            moved[j, 3] = pose[j, 3] + shifts[k, j]
-        gaps[k] = gap_between(one, other, moved, guess, work)[1]
-
-
-@kernel(writes="direction")
 def nearest_moment(
     chain: LinkChain,
     course: Course,

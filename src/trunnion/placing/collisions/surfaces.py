@@ -7,7 +7,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.extras import import_extra
-from trunnion.placing.collisions.nearest_moment import pose_gap
+from trunnion.simulation.collisions.hull_gap import pose_gap
 from trunnion.simulation.collisions.hull_pieces import HullPiece
 from trunnion.simulation.collisions.queries import Solid, point_depths
 from trunnion.simulation.meshes import TriangleMesh

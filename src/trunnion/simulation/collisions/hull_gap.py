@@ -7,8 +7,10 @@ a lower one. Both hold whatever rounding does, since each is worked out anew fro
 import math
 from typing import Final
 
+import numpy as np
+
 from trunnion.arrays import Floats, Floats2
-from trunnion.jit import inner
+from trunnion.jit import inner, kernel
 
 #: The search ends when the bounds are so near, mm, or share of the distance.
 _CLOSE: Final = 1e-7
@@ -18,6 +20,22 @@ _TOUCH: Final = 1e-9
 
 #: Rounds: what rounding keeps from ending is left with the bounds that it has.
 _MOST_ROUNDS: Final = 60
+
+
+@kernel(writes="direction")
+def pose_gap(one: Floats2, other: Floats2, pose: Floats2, direction: Floats) -> tuple[float, float]:
+    """Bounds of the distance of two hulls in a pose, mm, as ``gap_between`` has them."""
+    return gap_between(one, other, pose, direction, np.zeros((7, 3)))
+
+
+@kernel(writes="gaps")
+def gaps_at(one: Floats2, other: Floats2, pose: Floats2, shifts: Floats2, direction: Floats, gaps: Floats) -> None:
+    """Write upper bounds of the distance of two hulls, (k,) mm, when the first is shifted by (k, 3)."""
+    moved, guess, work = pose.copy(), direction.copy(), np.zeros((7, 3))
+    for k in range(shifts.shape[0]):
+        for j in range(3):
+            moved[j, 3] = pose[j, 3] + shifts[k, j]
+        gaps[k] = gap_between(one, other, moved, guess, work)[1]
 
 
 @inner
