@@ -212,6 +212,7 @@ def _placement(
         between_mm=0.0 if found is None or best.path is None else _between(best.path, found),
         problems=tuple(problems),
         toolpaths=given.toolpaths,
+        tool_length_mm=machine.tool_length,
         _find_region=region,
         _margin_at=margin_at,
     )

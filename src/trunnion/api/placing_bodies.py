@@ -117,12 +117,12 @@ def _tools(given: BodiesInput, placed: PlacedInput, problems: list[Problem]) -> 
     stated = [tool if isinstance(tool, ToolShape) else parse_tool(tool, diameters) for tool in texts]
     cl_tools = tools_of_toolpaths(placed.toolpaths)
     found: dict[int, ToolShape] = {}
-    for number, name in enumerate(placed.tools):
-        called = name or NO_CALL
+    for number in placed.used_tools:
+        called = placed.tools[number] or NO_CALL
         try:
             found[number] = choose_tools([called], stated, read, cl_tools)[called]
         except InputError as error:
-            if stated or read:
+            if placed.tools[number] and (stated or read):
                 raise
             first = error.problems[0]
             what = f"tool {called} is not kept apart from anything: {first.what}"
@@ -135,12 +135,12 @@ def _lengths(
 ) -> dict[int, float]:
     """Lengths of the tools, gauge point to tip, mm, by their number; those that nobody states are left out."""
     lengths = {}
-    for number, name in enumerate(placed.tools):
+    for number in placed.used_tools:
         length = (tools[number].length if number in tools else 0.0) or machine.tool_length
         if length:
             lengths[number] = length
         elif is_asked:
-            what = f"the length of tool {name or NO_CALL} is not known, from its tip to the gauge point"
+            what = f"the length of tool {placed.tools[number] or NO_CALL} is not known, from its tip to the gauge point"
             cure = "give it: the bodies of the machine stand so far above the part"
             raise InputError(argument_problem("tool_length", what, cure, code="SIM310"))
     return lengths

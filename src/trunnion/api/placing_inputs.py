@@ -49,6 +49,11 @@ class PlacedInput:
     toolpaths: tuple[Toolpath, ...] = ()
     problems: tuple[Problem, ...] = ()
 
+    @property
+    def used_tools(self) -> list[int]:
+        """The numbers in ``tools`` of those that are in the spindle in some row."""
+        return [int(number) for number in np.unique(self.tool)]
+
 
 def read_input(
     files: Iterable[ToolpathLike] | ToolpathLike,

@@ -12,7 +12,7 @@ def body_lines(found: Placement) -> Iterator[str]:
         now = "" if present is None or present.nearest is None else f"; at the present zero {_apart(present.nearest)}"
         yield f"nearest to each other: {_apart(best.nearest)}{now}{_gain(found)}"
     if found.most_distance_mm is not None and not found.touching:
-        yield f"no place at the turns that were tried keeps them more than {found.most_distance_mm:.3f} mm apart"
+        yield f"no place at the turns that were tried keeps bodies farther apart than {found.most_distance_mm:.3f} mm"
     if found.nearest_anywhere is not None:
         yield f"wherever the part sits: {_apart(found.nearest_anywhere)}"
 

@@ -153,6 +153,7 @@ class Placement:
     between_mm  how far slides may go beyond that between rows where rotary axes turn
     problems  warnings
     toolpaths  of CL files; empty for NC programs
+    tool_length_mm    of the tool that slides keep their limits with; None: it is not known
     nearest_anywhere  of bodies whose distance no place and no turn changes, such as tool and fixture, the nearest two
     most_distance_mm  with the goal ``collisions``: at no turn that was tried a place keeps the others farther apart
     """
@@ -167,6 +168,7 @@ class Placement:
     between_mm: float = 0.0
     problems: tuple[Problem, ...] = ()
     toolpaths: tuple[Toolpath, ...] = ()
+    tool_length_mm: float | None = None
     nearest_anywhere: BodyDistance | None = None
     most_distance_mm: float | None = None
     _find_region: Callable[[], Region | None] = field(default=lambda: None, repr=False)

@@ -19,8 +19,9 @@ from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.travel_limits import Cut, CutSet
 from trunnion.placing.turns import TurnedPath
 
-#: Moments that are asked first.
-_COARSE: Final = 1500
+#: Moments that are asked first, and rows beside them where bodies were nearest at earlier turns.
+_COARSE: Final = 400
+_MOST_ROWS: Final = 200
 
 #: Steps to which the best turn is refined, degrees.
 _FINEST: Final = 0.1
@@ -57,8 +58,11 @@ class NearestRow:
 class Oriented:
     """A path at a turn, with what asks about its bodies; made when it is needed."""
 
-    def __init__(self, path: TurnedPath, guard: Guard, turn: float, tilt: float, near: Floats) -> None:
+    def __init__(
+        self, path: TurnedPath, guard: Guard, turn: float, tilt: float, near: Floats, rows: Sequence[int] = ()
+    ) -> None:
         self._path, self._guard, self._near = path, guard, near
+        self._rows = np.array(rows, np.int64)
         self._turn, self._tilt = turn, tilt
 
     @cached_property
@@ -70,7 +74,7 @@ class Oriented:
     @cached_property
     def coarse(self) -> Moments:
         """Some of them."""
-        return self.moments.some(max(1, len(self.moments) // _COARSE))
+        return self.moments.some(_COARSE, self._rows)
 
     def asked(self, moments: Moments, *changes: Changes) -> Clearance:
         """Asks pairs that something changes."""
@@ -86,6 +90,7 @@ class ClearanceSearch:
         self.results: dict[tuple[float, float], TurnResult] = {}
         self.best: tuple[TurnResult, Oriented, FarthestSearch | None] | None = None
         self.known, self.bound = 0.0, 0.0
+        self._rows: dict[int, None] = {}
 
     def judge(self, turn: float, tilt: float) -> TurnResult:
         """The result at an orientation, degrees: its cost is the distance, where that is larger than all before."""
@@ -104,7 +109,7 @@ class ClearanceSearch:
         result = TurnResult(turn, path, cuts, best, choice=path.choice, tilt=tilt)
         if result.margin < 0.0:
             return result
-        oriented = Oriented(path, self._guard, turn, tilt, best.zero)
+        oriented = Oriented(path, self._guard, turn, tilt, best.zero, list(self._rows)[-_MOST_ROWS:])
         of_turn = self._of_turn(oriented, best.zero)
         if of_turn is not None and of_turn.distance <= self.known:
             return result
@@ -117,6 +122,7 @@ class ClearanceSearch:
             lambda: oriented.asked(oriented.moments, Changes.PLACE),
         )  # fmt: skip
         found = search.search(self.known)
+        self._rows |= dict.fromkeys(oriented.moments.row[search.moments].tolist())
         above = search.bound if of_turn is None else min(search.bound, of_turn.distance)
         self.bound = max(self.bound, above)
         if found is None:

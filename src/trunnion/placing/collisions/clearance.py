@@ -153,7 +153,7 @@ class Clearance:
     def _halve(self, pieces: _Pieces, zero: Floats, moment: int, size: float, limit: float) -> Iterator[Nearest]:
         """Look at parts of the way to a moment, halved where they are not settled; yields what is ever nearer."""
         parts = [(0.0, 1.0)]
-        while parts:
+        while parts and limit > 0.0:
             begin, end = parts.pop()
             middle, half = (begin + end) / 2.0, 0.5 * size * (end - begin)
             gap = self._surface_gap(pieces, zero, moment, middle)
@@ -223,14 +223,8 @@ def _course(machine: Machine, moments: Moments, pair: GuardedPair, turn: Floats,
     centre = body.mesh.bounds.mean(axis=0)
     radius = float(np.linalg.norm(body.mesh.vertices - centre, axis=1).max())
     motion_bounds(chain, columns, senses, centre, radius, joints, bounds)
-    turning = np.radians(np.abs(np.diff(moments.angles, axis=0))).sum(axis=1)
-    slides = [k for k, column in enumerate(machine.linear) if column in columns]
-    changes = np.linalg.norm(np.diff(moments.normals[:, slides], axis=0), axis=2).sum(axis=1)
-    lengths = np.linalg.norm(moments.normals[1:, slides], axis=2).sum(axis=1)
-    drift = changes + turning * (lengths + 1.0)
     return Course(
         moments.angles, moments.normals, moments.offsets, moments.begins,
-        np.concatenate(([0.0], turning)), np.concatenate(([0.0], np.cumsum(bounds))),
-        np.concatenate(([0.0], np.cumsum(drift))), columns, senses,
+        moments.turn, np.concatenate(([0.0], np.cumsum(bounds))), moments.drift, columns, senses,
         np.array([*machine.rotary, *machine.linear], np.int64), np.ascontiguousarray(turn.T), pair.other.carried,
     )  # fmt: skip

@@ -7,6 +7,7 @@ are linear functions of the workpiece zero in each of them.
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -28,7 +29,7 @@ _STANDS: Final = 1e-9
 _REWINDS: Final = 180.001
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Moments:
     """m moments of a path in their order.
 
@@ -49,14 +50,27 @@ class Moments:
     def __len__(self) -> int:
         return len(self.row)
 
-    def some(self, step: int) -> "Moments":
-        """Each so many of them, and no ways between: what is found there holds for all, but is not all."""
-        which = slice(None, None, step)
+    def some(self, count: int, rows: Ints) -> "Moments":
+        """Some of them, and those of certain rows, without ways between: what is found there holds, but is not all."""
+        keep = np.isin(self.row, rows)
+        keep[:: max(1, len(self) // count)] = True
+        which = np.flatnonzero(keep)
         return Moments(
-            np.ascontiguousarray(self.angles[which]), np.ascontiguousarray(self.normals[which]),
-            np.ascontiguousarray(self.offsets[which]), self.row[which], np.ones(len(self.row[which]), np.bool_),
-            self.tool[which],
+            self.angles[which], self.normals[which], self.offsets[which], self.row[which],
+            np.ones(len(which), np.bool_), self.tool[which],
         )  # fmt: skip
+
+    @cached_property
+    def turn(self) -> Floats:
+        """How far both rotary axes turn on the way to each moment, (m,) radians."""
+        return np.radians(np.abs(np.diff(self.angles, axis=0, prepend=self.angles[:1]))).sum(axis=1)
+
+    @cached_property
+    def drift(self) -> Floats:
+        """How much farther bodies may move until each moment for each mm that the zero is elsewhere, (m,)."""
+        changes = np.diff(self.normals, axis=0, prepend=self.normals[:1])
+        changed, long = (np.sqrt((each * each).sum(axis=2)).sum(axis=1) for each in (changes, self.normals))
+        return np.cumsum(changed + self.turn * (long + 1.0))
 
     def ranges(self, tool: int) -> Ints:
         """First and end (exclusive) of the moments with a tool, (k, 2)."""

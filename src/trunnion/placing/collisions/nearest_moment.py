@@ -109,7 +109,7 @@ def nearest_moment(
     joints, work, own = np.zeros(5), np.zeros((7, 3)), direction.copy()
     stack = np.empty((2 * _DEEPEST + 4, 2))
     at, share, moment = -1, 1.0, first
-    while moment < end:
+    while moment < end and limit > 0.0:
         _pose_at(chain, course, zero, moment, 1.0, joints, pose)
         low = plane_gap(one, other, pose, own)
         if low < limit - CLOSE or not _clears_next(course, moment, end, away, low - limit + CLOSE):
@@ -135,7 +135,7 @@ def nearest_moment(
         sag = 0.375 * course.turn[after] * size
         count = 1
         stack[0, 0], stack[0, 1] = 0.0, 1.0
-        while count > 0:
+        while count > 0 and limit > 0.0:
             count -= 1
             begin, finish = stack[count, 0], stack[count, 1]
             part = finish - begin

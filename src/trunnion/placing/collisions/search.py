@@ -33,6 +33,9 @@ _MOST_ROUNDS: Final = 40
 #: Part of what is left to gain that a new ceiling must take away, else the cell is halved.
 _WORTH: Final = 0.3
 
+#: Rounding of linear programs, mm.
+_TRIFLE: Final = 1e-6
+
 #: Rounds in which a place with more margin is sought.
 _SETTLING: Final = 25
 
@@ -66,6 +69,7 @@ class FarthestSearch:
     cap     a larger distance is no better, mm
     coarse  asks some moments; whole, which is made when it is first needed, asks all of them
     bound   after the search: no place has a larger distance, mm
+    moments of the whole path at which bodies were nearest
     """
 
     def __init__(
@@ -81,6 +85,7 @@ class FarthestSearch:
         self._coarse, self._whole = coarse, whole
         self._best: tuple[Floats, Nearest] | None = None
         self._programs = 0
+        self.moments: list[int] = []
         self.bound = ENOUGH
 
     def search(self, known: float) -> FarthestPlace | None:
@@ -114,7 +119,7 @@ class FarthestSearch:
             asked = whole.nearest(zero)
             if asked is None or whole.inside(zero) is not None:
                 return best
-            if asked.distance >= wanted:
+            if asked.distance >= wanted - _TRIFLE:
                 return zero
             nearest = asked
         return best
@@ -181,6 +186,8 @@ class FarthestSearch:
             asked = whole.nearest(zero)
         if asked is not None and asked.distance > 0.0 and (inside := whole.inside(zero)) is not None:
             asked = inside
+        if asked is not None:
+            self.moments.append(asked.moment)
         if asked is not None and asked.distance > least:
             self._best = zero, asked
         return asked, whole
