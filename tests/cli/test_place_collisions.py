@@ -39,7 +39,9 @@ def test_text_and_data_name_the_nearest_bodies_and_their_line(
     nearest = next(line for line in lines if line.startswith("  nearest to each other: "))
     assert nearest.startswith("  nearest to each other: spindle nose and fixture plate.stl are 11.26")
     assert f"({BLADE}:23); at the present zero spindle nose and fixture plate.stl" in nearest
-    assert any(line.startswith("  no place at the turns that were tried keeps bodies farther apart than") for line in lines)
+    assert any(
+        line.startswith("  no place at the turns that were tried keeps bodies farther apart than") for line in lines
+    )
     always = next(line for line in lines if line.startswith("  wherever the part sits: "))
     assert "cutter of 2 and fixture plate.stl are 14.31" in always
     found = json.loads(data.read_text("utf-8"))

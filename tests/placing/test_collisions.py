@@ -47,7 +47,12 @@ def gantry(bodies: Sequence[MachineBody], low: Sequence[float], high: Sequence[f
         least, most = (-4000.0, 4000.0) if axis.is_rotary else next(ends)
         axes.append(replace(axis, low=least, high=most))
     return replace(
-        machine, axes=tuple(axes), bodies=tuple(bodies), tool_length=LENGTH, workpiece_zero=None, spindle_point=(0, 0, 0)
+        machine,
+        axes=tuple(axes),
+        bodies=tuple(bodies),
+        tool_length=LENGTH,
+        workpiece_zero=None,
+        spindle_point=(0, 0, 0),
     )
 
 

@@ -142,10 +142,12 @@ def place(
         return [TurnedPath.of(loaded, choice, rows, near) for choice, rows in choices_of(tilted)]
 
     with observer.progress("placing", len(grid), "turns") as advance:
-        if bodies is not None and goal == Goal.COLLISIONS:
+        most: float | None = None
+        if bodies is not None and goal == Goal.COLLISIONS and bodies.guard.is_changed:
             results, best, most = farthest_orientations(paths_at, grid, bodies.guard, advance)
         else:
-            results, best = best_orientations(paths_at, grid, advance, goal=Goal(goal))
+            sought = Goal.MARGIN if goal == Goal.COLLISIONS else Goal(goal)
+            results, best = best_orientations(paths_at, grid, advance, goal=sought)
     found = _placement(loaded, given, goal, paths_at, results, best, problems)
     if bodies is None:
         return found

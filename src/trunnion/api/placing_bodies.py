@@ -13,7 +13,6 @@ from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.machines import Machine
 from trunnion.placing.collisions.best_clearance import Guard
 from trunnion.placing.collisions.guarded_pairs import (
-    Changes,
     Guarded,
     guarded_machine,
     guarded_on_part,
@@ -80,13 +79,14 @@ def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine) -> Pl
         what = f"{machine.key} and the arguments have no two bodies that could meet"
         cure = "state bodies of the machine ([[body]]), or give fixtures, part, stock and tools"
         raise InputError(argument_problem("goal", what, cure, code="PLC190"))
-    if not any(pair.changes is not Changes.NOTHING for pair in pairs):
+    guard = Guard(tuple(pairs), placed.tool, lengths)
+    if not guard.is_changed:
         what = "no place and no turn changes how far the tool is from what is clamped with the part"
         cure = "state the bodies of the machine ([[body]]) to have them kept apart"
         problems.append(argument_problem("goal", what, cure, Severity.WARNING, code="PLC240"))
     if machine.tool_length is None and lengths:
         machine = replace(machine, tool_length=max(lengths.values()))
-    return PlacedBodies(Guard(tuple(pairs), placed.tool, lengths), machine, tuple(dict.fromkeys(problems)))
+    return PlacedBodies(guard, machine, tuple(dict.fromkeys(problems)))
 
 
 def _carried(given: BodiesInput, problems: list[Problem]) -> Iterable[Guarded]:

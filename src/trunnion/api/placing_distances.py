@@ -34,8 +34,8 @@ def with_bodies(
     return replace(found, best=best, present=present, nearest_anywhere=_told(always, rows))
 
 
-def with_distance(found: Placement, most: float) -> Placement:
-    """The placement with distances as the values of its places; no place has more than ``most`` mm."""
+def with_distance(found: Placement, most: float | None) -> Placement:
+    """The placement with distances as the values of its places; no place has more than ``most`` mm, if that is known."""
     best, present = (
         place if place is None or place.nearest is None else replace(place, value=place.nearest.distance_mm)
         for place in (found.best, found.present)

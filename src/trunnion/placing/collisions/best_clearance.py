@@ -41,6 +41,11 @@ class Guard:
     tool: Ints
     lengths: Mapping[int, float]
 
+    @property
+    def is_changed(self) -> bool:
+        """Whether place or turn change how far any two bodies are apart."""
+        return bool(self.that(Changes.PLACE, Changes.TURN))
+
     def that(self, *changes: Changes) -> list[GuardedPair]:
         """The pairs that something changes."""
         return [pair for pair in self.pairs if pair.changes in changes]
