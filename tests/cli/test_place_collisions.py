@@ -116,9 +116,14 @@ def test_what_cannot_be_judged_is_refused(options: list[str], code: str, capsys:
     assert f"[{code}]" in capsys.readouterr().err
 
 
-def test_without_bodies_of_the_machine_the_margin_decides(plate: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_where_no_place_changes_distances_the_margin_decides(plate: str, capsys: pytest.CaptureFixture[str]) -> None:
     part = ["place", BLADE, "--machine", "generic_nutated_b45_c", "--turn", "0", "--tool-length", "110", "--tool", TOOL]
     assert main([*part, "--goal", "collisions", "--fixture", plate]) == 0
-    told = capsys.readouterr()
+    told = capsys.readouterr().out.splitlines()
     assert main([*part, "--fixture", plate]) == 0
-    assert told.out.splitlines()[0] == capsys.readouterr().out.splitlines()[0]
+    other = capsys.readouterr().out.splitlines()
+    assert told[0].endswith(": 330.496 mm to the limits")
+    assert other[0].endswith(": 330.496 mm to the limits")
+    near = [line.split(";")[0] for line in (*told, *other) if line.startswith("  nearest to each other: ")]
+    assert len(near) == 2
+    assert near[0] == near[1]  # of the spindle nose and the plate

@@ -35,7 +35,7 @@ def with_bodies(
 
 
 def with_distance(found: Placement, most: float | None) -> Placement:
-    """The placement with distances as the values of its places; no place has more than ``most`` mm, if that is known."""
+    """The placement with distances as the values of its places; no place has more than ``most`` mm, where known."""
     best, present = (
         place if place is None or place.nearest is None else replace(place, value=place.nearest.distance_mm)
         for place in (found.best, found.present)

@@ -191,9 +191,8 @@ def farthest_orientations(
     assert result.path is not None
     assert result.best is not None
     assert result.cuts is not None
-    if asked is None:
-        place = largest_margin(result.cuts, result.path.near)
-    else:
+    place = largest_margin(result.cuts, result.path.near)
+    if asked is not None and not asked.is_as_good(place.zero):
         zero = asked.settled()
         reached, holds = result.cuts.at(zero), _holding(result.cuts, zero, min(KEPT, result.margin))
         place = BestPlace(zero, float(reached.margins.min()), reached, holds)

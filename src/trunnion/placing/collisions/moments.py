@@ -1,7 +1,7 @@
 """A path at one turn as moments, between which every axis moves evenly.
 
-While rotary axes turn under TCP, moments are half a degree apart at most; on arcs a chord tolerance says how far. Slides
-are linear functions of the workpiece zero in each of them.
+While rotary axes turn under TCP, moments are half a degree apart at most; on arcs a chord tolerance says how far.
+Slides are linear functions of the workpiece zero in each of them.
 """
 
 import math
@@ -70,7 +70,7 @@ class Moments:
         """How much farther bodies may move until each moment for each mm that the zero is elsewhere, (m,)."""
         changes = np.diff(self.normals, axis=0, prepend=self.normals[:1])
         changed, long = (np.sqrt((each * each).sum(axis=2)).sum(axis=1) for each in (changes, self.normals))
-        return np.cumsum(changed + self.turn * (long + 1.0))
+        return np.asarray(np.cumsum(changed + self.turn * (long + 1.0)))
 
     def ranges(self, tool: int) -> Ints:
         """First and end (exclusive) of the moments with a tool, (k, 2)."""

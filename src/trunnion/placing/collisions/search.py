@@ -102,13 +102,22 @@ class FarthestSearch:
         zero, nearest = self._best
         return FarthestPlace(zero, nearest)
 
+    def is_as_good(self, zero: Floats) -> bool:
+        """Whether a place (3,) has nearly the distance of the best one."""
+        found = self._whole().nearest(zero)
+        return found is not None and found.distance >= self._wanted - _TRIFLE and self._whole().inside(zero) is None
+
+    @property
+    def _wanted(self) -> float:
+        """A distance that is nearly the best one, mm."""
+        least = self._cap if self._best is None else min(self._best[1].distance, self._cap)
+        return least - tolerance(least)
+
     def settled(self) -> Floats:
         """Of places with nearly the distance of the best one that with the largest margin, (3,)."""
         assert self._best is not None
         best, nearest = self._best
-        wanted = min(nearest.distance, self._cap)
-        wanted -= tolerance(wanted)
-        whole, zero = self._whole(), best
+        whole, zero, wanted = self._whole(), best, self._wanted
         floors: list[Plane] = []
         while len(floors) < _SETTLING:
             floors.append(Witness.of(whole, nearest).floor(best))
