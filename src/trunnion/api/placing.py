@@ -15,13 +15,14 @@ from trunnion.api.orientations import orientations
 from trunnion.api.placing_bodies import BodiesInput, read_bodies
 from trunnion.api.placing_distances import with_bodies, with_distance
 from trunnion.api.placing_inputs import PlacedInput, read_input
+from trunnion.api.placing_table import larger_than_table, limit_of_table, standing_on
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.api.settings import Settings, as_texts, set_up_machine
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
-from trunnion.placing.best_turn import TurnResult, best_orientations
+from trunnion.placing.best_turn import Grid, TurnResult, best_orientations
 from trunnion.placing.between_rows import most_between
 from trunnion.placing.collisions.best_clearance import farthest_orientations
 from trunnion.placing.goals import Goal, PlaceCost, rotary_travel
@@ -30,7 +31,8 @@ from trunnion.placing.placement import AxisUse, Limit, Place, Placement, RotaryU
 from trunnion.placing.planned_time import planned_seconds
 from trunnion.placing.region import Region, region_of
 from trunnion.placing.rotary_angles import Obstacle
-from trunnion.placing.travel_limits import Cut, CutSet
+from trunnion.placing.table_limits import EDGES
+from trunnion.placing.travel_limits import TABLE, Cut, CutSet
 from trunnion.placing.turns import TurnedPath, choices_of
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.tools.profile import ToolShape
@@ -49,9 +51,9 @@ def place(
     tool_length: str | float | None = None,
     settings: Settings | None = None,
     subprograms: Sequence[FilePath] = (),
-    fixtures: str | Path | TriangleMesh | Iterable[str | Path | TriangleMesh] = (),
-    part: str | Path | TriangleMesh | None = None,
     stock: str | Path | TriangleMesh | None = None,
+    part: str | Path | TriangleMesh | None = None,
+    fixtures: str | Path | TriangleMesh | Iterable[str | Path | TriangleMesh] = (),
     tools: Iterable[str | ToolShape] = (),
     libraries: Sequence[FilePath] = (),
     unit: Literal["mm", "inch"] | None = None,
@@ -85,9 +87,12 @@ def place(
         Of CL files, as ``trunnion.post`` takes them.
     subprograms
         Files of the subprograms that NC programs call.
-    fixtures, part, stock, tools, libraries, unit
-        Bodies besides those of the machine, as ``trunnion.simulate`` takes them: as the part is drawn. They are tilted
-        and turned with it. With any of them the least distance at the best place is told with every goal.
+    stock, part
+        As ``trunnion.simulate`` has them: all of them, seen from above, is to be on the table that the definition
+        states. With the goal ``"collisions"`` they are bodies, too.
+    fixtures, tools, libraries, unit
+        Bodies besides those of the machine, as ``trunnion.simulate`` takes them: as the part is drawn. Fixtures are
+        tilted and turned with it. With any of them the least distance at the best place is told with every goal.
     observer
         Receives the progress and warnings.
 
@@ -126,20 +131,23 @@ def place(
         what = f"no slide of {loaded.key} has limits: the part may sit anywhere"
         raise InputError(argument_problem("machine", what, "state limits_mm of its axes", code="PLC130"))
     tilts_by_size = tuple(sorted(grid.tilts.tolist(), key=abs))
+    remarks: list[Problem] = []
+    standing = standing_on(loaded, stock, part, remarks)
     given = read_input(files, loaded, texts, check_paths("subprograms", subprograms), observer, tilts_by_size)
     bodies = None
     among = BodiesInput(fixtures, part, stock, tools, libraries, unit)
     if goal == Goal.COLLISIONS or among.are_given:
         bodies = read_bodies(among, given, loaded)
-        loaded = bodies.machine
-    problems = [*given.problems, *(() if bodies is None else bodies.problems), *unknown_length(loaded)]
+        loaded, remarks = bodies.machine, [*remarks, *bodies.problems]
+    problems = [*given.problems, *unknown_length(loaded), *dict.fromkeys(remarks)]
     observer.problems(problems)
     near = _first_guess(loaded)
 
     @lru_cache(maxsize=1)
     def paths_at(tilt: float) -> list[TurnedPath]:
         tilted = given.rows.turned(about_x(tilt))
-        return [TurnedPath.of(loaded, choice, rows, near) for choice, rows in choices_of(tilted)]
+        stands = None if standing is None else standing.turned(about_x(tilt))
+        return [TurnedPath.of(loaded, choice, rows, near, stands) for choice, rows in choices_of(tilted)]
 
     with observer.progress("placing", len(grid), "turns") as advance:
         most: float | None = None
@@ -148,7 +156,7 @@ def place(
         else:
             sought = Goal.MARGIN if goal == Goal.COLLISIONS else Goal(goal)
             results, best = best_orientations(paths_at, grid, advance, goal=sought)
-    found = _placement(loaded, given, goal, paths_at, results, best, problems)
+    found = _placement(loaded, given, goal, paths_at, results, best, problems, grid)
     if bodies is None:
         return found
     found = with_bodies(found, given.rows, bodies.guard, best.path, paths_at(0.0))
@@ -182,6 +190,7 @@ def _placement(
     results: Sequence[TurnResult],
     best: TurnResult,
     problems: Sequence[Problem],
+    grid: Grid,
 ) -> Placement:
     rows = given.rows
     found = None
@@ -201,7 +210,7 @@ def _placement(
         return [cuts for cuts in (path.at(turn) for path in paths_at(tilt)) if isinstance(cuts, CutSet)]
 
     def margin_at(zero: Floats, turn: float, tilt: float) -> float:
-        return float(max((cuts.at(zero).margins.min() for cuts in turned(turn, tilt)), default=-np.inf))
+        return max((cuts.at(zero).margin for cuts in turned(turn, tilt)), default=-np.inf)
 
     return Placement(
         machine.key,
@@ -210,7 +219,10 @@ def _placement(
         found,
         held,
         _present(machine, rows, paths_at(0.0), Goal(goal)),
-        tuple(_turn_margin(machine, rows, result) for result in results),
+        tuple(
+            replace(_turn_margin(machine, rows, result), is_asked=grid.has(result.turn, result.tilt))
+            for result in results
+        ),
         between_mm=0.0 if found is None or best.path is None else _between(best.path, found),
         problems=tuple(problems),
         toolpaths=given.toolpaths,
@@ -262,13 +274,15 @@ def _present(machine: Machine, rows: PathRows, paths: Sequence[TurnedPath], goal
 def _turn_margin(machine: Machine, rows: PathRows, result: TurnResult) -> TurnMargin:
     if result.best is None:
         assert result.obstacle is not None
-        obstacle = obstacle_text(machine, rows, result.obstacle)
-        return TurnMargin(result.turn, None, None, obstacle, tilt_deg=result.tilt)
+        obstacle, is_table = obstacle_text(machine, rows, result.obstacle), result.obstacle.outline is not None
+        return TurnMargin(result.turn, None, None, obstacle, tilt_deg=result.tilt, table_is_too_small=is_table)
     return TurnMargin(result.turn, result.margin, vector(result.best.zero), value=result.cost, tilt_deg=result.tilt)
 
 
 def obstacle_text(machine: Machine, rows: PathRows, obstacle: Obstacle) -> str:
     """Why a turn is impossible, with the line."""
+    if obstacle.outline is not None:
+        return larger_than_table(machine, obstacle.outline)
     stretch = rows.stretch_of(obstacle.row)
     what = "no rotary positions give its tool axis"
     if obstacle.axis >= 0:
@@ -285,13 +299,14 @@ def place_at(machine: Machine, rows: PathRows, cuts: CutSet, zero: Floats, turn:
         low, high = (limit_at(machine, rows, cuts.row(reached, slide, side), slide, side) for side in (0, 1))
         least, greatest = reached.extremes[slide].tolist()
         axes.append(AxisUse(machine.axes[column].name, least, greatest, float(reached.margins[slide].min()), low, high))
-    return Place(vector(zero), turn, float(reached.margins.min()), tuple(axes))
+    table = None if cuts.edges is None else reached.table
+    return Place(vector(zero), turn, reached.margin, tuple(axes), table_mm=table)
 
 
 def _rounded(cuts: CutSet, zero: Floats) -> Floats:
     """A place in whole thousandths of a millimetre, as controls have it, unless the part fits at the exact one only."""
     rounded = np.round(zero, 3)
-    exact, near = (float(cuts.at(each).margins.min()) for each in (zero, rounded))
+    exact, near = (cuts.at(each).margin for each in (zero, rounded))
     return rounded if near >= 0.0 or exact < 0.0 else zero
 
 
@@ -307,6 +322,8 @@ def rotary_uses(machine: Machine, positions: Floats) -> tuple[RotaryUse, ...]:
 
 def limit_of_cut(machine: Machine, rows: PathRows, cut: Cut) -> Limit:
     """The limit that a half-space is."""
+    if cut.slide == TABLE:
+        return limit_of_table(machine, EDGES[cut.side])
     return limit_at(machine, rows, cut.row, cut.slide, cut.side)
 
 

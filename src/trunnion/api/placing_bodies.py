@@ -42,11 +42,9 @@ class BodiesInput:
 
     @property
     def are_given(self) -> bool:
-        """Whether there are any."""
+        """Whether there are any but stock and part, which are asked for the table, too."""
         several = (self.fixtures, self.tools, self.libraries)
-        return any(each is not None for each in (self.part, self.stock)) or any(
-            not isinstance(each, tuple | list) or len(each) > 0 for each in several
-        )
+        return any(not isinstance(each, tuple | list) or len(each) > 0 for each in several)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,7 +81,7 @@ def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine) -> Pl
     if not guard.is_changed:
         what = "no place and no turn changes how far the tool is from what is clamped with the part"
         cure = "state the bodies of the machine ([[body]]) to have them kept apart"
-        problems.append(argument_problem("goal", what, cure, Severity.WARNING, code="PLC240"))
+        problems.append(argument_problem("goal", what, cure, Severity.WARNING, code="PLC270"))
     if machine.tool_length is None and lengths:
         machine = replace(machine, tool_length=max(lengths.values()))
     return PlacedBodies(guard, machine, tuple(dict.fromkeys(problems)))
@@ -126,7 +124,7 @@ def _tools(given: BodiesInput, placed: PlacedInput, problems: list[Problem]) -> 
                 raise
             first = error.problems[0]
             what = f"tool {called} is not kept apart from anything: {first.what}"
-            problems.append(Problem(first.file, first.line, what, first.cure, Severity.WARNING, code="PLC250"))
+            problems.append(Problem(first.file, first.line, what, first.cure, Severity.WARNING, code="PLC280"))
     return found
 
 

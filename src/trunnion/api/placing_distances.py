@@ -53,7 +53,7 @@ def _reaches(path: TurnedPath, place: Place) -> bool:
     cuts = path.at(place.turn_deg)
     if isinstance(cuts, Obstacle):
         return False
-    return abs(float(cuts.at(np.array(place.zero_mm)).margins.min()) - place.margin_mm) < 1e-9
+    return abs(cuts.at(np.array(place.zero_mm)).margin - place.margin_mm) < 1e-9
 
 
 def _told(nearest: NearestRow | None, rows: PathRows) -> BodyDistance | None:

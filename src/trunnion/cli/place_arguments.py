@@ -82,11 +82,15 @@ def add_place(parser: argparse.ArgumentParser, setting: type[argparse.Action], k
         help="files of the subprograms that the programs call; no others are opened",
     )  # fmt: skip
     parser.add_argument(
+        "--stock", metavar="STOCK",
+        help="box:X,Y,Z[,x0,y0,z0] (sizes, lowest corner), cylinder:D,H[,z0], or a mesh file; mm. Seen from above it is"
+        " to stay on the table that the machine's definition states",
+    )  # fmt: skip
+    parser.add_argument("--part", metavar="MESH", help="the finished part, for which the same holds")
+    parser.add_argument(
         "--fixture", action="append", default=[], metavar="MESH", dest="fixtures",
         help="a fixture as the part is drawn, clamped and turned with it; may be repeated",
     )  # fmt: skip
-    parser.add_argument("--part", metavar="MESH", help="the finished part, which shanks and holders stay clear of")
-    parser.add_argument("--stock", metavar="STOCK", help="box:X,Y,Z[,x0,y0,z0], cylinder:D,H[,z0], or a mesh file; mm")
     parser.add_argument(
         "--tool", action="append", default=[], metavar="N=KIND:SIZES", dest="tools",
         help="a tool, such as 3=ball:10,length=60,flutes=20,shank=12,holder=40x50; may be repeated",

@@ -16,7 +16,7 @@ from trunnion.placing.collisions.search import FarthestSearch
 from trunnion.placing.largest_margin import BestPlace, largest_margin
 from trunnion.placing.path_rows import turn_and_tilt
 from trunnion.placing.rotary_angles import Obstacle
-from trunnion.placing.travel_limits import Cut, CutSet
+from trunnion.placing.travel_limits import TABLE, Cut, CutSet
 from trunnion.placing.turns import TurnedPath
 
 #: Moments that are asked first, and rows beside them where bodies were nearest at earlier turns.
@@ -195,7 +195,7 @@ def farthest_orientations(
     if asked is not None and not asked.is_as_good(place.zero):
         zero = asked.settled()
         reached, holds = result.cuts.at(zero), _holding(result.cuts, zero, min(KEPT, result.margin))
-        place = BestPlace(zero, float(reached.margins.min()), reached, holds)
+        place = BestPlace(zero, reached.margin, reached, holds)
     return results, replace(result, best=place), search.bound
 
 
@@ -232,6 +232,6 @@ def _holding(cuts: CutSet, zero: Floats, margin: float) -> tuple[Cut, ...]:
     lefts = sorted(((cut.bound - float(np.dot(cut.normal, zero)), k) for k, cut in enumerate(cuts.cuts)))
     held: dict[tuple[int, int], Cut] = {}
     for left, k in lefts:
-        if left <= margin + _HOLDS:
+        if left <= (0.0 if cuts.cuts[k].slide == TABLE else margin) + _HOLDS:
             held.setdefault((cuts.cuts[k].slide, cuts.cuts[k].side), cuts.cuts[k])
     return tuple(held.values())

@@ -63,7 +63,7 @@ class Moments:
     @cached_property
     def turn(self) -> Floats:
         """How far both rotary axes turn on the way to each moment, (m,) radians."""
-        return np.radians(np.abs(np.diff(self.angles, axis=0, prepend=self.angles[:1]))).sum(axis=1)
+        return np.asarray(np.radians(np.abs(np.diff(self.angles, axis=0, prepend=self.angles[:1]))).sum(axis=1))
 
     @cached_property
     def drift(self) -> Floats:

@@ -17,7 +17,7 @@ from trunnion.arrays import Floats
 from trunnion.placing.collisions.ceilings import Plane, Witness
 from trunnion.placing.collisions.clearance import ENOUGH, Clearance, Nearest
 from trunnion.placing.largest_margin import EXACT, linear_program
-from trunnion.placing.travel_limits import CutSet
+from trunnion.placing.travel_limits import TABLE, CutSet
 
 #: The search ends when no place can have a distance larger by more, mm, or by more than this share of it.
 WITHIN: Final = 0.05
@@ -137,9 +137,9 @@ class FarthestSearch:
         """The place with the largest margin at which all floors are at a height, (3,)."""
         ranges = [(-1e5, 1e5)] * 3 + [(None, ENOUGH)]
         while True:
-            normals, bounds, _ = self._cuts.table()
+            normals, bounds, slides = self._cuts.table()
             slopes, heights = _rows(floors)
-            table = np.block([[normals, np.ones((len(normals), 1))], [-slopes, np.zeros((len(slopes), 1))]])
+            table = np.block([[normals, (slides != TABLE)[:, None]], [-slopes, np.zeros((len(slopes), 1))]])
             solved = linear_program(
                 np.array([0.0, 0.0, 0.0, -1.0]), table, np.concatenate((bounds, heights - wanted)), ranges
             )
@@ -205,10 +205,10 @@ class FarthestSearch:
         """The place of a cell (3,) that is highest under all planes, and its height."""
         ranges = [*zip(cell.low.tolist(), cell.high.tolist(), strict=True), (None, self._cap)]
         while True:
-            normals, bounds, _ = self._cuts.table()
+            normals, bounds, slides = self._cuts.table()
             slopes, heights = _rows(planes)
             table = np.block([[normals, np.zeros((len(normals), 1))], [-slopes, np.ones((len(slopes), 1))]])
-            limits = np.concatenate((bounds - self._margin, heights))
+            limits = np.concatenate((bounds - np.where(slides == TABLE, 0.0, self._margin), heights))
             solved = linear_program(np.array([0.0, 0.0, 0.0, -1.0]), table, limits, ranges)
             self._programs += 1
             zero = np.asarray(solved.x[:3])
