@@ -14,8 +14,8 @@ from tests.support.u_shapes import vice
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, MachineBody, load_machine
 from trunnion.placing.best_turn import Grid, TurnResult
-from trunnion.placing.collisions.best_clearance import Guard, NearestRow, farthest_orientations, nearest_at
-from trunnion.placing.collisions.clearance import Clearance
+from trunnion.placing.collisions.best_clearance import Guard, NearestRow, Oriented, farthest_orientations, nearest_at
+from trunnion.placing.collisions.clearance import ENOUGH, Clearance
 from trunnion.placing.collisions.guarded_pairs import (
     Changes,
     Guarded,
@@ -26,7 +26,10 @@ from trunnion.placing.collisions.guarded_pairs import (
     guarded_tool,
 )
 from trunnion.placing.collisions.moments import moments_of
+from trunnion.placing.collisions.search import FarthestSearch
+from trunnion.placing.largest_margin import largest_margin
 from trunnion.placing.path_rows import PathRows, about_x, about_z
+from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.turns import TurnedPath, choices_of
 from trunnion.simulation.collisions import Body, BodyKind, machine_bodies
 from trunnion.simulation.collisions.hull_pieces import mesh_pieces
@@ -132,7 +135,7 @@ def test_a_head_over_a_table_is_as_high_as_its_slide_allows() -> None:
     assert nearest.row == 1
     assert within(nearest.distance, 784.0)
     # Of places as good as the best one with much margin: X and Y are in the middle of what is allowed.
-    assert placed.best.margin == pytest.approx(1.0 + 0.005 * 784.0, abs=0.02)
+    assert placed.best.margin == pytest.approx(1.0 + 0.0025 * 784.0, abs=0.02)
 
 
 def test_a_head_over_a_fixture_is_as_far_from_it_as_the_tool_is_long() -> None:
@@ -182,7 +185,7 @@ def test_where_bodies_touch_everywhere_no_place_is_free() -> None:
     assert nearest is not None
     assert nearest.distance == 0.0
     assert all(result.cost is None for result in placed.results)
-    assert placed.bound <= 0.051
+    assert placed.bound <= 0.076
 
 
 def swarf(machine: Machine, seed: int) -> tuple[Machine, PathRows]:
@@ -297,3 +300,38 @@ def test_a_body_inside_of_another_is_no_free_place() -> None:
     nearest = asked.nearest(np.zeros(3))
     assert nearest is not None
     assert nearest.distance == pytest.approx(17.0 - 10.0, abs=1e-6)  # its lower end over the ground of the slot
+
+
+def test_a_short_way_near_a_body_is_not_skipped() -> None:
+    """A thousand rows far from a wall, and twelve that come near it."""
+    machine = gantry([], (-900, -900, -600), (900, 900, 600))
+    way = np.linspace(-300.0, 300.0, 1001)
+    tips = np.column_stack((way, 400.0 - 250.0 * np.exp(-((way - 111.0) ** 2) / 8.0), np.zeros(1001)))
+    head = on_link("head", "spindle", box_mesh(np.array([-30.0, -30, 0]), np.array([20.0, 30, 90])))
+    wall = on_link("wall", "workpiece", box_mesh(np.array([-900.0, -200, -500]), np.array([900.0, 0, 500])))
+    asked = clearance(machine, upright(*tips.tolist()), GuardedPair(head, wall, Changes.PLACE), np.zeros(3))
+    for zero in ([0.0, 0, 0], [50.0, -80, 30], [50.0, 200, 30]):
+        found = asked.nearest(np.array(zero))
+        assert found is not None
+        assert found.distance == pytest.approx(tips[:, 1].min() + zero[1] - 30.0, abs=0.011)
+        assert abs(way[asked.moments.row[found.moment]] - 111.0) <= 0.6 + 1e-9
+
+
+@pytest.mark.parametrize("seed", [3, 8])
+def test_places_keep_their_margin_though_the_search_knows_no_limits_at_first(seed: int) -> None:
+    machine, rows = swarf(load_machine("matsuura_mx330"), seed)
+    path = TurnedPath.of(machine, next(choices_of(rows))[0], rows, np.zeros(3))
+    bodies = guarded_machine(machine_bodies(machine))
+    guard = Guard(tuple(guarded_pairs(machine, bodies)), np.zeros(len(rows), np.int64), {})
+    cuts, others = path.at(0.0), path.at(0.0)
+    assert not isinstance(cuts, Obstacle)
+    assert not isinstance(others, Obstacle)
+    start = largest_margin(others, np.zeros(3)).zero
+    oriented = Oriented(path, guard, 0.0, 0.0, start)
+    asked = oriented.asked(oriented.moments, Changes.PLACE)
+    search = FarthestSearch(cuts, 1.0, start, ENOUGH, asked, lambda: asked)
+    found = search.search(0.0)
+    assert found is not None
+    assert cuts.at(found.zero).margin >= 1.0 - 1e-6
+    assert found.nearest.distance <= search.bound <= found.nearest.distance * 1.0076 + 1e-6
+    assert cuts.at(search.settled()).margin >= 1.0 - 1e-6

@@ -37,6 +37,9 @@ from trunnion.placing.turns import TurnedPath, choices_of
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.tools.profile import ToolShape
 
+#: The step of turns at which bodies are kept apart, degrees: each of them is a search of its own.
+_COLLISION_TURNS: Final = 15.0
+
 GOALS: Final = tuple(str(goal) for goal in Goal)
 
 
@@ -74,7 +77,7 @@ def place(
         those of the table's. Places with these goals keep a margin of 1 mm where they can.
     turns
         The part is tried at every so many degrees about Z, and more finely around the best; or the turns themselves.
-        By default each 5 degrees, with several tilts each 15.
+        By default each 5 degrees, with several tilts or the goal ``"collisions"`` each 15.
     tilts
         Before it is turned the part is tilted about X of the program's coordinate system, right-handed, as by a fixture
         with that angle: at every so many degrees from -90 to 90, and more finely around the best; or the tilts
@@ -122,7 +125,7 @@ def place(
     """
     check_observer(observer)
     goal = check_choice("goal", goal, GOALS)
-    grid = orientations(turns, tilts)
+    grid = orientations(_COLLISION_TURNS if turns is None and goal == Goal.COLLISIONS else turns, tilts)
     texts = as_texts(settings)
     zero = texts.pop("zero", None) if zero is None else zero
     tool_length = texts.get("tool_length") if tool_length is None else tool_length

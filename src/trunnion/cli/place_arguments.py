@@ -53,7 +53,7 @@ def add_place(parser: argparse.ArgumentParser, setting: type[argparse.Action], k
     turns.add_argument(
         "--turns", type=degrees, metavar="DEG",
         help="try the part at every so many degrees about Z, counter-clockwise seen from above (from +Z), and more"
-        " finely around the best; 5, with several tilts 15",
+        " finely around the best; 5, with several tilts or the goal collisions 15",
     )  # fmt: skip
     turns.add_argument(
         "--turn", type=turn, action="append", metavar="DEG", dest="only",

@@ -19,9 +19,11 @@ from trunnion.placing.collisions.clearance import ENOUGH, Clearance, Nearest
 from trunnion.placing.largest_margin import EXACT, linear_program
 from trunnion.placing.travel_limits import TABLE, CutSet
 
-#: The search ends when no place can have a distance larger by more, mm, or by more than this share of it.
-WITHIN: Final = 0.05
-WITHIN_SHARE: Final = 0.005
+#: The search ends when no place can have a distance larger by more, mm, or by more than this share of it; and what of
+#: the distance is given up for more margin, as a part of that.
+WITHIN: Final = 0.075
+WITHIN_SHARE: Final = 0.0075
+_GIVEN_UP: Final = 1.0 / 3.0
 
 #: How far from the place with the largest margin places are sought, mm: slides without limits lead on without end.
 FARTHEST: Final = 2000.0
@@ -111,7 +113,7 @@ class FarthestSearch:
     def _wanted(self) -> float:
         """A distance that is nearly the best one, mm."""
         least = self._cap if self._best is None else min(self._best[1].distance, self._cap)
-        return least - tolerance(least)
+        return least - _GIVEN_UP * tolerance(least)
 
     def settled(self) -> Floats:
         """Of places with nearly the distance of the best one that with the largest margin, (3,)."""
