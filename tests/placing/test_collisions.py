@@ -303,10 +303,11 @@ def test_a_body_inside_of_another_is_no_free_place() -> None:
 
 
 def test_a_short_way_near_a_body_is_not_skipped() -> None:
-    """A thousand rows far from a wall, and twelve that come near it."""
+    """A row near a wall, a thousand far from it, and twelve that come nearer: most may be skipped, but not these."""
     machine = gantry([], (-900, -900, -600), (900, 900, 600))
     way = np.linspace(-300.0, 300.0, 1001)
     tips = np.column_stack((way, 400.0 - 250.0 * np.exp(-((way - 111.0) ** 2) / 8.0), np.zeros(1001)))
+    tips[0, 1] = 200.0
     head = on_link("head", "spindle", box_mesh(np.array([-30.0, -30, 0]), np.array([20.0, 30, 90])))
     wall = on_link("wall", "workpiece", box_mesh(np.array([-900.0, -200, -500]), np.array([900.0, 0, 500])))
     asked = clearance(machine, upright(*tips.tolist()), GuardedPair(head, wall, Changes.PLACE), np.zeros(3))
