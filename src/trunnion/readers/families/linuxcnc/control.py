@@ -62,6 +62,9 @@ class LinuxcncControl(Rs274Control):
     own_words          words that the control has in place of the family's
     """
 
+    # M2 and M30 set all others back: G54, G17, G90, G94, G40, G80 (docs/reader-linuxcnc.md).
+    kept_modes = frozenset({"units", "centres", "length"})
+
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, shortest=shortest)
         self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), comment=";", gaps=True)
