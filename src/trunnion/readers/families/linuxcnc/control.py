@@ -198,6 +198,9 @@ class LinuxcncControl(Rs274Control):
         if not self.tip_programmed:
             self.move(axes, None, machine_frame=True, feed_written=feed_written)
             return
+        if axes.keys() & {"X", "Y", "Z"}:
+            text = "G53 with TCP on goes to a position of the tip, and not of the slides: switch TCP off before it"
+            self.note(text, Severity.WARNING, "NC341")
         goal = self.machine_position()[:3]
         for axis, name in enumerate("XYZ"):
             if name in axes:
