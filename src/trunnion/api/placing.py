@@ -18,7 +18,7 @@ from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
-from trunnion.placing.best_turn import TurnResult, best_orientations
+from trunnion.placing.best_turn import Grid, TurnResult, best_orientations
 from trunnion.placing.between_rows import most_between
 from trunnion.placing.goals import Goal, PlaceCost, rotary_travel
 from trunnion.placing.path_rows import PathRows, about_x, about_z
@@ -122,7 +122,7 @@ def place(
 
     with observer.progress("placing", len(grid), "turns") as advance:
         results, best = best_orientations(paths_at, grid, advance, goal=Goal(goal))
-    return _placement(loaded, given, goal, paths_at, results, best, problems)
+    return _placement(loaded, given, goal, paths_at, results, best, problems, grid)
 
 
 def unknown_length(machine: Machine) -> list[Problem]:
@@ -152,6 +152,7 @@ def _placement(
     results: Sequence[TurnResult],
     best: TurnResult,
     problems: Sequence[Problem],
+    grid: Grid,
 ) -> Placement:
     rows = given.rows
     found = None
@@ -180,7 +181,10 @@ def _placement(
         found,
         held,
         _present(machine, rows, paths_at(0.0), Goal(goal)),
-        tuple(_turn_margin(machine, rows, result) for result in results),
+        tuple(
+            replace(_turn_margin(machine, rows, result), is_asked=grid.has(result.turn, result.tilt))
+            for result in results
+        ),
         between_mm=0.0 if found is None or best.path is None else _between(best.path, found),
         problems=tuple(problems),
         toolpaths=given.toolpaths,

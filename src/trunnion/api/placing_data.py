@@ -29,6 +29,7 @@ def placement_data(found: Placement) -> dict[str, object]:
             {
                 "turn_deg": _number(turn.turn_deg),
                 "tilt_deg": _number(turn.tilt_deg),
+                "asked": turn.is_asked,
                 "fits": turn.fits,
                 "margin_mm": None if turn.margin_mm is None else _number(turn.margin_mm),
                 "zero_mm": None if turn.zero_mm is None else [_number(value) for value in turn.zero_mm],

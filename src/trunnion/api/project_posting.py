@@ -232,7 +232,7 @@ class _SetupPost:
             cl, self.inputs, machine=machine, output=output, settings=settings, strict=self.strict, force=False,
             explain=self.explain, papers=papers, columns=self.project.checks.longest_s is not None,
             subprograms=setup.subprograms, hooks=self.project.hooks, observer=self.observer, group=self.group,
-            forcing="", later=self.later,
+            forcing="", later=self.later, turn=setup.turn, tilt=setup.tilt,
         )  # fmt: skip
 
 

@@ -26,6 +26,7 @@ from trunnion.batch.records import (
 from trunnion.batch.stale import remove_stale
 from trunnion.batch.stores import Store
 from trunnion.batch.task import FILES, Outcome, Status, Task
+from trunnion.batch.warned import Warned, WarningTally
 from trunnion.batch.work import work
 from trunnion.batch.workers import Assignment, Workers
 from trunnion.definitions.extends import is_within
@@ -42,6 +43,7 @@ class BatchResult:
     done    how many were done already
     failed  indices of the units that did not pass
     jobs    their names
+    warned  the warnings of all files by their codes, those of the most files first
     """
 
     units: Sequence[Unit]
@@ -50,6 +52,7 @@ class BatchResult:
     done: int
     failed: Sequence[int] = field(repr=False)
     jobs: Sequence[str] = ()
+    warned: Sequence[Warned] = ()
 
     @property
     def passed(self) -> bool:
@@ -94,25 +97,28 @@ def run_jobs(
         with workers(len(units)) as team:
             for assignment, outcome in team.run(pending.tasks()):
                 record = outcome if isinstance(outcome, Record) else settle(store, assignment.record, outcome)
-                found.add(assignment.number, record.status)
+                found.add(assignment.number, record)
                 advance(1)
     return BatchResult(
-        units, store, dict(found.counts), pending.done, sorted(found.failed), [job.name for job in batch.jobs]
-    )
+        units, store, dict(found.counts), pending.done, sorted(found.failed), [job.name for job in batch.jobs],
+        found.warnings.found(),
+    )  # fmt: skip
 
 
 class _Tally:
-    """What became of files: counts, and the numbers of those that did not pass."""
+    """What became of files: counts, the numbers of those that did not pass, and what is warned of."""
 
     def __init__(self, units: Sequence[Unit]) -> None:
         self.counts = Counter[Status]()
         self.failed: list[int] = []
+        self.warnings = WarningTally()
         self._units = units
 
-    def add(self, number: int, status: Status) -> None:
+    def add(self, number: int, record: Record) -> None:
         """Count a file."""
-        self.counts[status] += 1
-        if status is not Status.PASSED:
+        self.counts[record.status] += 1
+        self.warnings.add(number, record)
+        if record.status is not Status.PASSED:
             self.failed.append(number)
 
 
@@ -139,15 +145,14 @@ class _Pending:
             try:
                 task = task_of(self._batch.folder, job, unit, self._shared[unit.job])
             except InputError as error:
-                commit(self._store, record, Outcome(Status.UNUSABLE, error.problems))
-                self._found.add(number, Status.UNUSABLE)
+                self._found.add(number, commit(self._store, record, Outcome(Status.UNUSABLE, error.problems)))
                 self._advance(1)
                 continue
             key = _key(task, self._digests[unit.job])
             if before is not None and before.is_done(key, self._store):
                 self._take_over(before, record)
                 self.done += 1
-                self._found.add(number, before.status)
+                self._found.add(number, before)
                 self._advance(1)
                 continue
             yield Assignment(number, replace(record, key=key)), task

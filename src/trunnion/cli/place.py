@@ -1,17 +1,18 @@
 """``trunnion place``: where on the table a part may sit."""
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from trunnion.api.input_files import machine_files
+from trunnion.api.placed_heads import number
 from trunnion.api.placing import place
 from trunnion.api.placing_data import placement_data
+from trunnion.api.placing_inputs import toolpaths_to_post
 from trunnion.api.placing_post import post_placed
-from trunnion.api.reading import FilePath, load_machine
+from trunnion.api.reading import FilePath, ToolpathLike, load_machine
 from trunnion.api.settings import as_texts
-from trunnion.api.turned_parts import number
 from trunnion.arrays import Floats
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result, tell
@@ -56,8 +57,11 @@ def run(arguments: argparse.Namespace) -> int:
     check_outputs([target for target in targets if target not in (None, "-")], read)
     settings = {**({} if project is None else as_texts(project.settings)), **dict(arguments.settings)}
     length = arguments.tool_length or settings.get("tool_length")
+    files: Sequence[ToolpathLike] = cl_inputs(arguments.files)
+    if arguments.apply is not None:
+        files = toolpaths_to_post(files, machine=machine, settings=settings, observer=Terminal())
     found = place(
-        cl_inputs(arguments.files),
+        files,
         machine=machine,
         goal=arguments.goal,
         turns=arguments.only or arguments.turns,
@@ -138,8 +142,7 @@ def placement_lines(found: Placement) -> Iterator[str]:
     if found.goal != "margin" and best.value is not None:
         now = "" if present is None else f"; at the present zero {_goal_number(found.goal, present)}"
         yield f"  {_value(found.goal, best)}{now}"
-    fitting = sum(turn.fits for turn in found.turns)
-    yield f"  it fits at {fitting} of {counted(len(found.turns), _tried(found))}"
+    yield f"  {_share(found)}"
     if best.tilt_deg and (plain := _without_tilt(found)) is not None:
         yield f"  without a fixture angle: {plain}"
     if found.region is not None:
@@ -166,6 +169,17 @@ def _sense(best: Place) -> Iterator[str]:
         yield f"{then}turn the part by {turn} degrees about Z, counter-clockwise seen from above (from +Z)"
     elif not best.tilt_deg:
         yield "the part is clamped as it is drawn"
+
+
+def _share(found: Placement) -> str:
+    """At how many of the turns that were asked for the part fits, and at how many more around the best."""
+    asked = [turn for turn in found.turns if turn.is_asked]
+    more = [turn for turn in found.turns if not turn.is_asked]
+    fits = sum(turn.fits for turn in asked)
+    if not more:
+        return f"it fits at {fits} of {counted(len(asked), _tried(found))}"
+    text = f"it fits at {fits} of the {counted(len(asked), _tried(found))} asked for"
+    return f"{text}; around the best, {len(more)} more were tried, {sum(turn.fits for turn in more)} fit"
 
 
 def _tried(found: Placement) -> str:

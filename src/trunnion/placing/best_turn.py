@@ -143,6 +143,11 @@ class Grid:
     def __len__(self) -> int:
         return len(self.turns) * len(self.tilts)
 
+    def has(self, turn: float, tilt: float) -> bool:
+        """Whether an orientation is one of the grid, and not one between them, degrees."""
+        near = 0.5 * 10.0**-_DECIMALS
+        return bool((np.abs(self.turns - turn) <= near).any() and (np.abs(self.tilts - tilt) <= near).any())
+
     def steps(self) -> tuple[float, float]:
         """Those of turns and tilts, degrees; 0: not refined."""
         turn = float(self.turns[1] - self.turns[0]) if self.refines_turns and len(self.turns) > 1 else 0.0

@@ -100,6 +100,7 @@ class TurnMargin:
     margin_mm  the largest one of any place; None: some row is out of reach of the rotary axes, as ``obstacle`` says
     zero_mm    the best place there
     value      of the goal there, as in ``Place``
+    is_asked   it is one of those that were asked for; else it was tried between them, around the best
     """
 
     turn_deg: float
@@ -108,6 +109,7 @@ class TurnMargin:
     obstacle: str = ""
     value: float | None = None
     tilt_deg: float = 0.0
+    is_asked: bool = True
 
     @property
     def fits(self) -> bool:
@@ -181,8 +183,9 @@ class Placement:
 
     @property
     def share_of_turns(self) -> float:
-        """Of the turns and tilts that were tried, those at which the part fits somewhere, 0 to 1."""
-        return sum(turn.fits for turn in self.turns) / max(len(self.turns), 1)
+        """Of the turns and tilts that were asked for, those at which the part fits somewhere, 0 to 1."""
+        asked = [turn for turn in self.turns if turn.is_asked]
+        return sum(turn.fits for turn in asked) / max(len(asked), 1)
 
     def margin_at(self, zero_mm: Vector, turn_deg: float, tilt_deg: float = 0.0) -> float:
         """The margin of any place, exact; minus infinity where rotary axes do not reach the path."""
