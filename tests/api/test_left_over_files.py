@@ -181,3 +181,8 @@ def test_the_command_warns_of_a_setup_that_is_gone(tmp_path: Path, capsys: pytes
         f"{tmp_path / 'project.toml'}: warning: two.html, two.lst, two.mpf are of a set-up that it no longer has;"
         " delete them, here and on the control [PRJ155]"
     ]
+
+
+def test_a_paper_that_a_setup_no_longer_asks_for_is_not_of_one_that_is_gone(tmp_path: Path) -> None:
+    assert post_setups(tmp_path, FIRST, SECOND) == []
+    assert post_setups(tmp_path, FIRST, SECOND.replace('listing = "two.lst"\n', "")) == []

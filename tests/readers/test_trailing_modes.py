@@ -137,3 +137,9 @@ def test_post_warns_of_what_a_foot_may_leave(tmp_path: Path) -> None:
     assert (problem.code, problem.severity) == ("NC351", Severity.WARNING)
     assert "G91 behind the last motion" in problem.what
     assert "parameter 3402" in problem.what
+
+
+def test_a_mode_that_is_left_and_taken_up_again_is_as_it_was_used(tmp_path: Path) -> None:
+    assert left(tmp_path, "matsuura_mx330", "G18", cut("matsuura_mx330", 10), "G17", "G18") == []
+    ((_, _, text),) = left(tmp_path, "matsuura_mx330", "G18", cut("matsuura_mx330", 10), "G17", "G19")
+    assert text.startswith("G19 ")

@@ -165,3 +165,9 @@ def test_a_word_of_ones_own_may_call_local_subprograms(tmp_path: Path) -> None:
     assert run.errors == ()
     assert run.tip[1:, 0].tolist() == pytest.approx([1.0, 5.0])
     assert [each.text[:18] for each in read(tmp_path, "M196 P1", str(machine)).errors] == ["M196 jumps to N1 u"]
+
+
+def test_a_local_subprogram_without_m99_ends_at_the_next_program(tmp_path: Path) -> None:
+    run = read(tmp_path, "M97 P1\nX5.\nM30\nN1 X1.\nO00002\nX9.\nM99")
+    assert any("runs into the next one" in error.text for error in run.errors)
+    assert run.tip[1:, 0].tolist() == pytest.approx([1.0, 5.0])
