@@ -62,6 +62,7 @@ def _place(place: Place) -> dict[str, object]:
         "margin_mm": _number(place.margin_mm),
         "value": None if place.value is None else _number(place.value),
         "planned_s": None if place.planned_s is None else _number(place.planned_s),
+        "table_mm": None if place.table_mm is None else _number(place.table_mm),
         "axes": [_axis(axis) for axis in place.axes],
         "rotary": [
             {name: value if isinstance(value, str) else _number(value) for name, value in asdict(axis).items()}

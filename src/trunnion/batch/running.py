@@ -43,6 +43,7 @@ class BatchResult:
     done    how many were done already
     failed  indices of the units that did not pass
     jobs    their names
+    new     indices of the units that passed in this run
     warned  the warnings of all files by their codes, those of the most files first
     """
 
@@ -52,6 +53,7 @@ class BatchResult:
     done: int
     failed: Sequence[int] = field(repr=False)
     jobs: Sequence[str] = ()
+    new: Sequence[int] = field(default=(), repr=False)
     warned: Sequence[Warned] = ()
 
     @property
@@ -66,6 +68,10 @@ class BatchResult:
     def failures(self) -> Iterator[Record]:
         """The same of those that did not pass."""
         return self._read([self.units[k] for k in self.failed])
+
+    def written(self) -> Iterator[Record]:
+        """The same of those of which this run has written files."""
+        return (record for record in self._read([self.units[k] for k in self.new]) if record.outputs)
 
     def _read(self, units: Sequence[Unit]) -> Iterator[Record]:
         for record in read_records(self.store, [unit.place for unit in units]):
@@ -91,18 +97,18 @@ def run_jobs(
     units = units_of(batch.jobs)
     check_store(store)
     remove_stale(batch, units, store, observer)
-    found = _Tally(units)
+    found, new = _Tally(units), list[int]()
     with observer.progress("batch", len(units), "files") as advance:
         pending = _Pending(batch, store, units, found, advance)
         with workers(len(units)) as team:
             for assignment, outcome in team.run(pending.tasks()):
                 record = outcome if isinstance(outcome, Record) else settle(store, assignment.record, outcome)
                 found.add(assignment.number, record)
+                new += [assignment.number] if record.status is Status.PASSED else []
                 advance(1)
-    return BatchResult(
-        units, store, dict(found.counts), pending.done, sorted(found.failed), [job.name for job in batch.jobs],
-        found.warnings.found(),
-    )  # fmt: skip
+    names = [job.name for job in batch.jobs]
+    failed, warned = sorted(found.failed), found.warnings.found()
+    return BatchResult(units, store, dict(found.counts), pending.done, failed, names, sorted(new), warned)
 
 
 class _Tally:

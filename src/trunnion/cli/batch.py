@@ -23,6 +23,9 @@ from trunnion.wording import counted, one_line
 #: Files that failed which are printed; the summary has all of them.
 _MOST: Final = 200
 
+#: Results that are printed as written by this run.
+_MOST_WRITTEN: Final = 20
+
 #: Codes of warnings that are printed, those of the most files.
 _MOST_CODES: Final = 20
 
@@ -78,7 +81,7 @@ class _Terminal(Terminal):
 
 
 def result_lines(result: BatchResult) -> Iterator[str]:
-    """A batch in lines: what failed, and how many became what."""
+    """A batch in lines: what failed, what this run has written, and how many became what."""
     width = max((len(unit) for unit in result.jobs), default=0) if len(result.jobs) > 1 else 0
     if result.failed:
         job = f"{'job':<{width}}  " if width else ""
@@ -88,6 +91,10 @@ def result_lines(result: BatchResult) -> Iterator[str]:
     if len(result.failed) > _MOST:
         yield f"and {len(result.failed) - _MOST} more; --summary FILE.sqlite has all of them"
     yield from _warnings(result)
+    written = list(islice(result.written(), _MOST_WRITTEN))
+    if written:
+        rest = " and others" if len(written) == _MOST_WRITTEN < len(result.new) else ""
+        yield f"written now: {', '.join(record.place for record in written)}{rest}"
     parts = ", ".join(f"{result.counts[status]} {status}" for status in Status if result.counts.get(status))
     before = f"; {result.done} of them done before" if result.done else ""
     judged = "" if result.store.is_exact or not result.done else ", which are judged by their sizes"

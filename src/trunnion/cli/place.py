@@ -20,6 +20,7 @@ from trunnion.cli.terminal import Terminal, output_place
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.files import atomic_file, check_outputs
 from trunnion.placing.placement import AxisUse, Limit, Place, Placement, RotaryUse, TurnMargin
+from trunnion.placing.table_limits import KEPT
 from trunnion.wording import counted, format_duration, one_line
 
 if TYPE_CHECKING:  # imported where a project is placed
@@ -43,6 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError(argument_problem("machine", "is missing", "name the machine", code="ARG130"))
     machine = load_machine(arguments.machine)
     read += machine_files(arguments.machine, machine)
+    read += [mesh for mesh in (arguments.stock, arguments.part) if mesh is not None]
     if arguments.plot is not None:
         from trunnion.api.placing_plot import check_placing_plot
 
@@ -70,6 +72,8 @@ def run(arguments: argparse.Namespace) -> int:
         tool_length=length,
         settings=settings,
         subprograms=arguments.subprograms,
+        stock=arguments.stock,
+        part=arguments.part,
         observer=Terminal(),
     )
     lines = tell if arguments.apply == "-" else print_result
@@ -111,7 +115,9 @@ def placement_lines(found: Placement) -> Iterator[str]:
     """A placement in lines."""
     best, present = found.best, found.present
     if best is None:
-        yield f"{found.machine}: the rotary axes reach the path at no {_tried(found)}"
+        off_table = any(turn.table_is_too_small for turn in found.turns)
+        what = "the part finds a place at" if off_table else "the rotary axes reach the path at"
+        yield f"{found.machine}: {what} no {_tried(found)}"
         for turn in sorted(found.turns, key=lambda each: abs(each.tilt_deg))[:_MOST]:
             yield f"  {_clamped(turn)}: {turn.obstacle}"
         return
@@ -127,12 +133,15 @@ def placement_lines(found: Placement) -> Iterator[str]:
         yield f"  {_use(axis)}"
     for rotary in best.rotary:
         yield f"  {_rotary_use(rotary)}"
+    if best.table_mm is not None:
+        yield f"  table: {max(best.table_mm, 0.0):.3f} left to its edge"
     if found.limits:
         what = "it is held by" if best.fits else "these conflict:"
         yield f"  {what} {'; '.join(dict.fromkeys(map(_limit, found.limits)))}{_overlap(found)}"
     if present is not None:
         gain = best.margin_mm - present.margin_mm
         state = f"{present.margin_mm:.3f} mm to the limits" if present.fits else f"{-present.margin_mm:.3f} mm too far"
+        state += _beyond_table(present)
         gained = (
             ""
             if found.goal != "margin"
@@ -150,6 +159,11 @@ def placement_lines(found: Placement) -> Iterator[str]:
         yield f"  clamped so, the zero may be anywhere within {_ends(box.low, box.high)}"
         if not found.region.is_box:
             yield f"  and not beyond {_ends(found.region.low, found.region.high)}, where not every place fits"
+
+
+def _beyond_table(place: Place) -> str:
+    beyond = 0.0 if place.table_mm is None else -place.table_mm
+    return f" ({beyond:.3f} mm beyond the table)" if beyond > KEPT else ""
 
 
 def _clamped(place: Place | TurnMargin) -> str:
@@ -194,7 +208,8 @@ def _without_tilt(found: Placement) -> str | None:
         return None
     best = max(flat, key=lambda turn: -float("inf") if turn.margin_mm is None else turn.margin_mm)
     if best.margin_mm is None:
-        return "the rotary axes do not reach the path"
+        small = all(turn.table_is_too_small for turn in flat)
+        return "the table is too small" if small else "the rotary axes do not reach the path"
     margin = best.margin_mm
     left = f"{margin:.3f} mm to the limits" if margin >= 0.0 else f"it fits nowhere, {-margin:.3f} mm too far"
     return f"{left}, {_clamped(best)}"
@@ -256,4 +271,11 @@ def _use(axis: AxisUse) -> str:
 
 
 def _limit(limit: Limit) -> str:
+    if not limit.file:  # that of a table
+        edge = limit.end.split()[-1]
+        return (
+            f"the table's rim, Ø{limit.limit_mm:g}"
+            if edge == "rim"
+            else f"the table's edge at {edge} {limit.limit_mm:g}"
+        )
     return f"{limit.axis} at {limit.limit_mm:g} ({limit.file}:{limit.line})"

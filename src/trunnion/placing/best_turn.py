@@ -116,7 +116,7 @@ def _with_cost(found: TurnResult, path: TurnedPath, cuts: CutSet, goal: Goal) ->
     cost = PlaceCost.of(goal, path.machine, rows, angles.positions)
     cheapest = least_cost(cuts, cost, found.best.zero, min(KEPT, found.margin))
     reached = cuts.at(cheapest.zero)
-    best = replace(found.best, zero=cheapest.zero, margin=float(reached.margins.min()), reached=reached)
+    best = replace(found.best, zero=cheapest.zero, margin=reached.margin, reached=reached)
     return replace(found, best=best, cost=cheapest.cost)
 
 
