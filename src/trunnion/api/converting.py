@@ -209,10 +209,11 @@ def convert_beside(
             posted = None
         else:
             given = "work_offset" in job.printed or any("work_offset" in own for own in job.own_settings.values())
-            job = _with_settings(job, carried)
+            toolpath, notices = conversion.take_notices(converted.toolpath, control.family)
+            job = replace(_with_settings(job, carried), notices=(*notices, *job.notices))
             if not given:
                 converter.warn_of_new_offset(run, job)
-            posted = post_toolpaths([converted.toolpath], job, target, observer)
+            posted = post_toolpaths([toolpath], job, target, observer)
     problems = (*converter.problems, *(posted.problems if posted else ()))
     return ConvertResult(converted.toolpath, carried, problems, posted, target.path, target.memory)
 

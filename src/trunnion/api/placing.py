@@ -5,13 +5,15 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
 
 from trunnion.api.arguments import check_choice, check_observer, check_paths
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.orientations import orientations
+from trunnion.api.placing_bodies import BodiesInput, read_bodies
+from trunnion.api.placing_distances import with_bodies, with_distance
 from trunnion.api.placing_inputs import PlacedInput, read_input
 from trunnion.api.placing_table import larger_than_table, limit_of_table, standing_on
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
@@ -23,6 +25,7 @@ from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
 from trunnion.placing.best_turn import Grid, TurnResult, best_orientations
 from trunnion.placing.between_rows import most_between
+from trunnion.placing.collisions.best_clearance import farthest_orientations
 from trunnion.placing.goals import Goal, PlaceCost, rotary_travel
 from trunnion.placing.path_rows import PathRows, about_x, about_z
 from trunnion.placing.placement import AxisUse, Limit, Place, Placement, RotaryUse, TurnMargin
@@ -33,6 +36,10 @@ from trunnion.placing.table_limits import EDGES
 from trunnion.placing.travel_limits import TABLE, Cut, CutSet
 from trunnion.placing.turns import TurnedPath, choices_of
 from trunnion.simulation.meshes import TriangleMesh
+from trunnion.simulation.tools.profile import ToolShape
+
+#: The step of turns at which bodies are kept apart, degrees: each of them is a search of its own.
+_COLLISION_TURNS: Final = 15.0
 
 GOALS: Final = tuple(str(goal) for goal in Goal)
 
@@ -50,6 +57,10 @@ def place(
     subprograms: Sequence[FilePath] = (),
     stock: str | Path | TriangleMesh | None = None,
     part: str | Path | TriangleMesh | None = None,
+    fixtures: str | Path | TriangleMesh | Iterable[str | Path | TriangleMesh] = (),
+    tools: Iterable[str | ToolShape] = (),
+    libraries: Sequence[FilePath] = (),
+    unit: Literal["mm", "inch"] | None = None,
     observer: Observer = SILENT,
 ) -> Placement:
     """Find where on the table a part may sit, and where it sits best.
@@ -63,10 +74,11 @@ def place(
     goal
         What the best place is best for: ``"margin"``, the distance of the slides to their limits; or the least
         ``"rotary"`` or ``"slides"`` travel, ``"time"``, or ``"overspeed"``, fewest rows whose feed the
-        axes do not reach. Places with these goals keep a margin of 1 mm where they can.
+        axes do not reach; or ``"collisions"``, the largest least distance between bodies of the spindle's side and
+        those of the table's. Places with these goals keep a margin of 1 mm where they can.
     turns
         The part is tried at every so many degrees about Z, and more finely around the best; or the turns themselves.
-        By default each 5 degrees, with several tilts each 15.
+        By default each 5 degrees, with several tilts or the goal ``"collisions"`` each 15.
     tilts
         Before it is turned the part is tilted about X of the program's coordinate system, right-handed, as by a fixture
         with that angle: at every so many degrees from -90 to 90, and more finely around the best; or the tilts
@@ -81,7 +93,10 @@ def place(
         Files of the subprograms that NC programs call.
     stock, part
         As ``trunnion.simulate`` has them: all of them, seen from above, is to be on the table that the definition
-        states.
+        states. With the goal ``"collisions"`` they are bodies, too.
+    fixtures, tools, libraries, unit
+        Bodies besides those of the machine, as ``trunnion.simulate`` takes them: as the part is drawn. Fixtures are
+        tilted and turned with it. With any of them the least distance at the best place is told with every goal.
     observer
         Receives the progress and warnings.
 
@@ -111,7 +126,7 @@ def place(
     """
     check_observer(observer)
     goal = check_choice("goal", goal, GOALS)
-    grid = orientations(turns, tilts)
+    grid = orientations(_COLLISION_TURNS if turns is None and goal == Goal.COLLISIONS else turns, tilts)
     texts = as_texts(settings)
     zero = texts.pop("zero", None) if zero is None else zero
     tool_length = texts.get("tool_length") if tool_length is None else tool_length
@@ -125,7 +140,12 @@ def place(
     given = read_input(files, loaded, texts, check_paths("subprograms", subprograms), observer, tilts_by_size)
     for tilt in tilts_by_size:  # what could not be said in the head of a program is told before it is searched
         clamped_after(given.clamping, (0.0, tilt), given.rows.stretches[0].file)
-    problems = [*given.problems, *unknown_length(loaded), *remarks]
+    bodies = None
+    among = BodiesInput(fixtures, part, stock, tools, libraries, unit)
+    if goal == Goal.COLLISIONS or among.are_given:
+        bodies = read_bodies(among, given, loaded)
+        loaded, remarks = bodies.machine, [*remarks, *bodies.problems]
+    problems = [*given.problems, *unknown_length(loaded), *dict.fromkeys(remarks)]
     observer.problems(problems)
     near = _first_guess(loaded)
 
@@ -136,8 +156,17 @@ def place(
         return [TurnedPath.of(loaded, choice, rows, near, stands) for choice, rows in choices_of(tilted)]
 
     with observer.progress("placing", len(grid), "turns") as advance:
-        results, best = best_orientations(paths_at, grid, advance, goal=Goal(goal))
-    return _placement(loaded, given, goal, paths_at, results, best, problems, grid)
+        most: float | None = None
+        if bodies is not None and goal == Goal.COLLISIONS and bodies.guard.is_changed:
+            results, best, most = farthest_orientations(paths_at, grid, bodies.guard, advance)
+        else:
+            sought = Goal.MARGIN if goal == Goal.COLLISIONS else Goal(goal)
+            results, best = best_orientations(paths_at, grid, advance, goal=sought)
+    found = _placement(loaded, given, goal, paths_at, results, best, problems, grid)
+    if bodies is None:
+        return found
+    found = with_bodies(found, given.rows, bodies.guard, best.path, paths_at(0.0))
+    return found if goal != Goal.COLLISIONS else with_distance(found, most)
 
 
 def unknown_length(machine: Machine) -> list[Problem]:
@@ -204,6 +233,7 @@ def _placement(
         problems=tuple(problems),
         toolpaths=given.toolpaths,
         clamping=given.clamping,
+        tool_length_mm=machine.tool_length,
         _find_region=region,
         _margin_at=margin_at,
     )
@@ -224,6 +254,8 @@ def _with_value(place: Place, path: TurnedPath | None, goal: Goal) -> Place:
         return place
     rows, positions = path.rows.turned(about_z(place.turn_deg)), angles.positions
     place = replace(place, rotary=rotary_uses(path.machine, positions))
+    if goal is Goal.COLLISIONS:
+        return place
     if goal is Goal.MARGIN:
         return replace(place, value=place.margin_mm)
     if goal is Goal.ROTARY:

@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.model.clamping import clamping_data
-from trunnion.placing.placement import AxisUse, Limit, Place, Placement
+from trunnion.placing.placement import AxisUse, BodyDistance, Limit, Place, Placement
 
 _DECIMALS: Final = 6
 
@@ -53,6 +53,9 @@ def placement_data(found: Placement) -> dict[str, object]:
         "between_mm": _number(found.between_mm),
         "stated": clamping_data(found.clamping),
         "clamped": clamping_data(found.clamped),
+        "distance_mm": None if found.distance_mm is None else _number(found.distance_mm),
+        "nearest_anywhere": _nearest(found.nearest_anywhere),
+        "most_distance_mm": None if found.most_distance_mm is None else _number(found.most_distance_mm),
         "remarks": [asdict(each) | {"severity": str(each.severity)} for each in found.problems],
     }
 
@@ -66,12 +69,17 @@ def _place(place: Place) -> dict[str, object]:
         "value": None if place.value is None else _number(place.value),
         "planned_s": None if place.planned_s is None else _number(place.planned_s),
         "table_mm": None if place.table_mm is None else _number(place.table_mm),
+        "nearest": _nearest(place.nearest),
         "axes": [_axis(axis) for axis in place.axes],
         "rotary": [
             {name: value if isinstance(value, str) else _number(value) for name, value in asdict(axis).items()}
             for axis in place.rotary
         ],
     }
+
+
+def _nearest(found: BodyDistance | None) -> dict[str, object] | None:
+    return None if found is None else asdict(found) | {"distance_mm": _number(found.distance_mm)}
 
 
 def _axis(axis: AxisUse) -> dict[str, object]:

@@ -17,7 +17,7 @@ from trunnion.api.planning import plan
 from trunnion.api.reading import ToolpathLike, read_toolpaths
 from trunnion.api.settings import Settings, as_texts, number_setting
 from trunnion.api.turned_parts import stated_clamping, turned_toolpaths
-from trunnion.arrays import Flags
+from trunnion.arrays import Flags, Ints
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.machines import Machine
 from trunnion.model.arc_extremes import ArcPaths
@@ -42,12 +42,21 @@ class PlacedInput:
     """What is placed: rows, and the toolpaths that they come from, of CL files; none, of NC programs.
 
     clamping  how the part is clamped, as the files state; None: they state nothing
+    tool   (n,) which of ``tools`` is in the spindle in each row
+    tools  numbers and names as the files have them; empty: none was called
     """
 
     rows: PathRows
+    tool: Ints
+    tools: tuple[str, ...]
     toolpaths: tuple[Toolpath, ...] = ()
     problems: tuple[Problem, ...] = ()
     clamping: Clamping | None = None
+
+    @property
+    def used_tools(self) -> list[int]:
+        """The numbers in ``tools`` of those that are in the spindle in some row."""
+        return [int(number) for number in np.unique(self.tool)]
 
 
 def read_input(
@@ -92,7 +101,7 @@ def read_input(
     if programs:
         runs = [_run_of(program, machine, subprograms) for program in programs]
         clamping, problems = _clamping_of_programs(programs)
-        return PlacedInput(joined_rows([rows_of_run(run) for run in runs]), (), problems, clamping)
+        return replace(_of_runs(runs), problems=problems, clamping=clamping)
     clamping = stated_clamping(toolpaths)
     return replace(_planned_tilted(toolpaths, machine, texts, observer, tilts), clamping=clamping)
 
@@ -107,7 +116,7 @@ def _clamping_of_programs(programs: Sequence[Path]) -> tuple[Clamping | None, tu
             says = "says nothing of its part" if own.clamping is None else f"says that its part is {own.clamping}"
             what = f"its head {says}, and that of another one that it is {first}"
             cure = "place programs of one clamping together"
-            raise InputError(Problem(str(program), 0, what, cure, code="PLC270"))
+            raise InputError(Problem(str(program), 0, what, cure, code="PLC310"))
     return first, tuple(problems)
 
 
@@ -205,7 +214,20 @@ def _planned(
     )
     planned = plan(toolpaths, machine=free, settings={**settings, "cycles": "off"}, explain=False, observer=observer)
     warnings = tuple(problem for problem in planned.problems if problem.severity is Severity.WARNING)
-    return PlacedInput(rows_of_plan(free, planned.motions), tuple(toolpaths), warnings)
+    rows = rows_of_plan(free, planned.motions)
+    tools = tuple(dict.fromkeys(stretch.tool for stretch in rows.stretches))
+    ends = np.diff([*(stretch.first for stretch in rows.stretches), len(rows)])
+    tool = np.repeat([tools.index(stretch.tool) for stretch in rows.stretches], ends)
+    return PlacedInput(rows, tool, tools, tuple(toolpaths), warnings)
+
+
+def _of_runs(runs: Sequence[Run]) -> PlacedInput:
+    tools = tuple(dict.fromkeys(run.tools[int(k)] for run in runs for k in run.state.tool.distinct()))
+    parts = []
+    for run in runs:
+        own = np.array([tools.index(name) if name in tools else 0 for name in run.tools])
+        parts.append(own[run.state.tool.column().astype(np.int64)[_rows_at_workpiece(run)]])
+    return PlacedInput(joined_rows([rows_of_run(run) for run in runs]), np.concatenate(parts), tools)
 
 
 def rows_of_run(run: Run) -> PathRows:

@@ -31,7 +31,8 @@ def post_placed(
     machine
         As ``trunnion.place`` had it.
     output, settings, sheet, observer
-        As ``trunnion.post`` takes them; the setting ``zero`` is that of the place.
+        As ``trunnion.post`` takes them; the setting ``zero`` is that of the place, and ``tool_length`` by default that
+        of the placement.
 
     Returns
     -------
@@ -57,6 +58,8 @@ def post_placed(
     if found.best is None or not found.fits:
         raise InputError(Problem(found.files[0], 0, "the part fits nowhere", "see what limits it", code="PLC150"))
     texts = as_texts(settings)
+    if found.tool_length_mm is not None:
+        texts.setdefault("tool_length", str(found.tool_length_mm))
     best = found.best
     return post_beside(
         found.toolpaths, (),

@@ -46,7 +46,7 @@ def placed_setup(project: Path, name: str | None = None) -> PlacedSetup:
     if is_turned(*angles) and settings.pop("zero", None) is not None:
         what = f"its zero is that of the part {Clamping(*angles)}, and it is placed as drawn: it has no present zero"
         cure = "give the zero too, if there is one for the part as it is drawn"
-        problems.append(Problem(str(project), 0, what, cure, Severity.WARNING, code="PLC290"))
+        problems.append(Problem(str(project), 0, what, cure, Severity.WARNING, code="PLC330"))
     return PlacedSetup(setup.cl, setup.machine, settings, tuple(project_inputs(loaded)), tuple(problems))
 
 

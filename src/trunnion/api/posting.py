@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 
 from trunnion.api import kernels
 from trunnion.api.arguments import check_observer, check_paths
-from trunnion.api.builders_words import builders_words, stated_words
 from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.forcing import Proof, Untold, write_forced
 from trunnion.api.hook_files import load_hooks
@@ -29,6 +28,7 @@ from trunnion.api.placed_heads import placed_notices
 from trunnion.api.planning import load_toolpaths, new_problems, plan_program
 from trunnion.api.post_result import PostResult, ProofFailedError
 from trunnion.api.program_places import ProgramPlaces
+from trunnion.api.program_warnings import program_warnings, stated_words
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.api.reports import write_refusal
 from trunnion.api.settings import Settings
@@ -286,7 +286,7 @@ def post_toolpaths(
             observer.problems(simulated.remarks)
         problems += [remark for remark in simulated.remarks if remark.severity is Severity.WARNING]
     if verification is not None:
-        words = builders_words(verification.run, stated_words(job.control, {**job.control.settings, **job.settings}))
+        words = program_warnings(verification.run, stated_words(job.control, {**job.control.settings, **job.settings}))
         problems += words
         observer.problems(words)
         observer.verified(verification)

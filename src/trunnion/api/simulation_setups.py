@@ -131,10 +131,10 @@ def prepare_setup(
     readers.reader_of(machine)
     machine = set_up_machine(machine, given.zero, given.tool_length)
     angles = checked_angles(given.turn, given.tilt)
-    part = None if given.part is None else _mesh(given.part, "part", remarks, deviation)
+    part = None if given.part is None else read_mesh(given.part, "part", remarks, deviation)
     around = listed("fixtures", given.fixtures, TriangleMesh)
-    named = zip(around, _fixture_names(around), strict=True)
-    fixtures = tuple(_mesh(fixture, name, remarks, deviation) for fixture, name in named)
+    named = zip(around, fixture_names(around), strict=True)
+    fixtures = tuple(read_mesh(fixture, name, remarks, deviation) for fixture, name in named)
     programs: list[FilePath | Run] = listed("nc", given.programs, Run)
     if not programs:
         raise wrong_argument("nc", given.programs, "give an NC program")
@@ -148,7 +148,7 @@ def prepare_setup(
     toolpaths = as_toolpaths(given.cl, None, False, observer)
     if not given.cl_is_turned:
         toolpaths = toolpaths_clamped(toolpaths, *angles)
-    tools = _tools(runs, given.tools, _libraries(given.libraries, given.unit), toolpaths)
+    tools = _tools(runs, given.tools, tool_libraries(given.libraries, given.unit), toolpaths)
     if given.work_offset is not None:
         remarks += _other_offsets(runs, given.work_offset, machine)
     return PreparedSetup(given, machine, runs, tools, part, fixtures, toolpaths, angles)
@@ -192,14 +192,17 @@ def cutting_width(tool: ToolShape) -> float:
     return 2.0 * max((radius for radius, _ in points), default=float("inf"))
 
 
-def _mesh(mesh: str | Path | TriangleMesh, name: str, remarks: list[Problem], deviation: float) -> TriangleMesh:
+def read_mesh(
+    mesh: str | Path | TriangleMesh, name: str, remarks: list[Problem], deviation: float = DEVIATION
+) -> TriangleMesh:
+    """A mesh as it is given, or of a file, with its name; remarks get what is odd about it."""
     if isinstance(mesh, TriangleMesh):
         return mesh.named(name)
     check_path(name, mesh)
     return load_mesh(mesh, name=name, closed=True, deviation=deviation, warn=remarks.append)
 
 
-def _fixture_names(fixtures: Sequence[str | Path | TriangleMesh]) -> list[str]:
+def fixture_names(fixtures: Sequence[str | Path | TriangleMesh]) -> list[str]:
     """What findings call fixtures: by their files, and by their numbers where these are the same or there is none."""
     files = ["" if isinstance(each, TriangleMesh) else Path(each).name for each in fixtures]
     alone = [name and files.count(name) == 1 for name in files]
@@ -209,7 +212,8 @@ def _fixture_names(fixtures: Sequence[str | Path | TriangleMesh]) -> list[str]:
     ]
 
 
-def _libraries(libraries: Sequence[FilePath], unit: str | None) -> list[ToolLibrary]:
+def tool_libraries(libraries: Sequence[FilePath], unit: str | None) -> list[ToolLibrary]:
+    """The tool libraries that are named."""
     if unit is not None:
         check_choice("unit", unit, ("mm", "inch"))
     return [read_tools(path, unit or "") for path in check_paths("libraries", libraries)]

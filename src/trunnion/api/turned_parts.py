@@ -58,7 +58,7 @@ def stated_clamping(toolpaths: Sequence[Toolpath]) -> Clamping | None:
             says = "states nothing of its part" if path.clamping is None else f"states that its part is {own}"
             what = f"{says}, and {first.file} that it is {first.clamping}"
             cure = "one program has one clamping: give CL files of one coordinate system"
-            raise InputError(Problem(path.file, 0, what, cure, code="PLC270"))
+            raise InputError(Problem(path.file, 0, what, cure, code="PLC310"))
     return first.clamping
 
 
@@ -74,7 +74,7 @@ def clamped_after(stated: Clamping | None, angles: tuple[float, float], file: st
     if found is None:
         what = f"states that its part is {stated}, and a tilt of {number(angles[1])} degrees behind a turn is no tilt"
         raise InputError(
-            Problem(file, 0, what, "turn it without a tilt, or tilt the CL file of the part as drawn", code="PLC280")
+            Problem(file, 0, what, "turn it without a tilt, or tilt the CL file of the part as drawn", code="PLC320")
         )
     return found
 

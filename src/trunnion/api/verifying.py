@@ -9,10 +9,10 @@ from typing import Final, Literal
 from trunnion import readers, verification
 from trunnion.api import kernels
 from trunnion.api.arguments import check_choice, check_observer, check_paths, check_whole, wrong_argument
-from trunnion.api.builders_words import builders_words
 from trunnion.api.cl_statements import replace_unknown_statements
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.placed_heads import stated_place, unlike_cl_files, unlike_zero
+from trunnion.api.program_warnings import program_warnings
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.api.recording import as_recording
 from trunnion.api.settings import check_operation_names, check_tolerance, m_code, set_up_machine, work_offset_setting
@@ -187,7 +187,7 @@ def verify(
     defaults = default_settings(loaded)
     toolpaths = as_toolpaths(cl, units, False, observer, dialect)
     run = as_run(nc, loaded, subprograms)
-    observer.problems(builders_words(run))
+    observer.problems(program_warnings(run))
     if len(run.normals):
         from trunnion.cl.surface_normals import with_normals
 

@@ -10,10 +10,12 @@ from trunnion.api.placing import place
 from trunnion.api.placing_data import placement_data
 from trunnion.api.placing_inputs import toolpaths_to_post
 from trunnion.api.placing_post import post_placed
+from trunnion.api.project_file import library_files
 from trunnion.api.reading import FilePath, ToolpathLike, load_machine
 from trunnion.api.settings import as_texts
 from trunnion.arrays import Floats
 from trunnion.cli.cl_files import cl_inputs, named_files
+from trunnion.cli.place_bodies import body_lines, touch_line
 from trunnion.cli.results import as_json, print_result, tell
 from trunnion.cli.terminal import Terminal, output_place
 from trunnion.errors import InputError, Problem, argument_problem
@@ -37,6 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Place a part; 0 if it fits somewhere, else 1."""
     project = _project(arguments)
     read: list[FilePath] = [*named_files(arguments.files), *arguments.subprograms]
+    read += [*arguments.fixtures, *library_files(arguments.libraries)]
     if project is not None:
         read += project.read
         Terminal().problems(project.problems)
@@ -73,8 +76,12 @@ def run(arguments: argparse.Namespace) -> int:
         tool_length=length,
         settings=settings,
         subprograms=arguments.subprograms,
-        stock=arguments.stock,
+        fixtures=arguments.fixtures,
         part=arguments.part,
+        stock=arguments.stock,
+        tools=arguments.tools,
+        libraries=arguments.libraries,
+        unit=arguments.unit,
         observer=Terminal(),
     )
     lines = tell if arguments.apply == "-" else print_result
@@ -122,7 +129,10 @@ def placement_lines(found: Placement) -> Iterator[str]:
         for turn in sorted(found.turns, key=lambda each: abs(each.tilt_deg))[:_MOST]:
             yield f"  {_clamped(turn)}: {turn.obstacle}"
         return
-    if not best.fits:
+    if (touching := touch_line(found)) is not None:
+        yield touching
+        yield f"  the place with the largest margin is {_point(best)}, {_clamped(best)}"
+    elif not best.fits:
         off = f"{-best.margin_mm:.3f} mm too far at the least"
         yield f"{found.machine}: the part fits nowhere: {off}, at {_point(best)}, {_clamped(best)}"
     else:
@@ -136,6 +146,7 @@ def placement_lines(found: Placement) -> Iterator[str]:
         yield f"  {_rotary_use(rotary)}"
     if best.table_mm is not None:
         yield f"  table: {max(best.table_mm, 0.0):.3f} left to its edge"
+    yield from (f"  {line}" for line in body_lines(found))
     if found.limits:
         what = "it is held by" if best.fits else "these conflict:"
         yield f"  {what} {'; '.join(dict.fromkeys(map(_limit, found.limits)))}{_overlap(found)}"
@@ -149,7 +160,7 @@ def placement_lines(found: Placement) -> Iterator[str]:
             else f"; the best place has {abs(gain):.3f} mm {'more' if gain >= 0 else 'less'}"
         )
         yield f"  present zero {_point(present)}: {state}{gained}"
-    if found.goal != "margin" and best.value is not None:
+    if found.goal not in ("margin", "collisions") and best.value is not None:
         now = "" if present is None else f"; at the present zero {_goal_number(found.goal, present)}"
         yield f"  {_value(found.goal, best)}{now}"
     yield f"  {_share(found)}"

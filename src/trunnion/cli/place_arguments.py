@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 #: Goals; listed here, so that a command line is taken apart before anything is imported.
-GOALS = ("margin", "rotary", "slides", "time", "overspeed")
+GOALS = ("margin", "rotary", "slides", "time", "overspeed", "collisions")
 
 
 def degrees(text: str) -> float:
@@ -46,14 +46,14 @@ def add_place(parser: argparse.ArgumentParser, setting: type[argparse.Action], k
     parser.add_argument("--setup", metavar="NAME", help="the set-up of a project with several")
     parser.add_argument(
         "--goal", choices=GOALS, default="margin",
-        help="what the best place is best for: margin to the limits, travel of rotary axes or slides, time, or"
-        " fewest blocks whose feed the axes cannot reach; margin",
+        help="what the best place is best for: margin to the limits, travel of rotary axes or slides, time, fewest"
+        " blocks whose feed the axes cannot reach, or bodies farthest apart; margin",
     )  # fmt: skip
     turns = parser.add_mutually_exclusive_group()
     turns.add_argument(
         "--turns", type=degrees, metavar="DEG",
         help="try the part at every so many degrees about Z, counter-clockwise seen from above (from +Z), and more"
-        " finely around the best; 5, with several tilts 15",
+        " finely around the best; 5, with several tilts or the goal collisions 15",
     )  # fmt: skip
     turns.add_argument(
         "--turn", type=turn, action="append", metavar="DEG", dest="only",
@@ -87,6 +87,19 @@ def add_place(parser: argparse.ArgumentParser, setting: type[argparse.Action], k
         " to stay on the table that the machine's definition states",
     )  # fmt: skip
     parser.add_argument("--part", metavar="MESH", help="the finished part, for which the same holds")
+    parser.add_argument(
+        "--fixture", action="append", default=[], metavar="MESH", dest="fixtures",
+        help="a fixture as the part is drawn, clamped and turned with it; may be repeated",
+    )  # fmt: skip
+    parser.add_argument(
+        "--tool", action="append", default=[], metavar="N=KIND:SIZES", dest="tools",
+        help="a tool, such as 3=ball:10,length=60,flutes=20,shank=12,holder=40x50; may be repeated",
+    )  # fmt: skip
+    parser.add_argument(
+        "--tools", action="append", default=[], metavar="LIBRARY", dest="libraries",
+        help="tool library, as simulate takes it; may be repeated",
+    )  # fmt: skip
+    parser.add_argument("--unit", choices=("mm", "inch"), help="length unit of tool tables, which state none")
     parser.add_argument("--json", metavar="FILE", help="all results as data; - is stdout")
     parser.add_argument("--plot", metavar="FILE.svg", help="the margin over the table and over the turns")
     parser.add_argument(

@@ -30,6 +30,7 @@ class Goal(StrEnum):
     SLIDES = "slides"
     TIME = "time"
     OVERSPEED = "overspeed"
+    COLLISIONS = "collisions"
 
 
 #: Goals whose cost depends on the place at one turn.

@@ -16,11 +16,13 @@ class Stretch:
     first      its first row
     file       that its lines are of
     operation  empty: it has no name
+    tool       that CL files load for it; empty: none, or the rows say it
     """
 
     first: int
     file: str
     operation: str = ""
+    tool: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

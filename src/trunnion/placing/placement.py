@@ -66,6 +66,27 @@ class RotaryUse:
 
 
 @dataclass(frozen=True, slots=True)
+class BodyDistance:
+    """Two bodies where they are nearest to each other.
+
+    distance_mm  0: they touch
+    between      their names
+    line         of ``file``, a CL file or an NC program; ``operation`` is empty where it has no name
+    """
+
+    distance_mm: float
+    between: tuple[str, str]
+    file: str
+    line: int
+    operation: str = ""
+
+    @property
+    def touches(self) -> bool:
+        """Whether the bodies touch."""
+        return self.distance_mm <= 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Place:
     """A place of the part, and what it leaves the slides.
 
@@ -79,6 +100,8 @@ class Place:
     planned_s  with the goal ``time``: seconds of the rows by the planner of speeds, with accelerations and jerks
     table_mm   what stock and part, seen from above, have left to the edge of the table; negative beyond it; None: not
                judged
+    nearest    of bodies whose distance the place or the turn changes the two that come nearest to each other; None:
+               none were given
     """
 
     zero_mm: Vector
@@ -90,6 +113,7 @@ class Place:
     rotary: tuple[RotaryUse, ...] = ()
     planned_s: float | None = None
     table_mm: float | None = None
+    nearest: BodyDistance | None = None
 
     @property
     def fits(self) -> bool:
@@ -139,6 +163,9 @@ class Placement:
     problems  warnings
     toolpaths  of CL files; empty for NC programs
     clamping  how the part is clamped, as the files state; turns and tilts come after that. None: they state nothing
+    tool_length_mm    of the tool that slides keep their limits with; None: it is not known
+    nearest_anywhere  of bodies whose distance no place and no turn changes, such as tool and fixture, the nearest two
+    most_distance_mm  with the goal ``collisions``: at no turn that was tried a place keeps the others farther apart
     """
 
     machine: str
@@ -152,6 +179,9 @@ class Placement:
     problems: tuple[Problem, ...] = ()
     toolpaths: tuple[Toolpath, ...] = ()
     clamping: Clamping | None = None
+    tool_length_mm: float | None = None
+    nearest_anywhere: BodyDistance | None = None
+    most_distance_mm: float | None = None
     _find_region: Callable[[], Region | None] = field(default=lambda: None, repr=False)
     _margin_at: Callable[[Floats, float, float], float] = field(default=lambda *_: np.nan, repr=False)
 
@@ -162,8 +192,25 @@ class Placement:
 
     @property
     def fits(self) -> bool:
-        """Whether the part fits somewhere."""
-        return self.best is not None and self.best.fits
+        """Whether the part fits somewhere, with the goal ``collisions`` so that nothing touches."""
+        return self.best is not None and self.best.fits and not (self.goal == "collisions" and self.touching)
+
+    @property
+    def nearest(self) -> BodyDistance | None:
+        """At the best place the two bodies that come nearest to each other; None: none were given."""
+        own = None if self.best is None else self.best.nearest
+        found = [each for each in (own, self.nearest_anywhere) if each is not None]
+        return min(found, key=lambda each: each.distance_mm, default=None)
+
+    @property
+    def distance_mm(self) -> float | None:
+        """How far they are apart."""
+        return None if self.nearest is None else self.nearest.distance_mm
+
+    @property
+    def touching(self) -> BodyDistance | None:
+        """Two bodies that touch at the best place; None: none do."""
+        return self.nearest if self.nearest is not None and self.nearest.touches else None
 
     @property
     def zero_mm(self) -> Vector | None:

@@ -1,6 +1,6 @@
 """A plan as the rows of a path."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -9,14 +9,14 @@ from trunnion.arrays import Codes, Floats, Ints
 from trunnion.machines import Machine, inverse
 from trunnion.model.arc_extremes import operation_arcs
 from trunnion.model.motion import MachiningMode, Motion
-from trunnion.model.toolpath import Kind
+from trunnion.model.toolpath import Kind, LoadTool
 from trunnion.placing.path_rows import PathRows, Stretch, joined_rows, no_arcs
 from trunnion.planning.holes.hole_ends import hole_ends
 
 
 def rows_of_plan(machine: Machine, motions: Sequence[Motion]) -> PathRows:
     """The rows of all motions; of holes that are cycles also their bottoms, and where the tool leaves them."""
-    parts = [_rows_of_motion(machine, motion) for motion in motions]
+    parts = [_rows_of_motion(machine, motion, tool) for motion, tool in zip(motions, _tools(motions), strict=True)]
     home = machine.home[list(machine.rotary)][None]
     rows = joined_rows([replace(part, start=home) for part in parts])
     rows.straight[rows.begins] = False  # the tool comes from elsewhere
@@ -26,7 +26,17 @@ def rows_of_plan(machine: Machine, motions: Sequence[Motion]) -> PathRows:
     return replace(rows, stretches=stretches, start=rows.start[begins])
 
 
-def _rows_of_motion(machine: Machine, motion: Motion) -> PathRows:
+def _tools(motions: Sequence[Motion]) -> Iterator[str]:
+    """The number of the tool in the spindle in each motion; empty: none was loaded."""
+    number = ""
+    for motion in motions:
+        for event in motion.operation.events:
+            if isinstance(event, LoadTool):
+                number = str(event.number)
+        yield number
+
+
+def _rows_of_motion(machine: Machine, motion: Motion, tool: str) -> PathRows:
     operation, moves = motion.operation, motion.operation.moves
     seconds = np.zeros(len(moves))
     way = np.linalg.norm(np.diff(moves.tip, axis=0), axis=1)
@@ -35,7 +45,7 @@ def _rows_of_motion(machine: Machine, motion: Motion) -> PathRows:
     tcp = motion.mode is not MachiningMode.WITHOUT_TCP
     rows = PathRows(
         moves.tip, moves.axis, branches(machine, moves.tip, moves.axis, motion.rotary), moves.line.astype(np.int64),
-        np.full(len(moves), tcp), seconds, (Stretch(0, operation.file, operation.name),), motion.rotary[:1],
+        np.full(len(moves), tcp), seconds, (Stretch(0, operation.file, operation.name, tool),), motion.rotary[:1],
         operation_arcs(operation) if len(operation.arcs.row) else no_arcs(), operation.arcs.row,
     )  # fmt: skip
     holes, ends = hole_ends(operation)

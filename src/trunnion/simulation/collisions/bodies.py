@@ -131,17 +131,23 @@ def tool_bodies(shape: ToolShape, machine: Machine, name: str, length: float) ->
     length
         From the tip to the gauge point, mm.
     """
-    axis = np.array(machine.spindle_direction)
-    pose = np.eye(4)
-    pose[:3, :3] = _turned_to(axis)
-    pose[:3, 3] = np.array(machine.spindle_point) - length * axis
+    axis, pose = np.array(machine.spindle_direction), tool_pose(machine, length)
     bodies = []
     for section in shape.sections:
         kind = BodyKind(section.role)
         called = f"{section.name or section.role} of {shape.name or name}"
-        mesh = revolved_mesh(_section_outline(section), called).moved(pose)
+        mesh = revolved_mesh(section_outline(section), called).moved(pose)
         bodies.append(Body(called, SPINDLE, mesh, kind, name, np.stack((pose[:3, 3], axis))))
     return tuple(bodies)
+
+
+def tool_pose(machine: Machine, length: float) -> Floats:
+    """Return the map (4, 4) from the frame of a tool, its tip at the origin, to the machine frame with axes at zero."""
+    axis = np.array(machine.spindle_direction)
+    pose = np.eye(4)
+    pose[:3, :3] = _turned_to(axis)
+    pose[:3, 3] = np.array(machine.spindle_point) - length * axis
+    return pose
 
 
 def _on_workpiece(mesh: TriangleMesh, machine: Machine) -> TriangleMesh:
@@ -196,8 +202,8 @@ def _turned_to(direction: Floats) -> Floats:
     return np.stack((x, np.cross(direction, x), direction), axis=1)
 
 
-def _section_outline(section: Section) -> Floats:
-    """Radii and heights of a section, (k, 2), from the axis back to the axis, nowhere inside of the section."""
+def section_outline(section: Section) -> Floats:
+    """Return radii and heights of a section, (k, 2), from the axis back to the axis, nowhere inside of the section."""
     points = [section.outline[0].start]
     for element in section.outline:
         points += _chords(element)

@@ -11,7 +11,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats, Floats2, Ints
-from trunnion.jit import kernel
+from trunnion.jit import inner, kernel
 from trunnion.machines import Machine
 from trunnion.machines.links import LinkChain, axes_between, is_nearer_the_tool
 
@@ -64,6 +64,12 @@ def relative_pose(chain: LinkChain, columns: Ints, senses: Floats, joints: Float
 
     Both frames are the machine frame with all axes at zero, carried along; columns and senses as in ``motion_bounds``.
     """
+    write_relative_pose(chain, columns, senses, joints, pose)
+
+
+@inner
+def write_relative_pose(chain: LinkChain, columns: Ints, senses: Floats, joints: Floats, pose: Floats2) -> None:
+    """Do what ``relative_pose`` does, for kernels."""
     for i in range(4):
         for j in range(4):
             pose[i, j] = 1.0 if i == j else 0.0

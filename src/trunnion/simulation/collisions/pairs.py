@@ -33,9 +33,7 @@ def body_pairs(machine: Machine, bodies: Sequence[Body]) -> BodyPairs:
     home = {link: poses[0] for link, poses in link_transforms(machine, machine.home[None]).items()}
     for i, j in combinations(range(len(bodies)), 2):
         one, other = bodies[i], bodies[j]
-        if not axes_between(machine, one.link, other.link) or _never_meet(one, other):
-            continue
-        if _is_apart_unknown(machine, one, other):
+        if not may_meet(machine, one, other):
             continue
         if _on_one_side(machine, one, other):
             for k in (i, j):
@@ -46,6 +44,13 @@ def body_pairs(machine: Machine, bodies: Sequence[Body]) -> BodyPairs:
                 continue
         checked.append((i, j))
     return BodyPairs(tuple(checked), tuple(left_out))
+
+
+def may_meet(machine: Machine, one: Body, other: Body) -> bool:
+    """Return whether two bodies move against each other, must not touch, and stand where the definition says."""
+    if not axes_between(machine, one.link, other.link) or _never_meet(one, other):
+        return False
+    return not _is_apart_unknown(machine, one, other)
 
 
 def _never_meet(one: Body, other: Body) -> bool:
@@ -65,11 +70,11 @@ def _is_apart_unknown(machine: Machine, one: Body, other: Body) -> bool:
 
 
 def _on_one_side(machine: Machine, one: Body, other: Body) -> bool:
-    sides = {_side(machine, one.link), _side(machine, other.link)}
+    sides = {side_of(machine, one.link), side_of(machine, other.link)}
     return len(sides - {None}) < 2
 
 
-def _side(machine: Machine, link: str) -> Mount | None:
-    """The side of a link; None for the bed, which is on both."""
+def side_of(machine: Machine, link: str) -> Mount | None:
+    """Return the side of a link; None for the bed, which is on both."""
     name = carrier(machine, link)
     return None if name == BED else machine.axis(name).mount

@@ -1,0 +1,144 @@
+"""The bodies that a part is placed among: those of the machine, tools, and what is clamped with the part."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal, TypeAlias
+
+from trunnion.api.placing_inputs import PlacedInput
+from trunnion.api.reading import FilePath
+from trunnion.api.simulation_result import NO_CALL
+from trunnion.api.simulation_setups import fixture_names, listed, read_mesh, tool_libraries
+from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.machines import Machine
+from trunnion.placing.collisions.best_clearance import Guard
+from trunnion.placing.collisions.guarded_pairs import (
+    Guarded,
+    guarded_machine,
+    guarded_on_part,
+    guarded_pairs,
+    guarded_tool,
+)
+from trunnion.simulation.collisions import BodyKind, machine_bodies
+from trunnion.simulation.meshes import TriangleMesh, box_mesh, cylinder_mesh
+from trunnion.simulation.stock.solids import StockShape, stock_shape
+from trunnion.simulation.tools.choice import choose_tools, tools_of_toolpaths
+from trunnion.simulation.tools.profile import ToolShape
+from trunnion.simulation.tools.text import parse_tool
+
+MeshLike: TypeAlias = str | Path | TriangleMesh
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BodiesInput:
+    """Bodies as ``trunnion.place`` takes them."""
+
+    fixtures: MeshLike | Iterable[MeshLike] = ()
+    part: MeshLike | None = None
+    stock: MeshLike | None = None
+    tools: str | ToolShape | Iterable[str | ToolShape] = ()
+    libraries: Sequence[FilePath] = ()
+    unit: Literal["mm", "inch"] | None = None
+
+    @property
+    def are_given(self) -> bool:
+        """Whether there are any but stock and part, which are asked for the table, too."""
+        several = (self.fixtures, self.tools, self.libraries)
+        return any(not isinstance(each, tuple | list) or len(each) > 0 for each in several)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlacedBodies:
+    """What was read: the pairs that are kept apart, the machine with the length of its longest tool, and warnings."""
+
+    guard: Guard
+    machine: Machine
+    problems: tuple[Problem, ...]
+
+
+def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine) -> PlacedBodies:
+    """Read the bodies that a path is placed among.
+
+    Raises
+    ------
+    InputError
+        If a mesh or a tool cannot be used, or the length of a tool is not known and bodies of the machine are to be
+        kept apart.
+    """
+    problems: list[Problem] = []
+    carried = list(_carried(given, problems))
+    bodies = guarded_machine(machine_bodies(machine, problems.append))
+    tools = _tools(given, placed, problems)
+    lengths = _lengths(placed, tools, machine, is_asked=bool(bodies))
+    for number, shape in tools.items():
+        bodies += guarded_tool(shape, machine, placed.tools[number] or NO_CALL, lengths.get(number, 0.0), number)
+    pairs = guarded_pairs(machine, [*bodies, *carried])
+    if not pairs:
+        what = f"{machine.key} and the arguments have no two bodies that could meet"
+        cure = "state bodies of the machine ([[body]]), or give fixtures, part, stock and tools"
+        raise InputError(argument_problem("goal", what, cure, code="PLC190"))
+    guard = Guard(tuple(pairs), placed.tool, lengths)
+    if not guard.is_changed:
+        what = "no place and no turn changes how far the tool is from what is clamped with the part"
+        cure = "state the bodies of the machine ([[body]]) to have them kept apart"
+        problems.append(argument_problem("goal", what, cure, Severity.WARNING, code="PLC270"))
+    if machine.tool_length is None and lengths:
+        machine = replace(machine, tool_length=max(lengths.values()))
+    return PlacedBodies(guard, machine, tuple(dict.fromkeys(problems)))
+
+
+def _carried(given: BodiesInput, problems: list[Problem]) -> Iterable[Guarded]:
+    """What is clamped with the part."""
+    fixtures: list[MeshLike] = listed("fixtures", given.fixtures, TriangleMesh)
+    for fixture, name in zip(fixtures, fixture_names(fixtures), strict=True):
+        yield guarded_on_part(read_mesh(fixture, name, problems), BodyKind.FIXTURE)
+    if given.part is not None:
+        yield guarded_on_part(read_mesh(given.part, "part", problems), BodyKind.PART)
+    if given.stock is not None:
+        mesh = _solid_of(stock_shape(given.stock, problems.append)).named("stock")
+        yield guarded_on_part(mesh, BodyKind.PART, is_stock=True)
+
+
+def _solid_of(shape: StockShape) -> TriangleMesh:
+    if shape.mesh is not None:
+        return shape.mesh
+    if shape.is_cylinder:
+        return cylinder_mesh(float(shape.high[0] - shape.low[0]), float(shape.low[2]), float(shape.high[2]))
+    return box_mesh(shape.low, shape.high)
+
+
+def _tools(given: BodiesInput, placed: PlacedInput, problems: list[Problem]) -> dict[int, ToolShape]:
+    """The bodies of the tools that are called, by their number in ``placed.tools``; one without a form is told."""
+    read = tool_libraries(given.libraries, given.unit)
+    diameters = {number: wide for library in reversed(read) for number, wide in library.diameters.items()}
+    texts = listed("tools", given.tools, ToolShape)
+    stated = [tool if isinstance(tool, ToolShape) else parse_tool(tool, diameters) for tool in texts]
+    cl_tools = tools_of_toolpaths(placed.toolpaths)
+    found: dict[int, ToolShape] = {}
+    for number in placed.used_tools:
+        called = placed.tools[number] or NO_CALL
+        try:
+            found[number] = choose_tools([called], stated, read, cl_tools)[called]
+        except InputError as error:
+            if placed.tools[number] and (stated or read):
+                raise
+            first = error.problems[0]
+            what = f"tool {called} is not kept apart from anything: {first.what}"
+            problems.append(Problem(first.file, first.line, what, first.cure, Severity.WARNING, code="PLC280"))
+    return found
+
+
+def _lengths(
+    placed: PlacedInput, tools: Mapping[int, ToolShape], machine: Machine, *, is_asked: bool
+) -> dict[int, float]:
+    """Lengths of the tools, gauge point to tip, mm, by their number; those that nobody states are left out."""
+    lengths = {}
+    for number in placed.used_tools:
+        length = (tools[number].length if number in tools else 0.0) or machine.tool_length
+        if length:
+            lengths[number] = length
+        elif is_asked:
+            what = f"the length of tool {placed.tools[number] or NO_CALL} is not known, from its tip to the gauge point"
+            cure = "give it: the bodies of the machine stand so far above the part"
+            raise InputError(argument_problem("tool_length", what, cure, code="SIM310"))
+    return lengths

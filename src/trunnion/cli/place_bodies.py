@@ -1,0 +1,40 @@
+"""What ``trunnion place`` says of bodies."""
+
+from collections.abc import Iterator
+
+from trunnion.placing.placement import BodyDistance, Placement
+
+
+def body_lines(found: Placement) -> Iterator[str]:
+    """How far bodies are apart at the best place, at the present one, and wherever the part sits."""
+    best, present = found.best, found.present
+    if best is not None and best.nearest is not None:
+        now = "" if present is None or present.nearest is None else f"; at the present zero {_apart(present.nearest)}"
+        yield f"nearest to each other: {_apart(best.nearest)}{now}{_gain(found)}"
+    if found.most_distance_mm is not None and not found.touching:
+        yield f"no place at the turns that were tried keeps bodies farther apart than {found.most_distance_mm:.3f} mm"
+    if found.nearest_anywhere is not None:
+        yield f"wherever the part sits: {_apart(found.nearest_anywhere)}"
+
+
+def touch_line(found: Placement) -> str | None:
+    """What is said first where bodies touch everywhere; None where they do not."""
+    if found.goal != "collisions" or found.touching is None:
+        return None
+    return f"{found.machine}: bodies touch wherever the part sits: {_apart(found.touching)}"
+
+
+def _apart(nearest: BodyDistance) -> str:
+    """Two bodies in words."""
+    one, other = nearest.between
+    apart = "touch" if nearest.touches else f"are {nearest.distance_mm:.3f} mm apart"
+    return f"{one} and {other} {apart} ({nearest.file}:{nearest.line})"
+
+
+def _gain(found: Placement) -> str:
+    """How much farther apart bodies are at the best place than at the present one."""
+    best, present = found.best, found.present
+    if best is None or present is None or best.nearest is None or present.nearest is None:
+        return ""
+    gain = best.nearest.distance_mm - present.nearest.distance_mm
+    return f"; the best place has {abs(gain):.3f} mm {'more' if gain >= 0.0 else 'less'}"
