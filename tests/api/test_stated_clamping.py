@@ -1,7 +1,9 @@
 """CL files that state how their part is clamped: posted, placed, verified, simulated and written again."""
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any, Final
 
 import pytest
 
@@ -13,7 +15,7 @@ from trunnion.cli import main
 from trunnion.errors import Problem
 from trunnion.model.clamping import Clamping
 
-SETTINGS = {"zero": (10.0, -5.0, -60.0), "tool_length": 120.0}
+SETTINGS: Final[Any] = {"zero": (10.0, -5.0, -60.0), "tool_length": 120.0}
 POINTS = [(0, 0, 10, 0.62, 0.1), (5, 2, 9, 0.63, 0.12), (10, 4, 8, 0.65, 0.15), (15, 5, 8, 0.66, 0.2)]
 
 
@@ -21,7 +23,7 @@ class Heard(Observer):
     def __init__(self) -> None:
         self.codes: list[str] = []
 
-    def problems(self, problems: "list[Problem]") -> None:  # type: ignore[override]
+    def problems(self, problems: Sequence[Problem]) -> None:
         self.codes += [each.code for each in problems]
 
 
@@ -51,11 +53,12 @@ def test_a_post_states_what_the_cl_file_states_and_the_turn_behind_it(folder: Pa
     result = trunnion.post(folder / "c.cls", machine="yl569", output=turned, turn=15.0, settings=SETTINGS)
     assert stated_place(turned).clamping == Clamping(45.0, 20.0)
     assert [path.clamping for path in result.toolpaths] == [Clamping(45.0, 20.0)]
-    for cl, angles, codes in (
+    cases: list[tuple[str, dict[str, Any], list[str]]] = [
         ("c.cls", {"turn": 15.0}, []),
         ("five.cls", {"turn": 45.0, "tilt": 20.0}, []),
         ("c.cls", {}, ["PLC220"]),
-    ):
+    ]
+    for cl, angles, codes in cases:
         heard = Heard()
         found = trunnion.verify(turned, machine="yl569", cl=folder / cl, observer=heard, tolerance=0.002, **angles)
         assert [code for code in heard.codes if code.startswith("PLC")] == codes
@@ -133,12 +136,12 @@ def test_a_text_of_an_operation_is_no_notice(folder: Path, tmp_path: Path) -> No
 def test_a_simulation_turns_the_bodies_as_the_program_says_and_the_cl_file_by_the_rest(
     folder: Path, tmp_path: Path
 ) -> None:
-    bodies = {"stock": "box:40,20,10,-10,-5,0", "tools": ["2=ball:8,length=80,flutes=40"], "cell": 1.0}
+    bodies: dict[str, Any] = {"stock": "box:40,20,3,-10,-5,6", "tools": ["2=ball:8,length=80,flutes=70"], "cell": 1.0}
     drawn = trunnion.post(
-        folder / "five.cls", machine="yl569", turn=45.0, tilt=20.0, settings=SETTINGS, simulation=bodies
+        folder / "five.cls", machine="yl569", turn=45.0, tilt=20.0, settings=SETTINGS, simulation=bodies, force=True
     ).simulation
     stated = trunnion.post(
-        folder / "c.cls", machine="yl569", turn=15.0, settings=SETTINGS, simulation=bodies
+        folder / "c.cls", machine="yl569", turn=15.0, settings=SETTINGS, simulation=bodies, force=True
     ).simulation
     assert drawn is not None
     assert stated is not None
@@ -147,20 +150,21 @@ def test_a_simulation_turns_the_bodies_as_the_program_says_and_the_cl_file_by_th
     assert stated.removed == pytest.approx(drawn.removed, rel=1e-3)
     project = tmp_path / "part.toml"
     project.write_text(
-        '[simulation]\nmachine = "yl569"\nstock = "box:40,20,10,-10,-5,0"\nprograms = ["q.mpf"]\n'
-        'tools = ["2=ball:8,length=80,flutes=40"]\nturn_deg = -315\ntilt_deg = 20\ncell_mm = 1\n'
+        '[simulation]\nmachine = "yl569"\nstock = "box:40,20,3,-10,-5,6"\nprograms = ["q.mpf"]\n'
+        'tools = ["2=ball:8,length=80,flutes=70"]\nturn_deg = -315\ntilt_deg = 20\ncell_mm = 1\n'
     )
     again = trunnion.post(
-        folder / "c.cls", machine="yl569", turn=15.0, settings=SETTINGS, simulation={"project": project}
+        folder / "c.cls", machine="yl569", turn=15.0, settings=SETTINGS, simulation={"project": project}, force=True
     )
-    assert again.passed is not None  # -315 degrees are 45
+    assert again.simulation is not None
+    assert again.simulation.removed == pytest.approx(drawn.removed, rel=1e-3)  # -315 degrees are 45
     with pytest.raises(trunnion.InputError, match="SIM113"):
-        trunnion.post(folder / "c.cls", machine="yl569", settings=SETTINGS, simulation={"project": project})
+        trunnion.post(folder / "c.cls", machine="yl569", settings=SETTINGS, simulation={"project": project}, force=True)
 
 
 def test_angles_count_in_thousandths(folder: Path, tmp_path: Path) -> None:
     program, heard = tmp_path / "fine.mpf", Heard()
-    angles = {"turn": 45.12345, "tilt": 20.00049}
+    angles: dict[str, Any] = {"turn": 45.12345, "tilt": 20.00049}
     trunnion.post(folder / "five.cls", machine="yl569", output=program, **angles)
     assert stated_place(program).clamping == Clamping(45.123, 20.0)
     for told in (angles, {"turn": 45.123, "tilt": 20.0}):
@@ -207,7 +211,7 @@ def test_a_view_with_bodies_warns(folder: Path, tmp_path: Path) -> None:
         heard, plain = Heard(), Heard()
         trunnion.write_view(folder / file, machine="yl569", output=tmp_path / "v.html", observer=plain)
         assert "PAG116" not in plain.codes
-        body = {"stock": "box:40,20,10,-10,-5,0", "tools": ["2=ball:8,length=80,flutes=40"], "cell": 4.0}
+        body: dict[str, Any] = {"stock": "box:40,20,3,-10,-5,6", "tools": ["2=ball:8,length=80,flutes=70"], "cell": 4.0}
         trunnion.write_view(folder / file, machine="yl569", output=tmp_path / "v.html", observer=heard, **body)
         assert "PAG116" in heard.codes
 

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from trunnion.arrays import Floats
 from trunnion.controls import load_control
 from trunnion.machines import load_machine
 from trunnion.model.clamping import Clamping, StatedPlace, clamped_notices, head_comments, read_place, zero_notices
@@ -91,7 +92,7 @@ def test_a_damaged_zero_leaves_the_clamping() -> None:
 )  # fmt: skip
 def test_no_letter_of_a_notice_may_be_another_one(text: str, place: int, letter: str) -> None:
     place %= len(text)
-    if place < 13 or text[place] == letter or text[place].isdigit() or text[place] in " .-":
+    if place < 14 or text[place] == letter or text[place].isdigit() or text[place] in " .-":
         return
     found = stated(text[:place] + letter + text[place + 1 :])
     assert len(found.faults) == 1
@@ -103,9 +104,9 @@ def test_no_letter_of_a_notice_may_be_another_one(text: str, place: int, letter:
 def test_one_clamping_behind_another_is_the_product_of_both(
     first: tuple[float, float], turn: float, tilt: float
 ) -> None:
-    def matrix(turn: float, tilt: float) -> np.ndarray:
+    def matrix(turn: float, tilt: float) -> Floats:
         (c, s), (a, b) = ((math.cos(math.radians(each)), math.sin(math.radians(each))) for each in (turn, tilt))
-        return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ np.array([[1, 0, 0], [0, a, -b], [0, b, a]])
+        return np.asarray(np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]) @ np.array([[1, 0, 0], [0, a, -b], [0, b, a]]))
 
     for start, more in ((first, (turn, 0.0)), ((0.0, first[1]), (turn, tilt)), ((360.0, first[1]), (turn, tilt))):
         found = Clamping(*start).then(*more)

@@ -21,7 +21,7 @@ LENGTH_NOTICE: Final = "ZERO FOR TOOL LENGTH"
 PLACED_NOTICES: Final = (TURNED_NOTICE, TILTED_NOTICE, DRAWN_NOTICE, ZERO_NOTICE, LENGTH_NOTICE)
 
 #: What damaged ones still begin with.
-_BEGINNINGS: Final = (TURNED_NOTICE, TILTED_NOTICE, "PART CLAMPED", "WORKPIECE ZERO", LENGTH_NOTICE)
+_BEGINNINGS: Final = (TURNED_NOTICE, TILTED_NOTICE, "PART CLAMPED", "WORKPIECE ZERO", "ZERO FOR TOOL")
 
 #: Angles and lengths that differ by less are the same: they are printed in thousandths.
 SAME: Final = 2e-3
