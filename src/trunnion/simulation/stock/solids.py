@@ -8,7 +8,7 @@ Units:  mm, workpiece frame. A box is given by its sizes and its lowest corner, 
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -148,11 +148,15 @@ def check_cell(shape: StockShape, cell: float) -> None:
         )
 
 
-def make_stock(shape: StockShape, cell: float) -> Stock:
-    """Return the material of a solid in cells of at most ``cell`` mm, or in those that it has already."""
+def make_stock(shape: StockShape, cell: float, only: Callable[[Lattice], Iterable[int]] | None = None) -> Stock:
+    """Return the material of a solid in cells of at most ``cell`` mm, or in those that it has already.
+
+    ``only`` says which tiles of the lattice are wanted, by their numbers.
+    """
     if shape.kept is not None:
-        return Stock.of_spans(*shape.kept)
-    check_cell(shape, cell)
-    lattice = Lattice.of_box(shape.low, shape.high, cell)
-    spans = shape.spans(lattice, 0), shape.spans(lattice, 1), shape.spans(lattice, 2)
-    return Stock.of_spans(lattice, spans)
+        lattice, spans = shape.kept
+    else:
+        check_cell(shape, cell)
+        lattice = Lattice.of_box(shape.low, shape.high, cell)
+        spans = shape.spans(lattice, 0), shape.spans(lattice, 1), shape.spans(lattice, 2)
+    return Stock.of_spans(lattice, spans, None if only is None else only(lattice))
