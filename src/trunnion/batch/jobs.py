@@ -30,6 +30,9 @@ from trunnion.machines import Machine
 #: Files that a folder may have, all and those of a batch: a record of each is held while it runs.
 MOST_FILES: Final = 1_000_000
 
+#: Tasks among which one simulation may be divided.
+MOST_TILES: Final = 1000
+
 #: Extensions of CL files.
 CL_EXTENSIONS: Final = (".cls", ".clsf", ".cl", ".clt", ".ncl", ".apt", ".aptsource", ".cldata")
 
@@ -51,6 +54,7 @@ class Job:
     output     folder of the results, within those of the batch; empty: these themselves
     extension  of a result
     report     of what form: ``html``, ``json``, or empty
+    tiles      tasks among which the tiles of a simulation are divided; 1: it is one task
     """
 
     name: str
@@ -62,6 +66,12 @@ class Job:
     output: str = ""
     extension: str = ""
     report: str = ""
+    tiles: int = 1
+
+    @property
+    def tasks(self) -> int:
+        """Tasks of each file: its shares, and what joins them."""
+        return self.tiles + 1 if self.tiles > 1 else 1
 
 
 @dataclass(frozen=True, slots=True)
