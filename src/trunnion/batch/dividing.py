@@ -55,7 +55,7 @@ class Divisions:
     def divide(
         self, assignment: Assignment, task: Task, count: int, digests: Mapping[str, str]
     ) -> tuple[int, Iterator[tuple[Assignment, Task]]]:
-        """How many shares of a file are there, and the tasks of the others; ``digests`` are those of all that it reads."""
+        """How many shares of a file are there, and the tasks of the others; ``digests`` are of all that it reads."""
         record = assignment.record
         keys = [key_of(task.program, _said(task, number, count), digests) for number in range(count)]
         names = [f"{_start(record)}{key[:32]}.zip" for key in keys]

@@ -12,6 +12,8 @@ after another. Reading it runs no code, and its checksums tell whether it is dam
 """
 
 import heapq
+import itertools
+import math
 import zipfile
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -49,11 +51,18 @@ class DamagedShareError(ValueError):
 def tiles_of(share: Share, lattice: Lattice) -> list[int]:
     """The numbers of the tiles of a share, ascending.
 
-    Tiles are dealt out along diagonals of each bundle: neighbours, which the same rows reach, go to different shares.
+    Neighbours, which the same rows reach, go to different shares, and so do the tiles of a line along u or v: a program
+    cuts here or there, and mostly near one side of the rays.
     """
-    corners = tile_corners(lattice)
-    dealt = sorted(range(len(corners)), key=lambda k: (corners[k][0], sum(corners[k][1:]) // TILE_RAYS, corners[k][1]))
-    return sorted(dealt[share.number :: share.of])
+    numbers, before = list[int](), 0
+    for bundle in range(3):
+        along_u, along_v = (math.ceil(rays / TILE_RAYS) for rays in lattice.rays(bundle))
+        step = 1 if share.of <= along_u else next(k for k in itertools.count(along_u) if math.gcd(k, share.of) == 1)
+        for k in range(along_u * along_v):
+            if (k // along_v + step * (k % along_v) + before) % share.of == share.number:
+                numbers.append(before + k)
+        before += along_u * along_v
+    return numbers
 
 
 class ShareWriter:
@@ -105,7 +114,7 @@ class JoinedShares:
     def __init__(self, contents: Sequence[bytes]) -> None:
         try:
             self._archives = [zipfile.ZipFile(BytesIO(content)) for content in contents]
-        except (zipfile.BadZipFile, OSError) as error:
+        except (zipfile.BadZipFile, ValueError, OSError, RuntimeError) as error:
             raise DamagedShareError(str(error)) from None
 
     def chunks(
@@ -150,7 +159,7 @@ def _read(archive: zipfile.ZipFile, name: str, count: int) -> list[NDArray[Any]]
     try:
         content = BytesIO(archive.read(name))
         return [np.lib.format.read_array(content, allow_pickle=False) for _ in range(count)]
-    except (zipfile.BadZipFile, zlib.error, KeyError, ValueError, EOFError, OSError, NotImplementedError) as error:
+    except (zipfile.BadZipFile, zlib.error, KeyError, ValueError, EOFError, OSError, RuntimeError) as error:
         raise DamagedShareError(f"{name}: {error}") from None
 
 
