@@ -87,3 +87,14 @@ def facts(found: trunnion.SimulationResult) -> dict[str, object]:
         "normals": [each.normals.tobytes() for each in spans],
         "design": (cut.left, cut.gouge, cut.lacking, cut.stock.volume),
     }
+
+
+def write_jobs(folder: Path, tiles: int, files: Sequence[str] = ("wall.ngc",), more: str = "") -> Path:
+    """A file of jobs beside the program, which simulates it, or copies of it, in shares."""
+    given = {**GIVEN, "files": list(files), "tools": list(TOOLS), "part": PART, "fixtures": [CLAMP], "report": "json"}
+    names = {"cell": "cell_mm", "near": "near_mm"}
+    lines = [f"{names.get(key, key)} = {json.dumps(value)}" for key, value in given.items()]
+    jobs = folder / f"jobs{tiles}.toml"
+    text = f'results = "out{tiles}"\n[[job]]\naction = "simulate"\ntiles = {tiles}\n'
+    jobs.write_text(text + "\n".join(lines) + f"\n{more}\n", encoding="utf-8")
+    return jobs

@@ -16,7 +16,7 @@ from trunnion.api.input_files import machine_files
 from trunnion.api.job import prepare
 from trunnion.api.project_paths import is_file
 from trunnion.api.reading import as_machine
-from trunnion.batch.argument_checks import beside_fault, check_simulation, check_to_cl
+from trunnion.batch.argument_checks import beside_fault, check_simulation, check_tiles, check_to_cl
 from trunnion.batch.keys import home_of
 from trunnion.batch.left_out import left_out
 from trunnion.batch.patterns import matches
@@ -29,9 +29,6 @@ from trunnion.machines import Machine
 
 #: Files that a folder may have, all and those of a batch: a record of each is held while it runs.
 MOST_FILES: Final = 1_000_000
-
-#: Tasks among which one simulation may be divided.
-MOST_TILES: Final = 1000
 
 #: Extensions of CL files.
 CL_EXTENSIONS: Final = (".cls", ".clsf", ".cl", ".clt", ".ncl", ".apt", ".aptsource", ".cldata")
@@ -161,7 +158,7 @@ def folder_batch(
             if fault := beside_fault(name):
                 cure = 'write a name such as "{folder}/{stem}.cls"'
                 raise InputError(argument_problem(argument, f'"{name[:100]}" {fault}', cure, code="ARG140"))
-    report = str(given.pop("report", ""))
+    report, tiles = str(given.pop("report", "")), check_tiles(action, given.pop("tiles", 1))
     said, shared, extensions = judged(action, given, folder)
     sought = (extensions.read,) if extensions.read else CL_EXTENSIONS
     files = [
@@ -174,7 +171,7 @@ def folder_batch(
         what += next((f"; {why}" for why in reasons if why), "")
         cure = "name them by a pattern of files, such as '**/*.nc'"
         raise InputError(Problem(str(folder), 0, what, cure, code="BAT120"))
-    job = Job(str(action), action, files, said, shared, beside, "", extensions.written, report)
+    job = Job(str(action), action, files, said, shared, beside, "", extensions.written, report, tiles)
     return Batch(folder, [job], home=home_of(folder))
 
 

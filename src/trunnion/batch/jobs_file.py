@@ -11,8 +11,8 @@ from typing import Any, Final, TypeAlias
 
 from trunnion.api.project_paths import ProjectPaths
 from trunnion.api.settings import as_texts
-from trunnion.batch.argument_checks import beside_fault
-from trunnion.batch.jobs import MOST_TILES, Batch, Job, folder_files, judged
+from trunnion.batch.argument_checks import MOST_TILES, beside_fault
+from trunnion.batch.jobs import Batch, Job, folder_files, judged
 from trunnion.batch.keys import home_of
 from trunnion.batch.left_out import left_out
 from trunnion.batch.patterns import matches, pattern_fault
