@@ -2,18 +2,10 @@
 
 import argparse
 
-from trunnion.batch.argument_checks import MOST_TILES
-
 
 def _whole(text: str) -> int:
     if not text.isascii() or not text.isdigit() or not 1 <= int(text[:6]) <= 1024:
         raise argparse.ArgumentTypeError(f"{text!r} is no number of workers; write one from 1 to 1024")
-    return int(text)
-
-
-def _tasks(text: str) -> int:
-    if not text.isascii() or not text.isdigit() or not 1 <= int(text[:6]) <= MOST_TILES:
-        raise argparse.ArgumentTypeError(f"{text!r} is no number of tasks; write one from 1 to {MOST_TILES}")
     return int(text)
 
 
@@ -65,7 +57,5 @@ def add_batch(parser: argparse.ArgumentParser) -> None:
     folder.add_argument(
         "--tool", action="append", default=[], metavar="N=KIND:SIZES", dest="tools", help="simulate: a tool"
     )
-    folder.add_argument(
-        "--tiles", type=_tasks, metavar="N", help="simulate: tasks among which each simulation is divided; one"
-    )
+    folder.add_argument("--tiles", metavar="N", help="simulate: tasks among which each simulation is divided; one")
     folder.add_argument("--report", choices=("html", "json"), help="a report of each file")
