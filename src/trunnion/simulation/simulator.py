@@ -20,7 +20,6 @@ from trunnion.simulation.cutting.shares import JoinedShares, Share, ShareWriter,
 from trunnion.simulation.findings import Finding, air_cuts, gouge_findings, idle_rows, row_findings, spindle_turns
 from trunnion.simulation.near_stock import near_findings, pieces_with_near
 from trunnion.simulation.stock.deviation import Excess, Gouges, lacking_at_start, left_on, missing_from
-from trunnion.simulation.stock.lattice import Lattice
 from trunnion.simulation.stock.material import Stock
 from trunnion.simulation.stock.solids import StockShape, make_stock
 from trunnion.simulation.stock.spans import Spans
@@ -164,8 +163,9 @@ def cut_share(
     Parameters are those of ``simulate``.
     """
     stock = make_stock(setup.stock, setup.cell, lambda lattice: tiles_of(share, lattice))
-    design = None if setup.part is None else _spans(setup.part, stock.lattice)
-    writer = ShareWriter(tiles_of(share, stock.lattice))
+    tiles = tiles_of(share, stock.lattice)
+    design = None if setup.part is None else setup.part.bundles(stock.lattice, tiles)
+    writer = ShareWriter(tiles)
     total, done = sum(job.end for job in jobs), 0
     for number, job in enumerate(jobs):
         for chunk in _measured(setup, jobs, number, stock, design, threads, _shifted(progress, done, total)):
@@ -206,7 +206,7 @@ def _simulate(
     design: tuple[Spans, Spans, Spans] | None = None
     lacking, leaks = None, 0
     if setup.part is not None:
-        design = _spans(setup.part, stock.lattice)
+        design = setup.part.bundles(stock.lattice)
         leaks = sum(spans.leaks for spans in design)
         lacking = lacking_at_start(stock, design, setup.limit)
     start_volume, operations = stock.volume, list[OperationCut]()
@@ -301,10 +301,6 @@ def tool_pieces(job: Job, setup: Setup, near: float = 0.0) -> tuple[dict[int, Re
             found[index], off = pieces_with_near(job.tools[name], near, tolerance)
             error = max(error, off)
     return found, error
-
-
-def _spans(solid: StockShape, lattice: Lattice) -> tuple[Spans, Spans, Spans]:
-    return solid.spans(lattice, 0), solid.spans(lattice, 1), solid.spans(lattice, 2)
 
 
 def _operations(setup: Setup, job: Job, number: int, chunks: Iterable[RowsCut]) -> Iterator[OperationCut]:

@@ -156,14 +156,26 @@ def tile_corners(lattice: Lattice) -> list[tuple[int, int, int]]:
     return corners
 
 
+def rays_of_tiles(lattice: Lattice, bundle: int, numbers: Iterable[int]) -> Ints:
+    """The rays of a bundle that some tiles have, ascending."""
+    corners = tile_corners(lattice)
+    rays = [_rays(lattice, *corners[number]) for number in numbers if corners[number][0] == bundle]
+    return np.sort(np.concatenate([*rays, np.zeros(0, np.int64)]))
+
+
+def _rays(lattice: Lattice, bundle: int, first_u: int, first_v: int) -> Ints:
+    """The rays of a tile."""
+    rows, columns = lattice.rays(bundle)
+    u, v = (np.arange(first, min(first + TILE_RAYS, end)) for first, end in ((first_u, rows), (first_v, columns)))
+    return np.asarray((u[:, None] * columns + v).ravel(), np.int64)
+
+
 def _tile(lattice: Lattice, bundle: int, first_u: int, first_v: int, whole: tuple[Spans, Spans, Spans]) -> Tile:
     u, v = (
         along[first : first + TILE_RAYS]
         for along, first in zip(lattice.ray_positions(bundle), (first_u, first_v), strict=True)
     )
-    columns = first_v + np.arange(len(v))
-    rays = ((first_u + np.arange(len(u)))[:, None] * lattice.rays(bundle)[1] + columns).ravel()
-    spans = whole[bundle].at(rays)
+    spans = whole[bundle].at(_rays(lattice, bundle, first_u, first_v))
     tile = Tile(bundle, first_u, first_v, u, v, *_no_room())
     tile.fill(np.diff(spans.first), spans.ends, np.full(len(spans.ends), UNCUT), spans.normals)
     return tile
