@@ -107,6 +107,28 @@ def test_shares_that_nobody_needs_any_more_are_removed(tmp_path: Path, change: s
     assert tree(tmp_path / "out") == whole(tmp_path)
 
 
+@pytest.mark.parametrize("change", ["file", "arguments", "report"])
+def test_shares_of_what_has_changed_are_removed_before_new_ones_are_made(tmp_path: Path, change: str) -> None:
+    write_files(tmp_path / "in", {"x.cls": "one"})
+    with pytest.raises(Interrupted):
+        run_simply(divided_batch(tmp_path / "in", 4), StoppingStore(tmp_path / "out", 4), AsTheyCome())
+    old = kept(tmp_path / "out")
+    assert len(old) == 3
+    batch = divided_batch(tmp_path / "in", 4)
+    (job,) = batch.jobs
+    if change == "file":
+        write_files(tmp_path / "in", {"x.cls": "other"})
+    if change == "arguments":
+        job = replace(job, arguments={"cell": 0.5})
+    if change == "report":  # which no share has
+        job = replace(job, report="json")
+    changes = 1 if change == "report" else 4
+    with pytest.raises(Interrupted):
+        run_simply(replace(batch, jobs=[job]), StoppingStore(tmp_path / "out", changes), AsTheyCome())
+    new = kept(tmp_path / "out")
+    assert (len(new), len({*new} & {*old})) == ((4, 3) if change == "report" else (1, 0))
+
+
 def test_shares_of_another_batch_stay(tmp_path: Path) -> None:
     write_files(tmp_path / "in", {"x.cls": "one"})
     write_files(tmp_path / "out", {f"{SHARES}/other-0123-4.zip": "theirs"})

@@ -89,7 +89,7 @@ def run_batch(
     summary
         File of a table of all files, ``.sqlite`` or ``.parquet``.
     observer
-        Receives the progress, in files.
+        Receives the progress, in files; in tasks where some files are divided.
 
     Returns
     -------
