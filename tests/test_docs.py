@@ -10,6 +10,7 @@ import pytest
 
 import trunnion
 from tests.support.locations import GOLDEN, TESTS, YL569
+from trunnion.cli import main
 
 ROOT = TESTS.parent
 
@@ -46,6 +47,20 @@ def test_the_python_of_a_page_runs(
     printed = capsys.readouterr().out.splitlines()
     assert set(shown) <= set(printed)
     assert shown or page != "README.md"
+
+
+def test_the_first_sample_of_placing_is_what_is_printed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Word for word; the ends of boxes and regions within what their search leaves open."""
+    monkeypatch.chdir(ROOT)
+    blocks = re.findall(r"^```\n(.*?)^```", (ROOT / "docs" / "placing.md").read_text(encoding="utf-8"), re.M | re.S)
+    command, printed = blocks[0].replace("\\\n", " ").split(), blocks[1]
+    assert main([*command[1:-1], str(tmp_path / command[-1])]) == 0
+    out, number = capsys.readouterr().out, re.compile(r"-?\d+\.\d{3}")
+    assert number.sub("#", out) == number.sub("#", printed)
+    numbers = [[float(each) for each in number.findall(text)] for text in (out, printed)]
+    assert numbers[0] == pytest.approx(numbers[1], abs=0.02)
 
 
 @pytest.mark.parametrize("page", ["docs/tour.md"])

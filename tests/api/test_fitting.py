@@ -11,7 +11,8 @@ import trunnion
 from tests.support.locations import YL569
 from trunnion.api.fitting import FitStatus, MachineFit
 from trunnion.cli import main
-from trunnion.machines import Machine, load_machine
+from trunnion.machines import Machine, load_machine, shipped_machines
+from trunnion.machines.loading import EXAMPLES
 
 Capture = pytest.CaptureFixture[str]
 
@@ -127,6 +128,23 @@ def test_an_nc_program_is_asked_as_its_cl_data() -> None:
     program = YL569 / "2_hub_rough.expected.mpf"
     found = trunnion.fit(program, machine="yl569", machines="dmu65", turns=[0.0], tool_length=100.0)
     assert status(found) == {"dmu65": "fits"}
+
+
+def test_examples_come_after_the_machines_of_builders_and_are_marked(tmp_path: Path, capfd: Capture) -> None:
+    """The generic head is faster here than the YL569, which a builder makes."""
+    blade, own = str(YL569 / "3_blade_finish.cls"), tmp_path / "own.toml"
+    own.write_text('schema = 1\nextends = "generic_head_table_bc"\nname = "Own"\n', encoding="utf-8")
+    asked = f"generic_head_table_bc,xyzac_trt,{own},yl569"
+    assert main(["fit", blade, "--machines", asked, "--turns", "360", "--tool-length", "100"]) == 0
+    head, *lines = capfd.readouterr().out.splitlines()
+    assert head.startswith("zero: of the workpiece in the machine frame, X,Y,Z in mm with all axes at zero")
+    assert [line.split()[0] for line in lines] == ["own", "yl569", "generic_head_table_bc", "xyzac_trt"]
+    assert [line.endswith("; an example, no builder's machine") for line in lines] == [False, False, True, True]
+
+
+def test_examples_are_shipped_and_named_as_what_they_are() -> None:
+    shipped = {name for name in shipped_machines() if load_machine(name).name.startswith(("Generic", "LinuxCNC"))}
+    assert shipped == EXAMPLES
 
 
 def test_machines_that_all_fail_are_told_by_the_exit_code(tmp_path: Path, capfd: Capture) -> None:

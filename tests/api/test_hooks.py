@@ -1,5 +1,6 @@
 """Hooks: what they change is checked, told and proven; what they do wrong is told at their line; none runs unasked."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -97,6 +98,42 @@ def test_changed_motion_is_what_the_program_is_proven_against_and_its_head_says_
     back = (tmp_path / "back.cls").read_text(encoding="utf-8")
     assert "MOTION CHANGED BY HOOKS shop.py: DRILL SIDE" in back
     assert "title=" not in back
+
+
+SLOWER = (
+    "def on_operation(operation, context):\n"
+    "    return replace(operation, moves=replace(operation.moves, feed=operation.moves.feed / 2))\n"
+)
+
+
+@pytest.mark.parametrize(("source", "target"), [
+    ("yl569", "dmu65"), ("dmu65", "matsuura_mx330"), ("matsuura_mx330", "hs664rt"), ("hs664rt", "xyzbc_trt"),
+    ("xyzbc_trt", "yl569"), ("yl569", "yl569"),
+])  # fmt: skip
+def test_a_converted_program_keeps_the_notice_at_its_head(part: Path, tmp_path: Path, source: str, target: str) -> None:
+    names = [f"AN OPERATION WITH A RATHER LONG NAME {letter}" for letter in "ABC"]
+    text = part.read_text()
+    for old, new in zip(("ROUGH TOP", "DRILL SIDE", "FINISH SIDE"), names, strict=True):
+        text = text.replace(old, new)
+    part.write_text(text)
+    file = hook(part, SLOWER)
+    trunnion.post(part, machine=source, hooks=[file], output=tmp_path / "part.nc")
+    found = trunnion.convert(tmp_path / "part.nc", machine=source, to_machine=target, output=tmp_path / "out.nc")
+    assert found.posted is not None
+    assert found.posted.passed
+    out = (tmp_path / "out.nc").read_text()
+    assert out.upper().count("MOTION CHANGED BY HOOKS SHOP.PY") == 1
+    head = "".join(re.sub(r"^N?\d+ |[ ;()]", "", line) for line in out.splitlines()[:6]).upper()
+    assert "MOTIONCHANGEDBYHOOKSSHOP.PY" in head
+    for name in names:
+        assert name.replace(" ", "") in head, "also behind the end of a line"
+    assert "title" not in found.settings
+
+
+def test_a_program_without_such_a_notice_gets_none(part: Path, tmp_path: Path) -> None:
+    trunnion.post(part, machine="yl569", output=tmp_path / "part.nc")
+    trunnion.convert(tmp_path / "part.nc", machine="yl569", to_machine="dmu65", output=tmp_path / "out.nc")
+    assert "HOOKS" not in (tmp_path / "out.nc").read_text()
 
 
 def test_what_a_hook_prints_is_no_part_of_the_program(part: Path, capsys: pytest.CaptureFixture[str]) -> None:

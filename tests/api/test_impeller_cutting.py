@@ -18,9 +18,11 @@ from tests.support.posted_balls import (
     profile_gaps,
     reaching,
 )
+from tests.support.yl569_curves import curves, tips_and_angles
 from trunnion.api.impeller_cutting import reachable_axes
 from trunnion.impeller.impeller import rotated
 from trunnion.model.toolpath import Phase
+from trunnion.placing.region import TOLERANCE
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples" / "impeller"
 TEXT = (FOLDER / "impeller.toml").read_text("utf-8")
@@ -78,6 +80,34 @@ def test_all_files_are_there_and_the_program_is_proven(coarse: trunnion.Impeller
         *(f"IMPELLER_{step.step.name}.cls" for step in coarse.steps),
     }  # fmt: skip
     assert all(step.minutes > 0.0 for step in coarse.steps)
+
+
+def test_all_programs_fit_in_one_region_which_ends_where_a_slide_ends(coarse: trunnion.ImpellerCut) -> None:
+    """Its corners and its best place by the words of the posted programs: all six operations, 26 files."""
+    assert coarse.result.output is not None
+    programs = sorted(coarse.result.output.parent.glob("*.spf"))
+    assert len(programs) == 26
+    found = trunnion.place(coarse.cl_files, machine="yl569", turns=[0.0], tool_length=160.0, stock="cylinder:90,35")
+    assert found.fits
+    assert found.region is not None
+    assert found.best is not None
+    rows = tips_and_angles(programs)
+    limits = {"X": 250.0, "Y": 150.0, "Z": 250.0}
+    corners = found.region.corners
+    for corner in corners[:: max(len(corners) // 8, 1)].tolist():
+        drawn = curves(rows, corner, 160.0)
+        left = min(limit - float(np.abs(drawn[axis]).max()) for axis, limit in limits.items())
+        assert left == pytest.approx(0.0, abs=TOLERANCE + 1e-3)
+    drawn = curves(rows, found.best.zero_mm, 160.0)
+    for use in found.best.axes:  # between its rows a slide may swing a little farther
+        ends = float(drawn[use.axis].min()), float(drawn[use.axis].max())
+        assert (use.least_mm, use.greatest_mm) == pytest.approx(ends, abs=0.02)
+    (tilt,) = [axis for axis in found.best.rotary if axis.axis == "B"]
+    assert (tilt.least_deg, tilt.greatest_deg) == pytest.approx((drawn["B"].min(), drawn["B"].max()), abs=1e-4)
+    # Round the table: as C turns, the region reaches as far in -X as in X. The table of 700 by 420 mm has room for it.
+    assert found.region.low[0] == pytest.approx(-found.region.high[0], abs=2.0)
+    assert found.best.table_mm == pytest.approx(210.0 - 45.0 - abs(found.best.zero_mm[1]), abs=2e-3)
+    assert np.abs(found.region.low[:2]).max() < 165.0
 
 
 def test_a_cl_file_is_what_was_posted(coarse: trunnion.ImpellerCut) -> None:

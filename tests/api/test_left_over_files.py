@@ -119,3 +119,70 @@ def test_a_record_of_an_older_release_is_read(tmp_path: Path) -> None:
         assert older.left_over([program], [program]) == [paper]
     assert text == job._record.read_text()
     assert EarlierJob(program).left_over([program], [program]) == []
+
+
+HEAD = 'machine = "yl569"\n'
+FIRST = '[[setup]]\nname = "first"\ncl = ["one.cls"]\noutput = "one.mpf"\nsheet = "one.html"\n'
+SECOND = '[[setup]]\nname = "second"\ncl = ["two.cls"]\noutput = "two.mpf"\nsheet = "two.html"\nlisting = "two.lst"\n'
+
+
+def post_setups(folder: Path, *setups: str) -> list[str]:
+    """Post a project of these set-ups, and return what is told of set-ups that are gone."""
+    (folder / "one.cls").write_bytes(HUB.read_bytes())
+    (folder / "two.cls").write_bytes(BLADE.read_bytes())
+    (folder / "project.toml").write_text(HEAD + "".join(setups))
+    result = trunnion.post_project(folder / "project.toml")
+    assert {problem.code for problem in result.problems} <= {"PRJ155"}
+    return [problem.what for problem in result.problems]
+
+
+def test_files_of_a_setup_that_is_gone_are_named_as_long_as_they_stay(tmp_path: Path) -> None:
+    assert post_setups(tmp_path, FIRST, SECOND) == []
+    assert post_setups(tmp_path, FIRST) == ["two.html, two.lst, two.mpf are of a set-up that it no longer has"]
+    (tmp_path / "two.mpf").unlink()
+    for _ in range(2):
+        assert post_setups(tmp_path, FIRST) == ["two.html, two.lst are of a set-up that it no longer has"]
+    (tmp_path / "two.lst").write_text("with notes of the operator")
+    assert post_setups(tmp_path, FIRST) == ["two.html is of a set-up that it no longer has"]
+    (tmp_path / "two.html").unlink()
+    assert post_setups(tmp_path, FIRST) == []
+    (tmp_path / "two.lst").unlink()
+    assert post_setups(tmp_path, FIRST, SECOND) == [], "it is back"
+
+
+def test_a_setup_that_writes_to_other_files_leaves_the_old_ones(tmp_path: Path) -> None:
+    assert post_setups(tmp_path, FIRST, SECOND) == []
+    renamed = SECOND.replace('"two.', '"three.').replace("three.cls", "two.cls")
+    told = ["two.html, two.lst, two.mpf are of a set-up that it no longer has"]
+    assert post_setups(tmp_path, FIRST, renamed) == told
+    assert post_setups(tmp_path, FIRST, renamed.replace("second", "other")) == told, "a name is no file"
+
+
+def test_projects_of_one_folder_know_nothing_of_each_other(tmp_path: Path) -> None:
+    assert post_setups(tmp_path, FIRST, SECOND) == []
+    other = tmp_path / "other.toml"
+    other.write_text(HEAD + FIRST.replace("one.mpf", "other.mpf").replace("one.html", "other.html"))
+    assert trunnion.post_project(other).problems == ()
+
+
+def test_a_project_that_is_refused_forgets_nothing(tmp_path: Path) -> None:
+    assert post_setups(tmp_path, FIRST, SECOND) == []
+    with pytest.raises(trunnion.RefusedError):
+        post_setups(tmp_path, "zero_mm = [0, 0, 100000]\n", FIRST)
+    assert post_setups(tmp_path, FIRST) == ["two.html, two.lst, two.mpf are of a set-up that it no longer has"]
+
+
+def test_the_command_warns_of_a_setup_that_is_gone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    post_setups(tmp_path, FIRST, SECOND)
+    (tmp_path / "project.toml").write_text(HEAD + FIRST)
+    assert main(["post", str(tmp_path / "project.toml")]) == 0
+    told = [line for line in capsys.readouterr().err.splitlines() if "PRJ155" in line]
+    assert told == [
+        f"{tmp_path / 'project.toml'}: warning: two.html, two.lst, two.mpf are of a set-up that it no longer has;"
+        " delete them, here and on the control [PRJ155]"
+    ]
+
+
+def test_a_paper_that_a_setup_no_longer_asks_for_is_not_of_one_that_is_gone(tmp_path: Path) -> None:
+    assert post_setups(tmp_path, FIRST, SECOND) == []
+    assert post_setups(tmp_path, FIRST, SECOND.replace('listing = "two.lst"\n', "")) == []

@@ -142,7 +142,7 @@ def test_a_part_is_read_and_judged(tmp_path: Path, capfd: Capture) -> None:
     command = ["reach", "--machine", "dmu65", "--part", str(part), "--step", "45", "--zero", "0,0,50"]
     assert main([*command, "--tool-length", "100", "--json", str(data)]) == 1
     out = capfd.readouterr().out
-    assert "83.3 % of the surface is reached along its normal (12 facets)" in out
+    assert out.splitlines()[0] == "cube.stl: 83.3 % of the surface is reached along its normal (12 facets)"
     assert "  no such tool axis: 16.7 %, normals tilted from 180.0° to 180.0°" in out
     assert out.count(": no such tool axis") == 2
     found = json.loads(data.read_text("utf-8"))["part"]
@@ -157,11 +157,22 @@ def test_points_of_cl_files_are_judged_with_their_lines(tmp_path: Path, capfd: C
     file.write_text(HEAD + "\n".join(lines) + "\nEND-OF-PATH\n", encoding="utf-8")
     setup = ["--zero", "0,0,50", "--tool-length", "100", "--step", "45"]
     assert main(["reach", str(file), "--machine", "dmu65", *setup]) == 1
-    out = capfd.readouterr().out.splitlines()[-1]
+    out = capfd.readouterr().out.splitlines()[0]
     assert "3 points, tilts from 0.00° to 95.00°" in out
     assert "the tool axis of 1 point cannot be had, first in line 7; 1 point beyond the travel, first in line 8" in out
     assert main(["reach", str(CORNER), "--machine", "dmu65", "--step", "45"]) == 0
-    assert capfd.readouterr().out.splitlines()[-1].endswith("tilts from 54.74° to 54.74°: all reached")
+    told = "tilts from 54.74° to 54.74°: every tool axis can be had; but slides are not judged (give --zero)"
+    assert capfd.readouterr().out.splitlines()[0].endswith(told)
+    assert main(["reach", str(CORNER), "--machine", "dmu65", "--step", "45", "--zero", "0,0,50"]) == 0
+    told = ": all reached; but Z is not judged (give --tool-length)"
+    assert capfd.readouterr().out.splitlines()[0].endswith(told)
+    assert main(["reach", str(CORNER), "--machine", "dmu65", *setup]) == 0
+    assert capfd.readouterr().out.splitlines()[0].endswith(": all reached")
+    assert main(["reach", str(CORNER), "--machine", "ucp800", *setup, "--json", "-"]) == 0
+    assert json.loads(capfd.readouterr().out)["slides_not_judged"] == ["X", "Y", "Z"]
+    assert main(["reach", str(CORNER), "--machine", "ucp800", *setup]) == 0
+    told = "but slides are not judged (the machine states no limits)"
+    assert capfd.readouterr().out.splitlines()[0].endswith(told)
 
 
 def test_the_picture_is_drawn_and_data_hold_the_same(tmp_path: Path, capfd: Capture) -> None:

@@ -107,6 +107,7 @@ def test_what_is_not_known_is_told(capfd: Capture) -> None:
     assert [line.rpartition(" ")[2] for line in err.splitlines() if "warning" in line] == ["[RCH130]", "[RCH140]"]
     assert "C point Z" in out.splitlines()[-1]
     assert out.splitlines()[-1].startswith("without effect: ")
+    assert "(at), and the root of the mean square over all motions (rms)" in out.splitlines()[1]
     assert sum(line.startswith("C point X ") for line in out.splitlines()) == 1
 
 

@@ -1,5 +1,6 @@
 """``trunnion batch``: the results of the single commands, and a table of what failed."""
 
+import shutil
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -7,13 +8,27 @@ from pathlib import Path
 import pytest
 
 from tests.support.batches import run_simply, simple_batch, write_files
-from tests.support.locations import YL569
+from tests.support.locations import ROOT, YL569
 from trunnion.batch.stores import FolderStore
 from trunnion.cli import main
 from trunnion.cli.batch import result_lines
 from trunnion.cli.progress import progress_lines
 
 CL = (YL569 / "2_hub_rough.cls").read_bytes()
+
+
+def test_the_example_runs_as_the_page_prints_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = (ROOT / "docs" / "batch.md").read_text("utf-8")
+    jobs = (ROOT / "examples" / "batch" / "jobs.toml").read_text("utf-8")
+    assert f"```toml\n{jobs}```" in text
+    shutil.copytree(ROOT / "examples" / "batch", tmp_path / "batch", ignore=shutil.ignore_patterns("programs"))
+    printed = []
+    for _ in range(2):
+        assert main(["batch", str(tmp_path / "batch" / "jobs.toml"), "--workers", "1"]) == 0
+        out = capsys.readouterr().out
+        printed.append(out.replace(str(tmp_path / "batch" / "programs"), "examples/batch/programs"))
+    command = "$ trunnion batch examples/batch/jobs.toml\n"
+    assert f"```\n{command}{printed[0]}{command}{printed[1]}```" in text
 
 
 def test_a_folder_is_posted_as_the_single_command_does(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -26,7 +41,8 @@ def test_a_folder_is_posted_as_the_single_command_does(tmp_path: Path, capsys: p
     command += ["--results", str(out), "--workers", "2", "--summary", str(tmp_path / "s.sqlite")]
     assert main(command) == 1
     printed = capsys.readouterr()
-    head, row, last = printed.out.splitlines()
+    head, row, written, last = printed.out.splitlines()
+    assert written == "written now: a/x.mpf, b/x.mpf"
     assert head.split() == ["file", "code", "line", "message"]
     assert row.split()[:3] == ["bad.cls", "CL310", "1"]
     assert "GOTO has 2 numbers" in row

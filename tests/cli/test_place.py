@@ -6,6 +6,8 @@ from xml.etree import ElementTree
 
 import pytest
 
+import trunnion
+from trunnion.api.placed_heads import StatedPlace, stated_place
 from trunnion.cli import main
 
 BLADE = "tests/golden/yl569/3_blade_finish.cls"
@@ -120,11 +122,12 @@ def test_the_program_says_how_the_part_is_clamped_and_verify_takes_it(
     assert "tilted -10 degrees about X, then turned 45 degrees: " in lines[0]
     assert "fixture angle of -10 degrees about X of the part, right-handed: its +Y side goes down" in lines[1]
     assert lines[2] == "  then turn the part by 45 degrees about Z, counter-clockwise seen from above (from +Z)"
-    head = program.read_text("utf-8").splitlines()[:3]
+    head = program.read_text("utf-8").splitlines()[:4]
     assert head[0].endswith(";PART TILTED -10 DEG FIRST, ABOUT ITS X, RIGHT-HANDED, ITS +Y SIDE DOWN")
     assert head[1].endswith(";PART TURNED 45 DEG ABOUT Z, COUNTER-CLOCKWISE SEEN FROM ABOVE, FROM +Z")
     x, y, z = lines[0].split("best zero ")[1].split(", ")[0].split(",")
     assert head[2].endswith(f";WORKPIECE ZERO X{x} Y{y} Z{z} MM ON THE MACHINE, AXES AT 0")
+    assert any(line.endswith(";ZERO FOR TOOL LENGTH 90 MM, FROM GAUGE POINT TO TIP") for line in head)
     assert "PART TURNED 45 DEG" in sheet.read_text("utf-8")
     assert "and not turned: the program is for the turned part" in sheet.read_text("utf-8")
     verified = ["verify", str(program), "--cl", BLADE, *machine]
@@ -232,13 +235,78 @@ def test_a_zero_that_begins_below_nothing_needs_no_equals_sign(capsys: pytest.Ca
         assert "present zero -31.000,0.000,-77.500" in capsys.readouterr().out
 
 
-def test_a_simulation_says_that_nothing_turns_its_bodies(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_simulation_wants_the_angles_of_the_head(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     program, machine = tmp_path / "turned.mpf", ["--machine", "yl569"]
-    angles = ["--tool-length", "120", "--turn", "45"]
-    assert main(["place", HUB, *machine, *angles, "--apply", str(program)]) == 0
+    angles = ["--turn", "45", "--tilt", "-10"]
+    assert main(["place", HUB, *machine, "--tool-length", "120", *angles, "--apply", str(program)]) == 0
     capsys.readouterr()
     body = ["--stock", "box:80,40,40,-10,-20,-40", "--tool", "2=ball:8,length=80,flutes=40", "--cell", "4"]
     main(["simulate", str(program), *machine, *body])
     told = capsys.readouterr().err
-    assert "turned.mpf: warning: its head says that the part is turned by 45 degrees about Z" in told
-    assert "nothing turns them here [PLC230]" in told
+    said = "its head says that the part is tilted by -10 degrees about X and turned by 45 degrees about Z"
+    assert f"turned.mpf: warning: {said}; give the turn 45 and the tilt -10" in told
+    assert "[PLC230]" in told
+    main(["simulate", str(program), *machine, *body, *angles])
+    printed = capsys.readouterr()
+    assert "PLC230" not in printed.err
+    assert "it is clamped tilted -10 degrees about X, then turned 45 degrees about Z" in printed.out
+    main(["simulate", str(program), *machine, *body, *angles, "--zero", "0,0,0", "--tool-length", "100"])
+    assert "tool length of 120 mm" in capsys.readouterr().err
+
+
+def test_an_nc_program_that_is_to_be_applied_is_refused_before_it_is_placed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    program, out = "tests/golden/yl569/2_hub_rough.expected.mpf", tmp_path / "placed.mpf"
+    data = tmp_path / "placed.json"
+    command = ["place", program, "--machine", "yl569", "--tool-length", "0", "--turn", "0"]
+    assert main([*command, "--apply", str(out), "--json", str(data)]) == 2
+    printed = capsys.readouterr()
+    assert "PLC140" in printed.err
+    assert printed.out == ""
+    assert not out.exists()
+    assert not data.exists()
+    assert main([*command, "--json", str(data)]) == 0
+
+
+def test_turns_that_were_asked_for_are_told_from_those_around_the_best(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data = tmp_path / "placed.json"
+    assert main(["place", HUB, "--machine", "yl569", "--tool-length", "0", "--turns", "90", "--json", str(data)]) == 0
+    line = next(line for line in capsys.readouterr().out.splitlines() if "it fits at" in line)
+    turns = json.loads(data.read_text("utf-8"))["turns"]
+    more = [turn for turn in turns if not turn["asked"]]
+    assert [turn["turn_deg"] for turn in turns if turn["asked"]] == [0.0, 90.0, 180.0, 270.0]
+    assert more
+    fits = sum(turn["fits"] for turn in more)
+    assert line == f"  it fits at 4 of the 4 turns asked for; around the best, {len(more)} more were tried, {fits} fit"
+
+
+#: One machine of each family of controls.
+FAMILIES = ("yl569", "dmu65", "matsuura_mx330", "haas_umc750", "hs664rt", "xyzac_trt")
+
+
+@pytest.mark.parametrize("source", FAMILIES)
+def test_what_is_converted_from_a_placed_program_says_how_the_part_is_clamped_and_no_more(
+    tmp_path: Path, source: str
+) -> None:
+    program = tmp_path / "placed.nc"
+    trunnion.post(
+        HUB, machine=source, output=program, turn=30.5, tilt=-10.0, force=True,
+        settings={"zero": (1.0, 2.0, -33.25), "tool_length": 100.0},
+    )  # fmt: skip
+    assert stated_place(program) == StatedPlace(30.5, -10.0, (1.0, 2.0, -33.25), 100.0)
+    for machine in FAMILIES:
+        other = tmp_path / f"{machine}.nc"
+        trunnion.convert(program, machine=source, to_machine=machine, output=other, force=True)
+        assert stated_place(other) == StatedPlace(30.5, -10.0)
+        text = other.read_text("utf-8")
+        assert text.count("PART TURNED") == text.count("PART TILTED") == 1
+        assert "WORKPIECE ZERO X" not in text
+        assert "ZERO FOR TOOL LENGTH" not in text
+    cl = tmp_path / "back.cls"
+    trunnion.convert(program, machine=source, to_cl=True, output=cl, force=True)
+    lines = cl.read_text("utf-8").splitlines()
+    assert [line[:14] for line in lines if "PART T" in line] == ["$$ PART TILTED", "$$ PART TURNED"]
+    assert not any("WORKPIECE ZERO" in line or "ZERO FOR" in line for line in lines)

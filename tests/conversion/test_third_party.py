@@ -69,8 +69,8 @@ def test_the_boat_is_one_path_on_two_machines_but_for_what_its_generator_does() 
     """
     one, two = (FOLDER / f"boat-{name}.ngc" for name in ("xyzac", "xyzbc"))
     runs = run_program(one, load_machine("xyzac_trt")), run_program(two, load_machine("xyzbc_trt"))
-    # The second takes its tool length with the table turned, which its reader tells of.
-    assert [[each.code for each in run.diagnostics] for run in runs] == [[], ["NC364"]]
+    # The second takes its tool length with the table turned and goes home with TCP on, which its reader tells of.
+    assert [[each.code for each in run.diagnostics] for run in runs] == [[], ["NC364", "NC341", "NC341"]]
     found = compare(*runs, 0.001, path=True)
     assert found.points == 1457
     assert found.tip <= 1e-9

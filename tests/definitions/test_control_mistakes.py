@@ -189,3 +189,21 @@ def test_an_extends_that_goes_round_or_is_too_long_has_its_line(tmp_path: Path) 
             with pytest.raises(trunnion.InputError) as caught:
                 trunnion.describe_machine(file) if not head else trunnion.describe_control(file)
             assert any(problem.file.endswith("mine.toml") for problem in caught.value.problems)
+
+
+@pytest.mark.parametrize(
+    ("lines", "line", "what"),
+    [
+        ("{# OURS #}\nM8 %}", 6, "has %} without {% before it: 'M8 %}'; write {% where it begins"),
+        ("{# OURS #}\n{title}\n{{ title | uper }}", 7, "no filter or format 'uper'; did you mean \"upper\"?"),
+        ("{% if title = 'A' %}\nM8\n{% endif %}", 5, "with =, which compares nothing; write == to compare"),
+        ("M8 %}", 3, "has %} without {% before it: 'M8 %}'"),
+    ],
+)
+def test_a_slip_in_a_text_is_told_at_its_line(
+    lines: str, line: int, what: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    text = f'[control.templates]\nbefore_operation = """\n;A\n{lines}\n"""'
+    (said,) = told(tmp_path, capfd, "yl569", text)
+    assert f"mine.toml:{line}: error: control.templates.before_operation" in said
+    assert what in said

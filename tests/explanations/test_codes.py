@@ -89,7 +89,17 @@ def test_a_code_that_is_none_has_a_cure(capsys: pytest.CaptureFixture[str]) -> N
     assert main(["explain", "ARG11O"]) == 2
     told = capsys.readouterr().err
     assert 'did you mean "ARG110"?' in told
-    assert told.startswith("CODE: error: ")
+    assert told.startswith("ARG11O: error: ")
+
+
+def test_codes_that_there_are_are_explained_beside_one_that_there_is_not(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["explain", "CL110", "FOO", "tip", "BAR"]) == 2
+    out, err = capsys.readouterr()
+    assert [line.partition(":")[0] for line in out.splitlines() if line.startswith(("CL110", "tip"))] == [
+        "CL110",
+        "tip",
+    ]
+    assert [line.partition(":")[0] for line in err.splitlines()] == ["FOO", "BAR"]
 
 
 def test_all_codes_are_listed(capsys: pytest.CaptureFixture[str]) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import trunnion
+from tests.support.yl569_curves import curves, tips_and_angles
 from trunnion.api.turned_parts import turned_toolpaths
 
 FOLDER = Path("tests/golden/yl569")
@@ -89,6 +90,36 @@ def test_all_programs_of_the_impeller_fit_at_the_places_where_each_fits() -> Non
     assert np.abs(every.region.low[:2]).max() < 350.0
     assert np.abs(every.region.high[:2]).max() < 350.0
     assert max(-every.region.low[1], every.region.high[1]) < 210.0
+
+
+#: Least and greatest positions of the axes over the three programs, as their words have them, with the zero at
+#: (0, 0, -200) and a tool of 150 mm; docs/twin.md shows the curves.
+CURVES = {
+    "X": (-60.941, 213.198),
+    "Y": (-51.648, 51.648),
+    "Z": (-71.781, 85.430),
+    "B": (0.0, 59.18624),
+    "C": (-40.64457, 36.2651),
+}
+
+
+@pytest.mark.parametrize("suffix", [".cls", ".expected.mpf"])
+def test_the_curves_of_all_published_programs_are_reproduced(suffix: str) -> None:
+    """By their text alone, from the programs and from the CL files: within the digits that are printed."""
+    zero, files = (0.0, 0.0, -200.0), [file.with_suffix(suffix) for file in (CONTOUR, HUB, BLADE)]
+    found = trunnion.place(files, machine="yl569", turns=[0.0], zero=zero, tool_length=150.0)
+    assert found.fits
+    assert found.present is not None
+    told = {axis.axis: (axis.least_mm, axis.greatest_mm) for axis in found.present.axes}
+    assert found.present.margin_mm == pytest.approx(250.0 - 213.198, abs=1e-3)
+    told |= {axis.axis: (axis.least_deg, axis.greatest_deg) for axis in found.present.rotary}
+    programs = [file.with_suffix(".expected.mpf") for file in (CONTOUR, HUB, BLADE)]
+    drawn = curves(tips_and_angles(programs), zero, 150.0)
+    for axis, ends in CURVES.items():
+        values = (drawn[axis] + 180.0) % 360.0 - 180.0 if axis == "C" else drawn[axis]
+        digit = 1e-5 if axis in "BC" else 1e-3
+        assert (values.min(), values.max()) == pytest.approx(ends, abs=digit)
+        assert told[axis] == pytest.approx(ends, abs=digit)
 
 
 def test_cl_file_and_program_give_the_same_places() -> None:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import trunnion
 from tests.support.placed_paths import brute_margin, limited_machines, random_rows, turned_by
-from trunnion.api.turned_parts import placed_notices, unlike_head
+from trunnion.api.placed_heads import StatedPlace, placed_notices, stated_place, unlike_bodies, unlike_head
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, load_machine
 from trunnion.placing.best_turn import Grid, best_of_turn, best_orientations
@@ -139,14 +139,39 @@ def test_a_part_that_no_table_reaches_as_it_is_drawn_is_placed_and_posted_tilted
 
 def test_notices_are_found_again(tmp_path: Path) -> None:
     program = tmp_path / "head.nc"
-    notices = placed_notices((1.0, -2.0, 3.5), -45.0, 30.0)
+    notices = placed_notices(-45.0, 30.0, (1.0, -2.0, 3.5), 120.25)
     assert notices[1].startswith("PART TURNED 315 DEG ABOUT Z, COUNTER-CLOCKWISE")
-    assert max(map(len, placed_notices((-246.014, -407.304, -136.189), 312.656, -37.125))) <= 76  # one line each
+    longest = placed_notices(312.656, -37.125, (-246.014, -407.304, -136.189), 1120.125)
+    assert max(map(len, longest)) <= 76  # one line each
+    assert notices[3] == "ZERO FOR TOOL LENGTH 120.25 MM, FROM GAUGE POINT TO TIP"
     program.write_text("\n".join(f"({text})" for text in notices), "utf-8")
     assert unlike_head(tmp_path, 315.0, 30.0) == unlike_head(tmp_path / "none.nc", 0.0, 0.0) == []
     assert unlike_head(program, 315.0, 30.0) == unlike_head(program, -45.0, 30.0) == []
     assert [problem.code for problem in unlike_head(program, 45.0, 30.0)] == ["PLC220"]
     assert [problem.code for problem in unlike_head(program, 315.0, 0.0)] == ["PLC220"]
+    assert stated_place(program) == StatedPlace(315.0, 30.0, (1.0, -2.0, 3.5), 120.25)
+
+
+def test_a_zero_and_a_tool_length_other_than_those_of_the_head_are_told(tmp_path: Path) -> None:
+    program = tmp_path / "head.nc"
+    program.write_text("\n".join(f"({text})" for text in placed_notices(0.0, 0.0, (1.0, -2.0, 3.5), 120.0)), "utf-8")
+    machine = load_machine("yl569")
+    same = replace(machine, workpiece_zero=(1.0, -2.001, 3.5), tool_length=120.0)
+    assert unlike_head(program, 0.0, 0.0, machine) == unlike_head(program, 0.0, 0.0, same) == []
+    (other,) = unlike_head(program, 0.0, 0.0, replace(machine, workpiece_zero=(1.0, -2.0, 3.6)))
+    assert other.code == "PLC240"
+    assert "the workpiece zero is at 1,-2,3.5, and the slides are judged with zero 1,-2,3.6" in other.what
+    (longer,) = unlike_bodies(program, 0.0, 0.0, replace(machine, tool_length=150.0))
+    assert "holds for a tool length of 120 mm" in longer.what
+    # It says that the part is not turned: a turn is another clamping.
+    assert [problem.code for problem in unlike_head(program, 45.0, 0.0)] == ["PLC220"]
+    assert "clamped as it is drawn" in unlike_bodies(program, 45.0, 0.0, machine)[0].what
+    unknown = placed_notices(0.0, 0.0, (1.0, -2.0, 3.5), None)
+    assert unknown[2] == "ZERO FOR TOOL LENGTH 0 MM: NONE WAS STATED"
+    program.write_text("\n".join(f"; {text}" for text in unknown), "utf-8")
+    found = stated_place(program)
+    assert found is not None
+    assert found.tool_length is None
 
 
 def test_a_plain_turn_of_rows_is_what_was_turned_before() -> None:

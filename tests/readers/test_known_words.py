@@ -6,7 +6,7 @@ import pytest
 
 import trunnion
 from tests.support.program_heads import HEADS
-from trunnion.api.builders_words import builders_words
+from trunnion.api.program_warnings import program_warnings
 from trunnion.cli import main
 from trunnion.controls import load_control
 from trunnion.errors import InputError
@@ -92,7 +92,7 @@ def test_post_and_verify_warn_of_words_of_the_builder_once(tmp_path: Path, capsy
 
 def test_of_many_words_of_the_builder_the_first_are_told(tmp_path: Path) -> None:
     run = read(tmp_path, "matsuura_mx330", "\n".join(f"M{number}" for number in range(301, 330)))
-    told = builders_words(run)
+    told = program_warnings(run)
     assert [each.what.split()[0] for each in told[:20]] == [f"M{number}" for number in range(301, 321)]
     assert [each.what for each in told[20:]] == ["9 more words belong to the machine"]
     assert told[20].line == told[19].line + 1

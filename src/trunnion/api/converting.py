@@ -15,12 +15,12 @@ from trunnion.api.converting_cl import convert_cl, write_and_prove
 from trunnion.api.input_files import machine_files
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
+from trunnion.api.placed_heads import carried_notices
 from trunnion.api.post_result import PostResult
 from trunnion.api.posting import post_toolpaths
 from trunnion.api.reading import FilePath, MachineLike, as_machine, read_program
 from trunnion.api.settings import Settings, control_setting_faults, set_up_machine
 from trunnion.api.targets import OutputLike, open_target, written_text
-from trunnion.api.turned_parts import carried_notices
 from trunnion.cl.writers import WRITERS
 from trunnion.controls import Control, load_control
 from trunnion.controls.vocabulary import INCH
@@ -200,15 +200,16 @@ def convert_beside(
         if to_cl:
             if run.state.inches.values[-1] and control.settings.get("units") != INCH:
                 carried["units"] = INCH
-            comments = [f"--set {key}={value}" for key, value in carried.items()]
+            comments = [*job.notices, *(f"--set {key}={value}" for key, value in carried.items())]
             converter.report(write_and_prove(converted.toolpath, target, dialect, comments=comments))
             posted = None
         else:
             given = "work_offset" in job.printed or any("work_offset" in own for own in job.own_settings.values())
-            job = _with_settings(job, carried)
+            toolpath, notices = conversion.take_notices(converted.toolpath, control.family)
+            job = replace(_with_settings(job, carried), notices=(*notices, *job.notices))
             if not given:
                 converter.warn_of_new_offset(run, job)
-            posted = post_toolpaths([converted.toolpath], job, target, observer)
+            posted = post_toolpaths([toolpath], job, target, observer)
     problems = (*converter.problems, *(posted.problems if posted else ()))
     return ConvertResult(converted.toolpath, carried, problems, posted, target.path, target.memory)
 

@@ -22,7 +22,7 @@ from trunnion.api.settings import set_up_machine
 from trunnion.definitions import load_table
 from trunnion.errors import ArgumentName, InputError, Severity, TrunnionError, argument_problem
 from trunnion.machines import Machine, shipped_machines
-from trunnion.machines.loading import machine_library
+from trunnion.machines.loading import is_example, machine_library
 from trunnion.machines.machine import Vector
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.placing.placement import AxisUse, Placement
@@ -78,6 +78,11 @@ class MachineFit:
     zero_mm: Vector | None = None
     turn_deg: float | None = None
 
+    @property
+    def is_example(self) -> bool:
+        """Whether it is a shipped definition of no builder's machine, whose numbers are examples."""
+        return is_example(self.key)
+
 
 def fit(
     files: Iterable[ToolpathLike] | ToolpathLike,
@@ -117,7 +122,7 @@ def fit(
     -------
     tuple of MachineFit
         Machines that can run it by the time of the proven program, then those whose definitions leave something open,
-        then the others by what is missing, each with its reasons.
+        then the others by what is missing, each with its reasons. In each of these, examples of machines come last.
 
     Raises
     ------
@@ -159,13 +164,13 @@ def fit(
     return tuple(sorted(found, key=_rank))
 
 
-def _rank(each: MachineFit) -> tuple[int, float, float]:
-    """Machines that can run it first, the fastest first, and of those as fast the one with most room."""
-    order = list(FitStatus).index(each.status)
+def _rank(each: MachineFit) -> tuple[int, bool, float, float]:
+    """Machines that can run it first, of them examples last; the fastest first, of like ones that with most room."""
+    order = list(FitStatus).index(each.status), each.is_example
     if each.status is FitStatus.NOT:
-        return order, math.inf if each.missing is None else each.missing, 0.0
+        return *order, math.inf if each.missing is None else each.missing, 0.0
     room = min((margin.margin for margin in each.margins if margin.unit == "mm"), default=0.0)
-    return order, math.inf if each.seconds is None else round(each.seconds, 1), -room
+    return *order, math.inf if each.seconds is None else round(each.seconds, 1), -room
 
 
 def _asked(machines: str | Iterable[MachineLike]) -> list[MachineLike]:

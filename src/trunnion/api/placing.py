@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import lru_cache
+from pathlib import Path
 from typing import Final
 
 import numpy as np
@@ -12,13 +13,14 @@ from trunnion.api.arguments import check_choice, check_observer, check_paths
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.orientations import orientations
 from trunnion.api.placing_inputs import PlacedInput, read_input
+from trunnion.api.placing_table import larger_than_table, limit_of_table, standing_on
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.api.settings import Settings, as_texts, set_up_machine
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
-from trunnion.placing.best_turn import TurnResult, best_orientations
+from trunnion.placing.best_turn import Grid, TurnResult, best_orientations
 from trunnion.placing.between_rows import most_between
 from trunnion.placing.goals import Goal, PlaceCost, rotary_travel
 from trunnion.placing.path_rows import PathRows, about_x, about_z
@@ -26,8 +28,10 @@ from trunnion.placing.placement import AxisUse, Limit, Place, Placement, RotaryU
 from trunnion.placing.planned_time import planned_seconds
 from trunnion.placing.region import Region, region_of
 from trunnion.placing.rotary_angles import Obstacle
-from trunnion.placing.travel_limits import Cut, CutSet
+from trunnion.placing.table_limits import EDGES
+from trunnion.placing.travel_limits import TABLE, Cut, CutSet
 from trunnion.placing.turns import TurnedPath, choices_of
+from trunnion.simulation.meshes import TriangleMesh
 
 GOALS: Final = tuple(str(goal) for goal in Goal)
 
@@ -43,6 +47,8 @@ def place(
     tool_length: str | float | None = None,
     settings: Settings | None = None,
     subprograms: Sequence[FilePath] = (),
+    stock: str | Path | TriangleMesh | None = None,
+    part: str | Path | TriangleMesh | None = None,
     observer: Observer = SILENT,
 ) -> Placement:
     """Find where on the table a part may sit, and where it sits best.
@@ -72,6 +78,9 @@ def place(
         Of CL files, as ``trunnion.post`` takes them.
     subprograms
         Files of the subprograms that NC programs call.
+    stock, part
+        As ``trunnion.simulate`` has them: all of them, seen from above, is to be on the table that the definition
+        states.
     observer
         Receives the progress and warnings.
 
@@ -110,19 +119,22 @@ def place(
         what = f"no slide of {loaded.key} has limits: the part may sit anywhere"
         raise InputError(argument_problem("machine", what, "state limits_mm of its axes", code="PLC130"))
     tilts_by_size = tuple(sorted(grid.tilts.tolist(), key=abs))
+    remarks: list[Problem] = []
+    standing = standing_on(loaded, stock, part, remarks)
     given = read_input(files, loaded, texts, check_paths("subprograms", subprograms), observer, tilts_by_size)
-    problems = [*given.problems, *unknown_length(loaded)]
+    problems = [*given.problems, *unknown_length(loaded), *remarks]
     observer.problems(problems)
     near = _first_guess(loaded)
 
     @lru_cache(maxsize=1)
     def paths_at(tilt: float) -> list[TurnedPath]:
         tilted = given.rows.turned(about_x(tilt))
-        return [TurnedPath.of(loaded, choice, rows, near) for choice, rows in choices_of(tilted)]
+        stands = None if standing is None else standing.turned(about_x(tilt))
+        return [TurnedPath.of(loaded, choice, rows, near, stands) for choice, rows in choices_of(tilted)]
 
     with observer.progress("placing", len(grid), "turns") as advance:
         results, best = best_orientations(paths_at, grid, advance, goal=Goal(goal))
-    return _placement(loaded, given, goal, paths_at, results, best, problems)
+    return _placement(loaded, given, goal, paths_at, results, best, problems, grid)
 
 
 def unknown_length(machine: Machine) -> list[Problem]:
@@ -152,6 +164,7 @@ def _placement(
     results: Sequence[TurnResult],
     best: TurnResult,
     problems: Sequence[Problem],
+    grid: Grid,
 ) -> Placement:
     rows = given.rows
     found = None
@@ -171,7 +184,7 @@ def _placement(
         return [cuts for cuts in (path.at(turn) for path in paths_at(tilt)) if isinstance(cuts, CutSet)]
 
     def margin_at(zero: Floats, turn: float, tilt: float) -> float:
-        return float(max((cuts.at(zero).margins.min() for cuts in turned(turn, tilt)), default=-np.inf))
+        return max((cuts.at(zero).margin for cuts in turned(turn, tilt)), default=-np.inf)
 
     return Placement(
         machine.key,
@@ -180,7 +193,10 @@ def _placement(
         found,
         held,
         _present(machine, rows, paths_at(0.0), Goal(goal)),
-        tuple(_turn_margin(machine, rows, result) for result in results),
+        tuple(
+            replace(_turn_margin(machine, rows, result), is_asked=grid.has(result.turn, result.tilt))
+            for result in results
+        ),
         between_mm=0.0 if found is None or best.path is None else _between(best.path, found),
         problems=tuple(problems),
         toolpaths=given.toolpaths,
@@ -229,13 +245,15 @@ def _present(machine: Machine, rows: PathRows, paths: Sequence[TurnedPath], goal
 def _turn_margin(machine: Machine, rows: PathRows, result: TurnResult) -> TurnMargin:
     if result.best is None:
         assert result.obstacle is not None
-        obstacle = obstacle_text(machine, rows, result.obstacle)
-        return TurnMargin(result.turn, None, None, obstacle, tilt_deg=result.tilt)
+        obstacle, is_table = obstacle_text(machine, rows, result.obstacle), result.obstacle.outline is not None
+        return TurnMargin(result.turn, None, None, obstacle, tilt_deg=result.tilt, table_is_too_small=is_table)
     return TurnMargin(result.turn, result.margin, vector(result.best.zero), value=result.cost, tilt_deg=result.tilt)
 
 
 def obstacle_text(machine: Machine, rows: PathRows, obstacle: Obstacle) -> str:
     """Why a turn is impossible, with the line."""
+    if obstacle.outline is not None:
+        return larger_than_table(machine, obstacle.outline)
     stretch = rows.stretch_of(obstacle.row)
     what = "no rotary positions give its tool axis"
     if obstacle.axis >= 0:
@@ -252,13 +270,14 @@ def place_at(machine: Machine, rows: PathRows, cuts: CutSet, zero: Floats, turn:
         low, high = (limit_at(machine, rows, cuts.row(reached, slide, side), slide, side) for side in (0, 1))
         least, greatest = reached.extremes[slide].tolist()
         axes.append(AxisUse(machine.axes[column].name, least, greatest, float(reached.margins[slide].min()), low, high))
-    return Place(vector(zero), turn, float(reached.margins.min()), tuple(axes))
+    table = None if cuts.edges is None else reached.table
+    return Place(vector(zero), turn, reached.margin, tuple(axes), table_mm=table)
 
 
 def _rounded(cuts: CutSet, zero: Floats) -> Floats:
     """A place in whole thousandths of a millimetre, as controls have it, unless the part fits at the exact one only."""
     rounded = np.round(zero, 3)
-    exact, near = (float(cuts.at(each).margins.min()) for each in (zero, rounded))
+    exact, near = (cuts.at(each).margin for each in (zero, rounded))
     return rounded if near >= 0.0 or exact < 0.0 else zero
 
 
@@ -274,6 +293,8 @@ def rotary_uses(machine: Machine, positions: Floats) -> tuple[RotaryUse, ...]:
 
 def limit_of_cut(machine: Machine, rows: PathRows, cut: Cut) -> Limit:
     """The limit that a half-space is."""
+    if cut.slide == TABLE:
+        return limit_of_table(machine, EDGES[cut.side])
     return limit_at(machine, rows, cut.row, cut.slide, cut.side)
 
 

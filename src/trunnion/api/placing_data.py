@@ -29,6 +29,7 @@ def placement_data(found: Placement) -> dict[str, object]:
             {
                 "turn_deg": _number(turn.turn_deg),
                 "tilt_deg": _number(turn.tilt_deg),
+                "asked": turn.is_asked,
                 "fits": turn.fits,
                 "margin_mm": None if turn.margin_mm is None else _number(turn.margin_mm),
                 "zero_mm": None if turn.zero_mm is None else [_number(value) for value in turn.zero_mm],
@@ -61,6 +62,7 @@ def _place(place: Place) -> dict[str, object]:
         "margin_mm": _number(place.margin_mm),
         "value": None if place.value is None else _number(place.value),
         "planned_s": None if place.planned_s is None else _number(place.planned_s),
+        "table_mm": None if place.table_mm is None else _number(place.table_mm),
         "axes": [_axis(axis) for axis in place.axes],
         "rotary": [
             {name: value if isinstance(value, str) else _number(value) for name, value in asdict(axis).items()}

@@ -89,6 +89,31 @@ def read_input(
     return _planned_tilted(toolpaths, machine, texts, observer, tilts)
 
 
+def toolpaths_to_post(
+    files: Iterable[ToolpathLike], *, machine: Machine, settings: Settings | None = None, observer: Observer = SILENT
+) -> list[Toolpath]:
+    """Read CL files that are to be posted where they are placed: who places them need not read them again.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be used, or one is an NC program: it stays as it is.
+    """
+    texts, found = as_texts(settings), list[Toolpath]()
+    for each in files:
+        toolpaths = _toolpaths_of(each, texts, machine, observer)
+        if toolpaths is None:
+            raise InputError(nc_program_stays(str(each)))
+        found += toolpaths
+    return found
+
+
+def nc_program_stays(file: str) -> Problem:
+    """The error of an NC program that is to be posted where it was placed."""
+    what, cure = "an NC program stays as it is", "set its work offset to the place, or give the CL files"
+    return Problem(file, 0, what, cure, code="PLC140")
+
+
 def _toolpaths_of(
     file: ToolpathLike, settings: Mapping[str, str], machine: Machine, observer: Observer
 ) -> list[Toolpath] | None:

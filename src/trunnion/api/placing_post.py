@@ -1,13 +1,13 @@
-"""A part at the place that was found: its CL files turned, and posted with the workpiece zero there."""
+"""A part at the place that was found: its CL files are posted turned, with the workpiece zero there."""
 
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.paper_files import paper_files
+from trunnion.api.placing_inputs import nc_program_stays
 from trunnion.api.post_result import PostResult
 from trunnion.api.posting import post_beside
 from trunnion.api.reading import FilePath, MachineLike
 from trunnion.api.settings import Settings, as_texts
 from trunnion.api.targets import OutputLike
-from trunnion.api.turned_parts import placed_notices, turned_toolpaths
 from trunnion.errors import InputError, Problem
 from trunnion.placing.placement import Placement
 
@@ -53,16 +53,14 @@ def post_placed(
     True
     """
     if not found.toolpaths:
-        what, cure = "an NC program stays as it is", "set its work offset to the place, or give the CL files"
-        raise InputError(Problem(found.files[0], 0, what, cure, code="PLC140"))
+        raise InputError(nc_program_stays(found.files[0]))
     if found.best is None or not found.fits:
         raise InputError(Problem(found.files[0], 0, "the part fits nowhere", "see what limits it", code="PLC150"))
     texts = as_texts(settings)
-    absolute = texts.get("frame") == "absolute"
     best = found.best
     return post_beside(
-        turned_toolpaths(found.toolpaths, best.turn_deg, best.tilt_deg, absolute=absolute), (),
+        found.toolpaths, (),
         machine=machine, output=output, settings={**texts, "zero": best.zero_mm}, strict=False, force=False,
         explain=False, papers=paper_files(None, sheet, None, None, output), columns=True, subprograms=(),
-        notices=placed_notices(best.zero_mm, best.turn_deg, best.tilt_deg), observer=observer,
+        turn=best.turn_deg, tilt=best.tilt_deg, is_placed=True, observer=observer,
     )  # fmt: skip

@@ -8,6 +8,7 @@ from trunnion.api.project import PostedSetup, Project
 from trunnion.api.project_file import load_project, project_inputs
 from trunnion.api.reading import FilePath
 from trunnion.api.settings import SettingValue
+from trunnion.api.turned_parts import checked_angles, is_turned
 from trunnion.errors import InputError, Problem, argument_problem
 
 
@@ -37,7 +38,10 @@ def placed_setup(project: Path, name: str | None = None) -> PlacedSetup:
         what, cure = "has hooks, which would change its CL files", "give the CL files that are to be placed"
         raise InputError(Problem(str(project), 0, what, cure, code="PLC160"))
     setup = _setup(loaded, project, name)
-    return PlacedSetup(setup.cl, setup.machine, setup.settings, tuple(project_inputs(loaded)))
+    settings = dict(setup.settings)
+    if is_turned(*checked_angles(setup.turn, setup.tilt)):
+        settings.pop("zero", None)  # it is that of the turned part: there is no present place of the drawn one
+    return PlacedSetup(setup.cl, setup.machine, settings, tuple(project_inputs(loaded)))
 
 
 def _setup(loaded: Project, project: Path, name: str | None) -> PostedSetup:

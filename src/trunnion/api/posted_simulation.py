@@ -18,16 +18,19 @@ from trunnion.api.reading import FilePath, as_machine
 from trunnion.api.simulation_result import SimulationFinding, SimulationResult
 from trunnion.api.simulation_setups import SetupInput, SimulationInput
 from trunnion.api.simulation_steps import simulate_setups
+from trunnion.api.turned_parts import checked_angles
 from trunnion.api.writing import named_run
 from trunnion.definitions.messages import did_you_mean
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
+from trunnion.placing.path_rows import turn_and_tilt
 from trunnion.simulation.findings import What
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
 from trunnion.simulation.meshes.primitives import box_mesh, cylinder_mesh
 from trunnion.simulation.stock.solids import is_mesh, stock_shape
+from trunnion.simulation.turned_parts import as_clamped
 from trunnion.verification import Check, Place
 from trunnion.wording import counted
 
@@ -42,8 +45,10 @@ _OF_SETUP: Final = ("part", "fixtures", "tools", "libraries", "unit")
 _MOST_PLACES: Final = 50
 
 
-def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput:
-    """What is to be simulated; the programs are not known yet.
+def simulation_input(
+    given: SimulationLike, machine: Machine, angles: tuple[float, float] = (0.0, 0.0)
+) -> SimulationInput:
+    """What is to be simulated with a part that is clamped at these ``angles``; the programs are not known yet.
 
     Raises
     ------
@@ -61,8 +66,9 @@ def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput
     if project is None:
         base = SimulationInput("", [SetupInput((), machine)])
     else:
-        base = _of_project(check_path("simulation", project), machine, stated)
-    setup = replace(base.setups[0], machine=machine, **{name: stated[name] for name in _OF_SETUP if name in stated})
+        base = _of_project(check_path("simulation", project), machine, stated, angles)
+    own = {name: stated[name] for name in _OF_SETUP if name in stated}
+    setup = replace(base.setups[0], machine=machine, turn=angles[0], tilt=angles[1], **own)
     found = replace(base, setups=[setup], **{name: stated[name] for name in _WHOLE if name in stated})
     if not found.stock:
         raise InputError(
@@ -74,10 +80,16 @@ def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput
 
 
 def simulated_bodies(given: SimulationInput) -> Iterator[tuple[str, TriangleMesh]]:
-    """Yield what the program is simulated with: ``stock``, ``part`` and ``fixture``, each with its mesh.
+    """Yield what the program is simulated with: ``stock``, ``part`` and ``fixture``, each with its mesh as clamped.
 
     Meshes are read again, and nothing is told of them: the simulation has done it.
     """
+    turn = turn_and_tilt(*checked_angles(given.setups[0].turn, given.setups[0].tilt))
+    for kind, mesh in _drawn_bodies(given):
+        yield kind, as_clamped(mesh, turn)
+
+
+def _drawn_bodies(given: SimulationInput) -> Iterator[tuple[str, TriangleMesh]]:
     shape, setup = stock_shape(given.stock), given.setups[0]
     if shape.mesh is not None:
         yield "stock", shape.mesh
@@ -90,7 +102,9 @@ def simulated_bodies(given: SimulationInput) -> Iterator[tuple[str, TriangleMesh
             yield kind, mesh if isinstance(mesh, TriangleMesh) else load_mesh(mesh)
 
 
-def _of_project(path: Path, machine: Machine, stated: Mapping[str, Any]) -> SimulationInput:
+def _of_project(
+    path: Path, machine: Machine, stated: Mapping[str, Any], angles: tuple[float, float]
+) -> SimulationInput:
     """A project, whose programs are not looked at: the one that is posted is simulated."""
     if not is_project(path):
         cure = "give the path of a project (.toml)"
@@ -104,6 +118,12 @@ def _of_project(path: Path, machine: Machine, stated: Mapping[str, Any]) -> Simu
         file, line, key = setup.places["machine"]
         what = f"{key} is {as_machine(setup.machine).key}, and the program is posted for {machine.key}"
         raise InputError(Problem(file, line, what, "post it for the machine of the project", code="SIM113"))
+    for name, angle in zip(("turn", "tilt"), angles, strict=True):
+        wanted = getattr(setup, name)
+        if wanted is not None and wanted != angle:
+            file, line, key = setup.places[name]
+            what = f"{key} is {wanted:g}, and the part of the post is clamped at {angle:g} degrees"
+            raise InputError(Problem(file, line, what, f"give the {name} {wanted:g}", code="SIM113"))
     for name, own in (("zero", machine.workpiece_zero), ("tool_length", machine.tool_length)):
         wanted = getattr(setup, name)
         if wanted is not None and wanted != own:
@@ -144,7 +164,9 @@ def simulate_posted(
     if run is None:
         what = "nobody reads programs of this control, and what is not read cannot be simulated"
         raise InputError(argument_problem("simulation", what, "leave it out", code="SIM115"))
-    setup = replace(given.setups[0], programs=(named_run(run, name),), machine=run.machine, cl=toolpaths)
+    setup = replace(
+        given.setups[0], programs=(named_run(run, name),), machine=run.machine, cl=toolpaths, cl_is_turned=True
+    )
     return simulate_setups(replace(given, setups=[setup]), observer)
 
 

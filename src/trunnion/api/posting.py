@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 
 from trunnion.api import kernels
 from trunnion.api.arguments import check_observer, check_paths
-from trunnion.api.builders_words import builders_words, stated_words
 from trunnion.api.expectation import Expectation, expectation
 from trunnion.api.forcing import Proof, Untold, write_forced
 from trunnion.api.hook_files import load_hooks
@@ -25,13 +24,16 @@ from trunnion.api.machining_times import new_time_token, operation_times, prints
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.paper_files import PaperFiles, paper_files
 from trunnion.api.papers import PostPapers, post_papers
+from trunnion.api.placed_heads import placed_notices
 from trunnion.api.planning import load_toolpaths, new_problems, plan_program
 from trunnion.api.post_result import PostResult, ProofFailedError
 from trunnion.api.program_places import ProgramPlaces
+from trunnion.api.program_warnings import program_warnings, stated_words
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.api.reports import write_refusal
 from trunnion.api.settings import Settings
 from trunnion.api.targets import OutputLike, Target, open_target
+from trunnion.api.turned_parts import checked_angles, is_turned, turned_toolpaths
 from trunnion.api.writing import named_verification, read_back_while_writing, write
 from trunnion.errors import Problem, Severity, TrunnionError
 from trunnion.files import OutputGroup, file_on_disk
@@ -62,6 +64,8 @@ def post(
     subprograms: Sequence[FilePath] = (),
     simulation: "SimulationLike | None" = None,
     hooks: Sequence[FilePath] = (),
+    turn: float = 0.0,
+    tilt: float = 0.0,
     observer: Observer = SILENT,
 ) -> PostResult:
     """Post CL files as one NC program, and prove it.
@@ -113,6 +117,10 @@ def post(
         Python files whose functions change what the CL files ask for (``trunnion.hooks``). They are run: name none that
         you have not read. The program is proven against what they make of the CL files, and ``problems`` says which
         operations they changed.
+    turn, tilt
+        Of the part, degrees, where it is clamped otherwise than it is drawn: first the tilt about X of the program's
+        coordinate system, then the turn about Z, right-handed, about the workpiece zero. Comments in the head of the
+        program say so; a simulation takes stock, part and fixtures as they are drawn.
     observer
         Receives the progress, warnings, the plan and the proof.
 
@@ -144,7 +152,7 @@ def post(
     return post_beside(
         cl, (), machine=machine, output=output, settings=settings, strict=strict, force=force, explain=explain,
         papers=paper_files(report, sheet, listing, manifest, output), columns=columns, subprograms=subprograms,
-        simulation=simulation, hooks=hooks, observer=observer,
+        simulation=simulation, hooks=hooks, turn=turn, tilt=tilt, observer=observer,
     )  # fmt: skip
 
 
@@ -164,18 +172,21 @@ def post_beside(
     observer: Observer,
     simulation: "SimulationLike | None" = None,
     hooks: Sequence[FilePath] = (),
-    notices: Sequence[str] = (),
+    turn: float | None = None,
+    tilt: float | None = None,
+    is_placed: bool = False,
     group: OutputGroup | None = None,
     forcing: str = FORCING,
     later: list[PostPapers] | None = None,
 ) -> PostResult:
     """Post CL files as ``post`` does, and write over none of the other files of the same work.
 
-    The program appears with those of the ``group``, if there is one, and with ``notices`` as comments in its head. What
-    a refusal says of ``force`` is ``forcing``. Papers are written, or go into the list ``later``: who gives it writes
-    them.
+    The program appears with those of the ``group``, if there is one. Where it ``is_placed``, its head says how the part
+    is clamped, even if that is as it is drawn. What a refusal says of ``force`` is ``forcing``. Papers are written, or
+    go into the list ``later``: who gives it writes them.
     """
     check_observer(observer)
+    angles = checked_angles(turn, tilt)
     loaded = as_machine(machine)
     job = prepare(loaded, settings, force=force, explain=explain, papers=papers, columns=columns)
     existing = check_paths("subprograms", subprograms)
@@ -186,14 +197,18 @@ def post_beside(
         from trunnion.api.posted_simulation import simulation_files, simulation_input
 
         read = tuple(simulation_files(simulation))
-        job = replace(job, simulation=simulation_input(simulation, job.machine), simulation_files=read)
+        job = replace(job, simulation=simulation_input(simulation, job.machine, angles), simulation_files=read)
         inputs += read
     with open_target(output, papers=papers.by_name(), inputs=inputs, group=group) as target:
         compile_ahead(kernels.POSTING)
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
         changes = Hooks(load_hooks(hook_files), job.machine.name, job.control.name, job.settings)
         toolpaths = load_toolpaths(cl, job, strict, observer, changes.change)
+        toolpaths = turned_toolpaths(toolpaths, *angles, absolute=job.options.absolute_frame)
         decisions = tuple(changes.decisions) if job.options.explain else ()
+        notices: tuple[str, ...] = ()
+        if is_placed or is_turned(*angles):
+            notices = placed_notices(*angles, job.machine.workpiece_zero, job.machine.tool_length)
         job = replace(job, notices=(*notices, *changes.notices), decisions=decisions)
         target.files.protect(file_on_disk(toolpath.file) for toolpath in toolpaths)
         return post_toolpaths(toolpaths, job, target, observer, later)
@@ -265,7 +280,7 @@ def post_toolpaths(
             observer.problems(simulated.remarks)
         problems += [remark for remark in simulated.remarks if remark.severity is Severity.WARNING]
     if verification is not None:
-        words = builders_words(verification.run, stated_words(job.control, {**job.control.settings, **job.settings}))
+        words = program_warnings(verification.run, stated_words(job.control, {**job.control.settings, **job.settings}))
         problems += words
         observer.problems(words)
         observer.verified(verification)

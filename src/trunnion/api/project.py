@@ -43,6 +43,7 @@ class PostedSetup:
     settings     by their names, as ``trunnion.post`` takes them
     subprograms  files that exist already and that templates call
     released     earlier programs that the new ones must move like; subprograms of one stand behind it
+    turn, tilt   of the part as it is clamped, degrees; None: as it is drawn
     papers       files of its report, setup sheet, listing and manifest
     places       where the project states settings: file, line and key, by their names; ``settings`` of all others
     """
@@ -55,6 +56,8 @@ class PostedSetup:
     settings: Mapping[str, SettingValue] = field(default_factory=dict)
     subprograms: tuple[str, ...] = ()
     released: tuple[str, ...] = ()
+    turn: float | None = None
+    tilt: float | None = None
     papers: PaperFiles = NO_PAPERS
     places: Places = field(default_factory=dict)
 

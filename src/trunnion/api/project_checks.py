@@ -182,5 +182,6 @@ def _with_runs(project: Project, setup: SetupInput, results: Sequence[PostResult
     toolpaths = [toolpath for result in results for toolpath in result.toolpaths]
     runs = [_run(project, result) for result in results]
     return replace(
-        setup, programs=runs, machine=runs[0].machine, cl=toolpaths, subprograms=(), zero=None, tool_length=None
+        setup, programs=runs, machine=runs[0].machine, cl=toolpaths, cl_is_turned=True, subprograms=(), zero=None,
+        tool_length=None,
     )  # fmt: skip

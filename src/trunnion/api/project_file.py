@@ -56,7 +56,7 @@ _KEYS: Final = {
     "nc": "programs", "subprograms": "subprograms", "machine": "machine", "part": "part", "fixtures": "fixtures",
     "work_offset": "work_offset", "tools": "tools", "libraries": "tool_libraries", "unit": "unit", "cl": "cl",
     "zero": "zero_mm", "tool_length": "tool_length_mm", "until": "until", "stock": "stock", "cell": "cell_mm",
-    "accuracy": "accuracy_mm", "near": "near_mm", "stop_at": "stop_at",
+    "accuracy": "accuracy_mm", "near": "near_mm", "stop_at": "stop_at", "turn": "turn_deg", "tilt": "tilt_deg",
 }  # fmt: skip
 
 
@@ -292,6 +292,9 @@ class _Reader:
             found["zero"] = table.vector("zero_mm", 3, None)
         if shared is None or "tool_length_mm" in stated:
             found["tool_length"] = table.number("tool_length_mm", None, above=0.0)
+        for name, most in (("turn", 360.0), ("tilt", 90.0)):
+            if shared is None or f"{name}_deg" in stated:
+                found[name] = table.number(f"{name}_deg", None, at_least=-most, at_most=most)
         if shared is not None:
             found["pose"] = self._pose(table) if "pose" in stated else None
             if not found["machine"] and "machine" not in self._elsewhere and "machine" not in stated:
@@ -341,7 +344,8 @@ class _Reader:
             table.add_problem(name, what, "leave it out")
         if not self._is_posted and "nc" not in self._elsewhere:
             self._check_is_posted(table, output, found["division"])
-        named = {key: found[key] for key in ("name", "cl", "machine", "division", "settings", "subprograms")}
+        keys = ("name", "cl", "machine", "division", "settings", "subprograms", "turn", "tilt")
+        named = {key: found[key] for key in keys}
         posted = PostedSetup(
             output=output, released=released, papers=papers, places=found["setting_places"], **named
         )  # fmt: skip

@@ -6,12 +6,14 @@ Out:    its programs, what the checks of the project found, and an error where o
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trunnion.api.arguments import check_observer, check_path
 from trunnion.api.dividing import check_tools, operation_programs, programs_of_operations
 from trunnion.api.job import prepare
+from trunnion.api.left_over_setups import left_over_setups, remember_setups
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.paper_files import NO_PAPERS, PaperFiles
 from trunnion.api.papers import PostPapers
@@ -141,6 +143,11 @@ def post_into(
     with told_by_keys(project.path):
         simulation, of_setups = check_project(project, posted, observer)
     found = [*(problem for each in of_setups for problem in each.problems), *_left_over(posted)]
+    programs = [file for _, results in posted for each in results for file in files_of(each)]
+    found += left_over_setups(project, [*programs, *papers], [Path(each.file) for each in found])
+    group.afterwards(
+        partial(remember_setups, project, [each.output for _, results in posted for each in results if each.output])
+    )
     refused = [problem for problem in found if problem.severity is Severity.ERROR]
     warnings = [problem for problem in found if problem.severity is Severity.WARNING]
     observer.problems(warnings)
@@ -225,7 +232,7 @@ class _SetupPost:
             cl, self.inputs, machine=machine, output=output, settings=settings, strict=self.strict, force=False,
             explain=self.explain, papers=papers, columns=self.project.checks.longest_s is not None,
             subprograms=setup.subprograms, hooks=self.project.hooks, observer=self.observer, group=self.group,
-            forcing="", later=self.later,
+            forcing="", later=self.later, turn=setup.turn, tilt=setup.tilt,
         )  # fmt: skip
 
 

@@ -84,6 +84,13 @@ class Reach:
     paths: tuple[PathReach, ...]
     remarks: tuple[Problem, ...]
 
+    @property
+    def unjudged_slides(self) -> tuple[str, ...]:
+        """Names of the slides that part and paths are not held against: limits or places are not known."""
+        machine = self.machine
+        judged = [k for k in machine.linear if machine.is_placed(k) and machine.axes[k].has_limits]
+        return tuple(machine.names[k] for k in machine.linear if k not in judged)
+
 
 def reach(
     machine: MachineLike,

@@ -18,7 +18,7 @@ from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.tools.profile import ToolShape
 
 #: Arguments that differ from set-up to set-up.
-_OF_ONE_SETUP: Final = ("part", "fixtures", "subprograms", "zero", "tool_length")
+_OF_ONE_SETUP: Final = ("part", "fixtures", "subprograms", "zero", "tool_length", "turn", "tilt")
 
 
 def simulate(
@@ -40,6 +40,8 @@ def simulate(
     until: str | int | None = None,
     zero: str | Iterable[float] | None = None,
     tool_length: str | float | None = None,
+    turn: float | None = None,
+    tilt: float | None = None,
     threads: int | None = None,
     observer: Observer = SILENT,
 ) -> SimulationResult:
@@ -84,6 +86,9 @@ def simulate(
         N number of the block before which the last program ends.
     zero, tool_length
         As for ``verify``: without both, machine positions (G53, M91) are taken as retracts along the tool axis.
+    turn, tilt
+        Of the part, degrees, where it is clamped otherwise than it is drawn, as for ``verify``. Stock, part and
+        fixtures are given as they are drawn, and so are all places that are told; CL files are turned.
     threads
         How many; by default as many as there are processors. The result is the same.
     observer
@@ -115,7 +120,7 @@ def simulate(
     }  # fmt: skip
     own: dict[str, Any] = {
         "machine": machine, "part": part, "fixtures": fixtures, "tools": tools, "libraries": libraries, "unit": unit,
-        "cl": cl, "subprograms": subprograms, "zero": zero, "tool_length": tool_length,
+        "cl": cl, "subprograms": subprograms, "zero": zero, "tool_length": tool_length, "turn": turn, "tilt": tilt,
     }  # fmt: skip
     return simulate_setups(as_simulation_input(nc, whole, own, until), observer)
 

@@ -17,6 +17,8 @@ def simulation_data(found: SimulationResult) -> dict[str, object]:
         "passed": found.passed,
         "programs": list(found.programs),
         "machine": found.machine,
+        "turn_deg": _number(found.turn),
+        "tilt_deg": _number(found.tilt),
         "cell_mm": _number(max(found.cell)),
         "cells_mm": _numbers(found.cell),
         "accuracy_mm": _number(found.accuracy),
@@ -59,7 +61,7 @@ def _setup(found: SimulationResult) -> dict[str, object]:
     return {
         "name": found.setup, "machine": found.machine, "programs": list(found.programs), "passed": found.passed,
         "cells_mm": _numbers(found.cell), "removed_mm3": _number(found.removed), "left": _excess(found.left),
-        "gouge": _excess(found.gouge),
+        "gouge": _excess(found.gouge), "turn_deg": _number(found.turn), "tilt_deg": _number(found.tilt),
     }  # fmt: skip
 
 

@@ -11,10 +11,12 @@ from typing import Any, Final
 
 import numpy as np
 
+from trunnion.api.placed_heads import number
 from trunnion.api.reading import FilePath
 from trunnion.api.reports import check_report_name
 from trunnion.api.simulation_data import simulation_data
 from trunnion.api.simulation_result import NearMiss, SimulationFinding, SimulationResult
+from trunnion.api.turned_parts import is_turned
 from trunnion.arrays import Floats
 from trunnion.files import atomic_file
 from trunnion.reporting.simulation_content import (
@@ -75,6 +77,7 @@ def simulation_content(found: SimulationResult) -> SimulationContent:
         ("Motions and tools within", f"{found.accuracy:.4g} mm"),
         ("Not told below", f"{found.limit:.4g} mm"),
         ("Set-ups", ", ".join(each.setup for each in found.setups)),
+        ("Clamped", "; ".join(filter(None, map(_clamped, found.setups or (found,))))),
     )
     return SimulationContent(
         title=clean(", ".join(dict.fromkeys(Path(program).name for program in found.programs))),
@@ -93,6 +96,14 @@ def simulation_content(found: SimulationResult) -> SimulationContent:
         remarks=tuple(clean(str(remark)) for remark in found.remarks),
         data=_cleaned(simulation_data(found)),
     )  # fmt: skip
+
+
+def _clamped(found: SimulationResult) -> str:
+    """How the part of a set-up is clamped; empty: as it is drawn."""
+    if not is_turned(found.turn, found.tilt):
+        return ""
+    name = f"{found.setup}: " if found.setup else ""
+    return f"{name}tilted {number(found.tilt)}°, then turned {number(found.turn)}°; places are those of the drawing"
 
 
 def _finding(each: SimulationFinding) -> FindingRow:

@@ -165,6 +165,8 @@ class SimulationResult:
     setup      its name, where this is one of several
     setups     the results of each, where there are several
     pairs      of bodies that were checked against each other, of all programs
+    turn, tilt of the part as it is clamped, degrees; all places are those of the part as it is drawn. Of several
+               set-ups those of the last one
     """
 
     programs: tuple[str, ...]
@@ -185,6 +187,8 @@ class SimulationResult:
     setup: str = ""
     setups: tuple["SimulationResult", ...] = ()
     pairs: int = 0
+    turn: float = 0.0
+    tilt: float = 0.0
 
     @property
     def passed(self) -> bool:
@@ -219,10 +223,11 @@ def make_result(
     runs: Sequence[Run] = (),
     setup: str = "",
     pairs: int = 0,
+    angles: tuple[float, float] = (0.0, 0.0),
 ) -> SimulationResult:
     """Put together what programs have cut, hit and come near to in a set-up.
 
-    ``runs`` are those of the jobs as they were read; rows are the same.
+    ``runs`` are those of the jobs as they were read; rows are the same. ``angles`` are turn and tilt of the part.
     """
     read = runs or [job.run for job in jobs]
     verified = [verify_run(run, toolpaths if len(jobs) == 1 else ()) for run in read[: len(jobs)]]
@@ -257,7 +262,7 @@ def make_result(
         tuple(job.run.files[0] for job in jobs), machine, (x, y, z),
         found.setup.tolerance + found.error, found.setup.limit, found.start_volume - found.stock.volume,
         _named(operations, setup), _named(findings, setup), _named(misses, setup), _longest(_named(air, setup)),
-        found.left, found.gouge, remarks, found.seconds, found, setup, pairs=pairs,
+        found.left, found.gouge, remarks, found.seconds, found, setup, pairs=pairs, turn=angles[0], tilt=angles[1],
     )  # fmt: skip
 
 

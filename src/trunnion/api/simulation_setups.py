@@ -17,15 +17,18 @@ import numpy as np
 from trunnion import readers
 from trunnion.api.arguments import check_choice, check_path, check_paths, wrong_argument
 from trunnion.api.observer import Observer
+from trunnion.api.placed_heads import unlike_bodies
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.api.settings import set_up_machine, work_offset_setting
 from trunnion.api.simulation_result import NO_CALL
-from trunnion.api.turned_parts import turned_bodies
+from trunnion.api.turned_parts import checked_angles, is_turned, turned_toolpaths
 from trunnion.api.verifying import rapid_feed_of
+from trunnion.arrays import Floats
 from trunnion.errors import ArgumentName, InputError, Problem, argument_problem
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
+from trunnion.placing.path_rows import turn_and_tilt
 from trunnion.simulation.meshes import DEVIATION, TriangleMesh, load_mesh
 from trunnion.simulation.stock.turning import Pose
 from trunnion.simulation.tools.choice import choose_tools, tools_of_toolpaths
@@ -50,6 +53,8 @@ class SetupInput:
     pose         where the last set-up's workpiece frame lies in this one's; None: where it was
     part         None: that of the last set-up, where it lies now
     work_offset  in which the programs must cut; None: in any
+    turn, tilt   how the part is clamped, degrees; None: as it is drawn. Stock, part and fixtures are given as drawn
+    cl_is_turned  CL files, which are toolpaths, are turned already
     places       where a project file states arguments
     """
 
@@ -68,6 +73,9 @@ class SetupInput:
     zero: str | Iterable[float] | None = None
     tool_length: str | float | None = None
     until: str | int | None = None
+    turn: float | None = None
+    tilt: float | None = None
+    cl_is_turned: bool = False
     places: Places = field(default_factory=dict)
 
 
@@ -87,7 +95,11 @@ class SimulationInput:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PreparedSetup:
-    """A set-up that has been read: its machine, runs, tools by their names in programs, and meshes."""
+    """A set-up that has been read: its machine, runs, tools by their names in programs, and meshes as they are drawn.
+
+    angles      turn and tilt of the part, degrees
+    toolpaths   of the part as it is clamped
+    """
 
     given: SetupInput
     machine: Machine
@@ -96,6 +108,12 @@ class PreparedSetup:
     part: TriangleMesh | None
     fixtures: tuple[TriangleMesh, ...]
     toolpaths: list[Toolpath]
+    angles: tuple[float, float] = (0.0, 0.0)
+
+    @property
+    def turn(self) -> Floats | None:
+        """What turns the part as it is drawn to how it is clamped, (3, 3); None: it is clamped as drawn."""
+        return turn_and_tilt(*self.angles) if is_turned(*self.angles) else None
 
 
 def prepare_setup(
@@ -111,6 +129,7 @@ def prepare_setup(
     machine = as_machine(given.machine)
     readers.reader_of(machine)
     machine = set_up_machine(machine, given.zero, given.tool_length)
+    angles = checked_angles(given.turn, given.tilt)
     part = None if given.part is None else _mesh(given.part, "part", remarks, deviation)
     around = listed("fixtures", given.fixtures, TriangleMesh)
     named = zip(around, _fixture_names(around), strict=True)
@@ -123,12 +142,14 @@ def prepare_setup(
     _check_programs(runs, machine)
     for program in programs:
         if not isinstance(program, Run):
-            remarks += turned_bodies(Path(program))
+            remarks += unlike_bodies(Path(program), *angles, machine)
     toolpaths = as_toolpaths(given.cl, None, False, observer)
+    if not given.cl_is_turned:
+        toolpaths = turned_toolpaths(toolpaths, *angles)
     tools = _tools(runs, given.tools, _libraries(given.libraries, given.unit), toolpaths)
     if given.work_offset is not None:
         remarks += _other_offsets(runs, given.work_offset, machine)
-    return PreparedSetup(given, machine, runs, tools, part, fixtures, toolpaths)
+    return PreparedSetup(given, machine, runs, tools, part, fixtures, toolpaths, angles)
 
 
 @contextmanager

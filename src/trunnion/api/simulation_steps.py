@@ -32,6 +32,7 @@ from trunnion.simulation.stock.solids import StockShape, check_narrow_tools, def
 from trunnion.simulation.stock.turning import Pose, turned_stock
 from trunnion.simulation.tool_deltas import as_the_tool_goes
 from trunnion.simulation.tools.profile import ToolShape
+from trunnion.simulation.turned_parts import as_clamped, places_of_drawing, run_of_drawn_part
 from trunnion.verification.kinematics.axis_motion_kernel import axis_motion_rows
 
 #: Part of a cell within which motions are simulated by default.
@@ -189,21 +190,37 @@ class _Steps:
     def _simulated(
         self, own: PreparedSetup, setup: Setup, part: TriangleMesh | None, remarks: list[Problem]
     ) -> SimulationResult:
-        given, jobs, name = self._given, _jobs(own), own.given.name
+        given, name, turn = self._given, own.given.name, own.turn
+        clamped, jobs = _clamped(own), _jobs(own)
         runs = [job.run for job in jobs]
         remarks += simulation_remarks(setup, runs, own.tools)
         remarks += [problem for run in own.runs for problem in as_the_tool_goes(run)[1]]
         remarks += [Problem(job.run.files[0], 0, job.broken_off, code="SIM142") for job in jobs if job.broken_off]
         self._observer.problems(of_setup(remarks, name))
         told = len(remarks)
-        around, near = own.fixtures, given.near or 0.0
+        near, solid, around = given.near or 0.0, part, own.fixtures
+        if turn is not None:
+            solid = None if part is None else as_clamped(part, turn)
+            around = tuple(as_clamped(mesh, turn) for mesh in around)
         machines = list[Problem]()
-        bodies = [_bodies(job, number, part, around, remarks, machines) for number, job in enumerate(jobs)]
+        bodies = [
+            _bodies(replace(job, run=run), number, solid, around, remarks, machines)
+            for number, (job, run) in enumerate(zip(jobs, clamped, strict=True))
+        ]
         machines = [each for each in dict.fromkeys(machines) if each not in self._of_machines]
         self._of_machines += machines
         self._observer.problems(machines)
         pairs: list[int] = []
-        touched = [_collisions(job, own, near, pairs.append) for job, own in zip(jobs, bodies, strict=True)]
+
+        def touching(jobs: Sequence[Job], tell: Callable[[int], None] | None = None) -> list[list[Collision]]:
+            """What touches on the machine, where the part is as it is clamped; places are those of the drawing."""
+            found = [
+                _collisions(replace(job, run=run), each, near, tell)
+                for job, run, each in zip(jobs, clamped, bodies, strict=False)
+            ]
+            return found if turn is None else [places_of_drawing(each, turn) for each in found]
+
+        touched = touching(jobs, pairs.append)
         if given.stop_at == "first":
             jobs = _up_to_first_hit(jobs, touched)
         found = _cut(setup, jobs, given.stop_at == "first", self._threads, self._shares, self._observer)
@@ -217,10 +234,10 @@ class _Steps:
         self._observer.problems(of_setup(remarks[told:], name))
         if given.stop_at == "first":
             jobs = _until_stop(jobs, found)
-            touched = [_collisions(job, own, near) for job, own in zip(jobs, bodies, strict=False)]
+            touched = touching(jobs)
         return make_result(
             own.machine.key, found, jobs, touched, (*of_setup(remarks, name), *machines), own.toolpaths, runs=own.runs,
-            setup=name, pairs=sum(pairs),
+            setup=name, pairs=sum(pairs), angles=own.angles,
         )  # fmt: skip
 
 
@@ -309,9 +326,15 @@ def _lengths_known(job: Job) -> bool:
     return all(known or job.tools[name].length for name in used if name in job.tools)
 
 
+def _clamped(own: PreparedSetup) -> list[Run]:
+    """The runs of a set-up on its machine, where the part is as it is clamped."""
+    return [as_the_tool_goes(run)[0] for run in own.runs]
+
+
 def _jobs(own: PreparedSetup) -> list[Job]:
-    """The programs of a set-up, as far as they are simulated."""
-    runs = [as_the_tool_goes(run)[0] for run in own.runs]
+    """The programs of a set-up as far as they are simulated, about the part as it is drawn."""
+    turn, clamped = own.turn, _clamped(own)
+    runs = clamped if turn is None else [run_of_drawn_part(run, turn) for run in clamped]
     return [_job(run, own.tools, own.given.until if run is runs[-1] else None) for run in runs]
 
 

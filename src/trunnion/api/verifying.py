@@ -9,13 +9,14 @@ from typing import Final, Literal
 from trunnion import readers, verification
 from trunnion.api import kernels
 from trunnion.api.arguments import check_choice, check_observer, check_paths, check_whole, wrong_argument
-from trunnion.api.builders_words import builders_words
 from trunnion.api.cl_statements import replace_unknown_statements
 from trunnion.api.observer import SILENT, Observer
+from trunnion.api.placed_heads import unlike_head
+from trunnion.api.program_warnings import program_warnings
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.api.recording import as_recording
 from trunnion.api.settings import check_operation_names, check_tolerance, m_code, set_up_machine, work_offset_setting
-from trunnion.api.turned_parts import turned_toolpaths, unlike_head
+from trunnion.api.turned_parts import checked_angles, turned_toolpaths
 from trunnion.controls import Control, load_control
 from trunnion.controls.setting_rules import tool_number
 from trunnion.errors import InputError, argument_problem
@@ -172,7 +173,7 @@ def verify(
     if hook_files and isinstance(cl, tuple | list) and not cl:
         what, cure = "change CL files, and there are none", "name them with cl"
         raise InputError(argument_problem("hooks", what, cure, code="ARG130"))
-    angles = _angles(turn, tilt)
+    angles = checked_angles(turn, tilt)
     if any(angles) and isinstance(cl, tuple | list) and not cl:
         what, cure = "is that of CL files, and there are none", "name them with cl"
         raise InputError(argument_problem("turn" if angles[0] else "tilt", what, cure, code="ARG130"))
@@ -185,7 +186,7 @@ def verify(
     defaults = default_settings(loaded)
     toolpaths = as_toolpaths(cl, units, False, observer, dialect)
     run = as_run(nc, loaded, subprograms)
-    observer.problems(builders_words(run))
+    observer.problems(program_warnings(run))
     if len(run.normals):
         from trunnion.cl.surface_normals import with_normals
 
@@ -196,7 +197,7 @@ def verify(
     toolpaths = replace_unknown_statements(toolpaths, control, loaded)
     if toolpaths:
         toolpaths = turned_toolpaths(toolpaths, *angles, absolute=frame == "absolute")
-        observer.problems([] if isinstance(nc, Run) else unlike_head(Path(nc), *angles))
+        observer.problems([] if isinstance(nc, Run) else unlike_head(Path(nc), *angles, loaded))
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     if edge is None and toolpaths and "edge" in defaults:
@@ -256,16 +257,6 @@ def _with_feed_digit(
     if isinstance(tolerances, Tolerances):
         return replace(tolerances, feed=digit)
     return lambda operation: replace(tolerances(operation), feed=digit)
-
-
-def _angles(turn: object, tilt: object) -> tuple[float, float]:
-    """Turn and tilt, checked."""
-    found = []
-    for name, value in (("turn", turn), ("tilt", tilt)):
-        if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= 360.0:
-            raise wrong_argument(name, value, "give degrees, -360 to 360")
-        found.append(float(value))
-    return found[0], found[1]
 
 
 def _feed_limit(limit: float | None, feed: str) -> float | None:

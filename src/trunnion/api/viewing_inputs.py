@@ -17,6 +17,7 @@ from trunnion.api.project_file import read_project
 from trunnion.api.reading import ToolpathLike, as_run, as_toolpaths
 from trunnion.api.settings import Settings
 from trunnion.api.simulation_setups import SetupInput
+from trunnion.api.turned_parts import checked_angles, is_turned
 from trunnion.api.verifying import rapid_feed_of, verify
 from trunnion.cl import is_cl_file
 from trunnion.cl.sources import cl_sources
@@ -144,6 +145,10 @@ def of_project(path: Path, setup: str | None, given: Mapping[str, Any]) -> dict[
     project = read_project(path, tuple(stated))
     chosen, number = _setup(path, project.setups, setup)
     programs = list(chosen.programs)
+    if is_turned(*checked_angles(chosen.turn, chosen.tilt)):
+        what = f"has a part that is clamped turned{f' in {chosen.name}' if chosen.name else ''}, and a view turns none"
+        cure = "view the program itself, with bodies as they are clamped"
+        raise InputError(Problem(str(path), 0, what, cure, code="PAG115"))
     if len(programs) != 1:
         what = f"has {len(programs)} programs in its set-up{f' {chosen.name}' if chosen.name else ''}"
         raise InputError(

@@ -106,6 +106,10 @@ def _number(_: _Tables, table: Table, key: str) -> float | None:
     return table.number(key, None, above=0.0)
 
 
+def _angle(most: float) -> _Reader:
+    return lambda _, table, key: table.number(key, None, at_least=-most, at_most=most)
+
+
 def _vector(_: _Tables, table: Table, key: str) -> list[float] | None:
     found = table.vector(key, 3, None)
     return None if found is None else list(found)
@@ -132,6 +136,8 @@ _OPTIONS: Final[Mapping[str, _Option]] = {
     "span_tip_mm": _Option("span_tip", _VERIFY, _number),
     "zero_mm": _Option("zero", _CONVERT | _VERIFY | _SIMULATE, _vector),
     "tool_length_mm": _Option("tool_length", _CONVERT | _VERIFY | _SIMULATE, _number),
+    "turn_deg": _Option("turn", _POST | _VERIFY | _SIMULATE, _angle(360.0)),
+    "tilt_deg": _Option("tilt", _POST | _VERIFY | _SIMULATE, _angle(90.0)),
     "stock": _Option("stock", _SIMULATE, _Tables.stock),
     "part": _Option("part", _SIMULATE, _Tables.file),
     "fixtures": _Option("fixtures", _SIMULATE, _Tables.files),
@@ -206,6 +212,11 @@ def _judged(
     if tiles > 1 and values.get("stop_at") == "first":
         what = 'has no meaning with stop_at = "first": no single task knows the first finding'
         table.add_problem("tiles", what, "leave out one of them", code="SIM116")
+    for key in ("turn_deg", "tilt_deg") if action is Action.VERIFY and "cl" not in beside else ():
+        if values.get(key):
+            what, cure = "turns CL files before they are compared, and the job has none", "name them with cl"
+            table.add_problem(key, what, cure, code="BAT110")
+    if table.problems:
         return []
     arguments = {_OPTIONS[key].argument: value for key, value in values.items() if value}
     keys = {_OPTIONS[key].argument: key for key in values}

@@ -27,6 +27,7 @@ from trunnion.batch.records import (
 from trunnion.batch.stale import remove_stale
 from trunnion.batch.stores import Store
 from trunnion.batch.task import FILES, Outcome, Status, Task
+from trunnion.batch.warned import Warned, WarningTally
 from trunnion.batch.work import work
 from trunnion.batch.workers import Assignment, Workers
 from trunnion.definitions.extends import is_within
@@ -43,6 +44,8 @@ class BatchResult:
     done    how many were done already
     failed  indices of the units that did not pass
     jobs    their names
+    new     indices of the units that passed in this run
+    warned  the warnings of all files by their codes, those of the most files first
     """
 
     units: Sequence[Unit]
@@ -51,6 +54,8 @@ class BatchResult:
     done: int
     failed: Sequence[int] = field(repr=False)
     jobs: Sequence[str] = ()
+    new: Sequence[int] = field(default=(), repr=False)
+    warned: Sequence[Warned] = ()
 
     @property
     def passed(self) -> bool:
@@ -64,6 +69,10 @@ class BatchResult:
     def failures(self) -> Iterator[Record]:
         """The same of those that did not pass."""
         return self._read([self.units[k] for k in self.failed])
+
+    def written(self) -> Iterator[Record]:
+        """The same of those of which this run has written files."""
+        return (record for record in self._read([self.units[k] for k in self.new]) if record.outputs)
 
     def _read(self, units: Sequence[Unit]) -> Iterator[Record]:
         for record in read_records(self.store, [unit.place for unit in units]):
@@ -90,7 +99,7 @@ def run_jobs(
     check_store(store)
     remove_stale(batch, units, store, observer)
     steps = [batch.jobs[unit.job].tasks for unit in units]
-    is_divided = sum(steps) > len(units)
+    is_divided, new = sum(steps) > len(units), list[int]()
     with observer.progress("batch", sum(steps), "tasks" if is_divided else "files") as advance:
         found, divisions = _Tally(steps, advance), Divisions(store)
         pending = _Pending(batch, store, units, found, divisions)
@@ -105,14 +114,15 @@ def run_jobs(
                     assignment, outcome = told
                 record = outcome if isinstance(outcome, Record) else settle(store, assignment.record, outcome)
                 divisions.end(record)
-                found.add(assignment.number, record.status)
-    return BatchResult(
-        units, store, dict(found.counts), pending.done, sorted(found.failed), [job.name for job in batch.jobs]
-    )
+                found.add(assignment.number, record)
+                new += [assignment.number] if record.status is Status.PASSED else []
+    names = [job.name for job in batch.jobs]
+    failed, warned = sorted(found.failed), found.warnings.found()
+    return BatchResult(units, store, dict(found.counts), pending.done, failed, names, sorted(new), warned)
 
 
 class _Tally:
-    """What became of files: counts, and the numbers of those that did not pass; and the progress, in tasks.
+    """What became of files: counts, the numbers of those that did not pass, what is warned of; and the progress.
 
     ``steps`` are the tasks of each file.
     """
@@ -120,6 +130,7 @@ class _Tally:
     def __init__(self, steps: Sequence[int], advance: Callable[[int], None]) -> None:
         self.counts = Counter[Status]()
         self.failed: list[int] = []
+        self.warnings = WarningTally()
         self._left = list(steps)
         self._advance = advance
 
@@ -130,10 +141,11 @@ class _Tally:
         if count:
             self._advance(count)
 
-    def add(self, number: int, status: Status) -> None:
+    def add(self, number: int, record: Record) -> None:
         """Count a file."""
-        self.counts[status] += 1
-        if status is not Status.PASSED:
+        self.counts[record.status] += 1
+        self.warnings.add(number, record)
+        if record.status is not Status.PASSED:
             self.failed.append(number)
         self.step(number, self._left[number])
 
@@ -172,8 +184,7 @@ class _Pending:
             try:
                 task = task_of(self._batch.folder, job, unit, self._shared[unit.job])
             except InputError as error:
-                commit(self._store, record, Outcome(Status.UNUSABLE, error.problems))
-                self._found.add(number, Status.UNUSABLE)
+                self._found.add(number, commit(self._store, record, Outcome(Status.UNUSABLE, error.problems)))
                 continue
             digests = {**self._digests[unit.job], **{name: digest(data) for name, data in task.files.items()}}
             key = _key(task, digests)
@@ -181,7 +192,7 @@ class _Pending:
                 self._take_over(before, record)
                 self.done += 1
                 self._divisions.end(before)  # the last run may have ended before it did
-                self._found.add(number, before.status)
+                self._found.add(number, before)
                 continue
             assignment = Assignment(number, replace(record, key=key))
             if job.tiles > 1:

@@ -23,6 +23,7 @@ from trunnion.files import OutputPlace, output_group
 COLUMNS: Final = {
     "file": "TEXT", "job": "TEXT", "action": "TEXT", "place": "TEXT", "status": "TEXT",
     "code": "TEXT", "told_file": "TEXT", "line": "INTEGER", "message": "TEXT", "warnings": "INTEGER",
+    "warning_codes": "TEXT",
     "blocks": "INTEGER", "points": "INTEGER", "motions": "INTEGER", "seconds": "REAL", "tools": "TEXT",
     "axes": "TEXT", "margin_mm": "REAL", "margin_deg": "REAL",
     "tip_deviation_mm": "REAL", "axis_deviation_deg": "REAL",

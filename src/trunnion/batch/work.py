@@ -120,6 +120,8 @@ def _work_in(folder: Path, task: Task) -> Outcome:
     problems = dict.fromkeys((*own, *collector.found))
     errors = [problem for problem in problems if problem.severity is Severity.ERROR]
     warnings = [problem for problem in problems if problem.severity is not Severity.ERROR]
+    if codes := [code for code in dict.fromkeys(problem.code for problem in warnings) if code]:
+        figures["warning_codes"] = codes
     told = tuple(_without_folder(problem, folder) for problem in [*errors, *warnings][:MOST_PROBLEMS])
     return Outcome(status, told, len(warnings), files, figures)
 
@@ -187,7 +189,8 @@ def _post(
             str(file), (), machine=_machine(arguments["machine"]), output=output,
             settings=arguments.get("settings"), strict=arguments.get("strict", False), force=False, explain=False,
             papers=paper_files(report, None, None, None, output), columns=True,
-            subprograms=arguments.get("subprograms", ()), observer=observer, group=group,
+            subprograms=arguments.get("subprograms", ()), turn=arguments.get("turn"), tilt=arguments.get("tilt"),
+            observer=observer, group=group,
         )  # fmt: skip
     if found.verification is not None:
         _add_proof(figures, found.verification, found.toolpaths)

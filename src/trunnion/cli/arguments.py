@@ -251,6 +251,7 @@ def _add_post(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--simulate", action="store_true", help="cut stock with the program too, and refuse what it must not do"
     )
+    _add_angles(parser, "and its toolpath with it; the head of the program says so")
     parser.add_argument("--project", metavar="PROJECT", help="project file (.toml) that states what --simulate takes")
     _add_stock(parser)
     parser.set_defaults(run=_lazy_command("startup", "run"))
@@ -321,15 +322,19 @@ def _add_verify(parser: argparse.ArgumentParser) -> None:
         "--recorded-tolerance", type=_tolerance, default=0.05, metavar="MM",
         help="how far the recorded tip may be off the path, and in degrees its tool axis; 0.05",
     )  # fmt: skip
+    _add_angles(parser, "as the head of a placed program says; the CL files are turned before they are compared")
+    parser.add_argument("--report", metavar="FILE", help="what was checked, as a page (.html) or data (.json)")
+    parser.set_defaults(run=_lazy_command("verify", "run"))
+
+
+def _add_angles(parser: argparse.ArgumentParser, what: str) -> None:
     parser.add_argument(
         "--turn", type=turn, metavar="DEG",
-        help="the part is turned so about Z, counter-clockwise seen from +Z, as the head of a placed program says",
+        help=f"the part is turned so about Z, counter-clockwise seen from +Z, {what}",
     )  # fmt: skip
     parser.add_argument(
         "--tilt", type=tilt, metavar="DEG", help="before that it is tilted about X of the program, right-handed"
     )
-    parser.add_argument("--report", metavar="FILE", help="what was checked, as a page (.html) or data (.json)")
-    parser.set_defaults(run=_lazy_command("verify", "run"))
 
 
 def _add_sensitivity(parser: argparse.ArgumentParser) -> None:
@@ -488,6 +493,7 @@ def _add_simulate(parser: argparse.ArgumentParser) -> None:
     _add_subprograms(parser, "they")
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
+    _add_angles(parser, "as the head of its program says; stock, part and fixtures are given as drawn")
     parser.add_argument("--stop-at", choices=("none", "first"), help="end after the block of the first finding")
     parser.add_argument("--until", metavar="BLOCK", help="N number of the block before which the last program ends")
     parser.add_argument("--json", metavar="FILE", help="all results as data; - is stdout")

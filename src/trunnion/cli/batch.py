@@ -23,6 +23,12 @@ from trunnion.wording import counted, one_line
 #: Files that failed which are printed; the summary has all of them.
 _MOST: Final = 200
 
+#: Results that are printed as written by this run.
+_MOST_WRITTEN: Final = 20
+
+#: Codes of warnings that are printed, those of the most files.
+_MOST_CODES: Final = 20
+
 #: Columns of the widest file and code in a table.
 _FILE_WIDTH: Final = 60
 _CODE_WIDTH: Final = 12
@@ -76,7 +82,7 @@ class _Terminal(Terminal):
 
 
 def result_lines(result: BatchResult) -> Iterator[str]:
-    """A batch in lines: what failed, and how many became what."""
+    """A batch in lines: what failed, what this run has written, and how many became what."""
     width = max((len(unit) for unit in result.jobs), default=0) if len(result.jobs) > 1 else 0
     if result.failed:
         job = f"{'job':<{width}}  " if width else ""
@@ -85,10 +91,29 @@ def result_lines(result: BatchResult) -> Iterator[str]:
         yield (f"{record.job:<{width}}  " if width else "") + _row(record)
     if len(result.failed) > _MOST:
         yield f"and {len(result.failed) - _MOST} more; --summary FILE.sqlite has all of them"
+    yield from _warnings(result)
+    written = list(islice(result.written(), _MOST_WRITTEN))
+    if written:
+        rest = " and others" if len(written) == _MOST_WRITTEN < len(result.new) else ""
+        yield f"written now: {', '.join(record.place for record in written)}{rest}"
     parts = ", ".join(f"{result.counts[status]} {status}" for status in Status if result.counts.get(status))
     before = f"; {result.done} of them done before" if result.done else ""
     judged = "" if result.store.is_exact or not result.done else ", which are judged by their sizes"
     yield f"{counted(len(result.units), 'file')}: {parts}{before}; results in {result.store.label}{judged}"
+
+
+def _warnings(result: BatchResult) -> Iterator[str]:
+    """What is warned of, by codes, each with the first file that has it."""
+    if result.warned:
+        yield f"{'warning':<{_CODE_WIDTH}}  {'files':>5}  the first"
+    for each in result.warned[:_MOST_CODES]:
+        problem = each.problem
+        at = f"{each.file}:{problem.line}" if problem.line and problem.file == each.file else each.file
+        place = "" if problem.file == each.file else f"{problem.file}: "
+        message = in_command_words(f"{place}{problem.what}; {problem.cure}".removesuffix("; "))
+        yield f"{each.code:<{_CODE_WIDTH}}  {each.files:>5}  {at}: {message}"
+    if len(result.warned) > _MOST_CODES:
+        yield f"and {counted(len(result.warned) - _MOST_CODES, 'code')} more; --summary FILE.sqlite has all of them"
 
 
 def _row(record: Record) -> str:

@@ -2,12 +2,14 @@
 
 import argparse
 import textwrap
-from dataclasses import asdict
+from collections.abc import Sequence
+from dataclasses import asdict, replace
 
 from trunnion.api.explaining import all_explanations
 from trunnion.api.explaining import explain as explain_code
 from trunnion.cli.results import as_json, print_result
 from trunnion.cli.wording import in_command_words
+from trunnion.errors import InputError, Problem
 from trunnion.explanations import SUBJECTS, Explanation
 
 _WIDTH = 100
@@ -15,14 +17,29 @@ _WIDTH = 100
 
 def explain(arguments: argparse.Namespace) -> int:
     """Print what codes mean; without any, list all of them."""
-    found = [explain_code(code) for code in arguments.codes] or list(all_explanations())
+    found, faults = _asked(arguments.codes)
+    found = found if arguments.codes else list(all_explanations())
     if arguments.json:
         print_result(as_json([asdict(each) for each in found]))
     elif arguments.codes:
-        print_result("\n\n".join(map(_text, found)))
+        if found:
+            print_result("\n\n".join(map(_text, found)))
     else:
         print_result(*_list(found))
+    if faults:
+        raise InputError(faults)
     return 0
+
+
+def _asked(codes: Sequence[str]) -> tuple[list[Explanation], list[Problem]]:
+    """The explanations of the codes that there are, and what is wrong with the others."""
+    found, faults = [], []
+    for code in codes:
+        try:
+            found.append(explain_code(code))
+        except InputError as error:
+            faults += [replace(problem, file=code) for problem in error.problems]
+    return found, faults
 
 
 def _text(found: Explanation) -> str:

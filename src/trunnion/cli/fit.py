@@ -44,6 +44,8 @@ def run(arguments: argparse.Namespace) -> int:
 def fit_lines(found: Sequence[MachineFit]) -> Iterator[str]:
     """The machines in their order, each with what it makes of it."""
     wide = max(len(each.key) for each in found)
+    if any(each.zero_mm is not None and each.status is not FitStatus.NOT for each in found):
+        yield "zero: of the workpiece in the machine frame, X,Y,Z in mm with all axes at zero; left: to the limits"
     for each in found:
         yield f"{each.key:<{wide}}  {each.status:<12}  {_facts(each)}".rstrip()
         for reason in each.reasons:
@@ -59,7 +61,7 @@ def _facts(each: MachineFit) -> str:
     if each.status is not FitStatus.NOT:
         left = [_margin(margin) for margin in each.margins if math.isfinite(margin.margin)]
         facts += [f"left {', '.join(left)}"] if left else []
-    return "; ".join(facts)
+    return "; ".join([*facts, *(["an example, no builder's machine"] if each.is_example else [])])
 
 
 def _margin(margin: AxisMargin) -> str:
@@ -76,6 +78,7 @@ def _data(each: MachineFit) -> dict[str, Any]:
     return {
         "machine": each.key if not each.key.endswith(".toml") else Path(each.key).as_posix(),
         "status": str(each.status),
+        "is_example": each.is_example,
         "reasons": list(each.reasons),
         "seconds": None if each.seconds is None else round(each.seconds, 3),
         "zero_mm": None if each.zero_mm is None else list(each.zero_mm),

@@ -1,17 +1,18 @@
 """``trunnion place``: where on the table a part may sit."""
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from trunnion.api.input_files import machine_files
+from trunnion.api.placed_heads import number
 from trunnion.api.placing import place
 from trunnion.api.placing_data import placement_data
+from trunnion.api.placing_inputs import toolpaths_to_post
 from trunnion.api.placing_post import post_placed
-from trunnion.api.reading import FilePath, load_machine
+from trunnion.api.reading import FilePath, ToolpathLike, load_machine
 from trunnion.api.settings import as_texts
-from trunnion.api.turned_parts import number
 from trunnion.arrays import Floats
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result, tell
@@ -19,6 +20,7 @@ from trunnion.cli.terminal import Terminal, output_place
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.files import atomic_file, check_outputs
 from trunnion.placing.placement import AxisUse, Limit, Place, Placement, RotaryUse, TurnMargin
+from trunnion.placing.table_limits import KEPT
 from trunnion.wording import counted, format_duration, one_line
 
 if TYPE_CHECKING:  # imported where a project is placed
@@ -42,6 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError(argument_problem("machine", "is missing", "name the machine", code="ARG130"))
     machine = load_machine(arguments.machine)
     read += machine_files(arguments.machine, machine)
+    read += [mesh for mesh in (arguments.stock, arguments.part) if mesh is not None]
     if arguments.plot is not None:
         from trunnion.api.placing_plot import check_placing_plot
 
@@ -56,8 +59,11 @@ def run(arguments: argparse.Namespace) -> int:
     check_outputs([target for target in targets if target not in (None, "-")], read)
     settings = {**({} if project is None else as_texts(project.settings)), **dict(arguments.settings)}
     length = arguments.tool_length or settings.get("tool_length")
+    files: Sequence[ToolpathLike] = cl_inputs(arguments.files)
+    if arguments.apply is not None:
+        files = toolpaths_to_post(files, machine=machine, settings=settings, observer=Terminal())
     found = place(
-        cl_inputs(arguments.files),
+        files,
         machine=machine,
         goal=arguments.goal,
         turns=arguments.only or arguments.turns,
@@ -66,6 +72,8 @@ def run(arguments: argparse.Namespace) -> int:
         tool_length=length,
         settings=settings,
         subprograms=arguments.subprograms,
+        stock=arguments.stock,
+        part=arguments.part,
         observer=Terminal(),
     )
     lines = tell if arguments.apply == "-" else print_result
@@ -107,7 +115,9 @@ def placement_lines(found: Placement) -> Iterator[str]:
     """A placement in lines."""
     best, present = found.best, found.present
     if best is None:
-        yield f"{found.machine}: the rotary axes reach the path at no {_tried(found)}"
+        off_table = any(turn.table_is_too_small for turn in found.turns)
+        what = "the part finds a place at" if off_table else "the rotary axes reach the path at"
+        yield f"{found.machine}: {what} no {_tried(found)}"
         for turn in sorted(found.turns, key=lambda each: abs(each.tilt_deg))[:_MOST]:
             yield f"  {_clamped(turn)}: {turn.obstacle}"
         return
@@ -123,12 +133,15 @@ def placement_lines(found: Placement) -> Iterator[str]:
         yield f"  {_use(axis)}"
     for rotary in best.rotary:
         yield f"  {_rotary_use(rotary)}"
+    if best.table_mm is not None:
+        yield f"  table: {max(best.table_mm, 0.0):.3f} left to its edge"
     if found.limits:
         what = "it is held by" if best.fits else "these conflict:"
         yield f"  {what} {'; '.join(dict.fromkeys(map(_limit, found.limits)))}{_overlap(found)}"
     if present is not None:
         gain = best.margin_mm - present.margin_mm
         state = f"{present.margin_mm:.3f} mm to the limits" if present.fits else f"{-present.margin_mm:.3f} mm too far"
+        state += _beyond_table(present)
         gained = (
             ""
             if found.goal != "margin"
@@ -138,8 +151,7 @@ def placement_lines(found: Placement) -> Iterator[str]:
     if found.goal != "margin" and best.value is not None:
         now = "" if present is None else f"; at the present zero {_goal_number(found.goal, present)}"
         yield f"  {_value(found.goal, best)}{now}"
-    fitting = sum(turn.fits for turn in found.turns)
-    yield f"  it fits at {fitting} of {counted(len(found.turns), _tried(found))}"
+    yield f"  {_share(found)}"
     if best.tilt_deg and (plain := _without_tilt(found)) is not None:
         yield f"  without a fixture angle: {plain}"
     if found.region is not None:
@@ -147,6 +159,11 @@ def placement_lines(found: Placement) -> Iterator[str]:
         yield f"  clamped so, the zero may be anywhere within {_ends(box.low, box.high)}"
         if not found.region.is_box:
             yield f"  and not beyond {_ends(found.region.low, found.region.high)}, where not every place fits"
+
+
+def _beyond_table(place: Place) -> str:
+    beyond = 0.0 if place.table_mm is None else -place.table_mm
+    return f" ({beyond:.3f} mm beyond the table)" if beyond > KEPT else ""
 
 
 def _clamped(place: Place | TurnMargin) -> str:
@@ -168,6 +185,17 @@ def _sense(best: Place) -> Iterator[str]:
         yield "the part is clamped as it is drawn"
 
 
+def _share(found: Placement) -> str:
+    """At how many of the turns that were asked for the part fits, and at how many more around the best."""
+    asked = [turn for turn in found.turns if turn.is_asked]
+    more = [turn for turn in found.turns if not turn.is_asked]
+    fits = sum(turn.fits for turn in asked)
+    if not more:
+        return f"it fits at {fits} of {counted(len(asked), _tried(found))}"
+    text = f"it fits at {fits} of the {counted(len(asked), _tried(found))} asked for"
+    return f"{text}; around the best, {len(more)} more were tried, {sum(turn.fits for turn in more)} fit"
+
+
 def _tried(found: Placement) -> str:
     """What was tried, in a word."""
     return "tilted turn" if len({turn.tilt_deg for turn in found.turns}) > 1 else "turn"
@@ -180,7 +208,8 @@ def _without_tilt(found: Placement) -> str | None:
         return None
     best = max(flat, key=lambda turn: -float("inf") if turn.margin_mm is None else turn.margin_mm)
     if best.margin_mm is None:
-        return "the rotary axes do not reach the path"
+        small = all(turn.table_is_too_small for turn in flat)
+        return "the table is too small" if small else "the rotary axes do not reach the path"
     margin = best.margin_mm
     left = f"{margin:.3f} mm to the limits" if margin >= 0.0 else f"it fits nowhere, {-margin:.3f} mm too far"
     return f"{left}, {_clamped(best)}"
@@ -242,4 +271,11 @@ def _use(axis: AxisUse) -> str:
 
 
 def _limit(limit: Limit) -> str:
+    if not limit.file:  # that of a table
+        edge = limit.end.split()[-1]
+        return (
+            f"the table's rim, Ø{limit.limit_mm:g}"
+            if edge == "rim"
+            else f"the table's edge at {edge} {limit.limit_mm:g}"
+        )
     return f"{limit.axis} at {limit.limit_mm:g} ({limit.file}:{limit.line})"

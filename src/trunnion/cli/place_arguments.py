@@ -81,6 +81,12 @@ def add_place(parser: argparse.ArgumentParser, setting: type[argparse.Action], k
         "--with", nargs="+", action="extend", default=[], metavar="NC", dest="subprograms",
         help="files of the subprograms that the programs call; no others are opened",
     )  # fmt: skip
+    parser.add_argument(
+        "--stock", metavar="STOCK",
+        help="box:X,Y,Z[,x0,y0,z0] (sizes, lowest corner), cylinder:D,H[,z0], or a mesh file; mm. Seen from above it is"
+        " to stay on the table that the machine's definition states",
+    )  # fmt: skip
+    parser.add_argument("--part", metavar="MESH", help="the finished part, for which the same holds")
     parser.add_argument("--json", metavar="FILE", help="all results as data; - is stdout")
     parser.add_argument("--plot", metavar="FILE.svg", help="the margin over the table and over the turns")
     parser.add_argument(

@@ -65,6 +65,8 @@ def post(
                 subprograms=arguments.subprograms,
                 simulation=simulation_of(arguments),
                 hooks=arguments.hooks,
+                turn=arguments.turn,
+                tilt=arguments.tilt,
                 observer=observer
                 or Terminal(explain=arguments.explain, recorded=arguments.explain or bool(arguments.report)),
                 group=group,

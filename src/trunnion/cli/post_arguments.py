@@ -10,7 +10,7 @@ _STATED: Final = {
     "hooks": "hooks", "sheet": "sheet", "listing": "listing", "manifest": "manifest",
     "simulate": "[checks] simulate", "project": "its own keys", "stock": "stock", "part": "part",
     "fixtures": "fixtures", "tools": "tools", "libraries": "tool_libraries", "unit": "unit", "near": "near_mm",
-    "cell": "cell_mm", "accuracy": "accuracy_mm",
+    "cell": "cell_mm", "accuracy": "accuracy_mm", "turn": "turn_deg", "tilt": "tilt_deg",
 }  # fmt: skip
 
 #: Those of them that are not called after their arguments.

@@ -19,7 +19,7 @@ from trunnion.files import atomic_file, check_outputs
 from trunnion.machines.reach import ReachedVolume
 from trunnion.wording import counted, one_line
 
-_LITRE: Final = 1e6
+_DM3: Final = 1e6
 
 #: Facets that the text shows; the data has all.
 _MOST: Final = 12
@@ -59,11 +59,15 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def reach_lines(found: Reach) -> Iterator[str]:
-    """What is reached, in lines."""
+    """What is reached, in lines: first what was asked about part and files, then the table over tilts."""
+    if found.part is not None:
+        yield from _part_lines(found.part, found)
+    for path in found.paths:
+        yield _path_line(path, found)
     machine = found.machine
     length = "no tool" if not machine.tool_length else f"a tool of {machine.tool_length:g} mm"
     yield f"{machine.name} with {length}: {100.0 * found.sphere:.1f} % of all tool axes"
-    yield "tilt from Z  azimuths  positions   one position l        at every azimuth l         at some azimuth l"
+    yield "tilt from Z  azimuths  positions  one position dm³       at every azimuth dm³        at some azimuth dm³"
     for each in found.tilts:
         if each.share:
             yield _tilt_line(each)
@@ -76,16 +80,12 @@ def reach_lines(found: Reach) -> Iterator[str]:
             f"bounds allow for tool axes between those tried, every {found.step:g}°: half-way points move by up to"
             f" {between:.0f} mm; a smaller --step narrows them"
         )
-    if found.part is not None:
-        yield from _part_lines(found.part)
-    for path in found.paths:
-        yield _path_line(path)
 
 
 def _tilt_line(each: TiltReach) -> str:
     low, high = min(each.branches), max(each.branches)
     positions = f"{low}" if low == high else f"{low} to {high}"
-    pose = "" if each.one_pose is None else _litres(each.one_pose[1])
+    pose = "" if each.one_pose is None else _dm3(each.one_pose[1])
     volumes = f"{_volume(each.every):>26}{_volume(each.some):>26}"
     return f"{each.tilt:>10g}°{100.0 * each.share:>8.1f} %{positions:>11}{pose:>17}{volumes}".rstrip()
 
@@ -94,12 +94,12 @@ def _volume(volume: ReachedVolume | None) -> str:
     if volume is None:
         return ""
     if volume.high - volume.low <= 5e-4 * volume.high:
-        return _litres(volume.likely)
-    return f"{_litres(volume.likely)} ({_litres(volume.low)}–{_litres(volume.high)})"
+        return _dm3(volume.likely)
+    return f"{_dm3(volume.likely)} ({_dm3(volume.low)}–{_dm3(volume.high)})"
 
 
-def _litres(volume: float) -> str:
-    return f"{volume / _LITRE:.1f}"
+def _dm3(volume: float) -> str:
+    return f"{volume / _DM3:.1f}"
 
 
 def _ranges(tilts: list[float], step: float) -> str:
@@ -113,11 +113,29 @@ def _ranges(tilts: list[float], step: float) -> str:
     return ", ".join(parts)
 
 
-def _part_lines(part: PartReach) -> Iterator[str]:
+def _not_judged(found: Reach) -> str:
+    """What is not known of slides, in words, with what to give; empty where all are judged."""
+    slides, machine = found.unjudged_slides, found.machine
+    if not slides:
+        return ""
+    free = [k for k in machine.linear if not machine.axes[k].has_limits]
+    cure = "give --zero" if machine.workpiece_zero is None else "give --tool-length"
+    cure = "the machine states no limits" if len(free) == len(slides) else cure
+    names = "slides are" if len(slides) == len(machine.linear) else f"{' and '.join(slides)} {_is(len(slides))}"
+    return f"{names} not judged ({cure})"
+
+
+def _is(count: int) -> str:
+    return "is" if count == 1 else "are"
+
+
+def _part_lines(part: PartReach, found: Reach) -> Iterator[str]:
     near = "along its normal" if not part.lean else f"within {part.lean:g}° of its normal"
     missed = part.missed
-    share = f"{100.0 * part.share:.1f} % of the surface is reached {near}"
-    yield f"{part.name}: {share} ({counted(len(part.area), 'facet')})"
+    share = f"{100.0 * part.share:.1f} % of the surface is reached {near} ({counted(len(part.area), 'facet')})"
+    if unknown := _not_judged(found):
+        share += f" as far as it is known: {unknown}"
+    yield f"{part.name}: {share}"
     for which, why in (
         (~part.axis, "no such tool axis"),
         (part.axis & ~part.travel, "beyond the travel of the slides"),
@@ -138,7 +156,7 @@ def _part_lines(part: PartReach) -> Iterator[str]:
         yield f"  and {len(missed) - _MOST} more"
 
 
-def _path_line(path: PathReach) -> str:
+def _path_line(path: PathReach, found: Reach) -> str:
     tilts = f"tilts from {path.tilts[0]:.2f}° to {path.tilts[1]:.2f}°"
     faults = []
     if path.no_axis:
@@ -147,4 +165,7 @@ def _path_line(path: PathReach) -> str:
         )
     if path.no_travel:
         faults.append(f"{counted(path.no_travel, 'point')} beyond the travel, first in line {path.no_travel_line}")
-    return f"{path.file}: {counted(path.points, 'point')}, {tilts}: {'; '.join(faults) or 'all reached'}"
+    unknown = _not_judged(found)
+    fine = "every tool axis can be had" if len(found.unjudged_slides) == len(found.machine.linear) else "all reached"
+    told = "; ".join(faults) or fine
+    return f"{path.file}: {counted(path.points, 'point')}, {tilts}: {told}{'; but ' if unknown else ''}{unknown}"

@@ -54,6 +54,12 @@ def sensitivity_lines(found: Sensitivity) -> Iterator[str]:
     """A sensitivity as a table."""
     wide = max(len(each.number.name) for each in found.numbers)
     yield f"{found.run.files[0]}: {counted(found.motions, 'motion')} at feed; workpiece zero {_zero_words(found)}"
+    yield (
+        "errors of the tip in mm: the largest, with its block (at), and the root of the mean square over all motions"
+        " (rms); axis deg: the largest of the tool axis"
+    )
+    if found.zero_at is not None:
+        yield "zero set: what is on the part after the workpiece zero was set with the same error; as it is: all of it"
     zeroed = f"{'zero set: mm':>12}  {'at':<18} {'rms':>8}  " if found.zero_at is not None else ""
     yield f"{'number':<{wide}} {'off by':>8}  {zeroed}{'as it is: mm':>12}  {'at':<18} {'rms':>8}  axis deg"
     for each in found.numbers:

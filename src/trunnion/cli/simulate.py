@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from trunnion.api.input_files import machine_files
+from trunnion.api.placed_heads import number
 from trunnion.api.project_file import library_files, project_files
 from trunnion.api.reading import load_machine
 from trunnion.api.reports import check_report_name
@@ -12,6 +13,7 @@ from trunnion.api.simulating import simulate
 from trunnion.api.simulation_data import simulation_data
 from trunnion.api.simulation_report import write_simulation_report
 from trunnion.api.simulation_result import NearMiss, SimulationFinding, SimulationResult
+from trunnion.api.turned_parts import is_turned
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result
 from trunnion.cli.terminal import Terminal
@@ -55,6 +57,8 @@ def run(arguments: argparse.Namespace) -> int:
         accuracy=arguments.accuracy,
         zero=arguments.zero or None,
         tool_length=arguments.tool_length or None,
+        turn=arguments.turn,
+        tilt=arguments.tilt,
         stop_at=arguments.stop_at,
         until=arguments.until,
         observer=Terminal(),
@@ -96,6 +100,11 @@ def simulation_lines(found: SimulationResult) -> Iterator[str]:
             yield _of_setup(each.setup) + _excess_line("left on the part", each.left)
         if each.gouge is not None:
             yield _of_setup(each.setup) + _excess_line("missing from the part", each.gouge)
+    for each in found.setups or (found,):
+        if is_turned(each.turn, each.tilt):
+            tilted = f"tilted {number(each.tilt)} degrees about X, then " if each.tilt else ""
+            how = f"clamped {tilted}turned {number(each.turn)} degrees about Z"
+            yield f"{_of_setup(each.setup)}places are those of the part as it is drawn; it is {how}"
     cell = " x ".join(f"{width:.4g}" for width in found.cell)
     yield f"{found.removed:.1f} mm³ removed; cells of {cell} mm, motions and tools within {found.accuracy:.4g} mm"
     errors = sum(remark.severity is Severity.ERROR for remark in found.remarks)

@@ -4,6 +4,7 @@ In:     tables of a definition, and the control that was read from them.
 Out:    problems, added to the tables.
 """
 
+import re
 from collections.abc import Iterable, Sequence
 
 from trunnion.controls.definition import Control
@@ -35,22 +36,48 @@ def check_templates(table: Table, control: Control) -> None:
         )
     for template in control.templates.values():
         for text in template.unread_fields():
-            cure = "write {name} or {name:format}, and a part that may be left out in [[ ]]"
-            table.add_problem(
-                template.name, f"has a brace that belongs to no field: {text.strip()!r}", cure, code="DEF510"
-            )
+            _report_brace(table, template, text)
         here = known | (EVENT_VALUES if _is_about_event(template.name) else frozenset())
         for line, fields in enumerate(template.fields_by_line()):
             _check_names(table, template, line, fields, here)
         for name, number_format in sorted(template.fields() | template.numbers()):
             if number_format and number_format not in control.formats:
-                near = did_you_mean(number_format, {*control.formats, *(FILTERS if template.is_text else ())})
-                table.add_problem(
-                    template.name,
-                    f"prints {{{name}:{number_format}}}, but there is no format {number_format!r}",
-                    f"{near} write one of {', '.join(sorted(control.formats))}".strip(),
-                    code="DEF510",
-                )
+                _report_format(table, template, control, name, number_format)
+
+
+def _report_brace(table: Table, template: Template, text: str) -> None:
+    """Report a line with a brace that is no part of a field or statement."""
+    what = f"has a brace that belongs to no field: {text.strip()!r}"
+    cure = "write {name} or {name:format}, and a part that may be left out in [[ ]]"
+    for opening, closing in (("{%", "%}"), ("{{", "}}"), ("{#", "#}")):
+        if closing in text and opening not in text:
+            what = f"has {closing} without {opening} before it: {text.strip()!r}"
+            cure = f"write {opening} where it begins, in the same line, or take {closing} out"
+            break
+    _report_line(table, template, template.lines.index(text), what, cure)
+
+
+def _report_format(table: Table, template: Template, control: Control, name: str, number_format: str) -> None:
+    """Report a format, or in a text a filter, that there is not."""
+    filters = FILTERS if template.is_text else frozenset[str]()
+    near = did_you_mean(number_format, {*control.formats, *filters})
+    cure = f"{near} write one of {', '.join(sorted({*control.formats, *filters}))}".strip()
+    line = next((k for k, fields in enumerate(template.fields_by_line()) if (name, number_format) in fields), 0)
+    is_filter = template.is_text and not re.search(rf":{number_format}\}}", template.lines[line])
+    what = f"prints {{{name}:{number_format}}}, but there is no format {number_format!r}"
+    if is_filter:
+        what = f"prints {name} | {number_format}, but there is no filter or format {number_format!r}"
+    _report_line(table, template, line, what, cure)
+
+
+def _report_line(table: Table, template: Template, line: int, what: str, cure: str) -> None:
+    """Report a mistake in a line of a template, counted from 0."""
+    if template.is_text:
+        file, at = template.place_of(line)
+        key = table.key_path(template.name)
+        table.problems.append(Problem(file, at, f"{key} {what}", cure, key=key, code="DEF510"))
+    else:
+        table.add_problem(template.name, what, cure, code="DEF510")
 
 
 def _check_names(
@@ -63,12 +90,7 @@ def _check_names(
         every = "" if near and template.is_text else f"write one of {', '.join(sorted(known))}, or "
         what = f"prints {{{name}}}, which is neither a template field nor a setting"
         cure = f"{near} {every}add it to [control.settings]".strip()
-        if template.is_text:
-            file, at = template.place_of(line)
-            key = table.key_path(template.name)
-            table.problems.append(Problem(file, at, f"{key} {what}", cure, key=key, code="DEF510"))
-        else:
-            table.add_problem(template.name, what, cure, code="DEF510")
+        _report_line(table, template, line, what, cure)
 
 
 def _is_about_event(name: str) -> bool:

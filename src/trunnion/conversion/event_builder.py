@@ -6,6 +6,7 @@ from itertools import groupby
 import numpy as np
 
 from trunnion.arrays import Ints
+from trunnion.controls.vocabulary import PLACED_NOTICES
 from trunnion.conversion.program_events import ProgramEvent
 from trunnion.conversion.unsupported import Warnings
 from trunnion.model.run import Run
@@ -137,7 +138,9 @@ class EventBuilder:
         line, value = event.line, event.value
         match event.kind:
             case "comment":
-                if event.text and event.text.upper() not in self._phase_comments:
+                text = event.text.upper()
+                # How the part is clamped goes into the head of what is made of it; its zero is that of this machine.
+                if text and text not in self._phase_comments and not text.startswith(PLACED_NOTICES):
                     yield Message(row, line, _one_line(event.text))
             case "tool":
                 if str(value).isdigit() and int(str(value)):

@@ -11,7 +11,8 @@ import numpy as np
 
 from trunnion.arrays import Ints
 from trunnion.controls.definition import Control
-from trunnion.controls.vocabulary import FORCED_NOTICE, HOOKS_NOTICE, PLACED_NOTICES
+from trunnion.controls.vocabulary import FORCED_NOTICE
+from trunnion.conversion.notices import without_notices
 from trunnion.conversion.program_events import ProgramEvent
 from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.sections import ProgramSection
@@ -65,7 +66,7 @@ class HeaderReader:
             first, last = self._path_lines(section, next_line)
             if section is sections[0]:
                 head = self._text.line_texts(1, section.line if section.line > 1 else first)
-                program_start = [(number, text) for number, text in head if not _is_notice(text)]
+                program_start = without_notices(head, self._control.family)
                 self.forced_line = next((number for number, text in head if FORCED_NOTICE in text), 0)
                 self.template_lines |= match_lines(program_start, self._patterns.of("program_start"), program_values)
             self.template_lines |= match_lines(self._text.line_texts(section.line, first), header, section.values)
@@ -129,11 +130,6 @@ class HeaderReader:
         if words & ProgrammedWord.VECTOR:
             return {"orientation": "vector"}
         return {"orientation": "angles"} if words & (ProgrammedWord.FIRST | ProgrammedWord.SECOND) else {}
-
-
-def _is_notice(text: str) -> bool:
-    """Whether a line of the head is a notice of this program, and no title."""
-    return any(notice in text for notice in (FORCED_NOTICE, HOOKS_NOTICE, *PLACED_NOTICES))
 
 
 def _matches_any(text: str, patterns: Iterable[LinePattern]) -> bool:

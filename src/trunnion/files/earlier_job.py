@@ -38,6 +38,14 @@ class EarlierJob:
         known = self._digests.get(os.path.normcase(file.name))
         return known is not None and _is_as_known(file, known)
 
+    def written(self) -> list[Path]:
+        """All files of the record that are there as these jobs have written them."""
+        return [file for file, known in self._known() if file.is_file() and _is_as_known(file, known)]
+
+    def names(self) -> list[Path]:
+        """All files of the record, whatever has become of them."""
+        return [file for file, _ in self._known()]
+
     def left_over(self, program: Iterable[Path], written: Iterable[Path]) -> list[Path]:
         """Files that earlier jobs wrote with another program, that are as they wrote them, and that now stay.
 
@@ -50,9 +58,9 @@ class EarlierJob:
         """
         again = {self._key(file) for file in written}
         stay = [
-            (self._folder / name, known)
-            for name, known in self._digests.items()
-            if name not in again and (self._folder / name).is_file() and _is_as_known(self._folder / name, known)
+            (file, known)
+            for file, known in self._known()
+            if self._key(file) not in again and file.is_file() and _is_as_known(file, known)
         ]
         job = _job(map(_digest, program)) if stay else ""
         return [file for file, known in stay if known.split(":")[2:] != [job]]
@@ -71,6 +79,20 @@ class EarlierJob:
         for file, digest in found.items():
             if digest:
                 digests[self._key(file)] = f"{file.stat().st_size}:{digest}:{job}"
+        self._write(digests)
+
+    def remember_names(self, files: Iterable[Path]) -> None:
+        """Record the names of these files, and of no others; what they hold is in records of their own."""
+        self._write({self._key(file): "" for file in files})
+
+    def _known(self) -> list[tuple[Path, str]]:
+        """The files of the record, and what is known of each."""
+        return [(self._folder / name, known) for name, known in self._digests.items()]
+
+    def _write(self, digests: dict[str, str]) -> None:
+        """Replace the record; it does no harm where that is not possible."""
+        if self._record is None:
+            return
         text = json.dumps(digests)
         part = self._record.with_suffix(f".{os.getpid()}")
         with suppress(OSError):

@@ -1,7 +1,7 @@
 """Jobs whose files appear together, or none of them."""
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -20,6 +20,7 @@ class OutputGroup:
         self._claims = Claims()
         self._folders: list[HiddenFolders] = []
         self._complete: list[tuple[OutputFiles, HiddenFolders]] = []
+        self._afterwards: list[Callable[[], None]] = []
 
     @contextmanager
     def open(
@@ -63,6 +64,12 @@ class OutputGroup:
             move_all(moves, [place for files, _ in self._complete for _, place in files.papers])
         for files, _ in self._complete:
             files.remember()
+        for work in self._afterwards:
+            work()
+
+    def afterwards(self, work: Callable[[], None]) -> None:
+        """Do something once all files are in their places."""
+        self._afterwards.append(work)
 
     def remove(self) -> None:
         """Remove what has not reached its place; can be called again if it was interrupted."""

@@ -36,6 +36,18 @@ SCHEMA: Final = 1
 
 _AXIS_NAME: Final = "[A-Za-z][A-Za-z0-9_]{0,7}"
 
+#: Shipped definitions of no builder's machine: chains to extend, and the examples of LinuxCNC.
+EXAMPLES: Final = frozenset(
+    (
+        "generic_head_head_ca",
+        "generic_head_table_bc",
+        "generic_nutated_b45_c",
+        "linuxcnc_5axis",
+        "xyzac_trt",
+        "xyzbc_trt",
+    )
+)
+
 _VECTOR_FALLBACK: Vector = (0.0, 0.0, 1.0)
 
 
@@ -47,6 +59,11 @@ def machine_library() -> Traversable:
 def shipped_machines() -> list[str]:
     """Names of the shipped machines, sorted."""
     return definition_names(machine_library())
+
+
+def is_example(name: str) -> bool:
+    """Whether a name is that of a shipped definition of no builder's machine."""
+    return name in EXAMPLES
 
 
 def check_is_shipped(name: str) -> None:
@@ -236,7 +253,9 @@ def _gear(table: Table) -> tuple[float, float]:
 
 
 def _facts(spindle: Table, facts: Table) -> MachineFacts:
-    size = facts.vector("table_size_mm", 2, None)
+    size, centre = facts.vector("table_size_mm", 2, None), facts.vector("table_centre_mm", 2, None)
+    if size is not None and min(size) <= 0.0:
+        facts.add_problem("table_size_mm", f"is [{size[0]:g}, {size[1]:g}]", "write two lengths above 0")
     result = MachineFacts(
         spindle_min_rpm=spindle.number("min_rpm", None, at_least=0),
         spindle_gears_rpm=tuple(_gear(gear) for gear in spindle.tables("gear")),
@@ -248,6 +267,7 @@ def _facts(spindle: Table, facts: Table) -> MachineFacts:
         tool_pockets=facts.integer("tool_pockets", None, at_least=1),
         table_size_mm=None if size is None else (size[0], size[1]),
         table_diameter_mm=facts.number("table_diameter_mm", None, above=0),
+        table_centre_mm=None if centre is None else (centre[0], centre[1]),
         table_load_kg=facts.number("table_load_kg", None, above=0),
     )
     facts.report_unread_keys()

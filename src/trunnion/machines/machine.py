@@ -138,7 +138,8 @@ class Axis:
 class MachineFacts:
     """What a definition states about a machine besides its motion; None where it does not.
 
-    ``spindle_gears_rpm`` are the least and the greatest speed of each gear.
+    spindle_gears_rpm  the least and the greatest speed of each gear
+    table_centre_mm    machine frame, all axes at zero
     """
 
     spindle_min_rpm: float | None = None
@@ -151,6 +152,7 @@ class MachineFacts:
     tool_pockets: int | None = None
     table_size_mm: tuple[float, float] | None = None
     table_diameter_mm: float | None = None
+    table_centre_mm: tuple[float, float] | None = None
     table_load_kg: float | None = None
 
 

@@ -116,7 +116,7 @@ def _with_cost(found: TurnResult, path: TurnedPath, cuts: CutSet, goal: Goal) ->
     cost = PlaceCost.of(goal, path.machine, rows, angles.positions)
     cheapest = least_cost(cuts, cost, found.best.zero, min(KEPT, found.margin))
     reached = cuts.at(cheapest.zero)
-    best = replace(found.best, zero=cheapest.zero, margin=float(reached.margins.min()), reached=reached)
+    best = replace(found.best, zero=cheapest.zero, margin=reached.margin, reached=reached)
     return replace(found, best=best, cost=cheapest.cost)
 
 
@@ -142,6 +142,11 @@ class Grid:
 
     def __len__(self) -> int:
         return len(self.turns) * len(self.tilts)
+
+    def has(self, turn: float, tilt: float) -> bool:
+        """Whether an orientation is one of the grid, and not one between them, degrees."""
+        near = 0.5 * 10.0**-_DECIMALS
+        return bool((np.abs(self.turns - turn) <= near).any() and (np.abs(self.tilts - tilt) <= near).any())
 
     def steps(self) -> tuple[float, float]:
         """Those of turns and tilts, degrees; 0: not refined."""

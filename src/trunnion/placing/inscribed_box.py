@@ -52,7 +52,7 @@ def inscribed_box(cuts: CutSet, inside: Floats, low: Floats, high: Floats) -> Bo
             box = _largest(cuts, inside, low, high)
         except ArithmeticError:
             return point
-        found = [cuts.add(cuts.at(corner), np.full((3, 2), -_DIGIT / 4.0)) for corner in box.corners]
+        found = [cuts.add(cuts.at(corner), np.full((3, 2), -_DIGIT / 4.0), -_DIGIT / 4.0) for corner in box.corners]
         if not any(found):
             break
     fitting = _fitting(cuts, box, inside)
@@ -87,6 +87,6 @@ def _fitting(cuts: CutSet, box: Box, inside: Floats) -> Box:
         low = np.minimum(np.ceil((box.low + less) / _DIGIT - 1e-6) * _DIGIT, inside)
         high = np.maximum(np.floor((box.high - less) / _DIGIT + 1e-6) * _DIGIT, inside)
         smaller = Box(np.asarray(np.round(low, 9), np.float64), np.asarray(np.round(high, 9), np.float64))
-        if all(cuts.at(corner).margins.min() >= 0.0 for corner in smaller.corners):
+        if all(cuts.at(corner).margin >= 0.0 for corner in smaller.corners):
             return smaller
     return Box(inside, inside)

@@ -1,7 +1,8 @@
 """The place of the workpiece zero from which every slide is farthest from its limits.
 
 With a margin t the linear program is: greatest t, so that normal . z + t <= bound for every half-space. Those that
-count are added when the solution violates them; a solution that violates none is that of all.
+count are added when the solution violates them; a solution that violates none is that of all. The edges of a table ask
+for no margin.
 """
 
 from collections.abc import Callable
@@ -12,13 +13,19 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.extras import import_extra
-from trunnion.placing.travel_limits import FARTHEST, Cut, CutSet, Reached
+from trunnion.placing.travel_limits import FARTHEST, TABLE, Cut, CutSet, Reached
 
 #: More margin is not sought, mm: a slide with one limit alone would lead the part away without end.
 ENOUGH: Final = 2000.0
 
 #: A half-space that is violated by less is met, mm.
 EXACT: Final = 1e-8
+
+#: The edge of a table that is violated by less is met, mm: edges are a little farther than they are.
+_EDGE_EXACT: Final = 1e-7
+
+#: What slides and table keep where slides have the least margin, mm.
+_FREE_SLIDES: Final = np.array([np.nan, np.nan, np.nan, 0.0])
 
 #: So much of a margin is given up where it is kept, mm.
 _TRIFLE: Final = 1e-7
@@ -52,7 +59,7 @@ class BestPlace:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Solution:
-    """A place (3,) mm, the margins (3,) mm that half-spaces of each slide keep there, and what its program says."""
+    """A place (3,) mm, margins (4,) mm that half-spaces of slides and table keep there, and what its program says."""
 
     zero: Floats
     margins: Floats
@@ -70,15 +77,20 @@ def largest_margin(cuts: CutSet, near: Floats, *, settled: bool = True) -> BestP
     Of places with the same margin, if ``settled``, the one whose other slides are farthest from their limits, and of
     like ones that next to ``near``; else any.
     """
-    if not cuts.cuts:
+    if not cuts.knows_slides:
         _seed(cuts, near)
-    kept = np.full(3, np.nan)
-    solution = _solve(cuts, lambda: _greatest_least(cuts, kept))
+    solution = _solve(cuts, lambda: _greatest_least(cuts, _FREE_SLIDES))
     holds = tuple(solution.holds(cuts))
     if settled:
         solution = _settle(cuts, solution, near)
     reached = cuts.at(solution.zero)
-    return BestPlace(solution.zero, min(float(reached.margins.min()), ENOUGH), reached, holds)
+    return BestPlace(solution.zero, min(reached.margin, ENOUGH), reached, holds)
+
+
+def innermost(cuts: CutSet) -> tuple[Floats, float]:
+    """The place (3,) with the most left to limits and edges alike, and what that is, mm; ``cuts`` knows some."""
+    solution = _solve(cuts, lambda: _greatest_least(cuts, np.full(4, np.nan)))
+    return solution.zero, cuts.at(solution.zero).least
 
 
 def _settle(cuts: CutSet, solution: _Solution, near: Floats) -> _Solution:
@@ -87,7 +99,7 @@ def _settle(cuts: CutSet, solution: _Solution, near: Floats) -> _Solution:
     Margins that are kept are a trifle smaller than those found: rounding must leave the next program a solution. If it
     leaves none all the same, the last one stands.
     """
-    kept = np.full(3, np.nan)
+    kept = _FREE_SLIDES.copy()
     for _ in range(2):
         held = {cut.slide for cut in solution.holds(cuts) if np.isnan(kept[cut.slide])}
         if not held:
@@ -109,20 +121,21 @@ def _settle(cuts: CutSet, solution: _Solution, near: Floats) -> _Solution:
 def _seed(cuts: CutSet, near: Floats) -> None:
     """Half-spaces of some places around, so that the first solutions are not far away."""
     for step in np.concatenate((np.zeros((1, 3)), 200.0 * np.eye(3), -200.0 * np.eye(3))):
-        cuts.add(cuts.at(near + step), np.full((3, 2), np.inf))
+        cuts.add(cuts.at(near + step), np.full((3, 2), np.inf), -np.inf)
 
 
 def _solve(cuts: CutSet, solve: Callable[[], _Solution]) -> _Solution:
     """The solution of a linear program of all half-spaces."""
     for _ in range(_MOST_ROUNDS):
         solution = solve()
-        if not cuts.add(cuts.at(solution.zero), np.repeat(solution.margins[:, None], 2, axis=1) - EXACT):
+        wanted = np.repeat(solution.margins[:TABLE, None], 2, axis=1) - EXACT
+        if not cuts.add(cuts.at(solution.zero), wanted, float(solution.margins[TABLE]) - _EDGE_EXACT):
             break
     return solution
 
 
 def _greatest_least(cuts: CutSet, kept: Floats) -> _Solution:
-    """The greatest least margin, while slides keep the margins ``kept`` (3,) mm; NaN: they have that least one."""
+    """The greatest least margin, while slides and table keep ``kept`` (4,) mm; NaN: they have that least one."""
     normals, bounds, slides = cuts.table()
     free = np.isnan(kept[slides])
     table = np.column_stack((normals, free))
@@ -133,7 +146,7 @@ def _greatest_least(cuts: CutSet, kept: Floats) -> _Solution:
 
 
 def _nearest(cuts: CutSet, margins: Floats, near: Floats) -> _Solution:
-    """The place that keeps margins (3,) mm and is next to ``near`` (3,): by its distances along X, Y and Z together."""
+    """The place that keeps margins (4,) mm and is next to ``near`` (3,): by its distances along X, Y and Z together."""
     normals, bounds, slides = cuts.table()
     none, eye = np.zeros((len(normals), 3)), np.eye(3)
     table = np.block([[normals, none], [eye, -eye], [-eye, -eye]])

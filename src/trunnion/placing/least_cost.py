@@ -12,7 +12,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.placing.goals import PlaceCost
 from trunnion.placing.largest_margin import EXACT, linear_program
-from trunnion.placing.travel_limits import FARTHEST, CutSet
+from trunnion.placing.travel_limits import FARTHEST, TABLE, CutSet
 
 #: The search ends when no place can cost less by more than this share.
 _SHARE: Final = 1e-3
@@ -37,7 +37,7 @@ def least_cost(cuts: CutSet, cost: PlaceCost, start: Floats, margin: float) -> C
     planes, heights = [gradient], [value - float(gradient @ start)]
     for _ in range(_MOST_ROUNDS):
         zero, bound = _lowest(cuts, np.array(planes), np.array(heights), margin)
-        if not cuts.add(cuts.at(zero), np.full((3, 2), margin - EXACT)) and float(cuts.at(zero).margins.min()) > -1e-6:
+        if not cuts.add(cuts.at(zero), np.full((3, 2), margin - EXACT)) and cuts.at(zero).margin > -1e-6:
             value, gradient, count = cost.at(zero)
             if (value, count) < (best.cost, best.count):
                 best = CheapestPlace(zero, value, count, bound)
@@ -52,10 +52,10 @@ def least_cost(cuts: CutSet, cost: PlaceCost, start: Floats, margin: float) -> C
 
 def _lowest(cuts: CutSet, planes: Floats, heights: Floats, margin: float) -> tuple[Floats, float]:
     """The lowest point (3,) of planes within the half-spaces, and its height."""
-    normals, bounds, _ = cuts.table()
+    normals, bounds, slides = cuts.table()
     scale = max(float(np.abs(heights).max()), 1.0)  # costs of millions of rows are large numbers
     table = np.block([[normals, np.zeros((len(normals), 1))], [planes / scale, -np.ones((len(planes), 1))]])
-    rows = np.concatenate((bounds - margin, -heights / scale))
+    rows = np.concatenate((bounds - np.where(slides == TABLE, 0.0, margin), -heights / scale))
     ranges = [(-FARTHEST, FARTHEST)] * 3 + [(0.0, None)]
     solved = linear_program(np.array([0.0, 0.0, 0.0, 1.0]), table, rows, ranges)
     return solved.x[:3], float(solved.x[3] * scale)

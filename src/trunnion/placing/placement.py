@@ -16,10 +16,10 @@ from trunnion.placing.region import Region
 class Limit:
     """A limit that holds a part: where a slide comes nearest to it.
 
-    axis       its name
-    end        ``low`` or ``high``
-    limit_mm   the limit
-    line       of ``file``, a CL file or an NC program; ``operation`` is empty where it has no name
+    axis       its name, or ``table``
+    end        ``low`` or ``high``; of the table the edge: ``low X``, ``high X``, ``low Y``, ``high Y`` or ``rim``
+    limit_mm   the limit; of the table where that edge is, of its rim the diameter
+    line       of ``file``, a CL file or an NC program; ``operation`` is empty where it has no name, all of the table
     """
 
     axis: str
@@ -71,11 +71,13 @@ class Place:
     zero_mm    of the workpiece, machine frame, all axes at zero
     turn_deg   of the part about Z, right-handed
     tilt_deg   of the part about X of the program's coordinate system, right-handed: the first of the two
-    margin_mm  of the slide that is nearest to a limit; negative beyond it
+    margin_mm  of the slide that is nearest to a limit; negative beyond it, or where something is beyond the table
     value      of the goal: mm of margin, mm or degrees of travel, seconds, blocks; None: the goal has none here
     axes       of all slides
     rotary     of the rotary axes
     planned_s  with the goal ``time``: seconds of the rows by the planner of speeds, with accelerations and jerks
+    table_mm   what stock and part, seen from above, have left to the edge of the table; negative beyond it; None: not
+               judged
     """
 
     zero_mm: Vector
@@ -86,10 +88,11 @@ class Place:
     tilt_deg: float = 0.0
     rotary: tuple[RotaryUse, ...] = ()
     planned_s: float | None = None
+    table_mm: float | None = None
 
     @property
     def fits(self) -> bool:
-        """Whether every slide keeps its limits."""
+        """Whether every slide keeps its limits, and what stands on the table stays on it."""
         return self.margin_mm >= 0.0
 
 
@@ -97,9 +100,12 @@ class Place:
 class TurnMargin:
     """What a turn of the part allows, after a tilt.
 
-    margin_mm  the largest one of any place; None: some row is out of reach of the rotary axes, as ``obstacle`` says
+    margin_mm  the largest one of any place; None: some row is out of reach of the rotary axes, or the table is too
+               small, as ``obstacle`` says
     zero_mm    the best place there
     value      of the goal there, as in ``Place``
+    is_asked   it is one of those that were asked for; else it was tried between them, around the best
+    table_is_too_small  that is the obstacle
     """
 
     turn_deg: float
@@ -108,6 +114,8 @@ class TurnMargin:
     obstacle: str = ""
     value: float | None = None
     tilt_deg: float = 0.0
+    is_asked: bool = True
+    table_is_too_small: bool = False
 
     @property
     def fits(self) -> bool:
@@ -181,9 +189,13 @@ class Placement:
 
     @property
     def share_of_turns(self) -> float:
-        """Of the turns and tilts that were tried, those at which the part fits somewhere, 0 to 1."""
-        return sum(turn.fits for turn in self.turns) / max(len(self.turns), 1)
+        """Of the turns and tilts that were asked for, those at which the part fits somewhere, 0 to 1."""
+        asked = [turn for turn in self.turns if turn.is_asked]
+        return sum(turn.fits for turn in asked) / max(len(asked), 1)
 
     def margin_at(self, zero_mm: Vector, turn_deg: float, tilt_deg: float = 0.0) -> float:
-        """The margin of any place, exact; minus infinity where rotary axes do not reach the path."""
+        """The margin of any place, exact.
+
+        Minus infinity where rotary axes do not reach the path, or the table is too small.
+        """
         return self._margin_at(np.array(zero_mm, np.float64), float(turn_deg), float(tilt_deg))

@@ -13,7 +13,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.extras import import_extra
 from trunnion.placing.inscribed_box import Box, inscribed_box
-from trunnion.placing.largest_margin import BestPlace
+from trunnion.placing.largest_margin import BestPlace, innermost
 from trunnion.placing.travel_limits import FARTHEST, CutSet
 
 #: How far corners may be outside, mm.
@@ -54,16 +54,17 @@ class Region:
 
     def margin(self, zero: Floats) -> float:
         """What the slide nearest to a limit has left with the zero (3,) there, mm; negative: it does not fit."""
-        return float(self.cuts.at(np.asarray(zero, np.float64)).margins.min())
+        return self.cuts.at(np.asarray(zero, np.float64)).margin
 
 
 def region_of(cuts: CutSet, best: BestPlace, inside: Floats | None = None) -> Region | None:
     """The region around the best place, with a box around it or a place (3,) near it; None if there is none."""
     if best.margin < 0.0:
         return None
-    if best.margin < _NO_INSIDE:
+    middle, room = (best.zero, best.margin) if cuts.edges is None else innermost(cuts)
+    if room < _NO_INSIDE:
         return Region(best.zero[None], 0.0, 0.0, best.zero, best.zero, cuts, Box(best.zero, best.zero))
-    corners = _corners(cuts, best.zero)
+    corners = _corners(cuts, middle)
     judged: dict[tuple[float, ...], float] = {}
     while len(cuts.cuts) < _MOST:
         before = len(cuts.cuts)
@@ -71,11 +72,11 @@ def region_of(cuts: CutSet, best: BestPlace, inside: Floats | None = None) -> Re
             key = tuple(corner.tolist())
             if key not in judged:
                 reached = cuts.at(corner)
-                judged[key] = -float(reached.margins.min())
-                cuts.add(reached, np.full((3, 2), -TOLERANCE))
+                judged[key] = -reached.least
+                cuts.add(reached, np.full((3, 2), -TOLERANCE), -TOLERANCE)
         if len(cuts.cuts) == before:
             break
-        corners = _corners(cuts, best.zero)
+        corners = _corners(cuts, middle)
     off = max(judged.get(tuple(corner.tolist()), np.inf) for corner in corners)
     spatial = import_extra("scipy.spatial", "place")
     hull = spatial.ConvexHull(corners)

@@ -25,13 +25,15 @@ _ROUNDING: Final = 1e-5
 
 @dataclass(frozen=True, slots=True)
 class Obstacle:
-    """Why a turn is impossible wherever the zero is: a row that the axes do not reach.
+    """Why a turn is impossible wherever the zero is: a row that the axes do not reach, or a table that is too small.
 
-    axis  column of the rotary axis beyond its limits; -1: no angles give the tool axis, or the slides cannot follow
+    axis     column of the rotary axis beyond its limits; -1: no angles give the tool axis, or the slides cannot follow
+    outline  size along X and Y, seen from above, of what is larger than the table, mm; then there is no row
     """
 
     row: int
     axis: int = -1
+    outline: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -17,6 +17,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.extras import import_extra
 from trunnion.machines import Machine, kinematic_parameters
+from trunnion.machines.machine import Axis
 from trunnion.placing.path_rows import PathRows
 from trunnion.placing.slide_forms import SlideForms
 
@@ -37,13 +38,18 @@ class Turning(Enum):
 
 def turning_of(machine: Machine) -> Turning:
     """How a machine takes a turn of the part about Z."""
-    x, y, _ = machine.axes[machine.rotary[0]].direction
-    if np.hypot(x, y) > _PARALLEL:
+    if not is_upright(machine.axes[machine.rotary[0]]):
         return Turning.OTHER
     below = kinematic_parameters(machine).rotary_below
     if min(below) >= 1:
         return Turning.TABLE
     return Turning.HEAD if max(below) == 0 else Turning.OTHER
+
+
+def is_upright(axis: Axis) -> bool:
+    """Whether an axis is parallel to Z."""
+    x, y, _ = axis.direction
+    return bool(np.hypot(x, y) <= _PARALLEL)
 
 
 def reaches_any_turn(machine: Machine) -> bool:

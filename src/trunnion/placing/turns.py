@@ -14,6 +14,8 @@ from trunnion.placing.moving_samples import arc_samples, turning_samples
 from trunnion.placing.path_rows import PathRows, about_z
 from trunnion.placing.rotary_angles import Obstacle, RotaryAngles, rotary_angles
 from trunnion.placing.slide_forms import SlideForms, slide_forms
+from trunnion.placing.table_limits import Standing
+from trunnion.placing.table_room import has_room
 from trunnion.placing.travel_limits import CutSet, slide_limits
 from trunnion.placing.turning import (
     Turning,
@@ -48,20 +50,33 @@ class TurnedPath:
 
     machine  without a workpiece zero
     near     (3,) mm: a place of the zero near which there will be most questions
+    standing  what must stand on the table; None: nothing is known of it
     """
 
     machine: Machine
     choice: Choice
     rows: PathRows
     near: Floats
+    standing: Standing | None = None
 
     @staticmethod
-    def of(machine: Machine, choice: Choice, rows: PathRows, near: Floats) -> "TurnedPath":
+    def of(
+        machine: Machine, choice: Choice, rows: PathRows, near: Floats, standing: Standing | None = None
+    ) -> "TurnedPath":
         """A path on a machine, wherever its workpiece zero is."""
-        return TurnedPath(replace(machine, workpiece_zero=None), choice, rows, near)
+        return TurnedPath(replace(machine, workpiece_zero=None), choice, rows, near, standing)
 
     def at(self, turn: float) -> CutSet | Obstacle:
-        """The half-spaces of the path at a turn, degrees; or why it is out of reach there."""
+        """The half-spaces of the path at a turn, degrees; or why it is out of reach there, or the table too small."""
+        if self.standing is None:
+            return self._reached_at(turn)
+        table = self.standing.turned(about_z(turn)).limits()
+        if not has_room(table):
+            return Obstacle(-1, outline=table.extent)
+        found = self._reached_at(turn)
+        return found if isinstance(found, Obstacle) else CutSet(found.parts, found.limits, table)
+
+    def _reached_at(self, turn: float) -> CutSet | Obstacle:
         if self._turning is Turning.OTHER:
             return self._whole_at(turn)
         base = self._base

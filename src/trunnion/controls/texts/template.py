@@ -11,6 +11,8 @@ from jinja2 import meta, nodes
 from trunnion.controls.template import Printing, Template, Value
 from trunnion.controls.texts import filters, tree
 from trunnion.controls.texts.sandbox import SANDBOX
+from trunnion.controls.texts.syntax_faults import syntax_fault
+from trunnion.controls.texts.value_faults import value_fault
 from trunnion.controls.texts.values import ABSENT, MOST_CHARACTERS, Fault, Length, Rendering, as_number
 from trunnion.controls.words import WordRangeError
 from trunnion.errors import InputError, Problem
@@ -72,7 +74,12 @@ class TextTemplate(Template):
         return {("…", number_format) for _, name, number_format in self.found if not name and number_format}
 
     def unread_fields(self) -> list[str]:
-        """Return the lines with braces that are no field, and those with half of double brackets."""
+        """Return the lines with braces that are no field, and those with half of double brackets.
+
+        None of a template that is not understood: what is wrong with it is told already.
+        """
+        if self.code is None:
+            return []
         return [
             line
             for line, plain in zip(self.lines, self.plain_lines(), strict=True)
@@ -131,7 +138,7 @@ class TextTemplate(Template):
                 line = trace.tb_lineno
             trace = trace.tb_next
         file, at = self.place_of(max(line, 1) - 1)
-        fault = error if isinstance(error, Fault) else Fault(f"does not work: {error}", _NOT_UNDERSTOOD)
+        fault = error if isinstance(error, Fault) else value_fault(error)
         if isinstance(error, WordRangeError):
             fault = Fault(
                 f"prints a {error.what}", "correct the value; the control's definition has the limits of formats"
@@ -156,9 +163,7 @@ def text_template(name: str, text: str, file: str, line: int) -> tuple[TextTempl
     except Fault as fault:
         return TextTemplate(name, lines, file, line), fault
     except jinja2.TemplateSyntaxError as error:
-        return TextTemplate(name, lines, file, line), Fault(
-            f"is not understood: {error.message}", _NOT_UNDERSTOOD, error.lineno
-        )
+        return TextTemplate(name, lines, file, line), syntax_fault("\n".join(lines), error.lineno)
     except (RecursionError, SyntaxError, ValueError, ArithmeticError, MemoryError):
         what = "has too much within each other, or a number that is none"
         return TextTemplate(name, lines, file, line), Fault(what, _NOT_UNDERSTOOD)

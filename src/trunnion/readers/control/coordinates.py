@@ -5,6 +5,7 @@ are the positions of the slides, counted from the work offset: with the rotary a
 programmed position, with the axes turned the kinematics of the machine determine where it is.
 """
 
+from collections.abc import Hashable
 from dataclasses import replace
 from typing import Final
 
@@ -19,6 +20,7 @@ from trunnion.model.run import Orientation
 from trunnion.readers.control.affine_map import AffineMap, affine_matrix
 from trunnion.readers.control.arcs import ArcMap
 from trunnion.readers.control.row_recorder import MAX_POSITION, Note, RowRecorder
+from trunnion.readers.control.trailing_modes import Place, TrailingModes
 
 #: Millimetres of an inch.
 INCH: Final = 25.4
@@ -38,6 +40,13 @@ class CoordinateControl(RowRecorder):
     #: The code of suppressed work offsets, when positions count from the machine zero; -1: the control has none.
     no_offset = -1
 
+    #: Names of modes of ``set_mode`` that outlive the end of a program on this control, and of those that may.
+    kept_modes: frozenset[str] = frozenset()
+    doubtful_modes: frozenset[str] = frozenset()
+
+    #: What decides whether the latter do, for messages.
+    reset_by = ""
+
     def __init__(self, machine: Machine, note: Note) -> None:
         super().__init__(machine, note)
         self._zero_slides, self._zero_tip = self._zero_positions()
@@ -51,6 +60,7 @@ class CoordinateControl(RowRecorder):
         # Work offsets that were written since the last motion: row, line, file and word; and the first row of each.
         self._stored_offsets: list[tuple[int, int, int, str]] = []
         self._stored_systems: dict[int, int] = {}
+        self._trailing = TrailingModes()
         self._plane = AffineMap()
         self._program = AffineMap()
         # Programmed values of axes that incremental words still count from after a frame change, by axis.
@@ -196,6 +206,39 @@ class CoordinateControl(RowRecorder):
                 text = f"{word} behind the last motion changes the work offset of the next program"
                 self.note(f"{text}: write it before the motions that need it", Severity.ERROR, "NC351")
         self.line = here
+
+    # What the next program begins with
+
+    def set_mode(self, name: str, word: str, before: Hashable, after: Hashable) -> None:
+        """Remember a word that sets a mode, for ``report_trailing_modes``; ``name`` is that of the mode."""
+        self._trailing.set(name, word, Place(self.row, self.line, self.modal.file.current), before, after)
+
+    def usual(self, name: str) -> Hashable:
+        """Return the value of a mode with which any program may end; that of the units is up to the control."""
+        usual = {"distances": True, "plane": 2, "feed": 94, "offset": 54, "centres": True}
+        return usual.get(name, False)
+
+    def report_trailing_modes(self) -> None:
+        """Report the modes that the program sets behind its last motion and that the next program begins with.
+
+        A program without motions sets up the machine, and may set them.
+        """
+        here = self.line
+        for mode in self._trailing.changed(self.row):
+            stays = mode.name in self.kept_modes
+            if not self.row or mode.after == self.usual(mode.name) or not (stays or mode.name in self.doubtful_modes):
+                continue
+            self.line = mode.place.line if mode.place.file == self.modal.file.current else here
+            begins = "begins with it" if stays else f"may begin with it ({self.reset_by})"
+            text = f"{mode.word} behind the last motion has no use in this program, and the next one {begins}"
+            cure = "leave it out, or set it back before the end"
+            self.note(f"{text}: {cure}", Severity.ERROR if stays else Severity.WARNING, "NC351")
+        self.line = here
+
+    def report_left_on(self, word: str) -> None:
+        """Report a word that is still in force at the end of the program, which the next program may begin with."""
+        text = f"ends with {word} on, and the next program may begin with it ({self.reset_by}): end it before"
+        self.note(text, Severity.WARNING, "NC351")
 
     # Modes
 

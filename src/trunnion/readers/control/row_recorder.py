@@ -43,9 +43,13 @@ from trunnion.readers.control.modal_builder import ModalBuilder
 from trunnion.readers.control.row_buffer import RowBuffer
 from trunnion.readers.scan.buffers import MAX_BLOCKS, BlockWords, RowColumns, ScanRecords, ScanSettings
 from trunnion.readers.scan.rows import execute_blocks
+from trunnion.wording import format_duration
 
 #: Larger positions (mm, degrees) are mistakes: no machine reaches so far.
 MAX_POSITION: Final = 1e7
+
+#: Dwells that are longer, seconds, are told: most are slips of the unit.
+_LONG_DWELL: Final = 60.0
 
 #: Values of the event "spindle", and the sense in which it turns then: 0, it stands. A spindle that is oriented or has
 #: become an axis stands until the program starts it again.
@@ -109,6 +113,7 @@ class RowRecorder:
         self.modal = ModalBuilder()
         self.events: list[RunEvent] = []
         self._told_words: set[str] = set()
+        self._told_waits: set[tuple[int, int]] = set()
         self.tools: dict[str, int] = {"": 0}
         self._tool_names = [""]
         self._selected_tool = 0
@@ -165,7 +170,23 @@ class RowRecorder:
         modal = self.modal
         if kind == "spindle":
             modal.spindle.set(self.row, SPINDLE_SENSES[str(value)])
+        if kind == "dwell" and isinstance(value, float):
+            self._judge_dwell(value)
         self.events.append(RunEvent(self.line, self.row, kind, value, modal.file.current, bool(modal.tcp.current)))
+
+    def _judge_dwell(self, amount: float) -> None:
+        """Note a long dwell: seconds, or turns of the spindle if below zero."""
+        rpm = float(self.modal.rpm.current)
+        seconds = amount if amount >= 0.0 else -60.0 * amount / rpm if rpm > 0.0 else 0.0
+        if seconds > _LONG_DWELL and math.isfinite(seconds):
+            self.note_wait(f"a dwell of {format_duration(seconds)}: is its unit right?")
+
+    def note_wait(self, what: str) -> None:
+        """Note once for each block that the machine waits, or stops, there."""
+        place = self.modal.file.current, self.line
+        if place not in self._told_waits:
+            self._told_waits.add(place)
+            self.note(what, Severity.WARNING, "NC226")
 
     def add_builders_word(self, letter: str, value: float) -> None:
         """Record an M or H word of the machine's builder, and note the first of each: nobody has said what it does."""

@@ -1,6 +1,6 @@
 """The part of virtual controls that languages of the RS274 kind share: circles, and the tool length along Z."""
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from functools import partial
 from typing import Final
 
@@ -29,10 +29,18 @@ class Rs274Control(VirtualControl):
     #: Whether the tool length counts along Z.
     length_active = False
 
+    #: Whether the control counts in inches when no program runs.
+    usual_inches = False
+
     def count_in(self, unit: str) -> None:
         """Count in a unit that the definition of the control states: ``mm`` or ``inch``; empty: it states none."""
+        self.usual_inches = unit == "inch"
         if unit:
             self.set_units(unit == "inch", True)
+
+    def usual(self, name: str) -> Hashable:
+        """Return the value of a mode with which any program may end."""
+        return self.usual_inches if name == "units" else super().usual(name)
 
     def left_on(self) -> str:
         """Return what the end of the program leaves on, so that the next one begins with it; empty if nothing."""

@@ -182,23 +182,33 @@ class Rs274Interpreter(Interpreter[A]):
         if code in MOTIONS:
             self.motion_code = code
         elif code in PLANES:
+            control.set_mode("plane", g_code_text(code), control.plane_axis, PLANES[code])
             control.plane_axis = PLANES[code]
         elif code in (200, 210):
-            control.set_units(code == 200, True)
+            self._set_units(code, inches=code == 200)
         elif code in (900, 910):
+            control.set_mode("distances", g_code_text(code), control.absolute, code == 900)
             control.absolute = code == 900
         elif code in FEED_MODES:
+            control.set_mode("feed", g_code_text(code), control.modal.feed_mode.current, FEED_MODES[code])
             control.modal.feed_mode.set(control.row, FEED_MODES[code])
         else:
             return False
         return True
+
+    def _set_units(self, code: int, *, inches: bool) -> None:
+        """Count in inches or millimetres from now on, as a G code says."""
+        self.control.set_mode("units", g_code_text(code), bool(self.control.modal.inches.current), inches)
+        self.control.set_units(inches, True)
 
     def _report_g_code(
         self, code: int, not_simulated: Mapping[int, tuple[str, bool]], without_path_effect: Collection[int]
     ) -> None:
         """Report a G code that is not simulated or unknown; the tables are those of the family's ``words``."""
         if code in RADIUS_COMPENSATION:
-            self.control.modal.compensation.set(self.control.row, RADIUS_COMPENSATION[code])
+            side = self.control.modal.compensation
+            self.control.set_mode("compensation", g_code_text(code), side.current, RADIUS_COMPENSATION[code])
+            side.set(self.control.row, RADIUS_COMPENSATION[code])
             self.control.compensates_in_space = code in COMPENSATION_IN_SPACE
         if code in not_simulated:
             text, changes_path = not_simulated[code]
@@ -258,13 +268,20 @@ class Rs274Interpreter(Interpreter[A]):
             control.change_tool()
         elif code in iso_m_codes.PROGRAM_ENDS:
             control.report_unused_offsets()
+            control.report_trailing_modes()
             if left := control.left_on():
                 self._note(f"ends with {left} on: the next program begins with it", Severity.ERROR, "NC351")
+            for word in self._may_be_left_on():
+                control.report_left_on(word)
             control.add_event("end", f"M{code}")
             raise ProgramEnd
         else:
             return False
         return True
+
+    def _may_be_left_on(self) -> list[str]:
+        """Return the words in force at the end of the program that the control may keep for the next one."""
+        return []
 
     def _report_unused_words(self, block: Block) -> None:
         for letter in block.unused():

@@ -48,7 +48,7 @@ NO_WORDS: Final = WordMeanings({}, {})
 
 
 def read_word_meanings(
-    table: Table, is_own_word: Callable[[str], bool], meanings: Mapping[str, int] | None = None
+    table: Table, is_own_word: Callable[[str], bool], meanings: Mapping[str, Mapping[str, int]] | None = None
 ) -> WordMeanings:
     """Read the words of a control; mistakes are added to the table's problems.
 
@@ -59,12 +59,12 @@ def read_word_meanings(
     is_own_word
         Whether the family has a word: only such a one can be what another means.
     meanings
-        Meanings of G words besides those that the family has words for: name -> code that stands for it, in tenths.
+        Meanings of G and of M words besides those that the family has words for: letter -> name -> code that stands
+        for it, of G in tenths.
     """
     own = table.table("words")
     g: dict[int, int | None] = {}
     m: dict[int, int | None] = {}
-    names = meanings or {}
     for key in own.names():
         value = own.text(key)
         word, target = _code(key), _code(value)
@@ -74,10 +74,11 @@ def read_word_meanings(
             )
             continue
         letter, code = word
+        names = (meanings or {}).get(letter, {})
         if value == UNKNOWN:
             (g if letter == "G" else m)[code] = None
-        elif letter == "G" and value in names:
-            g[code] = names[value]
+        elif value in names:
+            (g if letter == "G" else m)[code] = names[value]
         elif target is not None and not is_own_word(plain_code(value)):
             own.add_problem(
                 key, f"is {value!r}, which the family does not have", "write a word that it has", code="NC190"
@@ -85,7 +86,7 @@ def read_word_meanings(
         elif target is not None and target[0] == letter:
             (g if letter == "G" else m)[code] = target[1]
         else:
-            others = ", ".join((*(names if letter == "G" else ()), UNKNOWN))
+            others = ", ".join((*names, UNKNOWN))
             own.add_problem(
                 key, f"is {value!r}", f"write the {letter} word that means the same, or {others}", code="NC190"
             )

@@ -1,5 +1,7 @@
 """How far the tool leaves its path between the points."""
 
+import math
+from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
@@ -49,7 +51,8 @@ def check_between_points(context: Context, motion: AxisMotion, errors: Lineariza
     summary = f"tip {off_tip:.6f} mm, axis {axis.value:.5f} deg off {where}"
     if axis.row >= 0:
         summary += f", in {context.block_name(axis.row)}"
-    summary += f", allowed {_allowed(settings)}"
+    if allowed := [*_allowed_tip(settings), *_allowed_axis(settings, errors, axis.row)]:
+        summary += f", allowed {' and '.join(allowed)}"
     if faults:
         summary += f"; {faults[0].block_name}: {faults[0].text}"
         summary += f", and {len(faults) - 1} more" if len(faults) > 1 else ""
@@ -59,14 +62,24 @@ def check_between_points(context: Context, motion: AxisMotion, errors: Lineariza
     return Check("span", title, passed, summary, axis.value, settings.span, "deg", tuple(places))
 
 
-def _allowed(settings: ExpectedValues) -> str:
-    """What is allowed, in words."""
-    tip = [] if settings.span_tip is None else [f"{settings.span_tip:g} mm"]
+def _allowed_tip(settings: ExpectedValues) -> Iterator[str]:
+    if settings.span_tip is not None:
+        yield f"{settings.span_tip:g} mm"
+
+
+def _allowed_axis(settings: ExpectedValues, errors: LinearizationErrors, row: int) -> Iterator[str]:
+    """The tolerance of the tool axis that counts in a row, in words; -1: no row turns it, and none counts."""
     if settings.span is not None:
-        return " and ".join([*tip, f"{settings.span:g} deg"])
-    default = settings.axis_tolerance
-    axis = f"{default.cutting:g} deg, {default.finishing:g} in finishing, a sixth of a coarse turn"
-    return " and ".join([*tip, axis])
+        yield f"{settings.span:g} deg"
+    elif row >= 0:
+        default, allowed = settings.axis_tolerance, errors.allowed_by_default(row)
+        if math.isinf(allowed):
+            yield "any, since it does not cut there"
+        elif allowed > max(default.cutting, default.finishing) + _NOISE:
+            yield f"{allowed:.5f} deg, a sixth of the turn"
+        else:
+            is_finishing = abs(allowed - default.finishing) < _NOISE and default.finishing != default.cutting
+            yield f"{allowed:g} deg{', as in finishing' if is_finishing else ''}"
 
 
 def _largest_deviation(context: Context) -> tuple[float, int]:

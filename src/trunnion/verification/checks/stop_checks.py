@@ -16,6 +16,7 @@ from trunnion.verification.checks.turns_at_the_part import stands_away
 from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.results import Check, Place
+from trunnion.wording import format_duration
 
 _NAMES: Final = {"dwell": "dwells", "stop": "stops", "optional_stop": "optional stops"}
 
@@ -61,12 +62,28 @@ def check_stops(context: ComparedContext) -> Check:
         found[context.matching.nc.count_before(stop.event.before_row)].append(stop)
     restarts = Restarts(context.run)
     places: list[Place] = []
+    own: list[_FoundStop] = []
     for pair in sorted(expected.keys() | found.keys()):
         places += _compare(context, restarts, pair, expected[pair], found[pair])
+        if not _is_within_operation(context, pair):
+            asked_for = {stop.place for stop in _asked_for(context.run, found[pair], expected[pair])}
+            own += [stop for stop in found[pair] if stop.place not in asked_for]
     count = {kind: sum(each.kind == kind for at_pair in expected.values() for each in at_pair) for kind in _NAMES}
     good = ", ".join(f"{count[kind]} {name}" for kind, name in _NAMES.items() if count[kind])
+    good = (good or "the CL file has none") + _own_stops(context.run, own)
     title = "stops and dwells as the CL file says"
-    return check_from_places("stops", title, places[:MAX_PLACES], good or "the CL file has none", len(places) or None)
+    return check_from_places("stops", title, places[:MAX_PLACES], good, len(places) or None)
+
+
+def _own_stops(run: Run, stops: list[_FoundStop]) -> str:
+    """What is known of the stops and dwells of the program's own, between operations; empty if there are none."""
+    parts = []
+    for kind, name in _NAMES.items():
+        of_kind = [stop.event for stop in stops if stop.event.kind == kind]
+        seconds = sum(_seconds(_amount(event), _rpm(run, event)) for event in of_kind) if kind == "dwell" else 0.0
+        if of_kind:
+            parts.append(f"{len(of_kind)} {name}" + (f" of {format_duration(seconds)}" if seconds else ""))
+    return f"; {' and '.join(parts)} of the program's own between operations" if parts else ""
 
 
 def _expected_stops(context: ComparedContext) -> defaultdict[int, list[_ExpectedStop]]:

@@ -113,6 +113,13 @@ class LinearizationErrors:
             )
         self.axis.add(first, off_axis)
 
+    def allowed_by_default(self, row: int) -> float:
+        """How far the tool axis may be off in a row where no setting says it, degrees; infinite outside of cuts."""
+        assert self._by_default is not None
+        positions, here = self._run.chunk(row, row + 1), np.zeros(1, np.int64)
+        _, axes = self._path_ends(row, here, positions)
+        return float(self._allowed(self._by_default, row, here, axes)[0]) - self._by_default.rounding
+
     def _allowed(self, limits: DefaultLimits, first: int, rows: Ints, axes: Floats) -> Floats:
         """How far the tool axis may be off within rows, (k,) degrees; infinite where they do not cut.
 

@@ -46,7 +46,14 @@ def test_a_dwell_with_a_point_is_in_seconds(words: str, seconds: float, tmp_path
         ("G143 H5 Z60.", "unknown word G143"),
         ("G52 X10.", "unknown word G52"),
         ("G92 X10.", "unknown word G92"),
-        ("M97 P100", "unknown word M97"),
+        ("M97 P100", "there is no block N100 to go to"),
+        ("M97", "a local subprogram needs P"),
+        ("N10 G0 X1.\nM96 P10 Q27", "M96 jumps to N10 unless input 27 is on"),
+        ("M96 P10", "M96 jumps to N10 unless an input is on"),
+        ("G103 P16", "look-ahead P16"),
+        ("G103 P1\nG41 D1 G1 X5. F100.", "the control reads only 1 block ahead"),
+        ("G41 D1 G1 X5. F100.\nG103 P3", "the control reads only 3 blocks ahead"),
+        ("M97 P10\nM30\nN10 X1.\nM99\nN10 X2.\nM99", "goes to N10, which lines 10 and 12 both have"),
         ("M8 M3", "two M words in a block"),
         ("G154 P100", "P of G154 is not from 1 to 99"),
         ("G154", "G154 needs P"),
@@ -75,6 +82,8 @@ def test_what_is_not_settled_or_not_there_is_an_error(lines: str, what: str, tmp
         "G234 H5 Z60.\nG1 X1. B5. F100.\nG49\nG0 G53 Z0.",
         "G154 P3\nG0 X1.",
         "G187 P3 E0.02\nM11\nM13\nM16 T6",
+        "G103 P1\nG103\nG41 D1 G1 X5. F100.",
+        "G103 P15\nG103 P0\nG1 X5. F100.",
     ],
 )
 def test_what_the_manual_has_is_understood(lines: str, tmp_path: Path) -> None:
@@ -110,3 +119,55 @@ def test_coolant_through_the_spindle_stops_it(tmp_path: Path) -> None:
     run = read(tmp_path, "M88\nG1 X5. F100.")
     assert run.errors == ()
     assert int(run.spindle[-1]) == 0
+
+
+@pytest.mark.parametrize(
+    ("lines", "places"),
+    [
+        # The example of the manual: down by 0.1 mm and across, five times.
+        ("G90 G1 Z0. F500.\nM97 P1000 L5\nG0 Z1.\nM30\nN1000 G91 Z-0.1\nG90 X2.\nG91 Z-0.1\nG90 X0.\nM99",
+         [(0, 0), *((x, -k / 10) for k in range(1, 11) for x in ((0, 2) if k % 2 else (2, 0))), (0, 1)]),
+        ("M97 P1\nX5.\nM30\nN1 X1.\nM97 P2 L2\nX3.\nM99\nN2 X2.\nX2.5\nM99",
+         [(1, 50), (2, 50), (2.5, 50), (2, 50), (2.5, 50), (3, 50), (5, 50)]),
+        ("M97 P1 L0\nX5.\nM30\nN1 X1.\nM99", [(5, 50)]),
+        ("M97 P1\nX5.\nM30\nN1 X1.\nM99 P9\nN9 X9.", [(1, 50), (9, 50)]),
+        ("X7. M97 P1\nX5.\nM30\nN1 X1.\nM99", [(7, 50), (1, 50), (5, 50)]),
+    ],
+)  # fmt: skip
+def test_a_local_subprogram_is_followed(lines: str, places: list[tuple[float, float]], tmp_path: Path) -> None:
+    run = read(tmp_path, lines)
+    assert run.errors == ()
+    found = [(round(float(x), 9), round(float(z), 9)) for x, _, z in run.tip[1:]]
+    moved = [place for k, place in enumerate(found) if k == 0 or place != found[k - 1]]
+    wanted = [place for k, place in enumerate(places) if k == 0 or place != places[k - 1]]
+    assert moved == wanted
+
+
+def test_a_local_subprogram_that_calls_itself_ends(tmp_path: Path) -> None:
+    with pytest.raises(trunnion.InputError, match="deeper than 16 levels"):
+        read(tmp_path, "M97 P1\nM30\nN1 X1.\nM97 P1\nM99")
+
+
+def test_a_local_subprogram_is_that_of_the_program_that_calls_it(tmp_path: Path) -> None:
+    sub = "%\nO00002\nM97 P1\nM99\nN1 X8.\nM99\n%\n"
+    (tmp_path / "O00002.nc").write_text(sub)
+    (tmp_path / "part.nc").write_text(f"{HEAD}M98 P2\nM97 P1\nM30\nN1 X1.\nM99\n%\n")
+    run = trunnion.read_program(tmp_path / "part.nc", machine="haas_umc750", subprograms=[tmp_path / "O00002.nc"])
+    assert run.errors == ()
+    assert run.tip[1:, 0].tolist() == pytest.approx([8.0, 1.0])
+
+
+def test_a_word_of_ones_own_may_call_local_subprograms(tmp_path: Path) -> None:
+    machine = tmp_path / "ours.toml"
+    words = 'M197 = "local subprogram"\nG903 = "look-ahead"\nM196 = "jump on an input"\n'
+    machine.write_text(f'extends = "matsuura_mx330"\n[control.reading.words]\n{words}')
+    run = read(tmp_path, "G903 P1\nM197 P1\nX5.\nM30\nN1 X1.\nM99", str(machine))
+    assert run.errors == ()
+    assert run.tip[1:, 0].tolist() == pytest.approx([1.0, 5.0])
+    assert [each.text[:18] for each in read(tmp_path, "M196 P1", str(machine)).errors] == ["M196 jumps to N1 u"]
+
+
+def test_a_local_subprogram_without_m99_ends_at_the_next_program(tmp_path: Path) -> None:
+    run = read(tmp_path, "M97 P1\nX5.\nM30\nN1 X1.\nO00002\nX9.\nM99")
+    assert any("runs into the next one" in error.text for error in run.errors)
+    assert run.tip[1:, 0].tolist() == pytest.approx([1.0, 5.0])

@@ -10,7 +10,7 @@ from trunnion.machines import Machine
 from trunnion.readers.families.fanuc import words
 from trunnion.readers.families.fanuc.control import FanucControl
 from trunnion.readers.families.fanuc.flow import ActiveProgram, Flow, ModalMacro
-from trunnion.readers.families.fanuc.settings import settings_of
+from trunnion.readers.families.fanuc.settings import Settings, settings_of
 from trunnion.readers.families.fanuc.text import SUFFIXES, FanucText
 from trunnion.readers.families.fanuc.variables import Variables
 from trunnion.readers.program.interpreter import ProgramEnd
@@ -33,9 +33,9 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
 
     source_type = FanucText
     suffixes = SUFFIXES
-    jump_words = re.compile(rb"GOTO|IF[ \t]*\[|WHILE|M97(?![0-9])", re.IGNORECASE)
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
+        self.jump_words = _jump_words(settings_of(machine))
         super().__init__(path, machine, options)
         self._variables = Variables(self._system_value)
         self._flow = Flow(self._note, self._variables)
@@ -93,6 +93,30 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
             repeats = float(program // programs)
             program %= programs
         self._enter_subprogram(program, _repeats(repeats), None)
+
+    def _local_call(self, active: ActiveProgram, line: int, block: Block) -> None:
+        """Call the part of this program from block number P to its M99, L times."""
+        number, repeats = block.take("P"), _repeats(block.take("L"))
+        if number is None:
+            raise BlockError("the call of a local subprogram needs P, the number of its first block")
+        begin = self._flow.target(active, line, _program_number(number))
+        if repeats < 1:
+            return
+        self._check_depth()
+        part = ActiveProgram(active.source.restarted(), active.file, repeats)
+        part.row, part.line, part.begun = self.control.row, begin, True
+        part.source.jump(begin)
+        self._stack.append(part)
+
+    def _report_jump_on_input(self, block: Block) -> None:
+        """Report a jump that depends on an input of the machine: it cannot be followed."""
+        target, number = block.take("P"), block.take("Q")
+        own = self.control.settings.words.m.items()
+        word = next(f"M{code}" for code, meaning in own if meaning == words.JUMP_ON_INPUT)
+        where = "" if target is None else f" to N{target:g}"
+        which = "an input" if number is None else f"input {number:g}"
+        what = f"{word} jumps{where} unless {which} is on, which only the machine knows: it is not followed"
+        self._note(f"{what}; leave the jump out", Severity.ERROR, "NC222")
 
     def _enter_subprogram(self, number: int, repeats: int, arguments: dict[int, float] | None) -> None:
         """Start a program of this file or a subprogram file; a macro if there are ``arguments``."""
@@ -155,6 +179,13 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
         super()._leave_program()
         if active.macro:
             self._variables.leave()
+
+
+def _jump_words(settings: Settings) -> re.Pattern[bytes]:
+    """Return what the words begin with that lead to other blocks on a control."""
+    jumps = [code for code, meaning in settings.words.m.items() if meaning in (words.LOCAL_CALL, words.JUMP_ON_INPUT)]
+    own = "".join(f"|M[ \\t]*0*{code}(?![0-9])" for code in jumps)
+    return re.compile(rf"GOTO|IF[ \t]*\[|WHILE{own}".encode(), re.IGNORECASE)
 
 
 def _program_number(number: float) -> int:

@@ -29,6 +29,11 @@ class FanucControl(Rs274Control):
     plane_of_pose  the tilted plane is that of the rotary position
     """
 
+    # A reset, and with it the end of a program, keeps units and stroke limits in any case (docs/reader-fanuc.md).
+    kept_modes = frozenset({"units", "limits"})
+    doubtful_modes = frozenset({"distances", "plane", "feed", "compensation", "offset", "length"})
+    reset_by = "whether a reset ends it depends on parameter 3402"
+
     def __init__(self, machine: Machine, note: Note, settings: Settings, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, shortest=shortest)
         self.settings = settings

@@ -100,6 +100,10 @@ class Flow:
 
     def jump(self, active: ActiveProgram, line: int, number: int) -> None:
         """Continue at a block number."""
+        active.source.jump_without_choice(self.target(active, line, number))
+
+    def target(self, active: ActiveProgram, line: int, number: int) -> int:
+        """Return the line of a block number of the program of a line; report one that stands twice."""
         target = active.source.number(number, line)
         if target is None:
             raise BlockError(f"there is no block N{number} to go to", code="NC133")
@@ -108,7 +112,7 @@ class Flow:
             self._jumps_to_doubled.add((active.file, line))
             what = f"goes to N{number}, which lines {doubled[0]} and {doubled[1]} both have"
             self._note(f"{what}: which one the control finds is up to its parameters", Severity.ERROR, "NC163")
-        active.source.jump_without_choice(target)
+        return target
 
     def _while(self, active: ActiveProgram, line: int, reader: ExpressionReader) -> None:
         holds = self._holds(active, reader)

@@ -21,9 +21,10 @@ from trunnion.readers.program.interpreter import ProgramEnd
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.program.word_values import fault_of_value
-from trunnion.readers.rs274.block import Block, block_reader, read_block
+from trunnion.readers.rs274.block import Block, block_reader, g_code_text, read_block
 from trunnion.readers.rs274.expressions import BlockError
 from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS
+from trunnion.wording import counted
 
 #: G codes that are executed before the other words of a block: units and feed modes, which scale them.
 _SCALING = frozenset({200, 210, 930, 940, 950})
@@ -36,6 +37,10 @@ class FanucInterpreter(CycleInterpreter):
         super().__init__(path, machine, options)
         # The last H, -1 before the first.
         self._length_number = -1
+        # How many blocks may be read ahead; 0: any number.
+        self._blocks_ahead = 0
+        # G23: the areas that G22 forbids are not watched.
+        self._limits_off = False
         self._needs_number = self.control.settings.needs_program_number
         self._nurbs = NurbsBlocks(self.control)
         self.control.modal.radius.set(0, 0)  # D0, the radius 0, as long as no D is written
@@ -180,6 +185,8 @@ class FanucInterpreter(CycleInterpreter):
             plain = {letter for code, letter in words.VALUES if code in block.g}
             if self.motion_code in cycles.CYCLES or not cycles.CYCLES.isdisjoint(block.g):
                 plain.add(control.settings.repeat_letter)
+            if words.JUMP_ON_INPUT in block.m:
+                plain.add("Q")
             control.settings.scale(block, mode, inches, angles=angles, plain=plain)
 
     def _g_codes(self, block: Block) -> int | None:
@@ -202,6 +209,9 @@ class FanucInterpreter(CycleInterpreter):
         if code == words.CONTOUR and "Q" not in block.words:
             self._note("G5.1 needs Q1 for on, or Q0 for off", Severity.ERROR, "NC215")
         taken = [letter for letter in words.WORDS_OF_CODE.get(code, "") if block.take(letter) is not None]
+        if code in words.STROKE_LIMIT_SWITCHES:
+            control.set_mode("limits", g_code_text(code), self._limits_off, code != words.STROKE_LIMITS)
+            self._limits_off = code != words.STROKE_LIMITS
         if code == words.STROKE_LIMITS and taken:
             self._note("G22 with positions limits where the axes may go: not simulated", Severity.ERROR, "NC220")
         if code in words.OFFSETS or code == words.MORE_OFFSETS:
@@ -213,6 +223,8 @@ class FanucInterpreter(CycleInterpreter):
             self._not_stated = frozenset("XYZ")
         elif code == words.SMOOTHNESS:
             self._smoothness(block)
+        elif code == words.LOOK_AHEAD:
+            self._look_ahead(block)
         elif code in words.EXACT_STOPS:
             control.add_exact_stop(words.EXACT_STOPS[code])
         elif code == words.NO_PLANE_OF_POSE:
@@ -222,6 +234,7 @@ class FanucInterpreter(CycleInterpreter):
             block.take("H")
             control.vectors = False
             control.set_tcp(False)
+            control.set_mode("length", g_code_text(code), control.length_active, code != words.LENGTH_OFF)
             control.set_length(code != words.LENGTH_OFF)
             if code == 440:
                 self._note("G44: the tool length with the other sign is not simulated", Severity.ERROR, "NC220")
@@ -239,6 +252,8 @@ class FanucInterpreter(CycleInterpreter):
             self._report_g_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
         elif code != words.ALIGN_TOOL and not self._modal_g_code(code):
             self._report_g_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
+            if code in (410, 420):
+                self._check_look_ahead()
 
     def _smoothness(self, block: Block) -> None:
         """Execute the word that chooses a smoothness, P, and how far corners may be rounded, E."""
@@ -248,6 +263,21 @@ class FanucInterpreter(CycleInterpreter):
             self._note(fault, Severity.ERROR, "NC215")
         if rounding is not None:
             control.add_tolerance(rounding * control.length_unit)
+
+    def _look_ahead(self, block: Block) -> None:
+        """Execute the word that limits how many blocks are read ahead, P; it changes no path but a compensated one."""
+        blocks = block.take("P") or 0.0
+        if fault := fault_of_value("look-ahead", "P", blocks, words.BLOCKS_AHEAD):
+            self._note(fault, Severity.ERROR, "NC215")
+        self._blocks_ahead = int(blocks) if abs(blocks) < 1e6 else 0
+        self._check_look_ahead()
+
+    def _check_look_ahead(self) -> None:
+        """Report radius compensation while the control may not read ahead: it does not see the next corner."""
+        if self._blocks_ahead and self.control.modal.compensation.current:
+            ahead = counted(self._blocks_ahead, "block")
+            what = f"radius compensation while the control reads only {ahead} ahead hides the next corner"
+            self._note(f"{what}: end the limit before it", Severity.ERROR, "NC220")
 
     def _tcp(self, code: int, block: Block) -> None:
         """G43.4 and G43.5; P selects how the tool axis moves within blocks."""
@@ -272,6 +302,11 @@ class FanucInterpreter(CycleInterpreter):
         control.set_orientation(Orientation.GREAT_CIRCLE if posture == 1.0 else Orientation.ANGLES)
         control.vectors = vectors
 
+    def _may_be_left_on(self) -> list[str]:
+        left = [g_code_text(self.motion_code)] if self.motion_code in cycles.CYCLES else []
+        left += ["G66"] if self._stack[0].modal is not None or self._stack[-1].modal is not None else []
+        return left
+
     @property
     def _only_head_turns(self) -> bool:
         return all(self._machine.axes[column].mount is Mount.TOOL for column in self._machine.rotary)
@@ -287,6 +322,10 @@ class FanucInterpreter(CycleInterpreter):
     def _m_code_after_motion(self, active: ActiveProgram, line: int, code: int, block: Block) -> None:
         if code == words.CALL:
             self._call(block)
+        elif code == words.LOCAL_CALL:
+            self._local_call(active, line, block)
+        elif code == words.JUMP_ON_INPUT:
+            self._report_jump_on_input(block)
         elif code == words.RETURN:
             self._return(active, line, block)
         elif code == words.CALL_FILE:

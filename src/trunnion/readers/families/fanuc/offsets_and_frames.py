@@ -37,7 +37,9 @@ class OffsetInterpreter(CallInterpreter):
             system = 6 + int(more)
         control.system = system
         offset = 53 + system if system <= 6 else extended_offset(system - 6)
-        control.set_offset(offset, offset_name(offset, word))
+        name = offset_name(offset, word)
+        control.set_mode("offset", name, control.modal.work_offset.current, offset)
+        control.set_offset(offset, name)
         control.update_frame()
 
     def _execute_with_axis_words(self, code: int, block: Block) -> None:

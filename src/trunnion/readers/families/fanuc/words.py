@@ -35,10 +35,17 @@ NURBS: Final = 62
 PLANE_OF_POSE: Final = -1
 NO_PLANE_OF_POSE: Final = -2
 SMOOTHNESS: Final = -3
+LOOK_AHEAD: Final = -4
+LOCAL_CALL: Final = -1
+JUMP_ON_INPUT: Final = -2
 MEANINGS: Final = {
-    "plane of the rotary position": PLANE_OF_POSE,
-    "no plane of the rotary position": NO_PLANE_OF_POSE,
-    "smoothness": SMOOTHNESS,
+    "G": {
+        "plane of the rotary position": PLANE_OF_POSE,
+        "no plane of the rotary position": NO_PLANE_OF_POSE,
+        "smoothness": SMOOTHNESS,
+        "look-ahead": LOOK_AHEAD,
+    },
+    "M": {"local subprogram": LOCAL_CALL, "jump on an input": JUMP_ON_INPUT},
 }
 
 #: G codes that take the axis words of their block, which then makes no other motion.
@@ -147,11 +154,15 @@ VALUES: Final = {
     (OTHER_HOME, "P"): whole(2, 4),
 }
 
-#: Forbids an area, if words of positions follow.
+#: Forbids an area, if words of positions follow; and the words that have such areas watched, and not.
 STROKE_LIMITS: Final = 220
+STROKE_LIMIT_SWITCHES: Final = frozenset({STROKE_LIMITS, 230})
 
 #: The degrees of smoothness, rough to fine.
 SMOOTHNESSES: Final = whole(1, 3)
+
+#: How many blocks a control reads ahead; 0, as many as it can.
+BLOCKS_AHEAD: Final = whole(0, 15)
 
 #: G10: what it writes into the data of tools, by L.
 TOOL_DATA: Final = {
@@ -167,7 +178,7 @@ TOOL_DATA: Final = {
 DATA_NUMBERS: Final = {2: whole(1, 6), 20: whole(1, 300), **dict.fromkeys(TOOL_DATA, whole(1, 999))}
 
 #: M codes that act after the motion of their block.
-AFTER_MOTION: Final = frozenset({0, 1, 2, 5, 9, 30, 98, 99, 198})
+AFTER_MOTION: Final = frozenset({0, 1, 2, 5, 9, 30, 98, 99, 198, LOCAL_CALL, JUMP_ON_INPUT})
 
 #: Stops the spindle, for a rigid thread.
 RIGID_TAP: Final = 29

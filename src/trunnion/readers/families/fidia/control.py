@@ -44,6 +44,9 @@ class FidiaControl(Rs274Control):
 
     relative_centres = False
 
+    doubtful_modes = frozenset({"units", "distances", "plane", "compensation"})
+    reset_by = "no source says what the end of a program sets back"
+
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, shortest=shortest)
         self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), gaps=True)

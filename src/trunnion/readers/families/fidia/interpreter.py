@@ -14,7 +14,7 @@ from trunnion.readers.families.fidia import cycles, words
 from trunnion.readers.families.fidia.control import FidiaControl
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
-from trunnion.readers.rs274.block import Block, block_reader, read_block
+from trunnion.readers.rs274.block import Block, block_reader, g_code_text, read_block
 from trunnion.readers.rs274.expressions import Arithmetic, BlockError, Value
 from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS, ActiveProgram, Rs274Interpreter
 
@@ -102,6 +102,9 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
             if code in words.AFTER_MOTION:
                 self._m_code(code)
 
+    def _may_be_left_on(self) -> list[str]:
+        return [g_code_text(self.motion_code)] if self.motion_code in cycles.CYCLES else []
+
     def _select_motion(self, code: int) -> None:
         """Select a motion or a cycle, or cancel the cycle."""
         control = self.control
@@ -119,7 +122,7 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
         for letter in words.WORDS_OF_CODE.get(code, ""):
             block.take(letter)
         if code in words.UNITS:
-            control.set_units(words.UNITS[code], True)
+            self._set_units(code, inches=words.UNITS[code])
             if words.UNITS[code]:
                 self._note("G70: what F counts in inches is not known", Severity.ERROR, "NC241")
         elif code == words.OFFSET:

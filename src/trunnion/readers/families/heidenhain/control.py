@@ -27,6 +27,9 @@ class HeidenhainControl(PlaneControl):
     pole                   pole of circles and polar coordinates, programmed position, (3,) mm
     """
 
+    doubtful_modes = frozenset({"M89", "M116", "M118", "M120", "feed"})
+    reset_by = "whether the end of a program cancels it depends on the software of the control"
+
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         self.shortest_path = False
         # Lines that end an operation with M126 on, with what they do; and whether the program ever writes M127.
@@ -91,6 +94,7 @@ class HeidenhainControl(PlaneControl):
         controls only, and so does a tilted plane.
         """
         self.report_unused_offsets()
+        self.report_trailing_modes()
         if left := self.left_on():
             self.note(f"ends with {left} on: the next program may begin with it", Severity.ERROR, "NC351")
         if self.shortest_path and not self._cancels_shortest_path:

@@ -16,7 +16,7 @@ from trunnion.readers.families.heidenhain.parameters import (
     formula,
     guarded,
 )
-from trunnion.readers.families.heidenhain.words import FN_NOT_SIMULATED, FN_SYSTEM_DATA
+from trunnion.readers.families.heidenhain.words import FN_NOT_SIMULATED, FN_SYSTEM_DATA, FN_WAITS
 
 #: The left side of an assignment to a parameter.
 ASSIGNED: Final = re.compile(r"(Q[LR]?[0-9]{1,4})[ \t]*=[ \t]*")
@@ -67,12 +67,10 @@ def execute(text: str, parameters: Parameters, note: Note) -> str | None:
     if number in _CONDITIONS:
         return _jump(number, rest, parameters)
     if number in FN_NOT_SIMULATED:
-        severity = Severity.ERROR if number == FN_SYSTEM_DATA else Severity.WARNING
-        note(
-            f"FN {number} {FN_NOT_SIMULATED[number]}: not simulated",
-            severity,
-            "NC220" if severity is Severity.ERROR else "NC221",
-        )
+        severity = Severity.ERROR if number in FN_SYSTEM_DATA else Severity.WARNING
+        of_warning = "NC226" if number in FN_WAITS else "NC221"
+        code = "NC220" if severity is Severity.ERROR else of_warning
+        note(f"FN {number} {FN_NOT_SIMULATED[number]}: not simulated", severity, code)
         return None
     target = ASSIGNED.match(rest.removeprefix("SYSREAD").lstrip() if number == _SYSTEM else rest)
     if target is None:

@@ -12,12 +12,14 @@ from trunnion.readers.families.heidenhain.parameters import KlartextError, Param
 from trunnion.readers.families.heidenhain.path_blocks import MAX_FEED, Block, value_of
 from trunnion.readers.families.heidenhain.words import (
     M_AFTER_MOTION,
+    M_ARGUMENTS,
     M_CALL,
     M_CALL_MODAL,
     M_EVENTS,
     M_FEED_AT_TIP,
     M_FEED_IN_DEGREES,
     M_MACHINE,
+    M_MODES,
     M_NOT_SHORTEST,
     M_NOT_SIMULATED,
     M_PER_MINUTE,
@@ -60,6 +62,8 @@ class MFunctions:
         self._control = control
         self._note = note
         self.modal_call = False
+        # Functions of ``M_MODES`` that are on, by name.
+        self._on: frozenset[str] = frozenset()
 
     def execute_before_motion(self, block: Block) -> None:
         """Execute the M functions of a block that act before its motion."""
@@ -80,6 +84,7 @@ class MFunctions:
             if given is not None and (fault := fault_of_value(f"M{code}", letter, given, known)):
                 self._note(fault, Severity.ERROR, "NC215")
         self._words_of_function(code, arguments)
+        self._note_modes(code, arguments)
         for kind, value in M_EVENTS.get(code, ()):
             control.add_event(kind, value)
         if code in (M_SHORTEST, M_NOT_SHORTEST):
@@ -113,6 +118,19 @@ class MFunctions:
             )
         elif code not in _HANDLED_ELSEWHERE:
             control.add_builders_word("M", float(code))
+
+    def _note_modes(self, code: int, arguments: dict[str, float | None]) -> None:
+        """Remember the functions that the next program may begin with, if nothing moves with them in this one."""
+        control = self._control
+        if code in (M_PER_TURN, M_PER_MINUTE):
+            after = 95 if code == M_PER_TURN else 94
+            control.set_mode("feed", f"M{code}", control.modal.feed_mode.current, after)
+        elif code in M_MODES:
+            name = f"M{M_MODES[code]}"
+            # M118 and M120 are cancelled by themselves, without words.
+            on = code == M_MODES[code] and (code not in M_ARGUMENTS or bool(arguments))
+            control.set_mode(name, f"M{code}", name in self._on, on)
+            self._on = self._on | {name} if on else self._on - {name}
 
     def _words_of_function(self, code: int, arguments: dict[str, float | None]) -> None:
         """Execute the words of M functions that change feed, path or tilting axes."""

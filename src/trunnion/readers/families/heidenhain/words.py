@@ -137,6 +137,9 @@ M_ARGUMENTS: Final = {
     M_RETRACT: _words("MB MAX F FMAX"),
 }
 
+#: M functions that stay on until a word cancels them, and those words: the function that each is about.
+M_MODES: Final = {M_CALL_MODAL: 89, M_CALL: 89, M_FEED_AT_TIP: 116, M_FEED_IN_DEGREES: 116, 118: 118, 120: 120}
+
 #: Cycles that act as soon as they are defined, by number.
 DATUM: Final = 7
 MIRROR: Final = 8
@@ -176,12 +179,16 @@ CYCLES_NOT_SIMULATED: Final = {
 #: Of these, those that act as soon as they are defined.
 ACT_WHEN_DEFINED: Final = frozenset({220, 221, 239})
 
-#: Writes system data, those of tools and presets among them, which the path does not show.
-FN_SYSTEM_DATA: Final = 17
+#: FN functions that write system data, those of tools and presets among them, which the path does not show.
+FN_SYSTEM_DATA: Final = frozenset({17, 25})
+
+#: FN functions that stop the program, or let it wait.
+FN_WAITS: Final = frozenset({14, 20})
 
 #: FN functions that are not simulated: what they do.
 FN_NOT_SIMULATED: Final = {
-    14: "an error message", 15: "prints", 16: "prints to a file", 17: "writes system data", 19: "speaks to the PLC",
-    20: "waits for the PLC", 25: "sets a preset", 26: "opens a table", 27: "writes to a table", 28: "reads a table",
-    29: "speaks to the PLC", 37: "exports parameters", 38: "sends a message",
+    14: "stops the program with an error message", 15: "prints", 16: "prints to a file", 17: "writes system data",
+    19: "speaks to the PLC", 20: "waits for the PLC", 25: "sets a preset", 26: "opens a table",
+    27: "writes to a table", 28: "reads a table", 29: "speaks to the PLC", 37: "exports parameters",
+    38: "sends a message",
 }  # fmt: skip

@@ -62,6 +62,9 @@ class LinuxcncControl(Rs274Control):
     own_words          words that the control has in place of the family's
     """
 
+    # M2 and M30 set all others back: G54, G17, G90, G94, G40, G80 (docs/reader-linuxcnc.md).
+    kept_modes = frozenset({"units", "centres", "length"})
+
     def __init__(self, machine: Machine, note: Note, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, shortest=shortest)
         self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), comment=";", gaps=True)
@@ -195,6 +198,9 @@ class LinuxcncControl(Rs274Control):
         if not self.tip_programmed:
             self.move(axes, None, machine_frame=True, feed_written=feed_written)
             return
+        if axes.keys() & {"X", "Y", "Z"}:
+            text = "G53 with TCP on goes to a position of the tip, and not of the slides: switch TCP off before it"
+            self.note(text, Severity.WARNING, "NC341")
         goal = self.machine_position()[:3]
         for axis, name in enumerate("XYZ"):
             if name in axes:

@@ -19,6 +19,7 @@ from trunnion.readers.program.word_values import fault_of_value
 from trunnion.readers.rs274.block import Block, block_reader, g_code_text, read_block
 from trunnion.readers.rs274.expressions import BlockError
 from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS
+from trunnion.wording import format_duration
 
 #: Comments that are messages to the operator.
 _MESSAGE: Final = re.compile(r"[ \t]*(?:MSG|DEBUG|PRINT),(.*)", re.IGNORECASE | re.DOTALL)
@@ -188,9 +189,11 @@ class LinuxcncInterpreter(CycleInterpreter):
             number = self._length_number(block) if words.LENGTHS[code] else -1
             if number != control.modal.edge.current:
                 control.judge_new_length(g_code_text(code))
+            control.set_mode("length", g_code_text(code), control.length_active, words.LENGTHS[code])
             control.set_length(words.LENGTHS[code])
             control.modal.edge.set(control.row, number)
         elif code in (901, 911):
+            control.set_mode("centres", g_code_text(code), control.relative_centres, code == 911)
             control.relative_centres = code == 911
         elif code in words.TAKEN_AS_LINES:
             self._report_g_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
@@ -221,6 +224,9 @@ class LinuxcncInterpreter(CycleInterpreter):
 
     def _m_code(self, code: int, block: Block) -> None:
         control = self.control
+        if code == words.WAIT_FOR_INPUT and block.words.get("L") is not None and block.words["L"].value:
+            seconds = block.words["Q"].value if "Q" in block.words else 0.0
+            control.note_wait(f"M66 waits for an input, up to {format_duration(max(seconds, 0.0))}")
         for letter in words.WITHOUT_PATH_EFFECT_M.get(code, "") or words.WORDS_OF_M_CODE.get(code, ""):
             value, known = block.take(letter), words.VALUES_M.get((code, letter))
             fault = "" if value is None or known is None else fault_of_value(f"M{code}", letter, value, known)

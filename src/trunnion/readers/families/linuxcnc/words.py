@@ -112,6 +112,9 @@ RELOAD_TOOLS: Final = 0
 ANALOG_OUTPUTS: Final = frozenset({67, 68})
 KINEMATICS_OUTPUT: Final = 3
 
+#: Reads an input; with L other than 0 it waits for it, up to Q seconds.
+WAIT_FOR_INPUT: Final = 66
+
 #: Lets a signal scale the feed, unless its P is 0.
 ADAPTIVE_FEED: Final = 52
 

@@ -28,6 +28,7 @@ from trunnion.readers.families.sinumerik.words import (
     TOOL_DELTAS,
     TOOL_FRAMES,
     TYPES,
+    WAITS,
     WITHOUT_PATH_EFFECT,
     WITHOUT_PATH_EFFECT_CALLS,
     WITHOUT_PATH_EFFECT_VALUES,
@@ -71,6 +72,7 @@ class Block:
     interval     of their parameter, PL
     tolerances  within which the control may round off the path
     deltas   what the program adds to length and radius of the tool
+    waits    words with which it waits for another channel
     feed_radius  at which F counts for rotary axes
     """
 
@@ -90,6 +92,7 @@ class Block:
     edge: int | None = None
     traori: float = 1.0
     deltas: dict[str, float] = field(default_factory=dict)
+    waits: list[str] = field(default_factory=list)
     tolerances: list[float] = field(default_factory=list)
     feed_radius: float | None = None
 
@@ -293,6 +296,8 @@ class BlockReader:
             self._feed_group(reader)
         elif name in WITHOUT_PATH_EFFECT_CALLS and follows == "(":
             _skip(reader, "(", ")")
+            if name in WAITS:
+                block.waits.append(name)
         elif name in _MODES:
             block.words.append(name)
         elif name in FLOW or name in TYPES or name in OPERATORS or name in POSITION_MODES:

@@ -21,7 +21,7 @@ from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.hole_motion import HoleMotion
 from trunnion.readers.control.row_recorder import MAX_POSITION, Note
 from trunnion.readers.control.virtual_control import LINEAR, Circle, VirtualControl
-from trunnion.readers.families.sinumerik import settings
+from trunnion.readers.families.sinumerik.settings import WITH_LENGTH, Settings, settings_of
 from trunnion.readers.families.sinumerik.words import WITHIN_COMPENSATION
 from trunnion.readers.scan.letter_blocks import letter_table
 
@@ -131,6 +131,21 @@ class SinumerikControl(VirtualControl):
         self._machine_vectors = on
         self._update_maps()
 
+    # Positions of the machine
+
+    def _machine_move(self, axes: Mapping[str, AxisWord], bits: int, circle: bool) -> None:
+        """Move to positions of the machine axes; machine data say whether the length of an edge in force counts."""
+        along, edge = "XYZ"[self.plane_axis], int(self.modal.edge.current)
+        if along in axes and edge > 0:
+            value, mode = axes[along]
+            if not self._settings.machine_positions:
+                text = f"{along} in machine positions with D{edge}: MD10760 says whether the length of the tool counts"
+                self.note(f"{text}; write D0 in this block", Severity.ERROR, "NC224")
+            elif self._settings.machine_positions == WITH_LENGTH and not self._is_incremental(mode):
+                value += float(self._length_offset[self.plane_axis]) / self.length_unit
+                axes = {**axes, along: (value, mode)}
+        super()._machine_move(axes, bits, circle)
+
     # Circles
 
     def circle(self, params: Mapping[str, AxisWord], axes: Mapping[str, AxisWord]) -> Circle | None:
@@ -193,9 +208,8 @@ class SinumerikControl(VirtualControl):
     # Frames along the tool
 
     @cached_property
-    def _cycles_along_tool(self) -> bool:
-        """Whether cycles turn the frame as TOROT does while TCP is on: Siemens' do not, the machine's may."""
-        return settings.cycles_along_tool(self.machine)
+    def _settings(self) -> Settings:
+        return settings_of(self.machine)
 
     def turn_frame(self, word: str) -> None:
         """TOROT (the zero stays), TOFRAME (the zero becomes that of the work offset), and the words that end them."""
@@ -226,7 +240,7 @@ class SinumerikControl(VirtualControl):
 
     def drill(self, motions: Sequence[HoleMotion], work: SpindleWork | None = None) -> None:
         """Execute a drilling cycle at the present position; along the tool if the machine's definition sets that."""
-        turns = self.tcp and not (self.tilted or self.tool_frame) and self._cycles_along_tool
+        turns = self.tcp and not (self.tilted or self.tool_frame) and self._settings.cycles_along_tool
         program = self.program_frame
         if turns:
             self.set_program_frame(self._along_tool(program.shift), keep_base=False)

@@ -179,6 +179,8 @@ class SinumerikInterpreter(CallInterpreter):
             self._g_code(code)
         for word in block.words:
             self._word(word, block)
+        for word in block.waits:
+            self.control.note_wait(f"{word} waits for another channel of the control, for as long as that takes")
         if _DWELL in block.g:
             self._dwell(block)
             return
@@ -401,7 +403,9 @@ class SinumerikInterpreter(CallInterpreter):
             control.add_event("message", first if isinstance(first, str) else f"{first or 0:g}")
         else:
             assert name == "SETAL"
-            control.add_event("message", f"SETAL({', '.join(call.argument_texts)})")
+            alarm = f"SETAL({', '.join(call.argument_texts)})"
+            control.add_event("message", alarm)
+            control.note_wait(f"{alarm} raises an alarm: its number says whether the program stops there")
 
     def _drill(self, call: Call) -> None:
         try:

@@ -5,7 +5,7 @@ from typing import Final
 
 from trunnion.readers.families.sinumerik.interpreter import SinumerikInterpreter
 from trunnion.readers.families.sinumerik.own_words import is_own_word
-from trunnion.readers.families.sinumerik.settings import cycles_along_tool
+from trunnion.readers.families.sinumerik.settings import settings_of
 from trunnion.readers.families.sinumerik.words import (
     FEED_GROUP,
     G_WITHOUT_PATH_EFFECT,
@@ -52,5 +52,5 @@ READER: Final = FamilyReader(
     is_own_word,
     comments=rb';[^\n]*|"[^"\n]*"',
     raw_words=RAW_WORDS,
-    check_reading=cycles_along_tool,
+    check_reading=settings_of,
 )

@@ -180,6 +180,9 @@ WITHOUT_PATH_EFFECT_CALLS: Final = _words("""
     ORISOF ORISON GROUP_BEGIN GROUP_END GROUP_ADDEND TOFFOF
     """)
 
+#: Of these, those with which a program waits for another channel.
+WAITS: Final = frozenset({"WAITM", "GET"})
+
 #: Chooses the axes that F counts for.
 FEED_GROUP: Final = "FGROUP"
 

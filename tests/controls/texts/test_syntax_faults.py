@@ -1,0 +1,121 @@
+"""What is not understood of a template is told in the words of those who write it: what, where, and what to write."""
+
+import re
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from tests.controls.texts.test_language import printing
+from trunnion.controls.texts.template import text_template
+from trunnion.controls.texts.values import Fault
+from trunnion.errors import InputError
+
+#: Words of Jinja and Python that nobody must see.
+RAW = re.compile(
+    r"[Jj]inja|token|[Ee]xpected|[Ee]ncountered|unexpected|statement block|print statement|instances of|NoneType"
+)
+
+
+def fault_of(text: str) -> Fault:
+    template, fault = text_template("program_end", text, "ours.toml", 7)
+    assert fault is not None
+    assert template.code is None
+    return fault
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "what", "cure"),
+    [
+        ("(A)\n{% if tool = 1 %}\nM8\n{% endif %}", 2, "{% if tool = 1 %} with =, which compares nothing", "write =="),
+        ("{{ 'A' if tool = 1 }}", 1, "with =, which compares nothing", "write == to compare"),
+        ("{% if tool == 1 and pressure = 2 %}\n{% endif %}", 1, "with =", "write == to compare"),
+        ("{% if tool == 1 %}\nM8\nM9", 1, "{% if tool == 1 %} without its {% endif %}", "write {% endif %}"),
+        ("{% for one in tools %}\nM8", 1, "{% for one in tools %} without its {% endfor %}", "write {% endfor %}"),
+        ("M8\n{% endif %}", 2, "{% endif %} without its {% if … %}", "take it out"),
+        ("M8\n{% else %}\nM9", 2, "{% else %} without its {% if … %}", "take it out"),
+        ("{% if tool %}\n{% endfor %}", 2, "where the {% if tool %} of line 1", "write {% endif %} before it"),
+        ("{% if tool %}\n{% for one in tools %}\n{% endif %}", 3, "{% for one in tools %} of line 2", "endfor"),
+        ("{% if tool %}\n{% if date %}\n{% endif %}", 1, "{% if tool %} without its {% endif %}", "{% endif %}"),
+        ("M8\n{% if tool }\nM9\n{% endif %}", 2, "{% if tool }, which does not end with %}", "write %} behind it"),
+        ("M8\n{{ tool }\nM9", 2, "{{ tool }, which does not end with }}", "write }} behind it"),
+        ("M8 {# ask\nM9", 1, "{# ask, which does not end with #}", "write #} behind it"),
+        ("{% if tool == 'A %}\n{% endif %}", 1, "a text that begins with ' and does not end", "write ' behind it"),
+        ('{{ "A }}\n(B)', 1, 'a text that begins with " and does not end', 'write " behind it'),
+        ("{% if tool == “A” %}\n{% endif %}", 1, "with the quotation mark “", "write \" or '"),
+        ("{% elseif tool %}", 1, "which is no statement", "write elif"),
+        ("{% if tool %}\n{% else if date %}\n{% endif %}", 2, "something behind else", "write {% elif … %}"),
+        ("{% If tool %}\n{% Endif %}", 1, "{% If tool %}, which is no statement", "write if"),
+        ("{% if tool %}\n{% end if %}", 2, "{% end if %}, which is no statement", "write {% endif %} in one word"),
+        ("{% fro one in tools %}\n{% endfor %}", 1, "which is no statement", 'did you mean "for"'),
+        ("{% for one of tools %}\n{% endfor %}", 1, "which is no loop", "write {% for one in list %}"),
+        ("{% set depth 5 %}", 1, "which sets nothing", "write {% set name = value %}"),
+        ("{% set depth == 5 %}", 1, "which sets nothing", "write {% set name = value %}"),
+        ("{% if tool then %}\n{% endif %}", 1, "with then behind the condition", "leave it out"),
+        ("{% if tool && date %}\n{% endif %}", 1, "with &&", "write and"),
+        ("{% if tool || date %}\n{% endif %}", 1, "with ||", "write or"),
+        ("{% if !tool %}\n{% endif %}", 1, "with !", "write not"),
+        ("{% if tool <> 1 %}\n{% endif %}", 1, "with <>", "write !="),
+        ("{% if tool => 1 %}\n{% endif %}", 1, "with =>", "write >="),
+        ("{{ tool ? 1 : 2 }}", 1, "with ?", "write a if b else c"),
+        ("{% if %}\n{% endif %}", 1, "{% if %} with nothing in it", "write a value or a condition"),
+        ("{{ }}", 1, "{{ }} with nothing in it", "write a value or a condition"),
+        ("{{ tool + }}", 1, "with nothing behind +", "write a value behind it"),
+        ("{{ (1 + 2 }}", 1, "with (, which is not closed", "write ) where it ends"),
+        ("{{ 1 + 2) }}", 1, "with ), which closes no bracket", "take it out"),
+        ("{{ tool title }}", 1, "with tool and title side by side", "join texts by ~"),
+        ("{{ 3mm }}", 1, "with mm right behind a number", "write numbers without units"),
+        ("{{ .tool }}", 1, "{{ .tool }}, which is not understood", "docs/templates.md"),
+    ],
+)  # fmt: skip
+def test_a_slip_is_told_with_its_line_and_its_cure(text: str, line: int, what: str, cure: str) -> None:
+    fault = fault_of(text)
+    assert (fault.line, what in fault.what, cure in fault.cure) == (line, True, True), (fault.what, fault.cure)
+    assert not RAW.search(fault.what + fault.cure)
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ("{% if title < 3 %}x{% endif %}", "compares a text with a number by <"),
+        ("{% if date < 3 %}x{% endif %}", "compares an absent value with a number by <"),
+        ("{% if tools > 3 %}x{% endif %}", "compares a list with a number by >"),
+        ("{% if 3 in home_z %}x{% endif %}", "looks by in for something within a number"),
+    ],
+)  # fmt: skip
+def test_values_that_do_not_fit_are_told_without_words_of_python(text: str, what: str) -> None:
+    template, fault = text_template("program_end", text, "ours.toml", 7)
+    assert fault is None
+    with pytest.raises(InputError) as caught:
+        template.expand({"title": "T", "date": None, "home_z": 5.0}, printing())
+    (problem,) = caught.value.problems
+    assert what in problem.what
+    assert not RAW.search(problem.what + problem.cure)
+
+
+PIECES = [
+    "{%", "%}", "{{", "}}", "{#", "#}", "{", "}", "%", " if ", " elif ", " else ", " endif ", " for ", " in ",
+    " endfor ", " set ", " tool ", "tools",
+    "'", '"', "=", "==", "<", "(", ")", "[", "]", "|", ".", ",", "1", " and ", "-",
+    "+", "\n",
+    "{% if tool %}", "{% endif %}", "{{ tool }}", "é", "\\",
+]  # fmt: skip
+
+
+@settings(max_examples=400, deadline=None)
+@given(st.lists(st.sampled_from(PIECES), max_size=14).map("".join))
+def test_whatever_stands_in_a_template_no_word_of_the_parser_is_told(text: str) -> None:
+    template, fault = text_template("program_end", text, "ours.toml", 7)
+    if fault is None:
+        return
+    assert template.code is None
+    assert 0 <= fault.line <= text.count("\n") + 1
+    assert not RAW.search(fault.what + fault.cure), (text, fault.what)
+
+
+@pytest.mark.parametrize("text", [
+    "{{ " + "a " * 30_000, "{{ " + "'" * 60_000, "{% if a %}" * 6000, "{{ " + "(" * 60_000 + " }}",
+    "{{ a = 1 }}" * 5000, "{{ " + "a." * 30_000 + " }}", "{% x %}" * 9000,
+])  # fmt: skip
+def test_a_long_template_is_judged_as_well(text: str) -> None:
+    assert len(fault_of(text).what) < 300
