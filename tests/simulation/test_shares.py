@@ -60,6 +60,16 @@ def test_any_number_of_shares_gives_what_one_process_gives(
     assert facts(joined(nc, given, shares_of(nc, given, count))) == facts(whole)
 
 
+def test_a_part_that_is_clamped_otherwise_than_it_is_drawn_is_divided_too(
+    rich: tuple[Path, Given, trunnion.SimulationResult],
+) -> None:
+    nc, given, whole = rich
+    turned = {**given, "turn": 60.0, "zero": (0.0, 0.0, 0.0), "cell": 1.0}
+    found = trunnion.simulate(nc, **turned)
+    assert found.removed != pytest.approx(whole.removed, rel=0.05)
+    assert facts(joined(nc, turned, shares_of(nc, turned, 2))) == facts(found)
+
+
 @pytest.mark.parametrize("sizes", [(1, 1, 1), (64, 64, 64), (65, 200, 700), (1000, 130, 10)])
 @pytest.mark.parametrize("count", [1, 2, 3, 7, 50])
 def test_each_tile_is_dealt_out_once_and_evenly(sizes: tuple[int, int, int], count: int) -> None:
