@@ -1,19 +1,24 @@
 """A small cluster of Dask: the results of a plain loop, although workers die and the scheduler is started again."""
 
+import json
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 import trunnion
 from tests.support.batch_work import simple_work
-from tests.support.batches import run_simply, simple_batch, tree, write_files
+from tests.support.batches import AsTheyCome, divided_batch, run_simply, simple_batch, tree, write_files
 from tests.support.dask_clusters import Cluster, needs_dask
+from tests.support.divided import write_divided, write_jobs
 from tests.support.locations import YL569
 from trunnion.api.observer import Observer
+from trunnion.api.simulation_data import simulation_data
 from trunnion.batch import Status, run_batch
 from trunnion.batch.cluster import DaskWorkers
+from trunnion.batch.dividing import SHARES
 from trunnion.batch.records import Record
 from trunnion.batch.running import run_jobs
 from trunnion.batch.stores import FolderStore, open_store
@@ -63,6 +68,47 @@ def test_nothing_is_lost_or_doubled_although_a_worker_and_the_scheduler_die(
     assert result.counts == {Status.PASSED: 41, Status.UNUSABLE: 1}
     run_simply(batch, FolderStore(tmp_path / "loop"))
     assert tree(tmp_path / "out") == tree(tmp_path / "loop")
+
+
+@pytest.mark.parametrize("place", ["folder", "file"])
+def test_shares_are_neither_lost_nor_doubled_although_a_worker_and_the_scheduler_die(
+    cluster: Cluster, tmp_path: Path, place: str
+) -> None:
+    write_files(tmp_path / "in", {f"{k}/x.cls": f"text {k}" for k in range(8)} | {"bad.cls": "fail"})
+    batch = divided_batch(tmp_path / "in", 4)
+    store = open_store((tmp_path / "out").as_uri() if place == "file" else tmp_path / "out")
+    disturb = cluster.restart_scheduler if place == "folder" else cluster.kill_worker
+    result = run_jobs(
+        batch,
+        store,
+        lambda _: DaskWorkers(cluster.address, simple_work, writing=store.worker_url),
+        Disturber(9, disturb),
+    )
+    assert result.counts == {Status.PASSED: 8, Status.UNUSABLE: 1}
+    run_simply(divided_batch(tmp_path / "in", 1), FolderStore(tmp_path / "loop"), AsTheyCome())
+    assert tree(tmp_path / "out") == tree(tmp_path / "loop")
+
+
+def test_a_divided_simulation_is_that_of_one_process_although_a_worker_dies(cluster: Cluster, tmp_path: Path) -> None:
+    nc, given = write_divided(tmp_path)
+    report = "wall.ngc.simulation.json"
+    simulated = replace(trunnion.simulate(nc, **given), programs=("wall.ngc",), seconds=0.0)
+    result = run_batch(
+        write_jobs(tmp_path, 4),
+        results=tmp_path / "out",
+        scheduler=cluster.address,
+        observer=Disturber(2, cluster.kill_worker),
+    )
+    (record,) = result.records()
+    assert (record.status, record.figures["findings"]) == (Status.FAILED, len(simulated.findings))
+    expected = json.loads(json.dumps(simulation_data(simulated)))
+    written = json.loads((tmp_path / "out" / report).read_text())
+    for text in (expected, written):  # one names the files by their paths
+        for each in ("collisions", "near", "air", "operations", "remarks"):
+            for row in text[each]:
+                row["file"] = Path(row["file"]).name
+    assert written == expected
+    assert not [path for path in (tmp_path / "out" / SHARES).rglob("*") if path.is_file()]
 
 
 def test_programs_are_those_of_a_plain_loop(cluster: Cluster, tmp_path: Path) -> None:

@@ -168,7 +168,7 @@ def test_a_file_that_changes_while_it_is_worked_on_is_done_again(tmp_path: Path)
     write_files(tmp_path / "in", {"x.cls": "one", "y.cls": "two"})
 
     class Changing(InOrder):
-        def run(self, tasks: Iterable[tuple[Assignment, Task]]) -> Iterator[tuple[Assignment, Outcome | Record]]:
+        def run(self, tasks: Iterable[tuple[Assignment, Task] | None]) -> Iterator[tuple[Assignment, Outcome | Record]]:
             for each in super().run(tasks):
                 write_files(tmp_path / "in", {"x.cls": "changed"})
                 yield each

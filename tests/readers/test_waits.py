@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import trunnion
-from tests.readers.test_word_values import HEADS, TAILS
+from tests.support.block_frames import HEADS, TAILS
 from tests.support.locations import TESTS
 
 #: A machine, a block, and what is told of it; nothing where it is sound.

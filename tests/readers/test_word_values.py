@@ -5,18 +5,9 @@ from pathlib import Path
 import pytest
 
 import trunnion
-
-HEADS = {
-    "matsuura_mx330": "%\nO0001\nG21 G17 G90 G94 G54\n",
-    "haas_umc750": "%\nO00001\nG21 G17 G90 G94 G54\n",
-    "xyzac_trt": "G21 G17 G90 G94 G54\n",
-    "hs664rt": "G90\nG71\nG55 O1\n",
-    "yl569": "G710 G17 G90 G94 G54\nT1\nM6\nD1\nS500 F100 M3\n",
-    "dmu65": "0 BEGIN PGM A MM\nTOOL CALL 1 Z S500\n",
-}
+from tests.support.block_frames import HEADS, TAILS
 
 PLANE = "G68.2 X0 Y0 Z0 I0 J0 K0\nG53.1"
-TAILS = {"dmu65": "END PGM A MM\n"}
 
 CYCLE_32 = "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1"
 

@@ -21,7 +21,7 @@ def test_ctrl_c_leaves_no_file(
     nc, stock, data = tmp_path / "slot.ngc", tmp_path / "stock.stl", tmp_path / "found.json"
     nc.write_text(SLOT)
     stock.write_text("an older one")
-    owner, name = (Cutter, "cut") if where == "cutting" else (surface, "_triangles")
+    owner, name = (Cutter, "measure") if where == "cutting" else (surface, "_triangles")
     own, called, threads = getattr(owner, name), list[bool](), set(threading.enumerate())
 
     def stopped(*arguments: Any) -> Any:

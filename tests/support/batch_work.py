@@ -3,6 +3,9 @@
 What it does stands in the file: ``fail``, ``refuse``, ``several …``, ``die PATH`` (ends its process, unless PATH is
 there, and makes it), ``always die``, ``sleep SECONDS``, ``cold PATH SECONDS`` (sleeps unless PATH is there, and makes
 it); anything else passes.
+
+A file that is divided is put together from its shares: ``dies in 1 PATH`` and ``sleeps in 1 SECONDS`` mean share 1, and
+``fail`` fails in all of them.
 """
 
 import os
@@ -10,7 +13,8 @@ import signal
 import time
 from pathlib import Path
 
-from trunnion.batch.task import Outcome, Status, Task
+from trunnion.batch.task import SHARE_FILE, Outcome, Status, Task
+from trunnion.batch.workers import damaged
 from trunnion.errors import Problem
 
 
@@ -18,6 +22,9 @@ def simple_work(task: Task) -> Outcome:
     """What stands in the file."""
     text = task.files[task.file].decode()
     word, _, rest = text.partition(" ")
+    if task.share is not None and word in ("dies", "sleeps"):
+        number, _, rest = rest.removeprefix("in ").partition(" ")
+        word = word[:-1] if task.share[0] == int(number) else ""
     if word == "die" and not Path(rest).exists():
         Path(rest).write_text("", encoding="utf-8")
         os.kill(os.getpid(), getattr(signal, "SIGKILL", signal.SIGTERM))
@@ -32,6 +39,12 @@ def simple_work(task: Task) -> Outcome:
         return Outcome(Status.UNUSABLE, (Problem(task.file, 3, "is wrong", code="CL310"),))
     if word == "refuse":
         return Outcome(Status.FAILED, (Problem(task.file, 0, "must not run", code="tip"),), figures={"points": 2})
+    if task.share is not None:
+        return Outcome(Status.PASSED, files={SHARE_FILE: f"{task.share} of {text}".encode()})
+    if task.shares:
+        shares = [each if isinstance(each, bytes) else each.read() for each in task.shares]
+        if shares != [f"({k}, {len(shares)}) of {text}".encode() for k in range(len(shares))]:
+            return Outcome(Status.HINDERED, (damaged(task.file, "odd"),))
     files = {task.result: f"of {text}".encode()}
     if word == "several":
         files |= {"SUB1": b"one", "SUB2": b"two"}

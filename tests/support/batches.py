@@ -1,9 +1,11 @@
 """Batches whose work takes no time, and a store in which it is interrupted."""
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
+from random import Random
 from types import TracebackType
 
 from tests.support.batch_work import simple_work
@@ -29,11 +31,37 @@ class InOrder:
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None) -> None:
         """Nothing is left to end."""
 
-    def run(self, tasks: Iterable[tuple[Assignment, Task]]) -> Iterator[tuple[Assignment, Outcome | Record]]:
-        given = list(tasks)
+    def run(self, tasks: Iterable[tuple[Assignment, Task] | None]) -> Iterator[tuple[Assignment, Outcome | Record]]:
+        given = [each for each in tasks if each is not None]
         for assignment, task in reversed(given) if self._reverse else given:
             self.done.append(assignment.record.file)
             yield assignment, simple_work(task)
+
+
+class AsTheyCome(InOrder):
+    """Does the work here; of ``window`` tasks that are there at a time, any one is done next.
+
+    shares  which shares were made: file and number
+    """
+
+    def __init__(self, window: int = 1, seed: int = 0, function: Callable[[Task], Outcome] = simple_work) -> None:
+        super().__init__()
+        self.shares: list[tuple[str, int]] = []
+        self._window, self._random, self._function = window, Random(seed), function
+
+    def run(self, tasks: Iterable[tuple[Assignment, Task] | None]) -> Iterator[tuple[Assignment, Outcome | Record]]:
+        coming, there = iter(tasks), list[tuple[Assignment, Task]]()
+        while True:
+            while len(there) < self._window and (each := next(coming, None)) is not None:
+                there.append(each)
+            if not there:
+                return
+            assignment, task = there.pop(self._random.randrange(len(there)))
+            if task.share is None:
+                self.done.append(assignment.record.file)
+            else:
+                self.shares.append((assignment.record.file, task.share[0]))
+            yield assignment, self._function(task)
 
 
 class Interrupted(KeyboardInterrupt):
@@ -75,6 +103,12 @@ def simple_batch(folder: Path) -> Batch:
     """All files ``.cls`` in a folder; nothing is asked of a machine."""
     files = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*.cls"))
     return Batch(folder, [Job("job", Action.POST, files, {"machine": "yl569"}, extension=".mpf")])
+
+
+def divided_batch(folder: Path, tiles: int) -> Batch:
+    """The same, each file divided among tasks."""
+    batch = simple_batch(folder)
+    return replace(batch, jobs=[replace(batch.jobs[0], action=Action.SIMULATE, tiles=tiles)], home="home")
 
 
 def run_simply(batch: Batch, store: Store, workers: InOrder | None = None, observer: Observer = SILENT) -> BatchResult:

@@ -5,7 +5,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.simulation.cutting.removal import Cutter, RowsCut
+from trunnion.simulation.cutting.measurements import Chunk, RowsCut, rows_cut
+from trunnion.simulation.cutting.removal import Cutter
 from trunnion.simulation.cutting.sweeps import RowSweeps
 from trunnion.simulation.stock.lattice import BUNDLE_AXES, Lattice
 from trunnion.simulation.stock.material import Stock
@@ -58,7 +59,9 @@ def cut_path(
     pieces, _ = revolved_pieces(shape, tolerance)
     with ThreadPoolExecutor(threads) as executor:
         at_rest = np.full(sweeps.end, idle)
-        return (cutter or Cutter(stock, None, tolerance)).cut(sweeps, pieces, executor, at_rest)
+        tiles = (cutter or Cutter(stock, None, tolerance)).measure(sweeps, pieces, executor, at_rest)
+        (found,) = rows_cut([Chunk(sweeps.first, sweeps.end, sweeps.tool, tiles)], {sweeps.tool: pieces})
+        return found
 
 
 def bundle_volumes(stock: Stock) -> list[float]:

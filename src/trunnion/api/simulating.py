@@ -1,6 +1,6 @@
 """Simulation of NC programs: what they leave of the stock, what they hit, and the part that comes out."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, Final, Literal
@@ -122,25 +122,41 @@ def simulate(
         "machine": machine, "part": part, "fixtures": fixtures, "tools": tools, "libraries": libraries, "unit": unit,
         "cl": cl, "subprograms": subprograms, "zero": zero, "tool_length": tool_length, "turn": turn, "tilt": tilt,
     }  # fmt: skip
+    return simulate_setups(as_simulation_input(nc, whole, own, until), observer)
+
+
+def as_simulation_input(
+    nc: FilePath | Run | Iterable[FilePath | Run],
+    whole: Mapping[str, Any],
+    own: Mapping[str, Any],
+    until: str | int | None = None,
+) -> SimulationInput:
+    """What is simulated: arguments of ``simulate`` by their names, those of the whole and those of each set-up.
+
+    Raises
+    ------
+    InputError
+        If they contradict each other, or what a project would state is missing.
+    """
     programs = listed("nc", nc, Run)
     project = next((Path(each) for each in programs if not isinstance(each, Run) and is_project(Path(each))), None)
     if project is not None:
         if len(programs) > 1:
             what, cure = f"{project} is a project, and stands beside other programs", "give it alone"
             raise InputError(argument_problem("nc", what, cure, code="SIM111"))
-        given = [name for name, value in (whole | own).items() if not _is_left_out(value)]
-        return simulate_setups(_overruled(read_project(project, given), whole, own, until), observer)
+        given = [name for name, value in {**whole, **own}.items() if not _is_left_out(value)]
+        return _overruled(read_project(project, given), whole, own, until)
     for name in ("machine", "stock"):
-        if (whole | own)[name] is None:
+        if {**whole, **own}.get(name) is None:
             raise InputError(
                 argument_problem(name, "is missing", "give it, or a project file that states it", code="SIM110")
             )
     setup = SetupInput(programs=programs, until=until, **own)
-    return simulate_setups(SimulationInput(setups=[setup], **whole), observer)
+    return SimulationInput(setups=[setup], **whole)
 
 
 def _overruled(
-    project: SimulationInput, whole: dict[str, Any], own: dict[str, Any], until: str | int | None
+    project: SimulationInput, whole: Mapping[str, Any], own: Mapping[str, Any], until: str | int | None
 ) -> SimulationInput:
     """A project with what was given in its place."""
     stated = {name: value for name, value in own.items() if not _is_left_out(value)}

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Final
+from typing import Final, TypeAlias
 
 import numpy as np
 
@@ -25,8 +25,9 @@ from trunnion.jit import compile_ahead
 from trunnion.machines.forward import tool_axis_rows
 from trunnion.model.run import Run
 from trunnion.simulation.collisions import Body, Collision, check_collisions, fixture_body, machine_bodies, part_body
+from trunnion.simulation.cutting.shares import JoinedShares, Share
 from trunnion.simulation.meshes import DEVIATION, TriangleMesh
-from trunnion.simulation.simulator import Job, Setup, Simulation
+from trunnion.simulation.simulator import Job, Setup, Simulation, cut_share
 from trunnion.simulation.stock.solids import StockShape, check_narrow_tools, default_cell, stock_shape
 from trunnion.simulation.stock.turning import Pose, turned_stock
 from trunnion.simulation.tool_deltas import as_the_tool_goes
@@ -44,19 +45,58 @@ _COARSEST: Final = 0.5
 _FACETS: Final = 0.25
 
 
-def simulate_setups(given: SimulationInput, observer: Observer) -> SimulationResult:
-    """Read everything, then cut the stock in one set-up after another.
+def simulate_setups(given: SimulationInput, observer: Observer, shares: JoinedShares | None = None) -> SimulationResult:
+    """Read everything, then cut the stock in one set-up after another; ``shares`` are those of ``cut_setup_share``.
 
     Raises
     ------
     InputError
         When a file or an argument cannot be used, or nothing says the form of a tool.
+    DamagedShareError
+        If the shares cannot be used.
     """
     with told_with_places(given.places):
-        return _simulate_setups(given, observer)
+        if shares is not None:
+            _check_sharing(given)
+        steps, shape, setups, remarks = _prepared(given, observer, shares)
+        results: list[SimulationResult] = []
+        for own, told in zip(setups, remarks, strict=True):
+            result = steps.follow(own, shape, told)
+            results.append(result)
+            if given.stop_at == "first" and result.findings:
+                break
+        return join_results(results)
 
 
-def _simulate_setups(given: SimulationInput, observer: Observer) -> SimulationResult:
+def cut_setup_share(given: SimulationInput, share: Share, observer: Observer) -> bytes:
+    """Read everything, and cut some tiles of the stock: the bytes that ``shares.JoinedShares`` takes.
+
+    Raises
+    ------
+    InputError
+        As ``simulate_setups``; and if there are several set-ups, or it is to end at the first finding.
+    """
+    with told_with_places(given.places):
+        _check_sharing(given)
+        steps, shape, (own,), (told,) = _prepared(given, observer)
+        return steps.share(own, shape, share, told)
+
+
+def _check_sharing(given: SimulationInput) -> None:
+    """Refuse to divide what is not known from single tiles."""
+    if len(given.setups) > 1:
+        what = f"divides the stock of one set-up, and here are {len(given.setups)}, each with what the last one leaves"
+        raise InputError(argument_problem("tiles", what, "leave it out", code="SIM116"))
+    if given.stop_at == "first":
+        what = "has no meaning where the simulation ends at the first finding, which no single tile knows"
+        raise InputError(argument_problem("tiles", what, "leave out one of them", code="SIM116"))
+
+
+_Prepared: TypeAlias = tuple["_Steps", StockShape, Sequence[PreparedSetup], Sequence[list[Problem]]]
+
+
+def _prepared(given: SimulationInput, observer: Observer, shares: JoinedShares | None = None) -> _Prepared:
+    """What cuts, the stock, the set-ups as they were read, and what is remarked of each."""
     design = simulation.DESIGN_KERNELS if any(each.part is not None for each in given.setups) else ()
     # The second process begins with the largest, the last one; what is saved at the end is left to it.
     called = (*readers.KERNELS, tool_axis_rows, axis_motion_rows, *design, *simulation.KERNELS)
@@ -86,14 +126,8 @@ def _simulate_setups(given: SimulationInput, observer: Observer) -> SimulationRe
             argument_problem("accuracy", what, f"give {_COARSEST * cell:g} mm at most, or a wider cell", code="SIM121")
         )
     simulation.check_cell(shape, cell)
-    steps = _Steps(cell, given.accuracy or _TOLERANCE * cell, given, threads, observer)
-    results: list[SimulationResult] = []
-    for own, told in zip(setups, remarks, strict=True):
-        result = steps.follow(own, shape, told)
-        results.append(result)
-        if given.stop_at == "first" and result.findings:
-            break
-    return join_results(results)
+    steps = _Steps(cell, given.accuracy or _TOLERANCE * cell, given, threads, observer, shares)
+    return steps, shape, setups, remarks
 
 
 def _deviation(given: SimulationInput) -> float:
@@ -107,10 +141,16 @@ class _Steps:
     """Cuts stock in set-ups, each time what the last one has left."""
 
     def __init__(
-        self, cell: float, tolerance: float, given: SimulationInput, threads: int | None, observer: Observer
+        self,
+        cell: float,
+        tolerance: float,
+        given: SimulationInput,
+        threads: int | None,
+        observer: Observer,
+        shares: JoinedShares | None,
     ) -> None:
         self._cell, self._tolerance, self._given = cell, tolerance, given
-        self._threads, self._observer = threads, observer
+        self._threads, self._observer, self._shares = threads, observer, shares
         self._part: TriangleMesh | None = None
         #: How far turns may have moved the surface of the stock, mm.
         self._slack = 0.0
@@ -132,22 +172,29 @@ class _Steps:
                     Problem("stock", 0, what, "turn it by quarters to lose nothing", Severity.WARNING, code="SIM134")
                 )
         self._part = own.part or self._part
-        part = self._part
-        design = None if part is None else StockShape(part.bounds[0], part.bounds[1], mesh=part)
-        setup = Setup(shape, design, self._cell, self._tolerance, self._given.near or 0.0)
-        result = self._simulated(own, setup, part, remarks)
+        result = self._simulated(own, self._setup(shape, self._part), self._part, remarks)
         self._left = result.simulation
         return result
+
+    def share(self, own: PreparedSetup, shape: StockShape, share: Share, remarks: list[Problem]) -> bytes:
+        """Cut some tiles of the stock in the only set-up."""
+        self._observer.problems(remarks)
+        jobs, setup = _jobs(own), self._setup(shape, own.part)
+        with self._observer.progress("cutting", sum(job.end for job in jobs), "blocks") as tell:
+            return cut_share(setup, jobs, share, threads=self._threads, progress=_told_once(tell))
+
+    def _setup(self, shape: StockShape, part: TriangleMesh | None) -> Setup:
+        design = None if part is None else StockShape(part.bounds[0], part.bounds[1], mesh=part)
+        return Setup(shape, design, self._cell, self._tolerance, self._given.near or 0.0)
 
     def _simulated(
         self, own: PreparedSetup, setup: Setup, part: TriangleMesh | None, remarks: list[Problem]
     ) -> SimulationResult:
         given, name, turn = self._given, own.given.name, own.turn
-        clamped = [as_the_tool_goes(run)[0] for run in own.runs]
-        runs = clamped if turn is None else [run_of_drawn_part(run, turn) for run in clamped]
+        clamped, jobs = _clamped(own), _jobs(own)
+        runs = [job.run for job in jobs]
         remarks += simulation_remarks(setup, runs, own.tools)
         remarks += [problem for run in own.runs for problem in as_the_tool_goes(run)[1]]
-        jobs = [_job(run, own.tools, own.given.until if run is runs[-1] else None) for run in runs]
         remarks += [Problem(job.run.files[0], 0, job.broken_off, code="SIM142") for job in jobs if job.broken_off]
         self._observer.problems(of_setup(remarks, name))
         told = len(remarks)
@@ -176,7 +223,7 @@ class _Steps:
         touched = touching(jobs, pairs.append)
         if given.stop_at == "first":
             jobs = _up_to_first_hit(jobs, touched)
-        found = _cut(setup, jobs, given.stop_at == "first", self._threads, self._observer)
+        found = _cut(setup, jobs, given.stop_at == "first", self._threads, self._shares, self._observer)
         remarks += part_remarks(setup, found.lacking, self._slack, is_later=self._left is not None)
         if found.leaks:
             what = f"{found.leaks} of {found.stock.lattice.ray_count} rays pass a hole in it, and were left empty"
@@ -194,18 +241,32 @@ class _Steps:
         )  # fmt: skip
 
 
-def _cut(setup: Setup, jobs: Sequence[Job], to_first: bool, threads: int | None, observer: Observer) -> Simulation:
+def _cut(
+    setup: Setup,
+    jobs: Sequence[Job],
+    to_first: bool,
+    threads: int | None,
+    shares: JoinedShares | None,
+    observer: Observer,
+) -> Simulation:
     """Cut the stock, with progress."""
-    done = 0
     with observer.progress("cutting", sum(job.end for job in jobs), "blocks") as tell:
+        return simulation.simulate(
+            setup, jobs, stop_at_first=to_first, threads=threads, shares=shares, progress=_told_once(tell)
+        )
 
-        def progress(rows: int, _: int) -> None:
-            nonlocal done
-            if rows > done:
-                tell(rows - done)
-                done = rows
 
-        return simulation.simulate(setup, jobs, stop_at_first=to_first, threads=threads, progress=progress)
+def _told_once(tell: Callable[[int], None]) -> Callable[[int, int], None]:
+    """What tells of rows that are done, each of them once."""
+    done = 0
+
+    def progress(rows: int, _: int) -> None:
+        nonlocal done
+        if rows > done:
+            tell(rows - done)
+            done = rows
+
+    return progress
 
 
 def _up_to_first_hit(jobs: Sequence[Job], touched: Sequence[Sequence[Collision]]) -> list[Job]:
@@ -263,6 +324,18 @@ def _lengths_known(job: Job) -> bool:
     used = [job.run.tools[int(index)] for index in job.run.state.tool.distinct()]
     known = job.run.machine.tool_length is not None
     return all(known or job.tools[name].length for name in used if name in job.tools)
+
+
+def _clamped(own: PreparedSetup) -> list[Run]:
+    """The runs of a set-up on its machine, where the part is as it is clamped."""
+    return [as_the_tool_goes(run)[0] for run in own.runs]
+
+
+def _jobs(own: PreparedSetup) -> list[Job]:
+    """The programs of a set-up as far as they are simulated, about the part as it is drawn."""
+    turn, clamped = own.turn, _clamped(own)
+    runs = clamped if turn is None else [run_of_drawn_part(run, turn) for run in clamped]
+    return [_job(run, own.tools, own.given.until if run is runs[-1] else None) for run in runs]
 
 
 def _job(run: Run, shapes: dict[str, ToolShape], until: str | int | None) -> Job:

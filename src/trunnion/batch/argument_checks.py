@@ -4,9 +4,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
+from trunnion.api.arguments import check_whole
 from trunnion.api.converting import check_conversion_settings
 from trunnion.api.job import prepare
 from trunnion.batch.patterns import pattern_fault
+from trunnion.batch.task import Action
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.machines import Machine
 from trunnion.simulation.stock.solids import check_cell, is_mesh, stock_shape
@@ -14,6 +16,26 @@ from trunnion.simulation.tools.text import parse_tool
 
 #: Diameters for tools that state none, which CL files may state, mm: a tool is wrong if it is with each.
 _DIAMETERS: Final = (None, 10.0, 1000.0)
+
+
+#: Tasks among which one simulation may be divided.
+MOST_TILES: Final = 1000
+
+
+def check_tiles(action: Action, tiles: object) -> int:
+    """Judge the number of tasks among which each file of a folder is divided.
+
+    Raises
+    ------
+    InputError
+        If there is no such number, or the action is not divided.
+    """
+    count = check_whole("tiles", tiles, 1)
+    if count > MOST_TILES:
+        raise InputError(argument_problem("tiles", f"is {count}", f"give at most {MOST_TILES}", code="ARG140"))
+    if count > 1 and action is not Action.SIMULATE:
+        raise InputError(argument_problem("tiles", "is for simulations", "leave it out", code="ARG130"))
+    return count
 
 
 def beside_fault(name: str) -> str:

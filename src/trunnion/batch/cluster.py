@@ -17,9 +17,10 @@ from pathlib import Path
 from typing import Any, Final
 
 from trunnion.api.observer import SILENT, Observer
+from trunnion.batch.dividing import keep_share
 from trunnion.batch.keys import digest
 from trunnion.batch.records import Record, settle
-from trunnion.batch.stores import Store, open_store
+from trunnion.batch.stores import Kept, Store, open_store
 from trunnion.batch.task import OtherVersionError, Outcome, Status, Task
 from trunnion.batch.workers import Assignment, died
 from trunnion.errors import InputError, Problem, Severity
@@ -121,7 +122,7 @@ class DaskWorkers:
         finally:
             _LOG.disabled = self._was_disabled
 
-    def run(self, tasks: Iterable[tuple[Assignment, Task]]) -> Iterator[tuple[Assignment, Outcome | Record]]:
+    def run(self, tasks: Iterable[tuple[Assignment, Task] | None]) -> Iterator[tuple[Assignment, Outcome | Record]]:
         """Outcomes as they come, each with its assignment; a bounded number of tasks is with the scheduler.
 
         Raises
@@ -130,13 +131,11 @@ class DaskWorkers:
             If the scheduler is gone for too long, or its workers cannot do the work.
         """
         coming, asked = iter(tasks), dict[str, _Asked]()
-        is_more = True
         looked = self._alone_since = time.monotonic()
         while True:
-            while is_more and len(asked) < self._window():
+            while len(asked) < self._window():
                 each = next(coming, None)
                 if each is None:
-                    is_more = False
                     break
                 asked[each[0].record.place] = _Asked(*each, self._submit(*each))
             if not asked:
@@ -200,7 +199,8 @@ class DaskWorkers:
         place = assignment.record.place
         names = sorted(task.shared)
         shared = [self._blob(_content(task.shared[name])) for name in names]
-        bare = replace(task, shared={})
+        shares = task.shares if self._writing else tuple(map(_bytes_of, task.shares))
+        bare = replace(task, shared={}, shares=shares)
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", "Sending large graph", UserWarning)
             future = self._client.submit(
@@ -314,12 +314,20 @@ def _content(content: bytes | Path) -> bytes:
     return content if isinstance(content, bytes) else content.read_bytes()
 
 
+def _bytes_of(share: bytes | Kept) -> bytes:
+    return share if isinstance(share, bytes) else share.read()
+
+
 def _work(
     function: Callable[[Task], Outcome], task: Task, names: list[str], shared: list[bytes], record: Record, writing: str
 ) -> Outcome | Record:
     """Do the work at a worker."""
     outcome = function(replace(task, shared=dict(zip(names, shared, strict=True))))
-    return settle(_store(writing), record, outcome) if writing else outcome
+    if not writing:
+        return outcome
+    if task.share is not None:
+        return keep_share(_store(writing), record.place, outcome)
+    return settle(_store(writing), record, outcome)
 
 
 @cache

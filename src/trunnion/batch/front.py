@@ -38,6 +38,7 @@ def run_batch(
     stock: FilePath | None = None,
     tools: Sequence[str] = (),
     report: Literal["html", "json"] | None = None,
+    tiles: int | None = None,
     workers: int | None = None,
     timeout: float | None = None,
     scheduler: str | None = None,
@@ -51,7 +52,7 @@ def run_batch(
     Parameters
     ----------
     jobs
-        A file of jobs (``.toml``; docs/batch.md), which states all but ``results`` and what follows ``report``; or a
+        A file of jobs (``.toml``; docs/batch.md), which states all but ``results`` and what follows ``tiles``; or a
         folder, of which every file is taken that the action is for.
     results
         Folder of the results, or an address of fsspec such as ``s3://bucket/folder``; by default what the file of jobs
@@ -73,6 +74,8 @@ def run_batch(
         As ``trunnion.simulate`` takes them.
     report
         Form of the report of each file; None: there is none.
+    tiles
+        Tasks among which a simulation of a folder's program is divided, by tiles of its stock; by default it is one.
     workers
         Processes of this computer; by default as many as there are processors.
     timeout
@@ -86,7 +89,7 @@ def run_batch(
     summary
         File of a table of all files, ``.sqlite`` or ``.parquet``.
     observer
-        Receives the progress, in files.
+        Receives the progress, in files; in tasks where some files are divided.
 
     Returns
     -------
@@ -115,7 +118,7 @@ def run_batch(
     path = check_path("jobs", jobs)
     given: dict[str, Any] = {
         "action": action, "machine": machine, "files": files, "settings": settings, "to_machine": to_machine,
-        "to_cl": to_cl, "cl": cl, "stock": stock, "tools": tools, "report": report,
+        "to_cl": to_cl, "cl": cl, "stock": stock, "tools": tools, "report": report, "tiles": tiles,
     }  # fmt: skip
     if summary is not None:
         check_summary(summary)

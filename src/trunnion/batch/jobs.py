@@ -16,7 +16,7 @@ from trunnion.api.input_files import machine_files
 from trunnion.api.job import prepare
 from trunnion.api.project_paths import is_file
 from trunnion.api.reading import as_machine
-from trunnion.batch.argument_checks import beside_fault, check_simulation, check_to_cl
+from trunnion.batch.argument_checks import beside_fault, check_simulation, check_tiles, check_to_cl
 from trunnion.batch.keys import home_of
 from trunnion.batch.left_out import left_out
 from trunnion.batch.patterns import matches
@@ -51,6 +51,7 @@ class Job:
     output     folder of the results, within those of the batch; empty: these themselves
     extension  of a result
     report     of what form: ``html``, ``json``, or empty
+    tiles      tasks among which the tiles of a simulation are divided; 1: it is one task
     """
 
     name: str
@@ -62,6 +63,12 @@ class Job:
     output: str = ""
     extension: str = ""
     report: str = ""
+    tiles: int = 1
+
+    @property
+    def tasks(self) -> int:
+        """Tasks of each file: its shares, and what joins them."""
+        return self.tiles + 1 if self.tiles > 1 else 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,7 +158,7 @@ def folder_batch(
             if fault := beside_fault(name):
                 cure = 'write a name such as "{folder}/{stem}.cls"'
                 raise InputError(argument_problem(argument, f'"{name[:100]}" {fault}', cure, code="ARG140"))
-    report = str(given.pop("report", ""))
+    report, tiles = str(given.pop("report", "")), check_tiles(action, given.pop("tiles", 1))
     said, shared, extensions = judged(action, given, folder)
     sought = (extensions.read,) if extensions.read else CL_EXTENSIONS
     files = [
@@ -164,7 +171,7 @@ def folder_batch(
         what += next((f"; {why}" for why in reasons if why), "")
         cure = "name them by a pattern of files, such as '**/*.nc'"
         raise InputError(Problem(str(folder), 0, what, cure, code="BAT120"))
-    job = Job(str(action), action, files, said, shared, beside, "", extensions.written, report)
+    job = Job(str(action), action, files, said, shared, beside, "", extensions.written, report, tiles)
     return Batch(folder, [job], home=home_of(folder))
 
 

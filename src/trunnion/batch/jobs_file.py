@@ -11,7 +11,7 @@ from typing import Any, Final, TypeAlias
 
 from trunnion.api.project_paths import ProjectPaths
 from trunnion.api.settings import as_texts
-from trunnion.batch.argument_checks import beside_fault
+from trunnion.batch.argument_checks import MOST_TILES, beside_fault
 from trunnion.batch.jobs import Batch, Job, folder_files, judged
 from trunnion.batch.keys import home_of
 from trunnion.batch.left_out import left_out
@@ -151,6 +151,7 @@ _OPTIONS: Final[Mapping[str, _Option]] = {
     "accuracy_mm": _Option("accuracy", _SIMULATE, _number),
     "near_mm": _Option("near", _SIMULATE, _number),
     "stop_at": _Option("stop_at", _SIMULATE, _text("none", "first")),
+    "tiles": _Option("tiles", _SIMULATE, lambda _, table, key: table.integer(key, 1, at_least=1, at_most=MOST_TILES)),
 }
 
 
@@ -224,7 +225,10 @@ def _judged(
     if table.problems:
         return []
     beside = {key: values.pop(key) for key in ("cl", "subprograms") if values.get(key)}
-    report = values.pop("report", "")
+    report, tiles = values.pop("report", ""), values.pop("tiles", 1)
+    if tiles > 1 and values.get("stop_at") == "first":
+        what = 'has no meaning with stop_at = "first": no single task knows the first finding'
+        table.add_problem("tiles", what, "leave out one of them", code="SIM116")
     for key in ("turn_deg", "tilt_deg") if action is Action.VERIFY and "cl" not in beside else ():
         if values.get(key):
             what, cure = "turns CL files before they are compared, and the job has none", "name them with cl"
@@ -242,7 +246,7 @@ def _judged(
             else:
                 table.problems.append(each)
         return []
-    return [Job(name, action, inputs, said, shared, beside, output, extensions.written, report)]
+    return [Job(name, action, inputs, said, shared, beside, output, extensions.written, report, tiles)]
 
 
 def _action(table: Table, default: Action) -> Action:

@@ -92,7 +92,7 @@ class LocalWorkers:
         self._workers.clear()
         self._folder.cleanup()
 
-    def run(self, tasks: Iterable[tuple[Assignment, Task]]) -> Iterator[tuple[Assignment, Outcome]]:
+    def run(self, tasks: Iterable[tuple[Assignment, Task] | None]) -> Iterator[tuple[Assignment, Outcome]]:
         """Outcomes as they come, each with its assignment; no more tasks are taken than workers are free.
 
         Raises
@@ -201,8 +201,8 @@ class LocalWorkers:
                 )
 
 
-def _next(coming: Iterator[tuple[Assignment, Task]]) -> "deque[_Given]":
-    """The next task, if there is one."""
+def _next(coming: Iterator[tuple[Assignment, Task] | None]) -> "deque[_Given]":
+    """The next task, if there is one now."""
     each = next(coming, None)
     return deque() if each is None else deque([_Given(*each)])
 

@@ -10,6 +10,7 @@ from typing import Any
 
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.project_paths import is_file
+from trunnion.batch.dividing import Divisions
 from trunnion.batch.jobs import Batch, Job, Unit
 from trunnion.batch.keys import digest, key_of, program_version
 from trunnion.batch.local import LocalWorkers
@@ -97,28 +98,48 @@ def run_jobs(
     units = units_of(batch.jobs)
     check_store(store)
     remove_stale(batch, units, store, observer)
-    found, new = _Tally(units), list[int]()
-    with observer.progress("batch", len(units), "files") as advance:
-        pending = _Pending(batch, store, units, found, advance)
-        with workers(len(units)) as team:
+    steps = [batch.jobs[unit.job].tasks for unit in units]
+    is_divided, new = sum(steps) > len(units), list[int]()
+    with observer.progress("batch", sum(steps), "tasks" if is_divided else "files") as advance:
+        found, divisions = _Tally(steps, advance), Divisions(store)
+        pending = _Pending(batch, store, units, found, divisions)
+        with workers(sum(steps)) as team:
             for assignment, outcome in team.run(pending.tasks()):
+                if assignment.is_share:
+                    assert isinstance(outcome, Outcome)  # a share has no record
+                    found.step(assignment.number)
+                    told = divisions.take(assignment, outcome)
+                    if told is None:
+                        continue
+                    assignment, outcome = told
                 record = outcome if isinstance(outcome, Record) else settle(store, assignment.record, outcome)
+                divisions.end(record)
                 found.add(assignment.number, record)
                 new += [assignment.number] if record.status is Status.PASSED else []
-                advance(1)
     names = [job.name for job in batch.jobs]
     failed, warned = sorted(found.failed), found.warnings.found()
     return BatchResult(units, store, dict(found.counts), pending.done, failed, names, sorted(new), warned)
 
 
 class _Tally:
-    """What became of files: counts, the numbers of those that did not pass, and what is warned of."""
+    """What became of files: counts, the numbers of those that did not pass, what is warned of; and the progress.
 
-    def __init__(self, units: Sequence[Unit]) -> None:
+    ``steps`` are the tasks of each file.
+    """
+
+    def __init__(self, steps: Sequence[int], advance: Callable[[int], None]) -> None:
         self.counts = Counter[Status]()
         self.failed: list[int] = []
         self.warnings = WarningTally()
-        self._units = units
+        self._left = list(steps)
+        self._advance = advance
+
+    def step(self, number: int, count: int = 1) -> None:
+        """Tell that shares of a file are done; of one that has failed already nothing is told."""
+        count = min(count, self._left[number])
+        self._left[number] -= count
+        if count:
+            self._advance(count)
 
     def add(self, number: int, record: Record) -> None:
         """Count a file."""
@@ -126,6 +147,7 @@ class _Tally:
         self.warnings.add(number, record)
         if record.status is not Status.PASSED:
             self.failed.append(number)
+        self.step(number, self._left[number])
 
 
 class _Pending:
@@ -134,34 +156,51 @@ class _Pending:
     done  how many were found done so far
     """
 
-    def __init__(
-        self, batch: Batch, store: Store, units: Sequence[Unit], found: _Tally, advance: Callable[[int], None]
-    ) -> None:
+    def __init__(self, batch: Batch, store: Store, units: Sequence[Unit], found: _Tally, divisions: Divisions) -> None:
         self.done = 0
-        self._batch, self._store, self._units, self._found, self._advance = batch, store, units, found, advance
+        self._batch, self._store, self._units, self._found, self._divisions = batch, store, units, found, divisions
         self._shared = [{name: path.read_bytes() for name, path in job.shared.items()} for job in batch.jobs]
         self._digests = [{name: digest(data) for name, data in each.items()} for each in self._shared]
 
-    def tasks(self) -> Iterator[tuple[Assignment, Task]]:
-        """Yield tasks; files that cannot be read are failures at once."""
+    def tasks(self) -> Iterator[tuple[Assignment, Task] | None]:
+        """Yield tasks, and None where one must be waited for; files that cannot be read are failures at once."""
+        if self._batch.is_whole:
+            self._divisions.remove_others([self._record(unit) for unit in self._units], self._batch.home)
+        for each in self._of_files():
+            yield from self._divisions.complete()  # what is joined needs its shares no more
+            yield each
+        while self._divisions.is_waiting:
+            yield next(self._divisions.complete(), None)
+
+    def _record(self, unit: Unit) -> Record:
+        job = self._batch.jobs[unit.job]
+        return Record(unit.place, unit.file, job.name, str(job.action), "", Status.BROKEN, home=self._batch.home)
+
+    def _of_files(self) -> Iterator[tuple[Assignment, Task]]:
+        """Yield the tasks of all files."""
         records = read_records(self._store, [unit.place for unit in self._units])
         for number, (unit, before) in enumerate(zip(self._units, records, strict=True)):
-            job = self._batch.jobs[unit.job]
-            record = Record(unit.place, unit.file, job.name, str(job.action), "", Status.BROKEN, home=self._batch.home)
+            job, record = self._batch.jobs[unit.job], self._record(unit)
             try:
                 task = task_of(self._batch.folder, job, unit, self._shared[unit.job])
             except InputError as error:
                 self._found.add(number, commit(self._store, record, Outcome(Status.UNUSABLE, error.problems)))
-                self._advance(1)
                 continue
-            key = _key(task, self._digests[unit.job])
+            digests = {**self._digests[unit.job], **{name: digest(data) for name, data in task.files.items()}}
+            key = _key(task, digests)
             if before is not None and before.is_done(key, self._store):
                 self._take_over(before, record)
                 self.done += 1
+                self._divisions.end(before)  # the last run may have ended before it did
                 self._found.add(number, before)
-                self._advance(1)
                 continue
-            yield Assignment(number, replace(record, key=key)), task
+            assignment = Assignment(number, replace(record, key=key))
+            if job.tiles > 1:
+                there, shares = self._divisions.divide(assignment, task, job.tiles, digests)
+                self._found.step(number, there)
+                yield from shares
+            else:
+                yield assignment, task
 
     def _take_over(self, before: Record, record: Record) -> None:
         """A record that is done, with the name that its job has now."""
@@ -217,8 +256,7 @@ def _beside(pattern: str, file: str) -> str:
     return PurePosixPath(pattern.replace("{folder}", path.parent.as_posix()).replace("{stem}", path.stem)).as_posix()
 
 
-def _key(task: Task, shared: Mapping[str, str]) -> str:
-    digests = {**shared, **{name: digest(data) for name, data in task.files.items()}}
+def _key(task: Task, digests: Mapping[str, str]) -> str:
     said = [task.action, task.arguments, task.file, task.result, task.report]
     return key_of(task.program, {"said": said}, digests)
 

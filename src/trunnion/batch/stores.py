@@ -7,6 +7,7 @@ import errno
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any, Final, Protocol
 
@@ -24,11 +25,13 @@ class Store(Protocol):
     """Keeps files by name.
 
     label         what messages call it
+    address       by which any process of this computer opens it; empty: only this process does
     worker_url    by which workers write to it themselves; empty: they cannot
     is_exact      whether ``holds`` looks at the content
     """
 
     label: str
+    address: str
     worker_url: str
     is_exact: bool
 
@@ -54,6 +57,18 @@ class Store(Protocol):
         """The files in a folder and below, in order."""
 
 
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """A file in a store, for a process that opens the store itself."""
+
+    address: str
+    name: str
+
+    def read(self) -> bytes:
+        """Its content; empty if it is not there."""
+        return open_store(self.address).read(self.name) or b""
+
+
 class TakenError(InputError):
     """A name has no file, and cannot have one: something that is no file stands there, or in place of its folder."""
 
@@ -74,7 +89,7 @@ class FolderStore:
     is_exact = True
 
     def __init__(self, folder: Path) -> None:
-        self.label = str(folder)
+        self.label, self.address = str(folder), str(folder.absolute())
         self._folder = folder
 
     def read(self, name: str) -> bytes | None:
@@ -161,7 +176,7 @@ class UrlStore:
             raise InputError(Problem(url, 0, f"is no place for results: {error}", cure, code="BAT130")) from None
         protocol = self._files.protocol
         self._protocol = protocol if isinstance(protocol, str) else protocol[0]
-        self.worker_url = "" if self._protocol == "memory" else url
+        self.address = self.worker_url = "" if self._protocol == "memory" else url
         self.is_exact = self._protocol in ("file", "local", "memory")
         self._moves = self._protocol in ("file", "local", "sftp", "ssh", "ftp", "smb")
 

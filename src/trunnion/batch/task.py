@@ -13,11 +13,15 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any, Final
 
+from trunnion.batch.stores import Kept
 from trunnion.errors import Problem
 
 #: Where files of the jobs' folder lie, and those of a machine's definition that lies elsewhere.
 FILES: Final = "files/"
 DEFINITIONS: Final = "definitions/"
+
+#: The file of a share among those of its outcome.
+SHARE_FILE: Final = "share"
 
 #: Problems of one file that are kept.
 MOST_PROBLEMS: Final = 20
@@ -63,29 +67,6 @@ class Status(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Task:
-    """The work on one file.
-
-    program    version of Trunnion that must do it (``keys.program_version``)
-    arguments  of the function of the library, by their names; files by their logical names
-    file       logical name of the file
-    files      content of it and of what goes with it alone, by logical names
-    shared     the same of what many files have in common; a path where the worker sees it
-    result     name of the file that comes of it; empty: nothing does
-    report     name of its report; empty: there is none
-    """
-
-    program: str
-    action: Action
-    arguments: Mapping[str, Any]
-    file: str
-    files: Mapping[str, bytes]
-    shared: Mapping[str, bytes | Path]
-    result: str
-    report: str
-
-
-@dataclass(frozen=True, slots=True)
 class Costs:
     """What the work took; differs from run to run.
 
@@ -96,9 +77,42 @@ class Costs:
     processor_s: float = 0.0
     seconds: float = 0.0
 
+    def __add__(self, other: "Costs") -> "Costs":
+        """Both together."""
+        return Costs(self.processor_s + other.processor_s, self.seconds + other.seconds)
+
 
 #: Of work that was not done, or not to its end.
 NO_COSTS: Final = Costs()
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """The work on one file.
+
+    program    version of Trunnion that must do it (``keys.program_version``)
+    arguments  of the function of the library, by their names; files by their logical names
+    file       logical name of the file
+    files      content of it and of what goes with it alone, by logical names
+    shared     the same of what many files have in common; a path where the worker sees it
+    result     name of the file that comes of it; empty: nothing does
+    report     name of its report; empty: there is none
+    share      the number of a share, from 0, and of how many: only that is made, as the file ``SHARE_FILE``
+    shares     all of them: the result is made from these
+    spent      what they took
+    """
+
+    program: str
+    action: Action
+    arguments: Mapping[str, Any]
+    file: str
+    files: Mapping[str, bytes]
+    shared: Mapping[str, bytes | Path]
+    result: str
+    report: str
+    share: tuple[int, int] | None = None
+    shares: tuple[bytes | Kept, ...] = ()
+    spent: Costs = NO_COSTS
 
 
 @dataclass(frozen=True, slots=True)

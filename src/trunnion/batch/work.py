@@ -20,6 +20,7 @@ from trunnion.api.posting import post_beside
 from trunnion.api.reports import write_report
 from trunnion.api.simulating import simulate
 from trunnion.api.simulation_result import SimulationResult
+from trunnion.api.simulation_shares import join_shares, simulate_share
 from trunnion.api.verifying import verify
 from trunnion.batch.figures import block_count, point_count, simulation_figures, verification_figures
 from trunnion.batch.jobs import shipped_machine
@@ -28,6 +29,7 @@ from trunnion.batch.task import (
     DEFINITIONS,
     FILES,
     MOST_PROBLEMS,
+    SHARE_FILE,
     Action,
     Costs,
     OtherVersionError,
@@ -35,10 +37,11 @@ from trunnion.batch.task import (
     Status,
     Task,
 )
-from trunnion.batch.workers import hindered, hindrance, shown
+from trunnion.batch.workers import damaged, hindered, hindrance, shown
 from trunnion.errors import Problem, RefusedError, Severity, TrunnionError
 from trunnion.files import output_group
 from trunnion.machines import Machine
+from trunnion.simulation.cutting.shares import DamagedShareError, Share
 from trunnion.verification import Check, Verification
 
 #: Arguments that may name files.
@@ -77,7 +80,8 @@ def work(task: Task) -> Outcome:
         if (why := hindrance(error)) is None:
             raise
         found = Outcome(Status.HINDERED, (hindered(task.file, why),))
-    return replace(found, costs=Costs(time.process_time() - used, time.perf_counter() - started))
+    costs = Costs(time.process_time() - used, time.perf_counter() - started)
+    return replace(found, costs=costs + task.spent)
 
 
 def _work_in(folder: Path, task: Task) -> Outcome:
@@ -89,6 +93,8 @@ def _work_in(folder: Path, task: Task) -> Outcome:
     try:
         arguments = _with_paths(task.arguments, folder)
         status, own = _DOING[task.action](task, paths[task.file], arguments, result, figures, collector)
+    except DamagedShareError as error:
+        status, own = Status.HINDERED, [damaged(task.file, str(error))]
     except RefusedError as error:
         status, own = Status.FAILED, error.problems
         if isinstance(error, ProofFailedError) and error.result.verification is not None:
@@ -234,8 +240,15 @@ def _failure(file: str, check: Check) -> Problem:
 def _simulate(
     task: Task, file: Path, arguments: dict[str, Any], result: Path, figures: dict[str, Any], observer: _Collector
 ) -> _Done:
-    machine = _machine(arguments.pop("machine"))
-    found = simulate(file, machine=machine, **arguments, threads=1, observer=observer)
+    given = {**arguments, "machine": _machine(arguments["machine"]), "threads": 1}
+    if task.share is not None:
+        (result / SHARE_FILE).write_bytes(simulate_share(file, Share(*task.share), given, observer))
+        return Status.PASSED, ()
+    if task.shares:
+        shares = [each if isinstance(each, bytes) else each.read() for each in task.shares]
+        found = join_shares(file, shares, given, observer)
+    else:
+        found = simulate(file, **given, observer=observer)
     figures |= simulation_figures(found)
     if task.report:
         replace(found, seconds=0.0).write_report(result / task.report)

@@ -13,17 +13,24 @@ from trunnion.wording import format_duration
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """A file that is to be worked on: its number among all, and the record that it will have."""
+    """A file that is to be worked on: its number among all, and the record that it will have.
+
+    is_share  only a share of it is made, which is kept under the place of the record
+    """
 
     number: int
     record: Record
+    is_share: bool = False
 
 
 class Workers(Protocol):
     """What works on tasks, as ``LocalWorkers`` and ``DaskWorkers`` do."""
 
-    def run(self, tasks: Iterable[tuple[Assignment, Task]]) -> Iterator[tuple[Assignment, Outcome | Record]]:
-        """Outcomes as they come, or records where the worker has written the results itself."""
+    def run(self, tasks: Iterable[tuple[Assignment, Task] | None]) -> Iterator[tuple[Assignment, Outcome | Record]]:
+        """Outcomes as they come, or records where the worker has written the results itself.
+
+        Where ``tasks`` yields None, there is none before one that is asked for has come.
+        """
 
 
 def shown(name: str) -> str:
@@ -35,6 +42,15 @@ def died(file: str, why: str) -> Problem:
     """The problem of a file whose worker has died."""
     cure = "run the batch again with fewer workers, or this file alone"
     return Problem(shown(file), 0, why, cure, code="BAT310")
+
+
+#: The code of shares that cannot be used.
+DAMAGED: Final = "BAT395"
+
+
+def damaged(file: str, why: str) -> Problem:
+    """The problem of a file whose shares cannot be put together."""
+    return Problem(shown(file), 0, f"what its tasks have left is damaged: {why}", "run the batch again", code=DAMAGED)
 
 
 #: Errors of the system that say nothing about a file: no space, no memory, no rights, a disk that fails.

@@ -57,6 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
             stock=arguments.stock,
             tools=arguments.tools,
             report=arguments.report,
+            tiles=arguments.tiles,
             workers=arguments.workers,
             timeout=arguments.timeout,
             scheduler=arguments.scheduler,

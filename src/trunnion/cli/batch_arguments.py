@@ -57,4 +57,5 @@ def add_batch(parser: argparse.ArgumentParser) -> None:
     folder.add_argument(
         "--tool", action="append", default=[], metavar="N=KIND:SIZES", dest="tools", help="simulate: a tool"
     )
+    folder.add_argument("--tiles", metavar="N", help="simulate: tasks among which each simulation is divided; one")
     folder.add_argument("--report", choices=("html", "json"), help="a report of each file")

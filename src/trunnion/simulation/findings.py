@@ -16,7 +16,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.simulation.cutting.removal import RowsCut
+from trunnion.simulation.cutting.measurements import RowsCut
 from trunnion.simulation.stock.deviation import Gouges
 from trunnion.simulation.tools.profile import Role, ToolShape
 

@@ -6,7 +6,7 @@ Units:  mm, seconds, workpiece frame.
 """
 
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -14,7 +14,9 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
-from trunnion.simulation.cutting.removal import RowsCut, cut
+from trunnion.simulation.cutting.measurements import Chunk, RowsCut, rows_cut
+from trunnion.simulation.cutting.removal import cut, measure
+from trunnion.simulation.cutting.shares import JoinedShares, Share, ShareWriter, tiles_of
 from trunnion.simulation.findings import Finding, air_cuts, gouge_findings, idle_rows, row_findings, spindle_turns
 from trunnion.simulation.near_stock import near_findings, pieces_with_near
 from trunnion.simulation.stock.deviation import Excess, Gouges, lacking_at_start, left_on, missing_from
@@ -113,6 +115,7 @@ def simulate(
     *,
     stop_at_first: bool = False,
     threads: int | None = None,
+    shares: JoinedShares | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Simulation:
     """Cut stock with programs, one after another.
@@ -127,10 +130,17 @@ def simulate(
         End after the row of the first finding.
     threads
         As for ``removal.cut``.
+    shares
+        What ``cut_share`` has made of each share of the same simulation: nothing is cut but what they cannot know.
     progress
         Is called with rows done and rows in all.
+
+    Raises
+    ------
+    DamagedShareError
+        If the shares cannot be used.
     """
-    found = _simulate(setup, jobs, threads, progress)
+    found = _simulate(setup, jobs, threads, progress, shares=shares)
     if stop_at_first:
         first = min(((one.job, finding.rows[0]) for one in found.operations for finding in one.findings), default=None)
         if first is not None:
@@ -140,12 +150,55 @@ def simulate(
     return found
 
 
+def cut_share(
+    setup: Setup,
+    jobs: Sequence[Job],
+    share: Share,
+    *,
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> bytes:
+    """Cut some tiles of the stock with all programs; what is needed of it to put the simulation together.
+
+    Parameters are those of ``simulate``.
+    """
+    stock = make_stock(setup.stock, setup.cell, lambda lattice: tiles_of(share, lattice))
+    tiles = tiles_of(share, stock.lattice)
+    design = None if setup.part is None else setup.part.bundles(stock.lattice, tiles)
+    writer = ShareWriter(tiles)
+    total, done = sum(job.end for job in jobs), 0
+    for number, job in enumerate(jobs):
+        for chunk in _measured(setup, jobs, number, stock, design, threads, _shifted(progress, done, total)):
+            writer.add(number, chunk)
+        done += job.end
+    return writer.finish(stock)
+
+
+def _measured(
+    setup: Setup,
+    jobs: Sequence[Job],
+    number: int,
+    stock: Stock,
+    design: tuple[Spans, Spans, Spans] | None,
+    threads: int | None,
+    progress: Callable[[int, int], None] | None,
+) -> Iterator[Chunk]:
+    """Cut stock with one of the programs."""
+    job = jobs[number]
+    pieces, _ = tool_pieces(job, setup, setup.near)
+    return measure(
+        stock, job.run, pieces, setup.tolerance, idle=idle_rows(job.run, spindle_turns(job.run)), design=design,
+        offset=_offset(jobs, number), end=job.end, threads=threads, progress=progress,
+    )  # fmt: skip
+
+
 def _simulate(
     setup: Setup,
     jobs: Sequence[Job],
     threads: int | None,
     progress: Callable[[int, int], None] | None,
     stopped: tuple[int, int] | None = None,
+    shares: JoinedShares | None = None,
 ) -> Simulation:
     begin = time.perf_counter()
     stock = make_stock(setup.stock, setup.cell)
@@ -153,17 +206,22 @@ def _simulate(
     design: tuple[Spans, Spans, Spans] | None = None
     lacking, leaks = None, 0
     if setup.part is not None:
-        part, lattice = setup.part, stock.lattice
-        design = part.spans(lattice, 0), part.spans(lattice, 1), part.spans(lattice, 2)
+        design = setup.part.bundles(stock.lattice)
         leaks = sum(spans.leaks for spans in design)
         lacking = lacking_at_start(stock, design, setup.limit)
     start_volume, operations = stock.volume, list[OperationCut]()
     total, done, error = sum(job.end for job in jobs), 0, 0.0
     for number, job in enumerate(jobs):
         pieces, off = tool_pieces(job, setup, setup.near)
-        error = max(error, off)
-        operations += _cut_job(setup, jobs, number, pieces, stock, design, threads, _shifted(progress, done, total))
+        error, tell = max(error, off), _shifted(progress, done, total)
+        if shares is None:
+            chunks = _measured(setup, jobs, number, stock, design, threads, tell)
+        else:
+            chunks = shares.chunks(number, job.run, pieces, job.end, stock.lattice, tell)
+        operations += _operations(setup, job, number, rows_cut(chunks, pieces))
         done += job.end
+    if shares is not None:
+        shares.finish(stock)
     left = gouge = None
     if design is not None:
         left = left_on(stock, design, setup.limit)
@@ -245,24 +303,9 @@ def tool_pieces(job: Job, setup: Setup, near: float = 0.0) -> tuple[dict[int, Re
     return found, error
 
 
-def _cut_job(
-    setup: Setup,
-    jobs: Sequence[Job],
-    number: int,
-    pieces: Mapping[int, RevolvedPieces],
-    stock: Stock,
-    design: tuple[Spans, Spans, Spans] | None,
-    threads: int | None,
-    progress: Callable[[int, int], None] | None,
-) -> Iterator[OperationCut]:
+def _operations(setup: Setup, job: Job, number: int, chunks: Iterable[RowsCut]) -> Iterator[OperationCut]:
     """Yield the operations of a program when each of them has ended."""
-    job, current = jobs[number], None
-    run = job.run
-    turning = spindle_turns(run)
-    chunks = cut(
-        stock, run, pieces, setup.tolerance, idle=idle_rows(run, turning), design=design, offset=_offset(jobs, number),
-        end=job.end, threads=threads, progress=progress,
-    )  # fmt: skip
+    run, turning, current = job.run, spindle_turns(job.run), None
     for rows in chunks:
         name = run.tools[rows.tool]
         if current is None or current.tool != name or current.end != rows.first:

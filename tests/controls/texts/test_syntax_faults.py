@@ -6,10 +6,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.controls.texts.test_language import printing
+from trunnion.controls.template import Budget, Printing
 from trunnion.controls.texts.template import text_template
 from trunnion.controls.texts.values import Fault
+from trunnion.controls.words import NumberFormat
 from trunnion.errors import InputError
+
+PRINTING = Printing(
+    {"coordinate": NumberFormat(3), "angle": NumberFormat(2)}, {"home_z"}, 1.0, set(), {"tools": ()}, Budget()
+)
 
 #: Words of Jinja and Python that nobody must see.
 RAW = re.compile(
@@ -87,7 +92,7 @@ def test_values_that_do_not_fit_are_told_without_words_of_python(text: str, what
     template, fault = text_template("program_end", text, "ours.toml", 7)
     assert fault is None
     with pytest.raises(InputError) as caught:
-        template.expand({"title": "T", "date": None, "home_z": 5.0}, printing())
+        template.expand({"title": "T", "date": None, "home_z": 5.0}, PRINTING)
     (problem,) = caught.value.problems
     assert what in problem.what
     assert not RAW.search(problem.what + problem.cure)

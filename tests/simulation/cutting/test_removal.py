@@ -124,9 +124,8 @@ def test_the_part_that_is_done_is_told_tile_by_tile() -> None:
     stock, told = block((-40.0, -40.0, -10.0), (40.0, 40.0, 0.0), 0.5), list[float]()
     pieces, _ = revolved_pieces(ball(6.0, **BODY), 0.01)
     with ThreadPoolExecutor(2) as executor:
-        Cutter(stock, None, 0.05).cut(
-            path([(-50.0, 0.0, -2.0), (50.0, 0.0, -2.0)]), pieces, executor, advance=told.append
-        )
+        sweeps = path([(-50.0, 0.0, -2.0), (50.0, 0.0, -2.0)])
+        assert list(Cutter(stock, None, 0.05).measure(sweeps, pieces, executor, advance=told.append))
     assert told == sorted(told)
     assert len(told) > 4
     assert told[0] < 0.5

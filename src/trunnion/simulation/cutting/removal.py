@@ -14,7 +14,6 @@ the three greatest thicknesses.
 import os
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -22,39 +21,14 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
 from trunnion.simulation.cutting.cut_kernel import CutterTable, Sweeps, bin_sweeps, cut_tile
-from trunnion.simulation.cutting.stretch_kernel import GOUGED, MET, MET_IDLE, REMOVED, Rays
+from trunnion.simulation.cutting.measurements import Chunk, RowsCut, TileMeasured, column_count, rows_cut, tile_measured
+from trunnion.simulation.cutting.stretch_kernel import Rays
 from trunnion.simulation.cutting.sweeps import RowSweeps, SweepSizes, row_sweeps, tool_ranges
 from trunnion.simulation.cutting.tool_table import element_table, piece_list
 from trunnion.simulation.stock.lattice import BUNDLE_AXES
 from trunnion.simulation.stock.material import Stock, Tile
 from trunnion.simulation.stock.spans import Spans, no_spans
 from trunnion.simulation.tools.pieces import RevolvedPieces
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Depths:
-    """How deep something went in each of k rows, mm, and where: (k,) and (k, 3); NaN places where it did not."""
-
-    depth: Floats
-    place: Floats
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class RowsCut:
-    """What consecutive rows from ``first`` on did, with the tool of index ``tool``.
-
-    removed  (k,) mm³ of stock
-    gouged   (k,) mm³ of the design
-    idle     how deep the cutter went into the stock in rapids, and with the spindle standing
-    met      for each section of the tool that does not cut, how deep it went into the stock
-    """
-
-    first: int
-    tool: int
-    removed: Floats
-    gouged: Floats
-    idle: Depths
-    met: Mapping[int, Depths]
 
 
 def cut(
@@ -97,13 +71,43 @@ def cut(
     progress
         Is called with rows done and rows in all.
     """
+    return rows_cut(
+        measure(
+            stock, run, tools, tolerance, idle=idle, design=design, offset=offset, start=start, end=end,
+            threads=threads, progress=progress,
+        ),
+        tools,
+    )  # fmt: skip
+
+
+def measure(
+    stock: Stock,
+    run: Run,
+    tools: Mapping[int, RevolvedPieces],
+    tolerance: float,
+    *,
+    idle: Flags | None = None,
+    design: tuple[Spans, Spans, Spans] | None = None,
+    offset: int = 0,
+    start: int = 0,
+    end: int | None = None,
+    threads: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Iterator[Chunk]:
+    """Cut as ``cut`` does, and yield what the tiles measure: each chunk is cut while its tiles are taken.
+
+    The stock may have some tiles only: no tile looks at another one.
+    """
     end = len(run) if end is None else end
     cutter = Cutter(stock, design, tolerance)
     with ThreadPoolExecutor(threads or os.cpu_count() or 1) as executor:
         for first, last, tool in tool_ranges(run, end, start):
             if tool in tools:
                 sweeps = row_sweeps(run, first, last, cutter.sizes(tools[tool]))
-                yield cutter.cut(sweeps, tools[tool], executor, idle, offset, _part_of(progress, first, last, end))
+                tiles = cutter.measure(
+                    sweeps, tools[tool], executor, idle, offset, _part_of(progress, first, last, end)
+                )
+                yield Chunk(first, last, tool, tiles)
             if progress:
                 progress(last, end)
 
@@ -141,7 +145,7 @@ class Cutter:
         size = float(np.linalg.norm(lattice.high - lattice.low))
         return SweepSizes(max(reach, radius, 0.5 * whole), radius, self._tolerance, 2.0 * size + whole)
 
-    def cut(
+    def measure(
         self,
         sweeps: RowSweeps,
         pieces: RevolvedPieces,
@@ -149,14 +153,15 @@ class Cutter:
         idle: Flags | None = None,
         offset: int = 0,
         advance: Callable[[float], None] | None = None,
-    ) -> RowsCut:
-        """Cut with the sweeps of some rows; ``advance`` is called with the part that is done, others as for ``cut``."""
+    ) -> Iterator[TileMeasured]:
+        """Cut with the sweeps of some rows, and yield what each tile that is reached has measured, in their order.
+
+        ``advance`` is called with the part that is done, others are as for ``cut``.
+        """
         at_rest = np.zeros(len(sweeps.row), np.bool_) if idle is None else idle[sweeps.row]
         low, high = float(pieces.bounds[:, 0].min()), float(pieces.bounds[:, 1].max())
         boxes = _boxes(sweeps, low, high, float(pieces.bounds[:, 2].max()))
-        columns = MET + int(pieces.section.max()) + 1
-        total = _Totals(sweeps, columns)
-        table = element_table(pieces)
+        columns, table = column_count(pieces), element_table(pieces)
         tool = CutterTable(piece_list(pieces, table), table, pieces.cuts, pieces.section)
         tasks: list[_Task] = []
         for bundle in range(3):
@@ -165,27 +170,27 @@ class Cutter:
             which = [k for k, tile in enumerate(self._stock.tiles) if tile.bundle == bundle]
             lists = _lists(
                 boxes[:, [2 * axes[0], 2 * axes[0] + 1, 2 * axes[1], 2 * axes[1] + 1, 2 * axes[2], 2 * axes[2] + 1]],
-                np.array([self._boxes[k] for k in which]),
+                np.array([self._boxes[k] for k in which]).reshape(-1, 6),
             )
             tasks += [_Task(k, own, wanted) for k, wanted in zip(which, lists, strict=True) if len(wanted)]
         # Longest first: no processor waits at the end for one that has begun a long task last.
         longest = sorted(tasks, key=lambda task: -len(task.wanted))
-        running = {task.tile: executor.submit(self._cut_tile, task, tool, columns) for task in longest}
+        running = {
+            task.tile: executor.submit(self._cut_tile, task, sweeps.row[task.wanted], tool, columns) for task in longest
+        }
         done, whole = 0, sum(len(task.wanted) for task in tasks)
         try:
             for task in tasks:
-                total.add(
-                    self._stock.tiles[task.tile].bundle, sweeps.row[task.wanted], *running.pop(task.tile).result()
-                )
+                yield running.pop(task.tile).result()
                 done += len(task.wanted)
                 if advance:
                     advance(done / whole)
         finally:
             for future in running.values():
                 future.cancel()
-        return total.result(pieces)
 
-    def _cut_tile(self, task: _Task, tool: CutterTable, columns: int) -> tuple[Floats, Floats]:
+    def _cut_tile(self, task: _Task, rows: Ints, tool: CutterTable, columns: int) -> TileMeasured:
+        """Cut a tile; ``rows`` are those of the run to which its sweeps belong."""
         k, sweeps, wanted = task
         tile = self._stock.tiles[k]
         measured, places = np.zeros((len(wanted), columns)), np.zeros((len(wanted), columns, 3))
@@ -199,7 +204,7 @@ class Cutter:
                 break
             tile.widen()
         self._boxes[k] = tile.box
-        return measured, places
+        return tile_measured(k, tile.bundle, rows, measured, places)
 
 
 def _rays(stock: Stock, tile: Tile, design: tuple[Spans, Spans, Spans] | None) -> Rays:
@@ -233,56 +238,3 @@ def _lists(boxes: Floats, tiles: Floats) -> list[Ints]:
     flat = np.empty(first[-1], np.int64)
     bin_sweeps(boxes, tiles, first, flat)
     return [flat[first[k] : first[k + 1]] for k in range(len(tiles))]
-
-
-class _Totals:
-    """What tiles have measured, put together by rows."""
-
-    def __init__(self, sweeps: RowSweeps, columns: int) -> None:
-        count = sweeps.end - sweeps.first
-        self._first, self._tool = sweeps.first, sweeps.tool
-        self._sums = np.zeros((count, columns))
-        self._greatest = np.zeros((3, count, columns))
-        self._places = np.full((3, count, columns, 3), np.nan)
-
-    def add(self, bundle: int, row: Ints, measured: Floats, places: Floats) -> None:
-        """Add the sweeps of a tile."""
-        at = row - self._first
-        np.add.at(self._sums, at, measured)
-        for column in np.flatnonzero(measured.any(axis=0)).tolist():
-            if column in (REMOVED, GOUGED):
-                continue
-            order = np.lexsort((measured[:, column], at))
-            last = order[np.concatenate((at[order][1:] != at[order][:-1], [True]))]
-            rows = at[last]
-            better = measured[last, column] > self._greatest[bundle, rows, column]
-            rows, last = rows[better], last[better]
-            self._greatest[bundle, rows, column] = measured[last, column]
-            self._places[bundle, rows, column] = _from_bundle(bundle, places[last, column])
-
-    def result(self, pieces: RevolvedPieces) -> RowsCut:
-        """What the rows did."""
-        sections = sorted(set(pieces.section[~pieces.cuts].tolist()))
-        return RowsCut(
-            self._first,
-            self._tool,
-            self._sums[:, REMOVED] / 3.0,
-            self._sums[:, GOUGED] / 3.0,
-            self._depths(MET_IDLE),
-            {section: self._depths(MET + section) for section in sections},
-        )
-
-    def _depths(self, column: int) -> Depths:
-        """The smallest of what the bundles have seen."""
-        lengths = np.where(self._greatest[:, :, column] > 0.0, self._greatest[:, :, column], np.inf)
-        bundle = lengths.argmin(axis=0)
-        rows = np.arange(lengths.shape[1])
-        depth = lengths[bundle, rows]
-        return Depths(np.where(np.isfinite(depth), depth, 0.0), self._places[bundle, rows, column])
-
-
-def _from_bundle(bundle: int, places: Floats) -> Floats:
-    """Coordinates of a bundle as those of the workpiece frame."""
-    found = np.empty_like(places)
-    found[:, list(BUNDLE_AXES[bundle])] = places
-    return found

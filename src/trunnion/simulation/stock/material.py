@@ -7,7 +7,7 @@ Memory: 4 bytes for each ray, and 15 for each of its ends of stretches, of which
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Final
 
@@ -49,6 +49,18 @@ class Tile:
     rows: Lines
     normals: NDArray[np.int8]
 
+    def fill(self, count: Ints | Lines, ends: Floats, rows: Ints | Lines, normals: NDArray[np.int8]) -> None:
+        """Make these stretches its material: ``count`` (r,) of each ray, and of all ends one after another (m,) where
+        they are, (m,) rows and (m, 3) normals.
+        """
+        room = max(_STRETCHES, int(count.max(initial=0)))
+        used = np.repeat(np.arange(room) < count[:, None], 2, axis=1)
+        self.count = count.astype(np.int32)
+        self.ends = np.zeros(used.shape)
+        self.rows = np.full(used.shape, UNCUT, np.int32)
+        self.normals = np.zeros((*used.shape, 3), np.int8)
+        self.ends[used], self.rows[used], self.normals[used] = ends, rows, normals
+
     def widen(self) -> None:
         """Make room for twice the stretches."""
         self.ends = np.concatenate((self.ends, np.zeros_like(self.ends)), axis=1)
@@ -77,15 +89,17 @@ class Tile:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stock:
-    """Material: a lattice, and the tiles of its three bundles."""
+    """Material: a lattice, and the tiles of its three bundles; or some of these, in their order."""
 
     lattice: Lattice
     tiles: tuple[Tile, ...]
 
     @staticmethod
-    def of_spans(lattice: Lattice, spans: tuple[Spans, Spans, Spans]) -> "Stock":
-        """Stock that is given by the spans of each bundle."""
-        return Stock(lattice, tuple(tile for bundle in range(3) for tile in _tiles(lattice, bundle, spans[bundle])))
+    def of_spans(lattice: Lattice, spans: tuple[Spans, Spans, Spans], only: Iterable[int] | None = None) -> "Stock":
+        """Stock that is given by the spans of each bundle; ``only``: the tiles of these numbers, which ascend."""
+        corners = tile_corners(lattice)
+        wanted = range(len(corners)) if only is None else only
+        return Stock(lattice, tuple(_tile(lattice, *corners[number], spans) for number in wanted))
 
     def bundle(self, bundle: int) -> Iterator[Tile]:
         """The tiles of one bundle."""
@@ -133,23 +147,39 @@ class Stock:
         return sum(self.cell_area(tile.bundle) * tile.volume_per_area() for tile in self.tiles) / 3.0
 
 
-def _tiles(lattice: Lattice, bundle: int, spans: Spans) -> Iterator[Tile]:
-    u, v = lattice.ray_positions(bundle)
-    for first_u in range(0, len(u), TILE_RAYS):
-        for first_v in range(0, len(v), TILE_RAYS):
-            own_u, own_v = u[first_u : first_u + TILE_RAYS], v[first_v : first_v + TILE_RAYS]
-            columns = first_v + np.arange(len(own_v))
-            rays = ((first_u + np.arange(len(own_u)))[:, None] * len(v) + columns).ravel()
-            yield _tile(bundle, first_u, first_v, own_u, own_v, spans.at(rays))
+def tile_corners(lattice: Lattice) -> list[tuple[int, int, int]]:
+    """All tiles of a lattice in their order: the bundle of each, and its first ray along u and v."""
+    corners = []
+    for bundle in range(3):
+        u, v = lattice.rays(bundle)
+        corners += [(bundle, at_u, at_v) for at_u in range(0, u, TILE_RAYS) for at_v in range(0, v, TILE_RAYS)]
+    return corners
 
 
-def _tile(bundle: int, first_u: int, first_v: int, u: Floats, v: Floats, spans: Spans) -> Tile:
-    count = np.diff(spans.first).astype(np.int32)
-    room = max(_STRETCHES, int(count.max(initial=0)))
-    ends = np.zeros((len(count), 2 * room))
-    normals = np.zeros((len(count), 2 * room, 3), np.int8)
-    used = np.repeat(np.arange(room) < count[:, None], 2, axis=1)
-    ends[used] = spans.ends
-    normals[used] = spans.normals
-    rows = np.full(ends.shape, UNCUT, np.int32)
-    return Tile(bundle, first_u, first_v, u, v, count, ends, rows, normals)
+def rays_of_tiles(lattice: Lattice, bundle: int, numbers: Iterable[int]) -> Ints:
+    """The rays of a bundle that some tiles have, ascending."""
+    corners = tile_corners(lattice)
+    rays = [_rays(lattice, *corners[number]) for number in numbers if corners[number][0] == bundle]
+    return np.sort(np.concatenate([*rays, np.zeros(0, np.int64)]))
+
+
+def _rays(lattice: Lattice, bundle: int, first_u: int, first_v: int) -> Ints:
+    """The rays of a tile."""
+    rows, columns = lattice.rays(bundle)
+    u, v = (np.arange(first, min(first + TILE_RAYS, end)) for first, end in ((first_u, rows), (first_v, columns)))
+    return np.asarray((u[:, None] * columns + v).ravel(), np.int64)
+
+
+def _tile(lattice: Lattice, bundle: int, first_u: int, first_v: int, whole: tuple[Spans, Spans, Spans]) -> Tile:
+    u, v = (
+        along[first : first + TILE_RAYS]
+        for along, first in zip(lattice.ray_positions(bundle), (first_u, first_v), strict=True)
+    )
+    spans = whole[bundle].at(_rays(lattice, bundle, first_u, first_v))
+    tile = Tile(bundle, first_u, first_v, u, v, *_no_room())
+    tile.fill(np.diff(spans.first), spans.ends, np.full(len(spans.ends), UNCUT), spans.normals)
+    return tile
+
+
+def _no_room() -> tuple[Lines, Floats, Lines, NDArray[np.int8]]:
+    return np.zeros(0, np.int32), np.zeros((0, 0)), np.zeros((0, 0), np.int32), np.zeros((0, 0, 3), np.int8)

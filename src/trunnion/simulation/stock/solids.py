@@ -8,7 +8,7 @@ Units:  mm, workpiece frame. A box is given by its sizes and its lowest corner, 
 
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
@@ -19,7 +19,7 @@ from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.simulation.meshes import DEVIATION, TriangleMesh, load_mesh
 from trunnion.simulation.stock.lattice import Lattice
-from trunnion.simulation.stock.material import Stock
+from trunnion.simulation.stock.material import Stock, rays_of_tiles
 from trunnion.simulation.stock.spans import Spans, box_spans, cylinder_spans, mesh_spans
 
 #: Bytes that rays may take at first; slots may multiply it by three.
@@ -55,6 +55,15 @@ class StockShape:
     def of_kept(lattice: Lattice, spans: tuple[Spans, Spans, Spans]) -> "StockShape":
         """What an earlier set-up has left."""
         return StockShape(lattice.low, lattice.high, kept=(lattice, spans))
+
+    def bundles(self, lattice: Lattice, tiles: Collection[int] | None = None) -> tuple[Spans, Spans, Spans]:
+        """Its stretches along all rays; or along those of some tiles only, so that others take no memory."""
+
+        def own(bundle: int) -> Spans:
+            spans = self.spans(lattice, bundle)
+            return spans if tiles is None else spans.only(rays_of_tiles(lattice, bundle, tiles))
+
+        return own(0), own(1), own(2)
 
     def spans(self, lattice: Lattice, bundle: int) -> Spans:
         """Its stretches along the rays of a bundle."""
@@ -148,11 +157,15 @@ def check_cell(shape: StockShape, cell: float) -> None:
         )
 
 
-def make_stock(shape: StockShape, cell: float) -> Stock:
-    """Return the material of a solid in cells of at most ``cell`` mm, or in those that it has already."""
+def make_stock(shape: StockShape, cell: float, only: Callable[[Lattice], Collection[int]] | None = None) -> Stock:
+    """Return the material of a solid in cells of at most ``cell`` mm, or in those that it has already.
+
+    ``only`` says which tiles of the lattice are wanted, by their numbers.
+    """
     if shape.kept is not None:
-        return Stock.of_spans(*shape.kept)
+        lattice, spans = shape.kept
+        return Stock.of_spans(lattice, spans, None if only is None else only(lattice))
     check_cell(shape, cell)
     lattice = Lattice.of_box(shape.low, shape.high, cell)
-    spans = shape.spans(lattice, 0), shape.spans(lattice, 1), shape.spans(lattice, 2)
-    return Stock.of_spans(lattice, spans)
+    tiles = None if only is None else only(lattice)
+    return Stock.of_spans(lattice, shape.bundles(lattice, tiles), tiles)

@@ -49,6 +49,13 @@ class Spans:
         both = np.column_stack((2 * source, 2 * source + 1)).ravel()
         return Spans(first, self.ends[both], self.normals[both], self.rows[both])
 
+    def only(self, rays: Ints) -> "Spans":
+        """The same rays, all of them empty but some, which ascend."""
+        sizes = np.zeros(len(self.first) - 1, np.int64)
+        sizes[rays] = np.diff(self.first)[rays]
+        kept = self.at(rays)
+        return Spans(np.concatenate(([0], np.cumsum(sizes))), kept.ends, kept.normals, kept.rows, self.leaks)
+
 
 def no_spans(rays: int) -> Spans:
     """Rays without any."""
