@@ -13,6 +13,7 @@ import signal
 import time
 from pathlib import Path
 
+from trunnion.batch.sealing import BrokenSealError, unsealed_all
 from trunnion.batch.task import SHARE_FILE, Outcome, Status, Task
 from trunnion.batch.workers import damaged
 from trunnion.errors import Problem
@@ -42,9 +43,11 @@ def simple_work(task: Task) -> Outcome:
     if task.share is not None:
         return Outcome(Status.PASSED, files={SHARE_FILE: f"{task.share} of {text}".encode()})
     if task.shares:
-        shares = [each if isinstance(each, bytes) else each.read() for each in task.shares]
-        if shares != [f"({k}, {len(shares)}) of {text}".encode() for k in range(len(shares))]:
-            return Outcome(Status.HINDERED, (damaged(task.file, "odd"),))
+        try:
+            shares = unsealed_all(task.shares, task.seals)
+        except BrokenSealError as error:
+            return Outcome(Status.HINDERED, (damaged(task.file, str(error)),))
+        assert shares == [f"({k}, {len(shares)}) of {text}".encode() for k in range(len(shares))]
     files = {task.result: f"of {text}".encode()}
     if word == "several":
         files |= {"SUB1": b"one", "SUB2": b"two"}

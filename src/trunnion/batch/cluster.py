@@ -326,7 +326,7 @@ def _work(
     if not writing:
         return outcome
     if task.share is not None:
-        return keep_share(_store(writing), record.place, outcome)
+        return keep_share(_store(writing), record.place, outcome, *task.seals)
     return settle(_store(writing), record, outcome)
 
 

@@ -1,20 +1,23 @@
 """Files whose work is divided: shares that are kept until all of them are there, and a task that joins them.
 
-A share is a task of its own, with a key of all that it is made from in the name under which it is kept; a file that is
-there is one that is done, as files appear whole. So a worker that dies, or a batch that is stopped, loses the shares in
+A share is a task of its own, with a key of all that it is made from in the name under which it is kept, and in its seal:
+a share that is there, with its seal unbroken, is one that is done. So a worker that dies, or a batch that is stopped, loses the shares in
 work, and no others. Once the joined result is written, its shares are removed.
 """
 
 from collections import deque
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
+from trunnion.api.observer import Observer
 from trunnion.batch.keys import digest, key_of
 from trunnion.batch.records import FOLDER, Record
-from trunnion.batch.stores import Kept, Store
+from trunnion.batch.sealing import BrokenSealError, Seal, sealed, unsealed
+from trunnion.batch.stores import Kept, Store, TakenError
 from trunnion.batch.task import NO_COSTS, SHARE_FILE, Costs, Outcome, Status, Task
-from trunnion.batch.workers import DAMAGED, Assignment
+from trunnion.batch.workers import DAMAGED, Assignment, damaged
+from trunnion.errors import InputError, Problem, Severity
 
 #: The folder of shares within that of records.
 SHARES: Final = f"{FOLDER}/shares"
@@ -24,7 +27,7 @@ SHARES: Final = f"{FOLDER}/shares"
 class _Division:
     """A file that is divided.
 
-    names    of its shares in the store
+    seals    of its shares, by their names in the store
     missing  those that are not there yet
     failed   whether one of them came to nothing: then so does the file
     costs    of the shares that this run has made
@@ -32,7 +35,7 @@ class _Division:
 
     assignment: Assignment
     task: Task
-    names: Sequence[str]
+    seals: Mapping[str, Seal]
     missing: set[str]
     failed: bool = False
     costs: Costs = field(default=NO_COSTS)
@@ -41,11 +44,12 @@ class _Division:
 class Divisions:
     """The files of a batch that are divided, from their first share to their result."""
 
-    def __init__(self, store: Store) -> None:
-        self._store = store
+    def __init__(self, store: Store, observer: Observer) -> None:
+        self._store, self._observer = store, observer
         self._kept = set(store.names(SHARES))
         self._asked: dict[str, _Division] = {}
         self._complete: deque[_Division] = deque()
+        self._joining: dict[str, _Division] = {}
 
     @property
     def is_waiting(self) -> bool:
@@ -55,24 +59,48 @@ class Divisions:
     def divide(
         self, assignment: Assignment, task: Task, count: int, digests: Mapping[str, str]
     ) -> tuple[int, Iterator[tuple[Assignment, Task]]]:
-        """How many shares of a file are there, and the tasks of the others; ``digests`` are of all that it reads."""
+        """How many shares of a file are there, and the tasks of the others; ``digests`` are of all that it reads.
+
+        Raises
+        ------
+        InputError
+            If something that is no file stands in the place of a share.
+        """
         record = assignment.record
         keys = [key_of(task.program, _said(task, number, count), digests) for number in range(count)]
-        names = [f"{_start(record)}{key[:32]}.zip" for key in keys]
-        self._remove(record, names)
-        division = _Division(assignment, task, names, set(names) - self._kept)
+        start = share_start(record.home, record.place)
+        seals = {f"{start}{key[:32]}.share": Seal(key, k, count, record.file) for k, key in enumerate(keys)}
+        self._remove(record, seals)
+        missing = {name for name, seal in seals.items() if not self._is_there(name, seal)}
+        division = _Division(assignment, task, seals, missing)
         if not division.missing:
             self._complete.append(division)
-        return count - len(division.missing), self._shares(division, keys)
+        return count - len(missing), self._shares(division)
 
-    def _shares(self, division: _Division, keys: Sequence[str]) -> Iterator[tuple[Assignment, Task]]:
+    def _is_there(self, name: str, seal: Seal) -> bool:
+        """Whether a share is done; one that is damaged is told."""
+        try:
+            content = self._store.read(name)
+            if content is not None:
+                unsealed(content, seal)
+        except TakenError:
+            what = f"one of its shares would be {name}, where something stands that is no file of this folder"
+            cure = "remove what stands there, or choose another folder for results"
+            raise InputError(Problem(seal.file, 0, what, cure, code="BAT320")) from None
+        except BrokenSealError as error:
+            problem = damaged(seal.file, str(error))
+            self._observer.problems([replace(problem, severity=Severity.WARNING, cure="it is made again")])
+            return False
+        return content is not None
+
+    def _shares(self, division: _Division) -> Iterator[tuple[Assignment, Task]]:
         """Yield the shares that are missing; none any more once one of them has come to nothing."""
         number, record, task = division.assignment.number, division.assignment.record, division.task
-        for k, (name, key) in enumerate(zip(division.names, keys, strict=True)):
+        for name, seal in division.seals.items():
             if name in division.missing and not division.failed:
                 self._asked[name] = division
-                share = replace(task, share=(k, len(keys)), report="")
-                yield Assignment(number, replace(record, place=name, key=key), is_share=True), share
+                share = replace(task, share=(seal.number, seal.of), report="", seals=(seal,))
+                yield Assignment(number, replace(record, place=name, key=seal.key), is_share=True), share
 
     def take(self, assignment: Assignment, outcome: Outcome) -> tuple[Assignment, Outcome] | None:
         """Keep a share; if there will be none, the file and what becomes of it, once."""
@@ -80,7 +108,7 @@ class Divisions:
         division = self._asked.pop(name)
         division.costs = division.costs + outcome.costs
         if outcome.status is Status.PASSED:
-            keep_share(self._store, name, outcome)
+            keep_share(self._store, name, outcome, division.seals[name])
             self._kept.add(name)
             division.missing.discard(name)
             if not division.missing and not division.failed:
@@ -93,43 +121,54 @@ class Divisions:
         """Yield what joins the shares of files that have all of them."""
         while self._complete:
             division = self._complete.popleft()
-            shares = tuple(self._content(name) for name in division.names)
-            yield division.assignment, replace(division.task, shares=shares, spent=division.costs)
+            self._joining[division.assignment.record.place] = division
+            shares = tuple(self._content(name) for name in division.seals)
+            seals = tuple(division.seals.values())
+            yield division.assignment, replace(division.task, shares=shares, seals=seals, spent=division.costs)
 
     def _content(self, name: str) -> bytes | Kept:
         kept = Kept(self._store.address, name)
         return kept if kept.address else self._store.read(name) or b""
 
     def end(self, record: Record) -> None:
-        """Remove the shares of a file that has its result, or whose shares are damaged."""
-        if record.status.is_final or any(problem.code == DAMAGED for problem in record.problems):
+        """Remove the shares of a file that has its result; or those that are damaged, if they were."""
+        division = self._joining.pop(record.place, None)
+        if record.status.is_final:
             self._remove(record)
+        elif division is not None and any(problem.code == DAMAGED for problem in record.problems):
+            sound = {name for name, seal in division.seals.items() if self._is_sound(name, seal)}
+            # Where each has its seal, and they do not go together all the same, nobody knows which one is wrong.
+            self._remove(record, sound if len(sound) < len(division.seals) else ())
 
-    def remove_others(self, records: Collection[Record], home: str) -> None:
-        """Remove the shares of all files of a batch but some."""
-        own = {_start(record) for record in records}
-        for name in sorted(self._kept):
-            if name.startswith(f"{SHARES}/{home}-") and not name.startswith(tuple(own)):
-                self._store.remove(name)
-                self._kept.discard(name)
+    def _is_sound(self, name: str, seal: Seal) -> bool:
+        """Whether a share can stay; what is no file does, which the next run tells."""
+        try:
+            unsealed(self._store.read(name), seal)
+        except BrokenSealError:
+            return False
+        except TakenError:
+            self._kept.discard(name)
+            return False
+        return True
 
     def _remove(self, record: Record, but: Collection[str] = ()) -> None:
+        start = share_start(record.home, record.place)
         for name in sorted(self._kept):
-            if name.startswith(_start(record)) and name not in but:
+            if name.startswith(start) and name not in but:
                 self._store.remove(name)
                 self._kept.discard(name)
 
 
-def keep_share(store: Store, name: str, outcome: Outcome) -> Outcome:
+def keep_share(store: Store, name: str, outcome: Outcome, seal: Seal) -> Outcome:
     """Write a share to its place, unless a worker has done so; the outcome without it."""
     if SHARE_FILE in outcome.files:
-        store.write(name, outcome.files[SHARE_FILE])
+        store.write(name, sealed(outcome.files[SHARE_FILE], seal))
     return replace(outcome, files={})
 
 
-def _start(record: Record) -> str:
+def share_start(home: str, place: str) -> str:
     """What the names of all shares of a file begin with."""
-    return f"{SHARES}/{record.home}-{digest(record.place.encode())[:16]}-"
+    return f"{SHARES}/{home}-{digest(place.encode())[:16]}-"
 
 
 def _said(task: Task, number: int, count: int) -> dict[str, object]:

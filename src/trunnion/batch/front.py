@@ -136,7 +136,7 @@ def run_batch(
 
 def _batch(path: Path, given: Mapping[str, Any], results: FilePath | None) -> Batch:
     """The jobs of a file, or those of a folder as arguments say."""
-    stated = {name: value for name, value in given.items() if value}
+    stated = {name: value for name, value in given.items() if value or (name == "tiles" and value is not None)}
     if not path.is_dir():
         if stated:
             what, cure = f"{path} is a file of jobs, which states it itself", "leave it out, or give a folder"

@@ -122,7 +122,14 @@ def read_records(store: Store, places: Sequence[str]) -> Iterator[Record | None]
 
 
 def settle(store: Store, record: Record, outcome: Outcome) -> Record:
-    """Keep an outcome, with its files under their names within the results."""
+    """Keep an outcome, with its files under their names within the results.
+
+    If it is none of the file, and another run has meanwhile done the same, what that one has done counts.
+    """
+    if not outcome.status.is_final:
+        there = parse_record(store.read(record_name(record.place)))
+        if there is not None and there.is_done(record.key, store):
+            return there
     return commit(store, record, replace(outcome, files=_named(record.place, outcome.files)))
 
 

@@ -24,7 +24,7 @@ from trunnion.batch.records import (
     record_name,
     settle,
 )
-from trunnion.batch.stale import remove_stale
+from trunnion.batch.stale import remove_stale, remove_stale_shares
 from trunnion.batch.stores import Store
 from trunnion.batch.task import FILES, Outcome, Status, Task
 from trunnion.batch.warned import Warned, WarningTally
@@ -44,7 +44,7 @@ class BatchResult:
     done    how many were done already
     failed  indices of the units that did not pass
     jobs    their names
-    new     indices of the units that passed in this run
+    new     indices of the units of which this run has written files
     warned  the warnings of all files by their codes, those of the most files first
     """
 
@@ -72,7 +72,7 @@ class BatchResult:
 
     def written(self) -> Iterator[Record]:
         """The same of those of which this run has written files."""
-        return (record for record in self._read([self.units[k] for k in self.new]) if record.outputs)
+        return self._read([self.units[k] for k in self.new])
 
     def _read(self, units: Sequence[Unit]) -> Iterator[Record]:
         for record in read_records(self.store, [unit.place for unit in units]):
@@ -98,10 +98,11 @@ def run_jobs(
     units = units_of(batch.jobs)
     check_store(store)
     remove_stale(batch, units, store, observer)
+    remove_stale_shares(batch, units, store, observer)
     steps = [batch.jobs[unit.job].tasks for unit in units]
     is_divided, new = sum(steps) > len(units), list[int]()
     with observer.progress("batch", sum(steps), "tasks" if is_divided else "files") as advance:
-        found, divisions = _Tally(steps, advance), Divisions(store)
+        found, divisions = _Tally(steps, advance), Divisions(store, observer)
         pending = _Pending(batch, store, units, found, divisions)
         with workers(sum(steps)) as team:
             for assignment, outcome in team.run(pending.tasks()):
@@ -115,7 +116,7 @@ def run_jobs(
                 record = outcome if isinstance(outcome, Record) else settle(store, assignment.record, outcome)
                 divisions.end(record)
                 found.add(assignment.number, record)
-                new += [assignment.number] if record.status is Status.PASSED else []
+                new += [assignment.number] if record.outputs else []
     names = [job.name for job in batch.jobs]
     failed, warned = sorted(found.failed), found.warnings.found()
     return BatchResult(units, store, dict(found.counts), pending.done, failed, names, sorted(new), warned)
@@ -164,8 +165,6 @@ class _Pending:
 
     def tasks(self) -> Iterator[tuple[Assignment, Task] | None]:
         """Yield tasks, and None where one must be waited for; files that cannot be read are failures at once."""
-        if self._batch.is_whole:
-            self._divisions.remove_others([self._record(unit) for unit in self._units], self._batch.home)
         for each in self._of_files():
             yield from self._divisions.complete()  # what is joined needs its shares no more
             yield each
@@ -196,7 +195,12 @@ class _Pending:
                 continue
             assignment = Assignment(number, replace(record, key=key))
             if job.tiles > 1:
-                there, shares = self._divisions.divide(assignment, task, job.tiles, digests)
+                try:
+                    there, shares = self._divisions.divide(assignment, task, job.tiles, digests)
+                except InputError as error:
+                    outcome = Outcome(Status.HINDERED, error.problems)
+                    self._found.add(number, commit(self._store, record, outcome))
+                    continue
                 self._found.step(number, there)
                 yield from shares
             else:

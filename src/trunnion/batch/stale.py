@@ -8,14 +8,19 @@ from collections.abc import Iterator, Sequence
 
 from trunnion.api.observer import Observer
 from trunnion.api.project_paths import is_file
+from trunnion.batch.dividing import SHARES, share_start
 from trunnion.batch.jobs import Batch, Unit
 from trunnion.batch.records import FOLDER, Record, known_of, parse_record, record_name
+from trunnion.batch.sealing import file_of
 from trunnion.batch.stores import Store, TakenError
 from trunnion.errors import Problem, Severity
 from trunnion.wording import counted
 
 #: Files that are told one by one.
 _MOST_TOLD = 100
+
+#: Other batches that are told.
+_MOST_HOMES = 5
 
 
 def remove_stale(batch: Batch, units: Sequence[Unit], store: Store, observer: Observer) -> None:
@@ -47,6 +52,32 @@ def remove_stale(batch: Batch, units: Sequence[Unit], store: Store, observer: Ob
         told.append(Problem(store.label, 0, what, "give each batch its own folder", Severity.WARNING, code="BAT370"))
     if told:
         observer.problems(told)
+
+
+def remove_stale_shares(batch: Batch, units: Sequence[Unit], store: Store, observer: Observer) -> None:
+    """Remove the shares of files of this batch that no unit owns now; those of other batches are told."""
+    owned = tuple({share_start(batch.home, unit.place) for unit in units})
+    others = set[str]()
+    for name in store.names(SHARES):
+        home, _, rest = name.removeprefix(f"{SHARES}/").partition("-")
+        if home != batch.home:
+            others.add(f"{home}-{rest.partition('-')[0]}")
+        elif not name.startswith(owned) and (batch.is_whole or _is_gone(batch, name, store)):
+            store.remove(name)
+    if others:
+        what = f"has shares of {counted(len(others), 'simulation')} of another batch, which stay"
+        homes = ", ".join(sorted({f"{SHARES}/{each.partition('-')[0]}-*" for each in others})[:_MOST_HOMES])
+        cure = f"give each batch its own folder; if that batch is gone, or has another name now, remove {homes}"
+        observer.problems([Problem(store.label, 0, what, cure, Severity.WARNING, code="BAT370")])
+
+
+def _is_gone(batch: Batch, name: str, store: Store) -> bool:
+    """Whether the file is gone that a share is of; so is that of one that does not say it."""
+    try:
+        file = file_of(store.read(name))
+    except TakenError:
+        return False
+    return file is None or not is_file(batch.folder / file)
 
 
 def _removed(record: Record, store: Store) -> Iterator[Problem]:

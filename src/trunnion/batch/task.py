@@ -13,6 +13,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any, Final
 
+from trunnion.batch.sealing import Seal
 from trunnion.batch.stores import Kept
 from trunnion.errors import Problem
 
@@ -98,7 +99,8 @@ class Task:
     result     name of the file that comes of it; empty: nothing does
     report     name of its report; empty: there is none
     share      the number of a share, from 0, and of how many: only that is made, as the file ``SHARE_FILE``
-    shares     all of them: the result is made from these
+    shares     all of them, sealed: the result is made from these
+    seals      of the share that is made, or of all of them
     spent      what they took
     """
 
@@ -112,6 +114,7 @@ class Task:
     report: str
     share: tuple[int, int] | None = None
     shares: tuple[bytes | Kept, ...] = ()
+    seals: tuple[Seal, ...] = ()
     spent: Costs = NO_COSTS
 
 

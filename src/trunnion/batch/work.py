@@ -25,6 +25,7 @@ from trunnion.api.verifying import verify
 from trunnion.batch.figures import block_count, point_count, simulation_figures, verification_figures
 from trunnion.batch.jobs import shipped_machine
 from trunnion.batch.keys import program_version
+from trunnion.batch.sealing import BrokenSealError, unsealed_all
 from trunnion.batch.task import (
     DEFINITIONS,
     FILES,
@@ -93,7 +94,7 @@ def _work_in(folder: Path, task: Task) -> Outcome:
     try:
         arguments = _with_paths(task.arguments, folder)
         status, own = _DOING[task.action](task, paths[task.file], arguments, result, figures, collector)
-    except DamagedShareError as error:
+    except (DamagedShareError, BrokenSealError) as error:
         status, own = Status.HINDERED, [damaged(task.file, str(error))]
     except RefusedError as error:
         status, own = Status.FAILED, error.problems
@@ -245,8 +246,7 @@ def _simulate(
         (result / SHARE_FILE).write_bytes(simulate_share(file, Share(*task.share), given, observer))
         return Status.PASSED, ()
     if task.shares:
-        shares = [each if isinstance(each, bytes) else each.read() for each in task.shares]
-        found = join_shares(file, shares, given, observer)
+        found = join_shares(file, unsealed_all(task.shares, task.seals), given, observer)
     else:
         found = simulate(file, **given, observer=observer)
     figures |= simulation_figures(found)

@@ -92,10 +92,10 @@ def result_lines(result: BatchResult) -> Iterator[str]:
     if len(result.failed) > _MOST:
         yield f"and {len(result.failed) - _MOST} more; --summary FILE.sqlite has all of them"
     yield from _warnings(result)
-    written = list(islice(result.written(), _MOST_WRITTEN))
+    written = list(islice((name for record in result.written() for name in record.outputs), _MOST_WRITTEN + 1))
     if written:
-        rest = " and others" if len(written) == _MOST_WRITTEN < len(result.new) else ""
-        yield f"written now: {', '.join(record.place for record in written)}{rest}"
+        rest = " and others" if len(written) > _MOST_WRITTEN else ""
+        yield f"written now: {', '.join(written[:_MOST_WRITTEN])}{rest}"
     parts = ", ".join(f"{result.counts[status]} {status}" for status in Status if result.counts.get(status))
     before = f"; {result.done} of them done before" if result.done else ""
     judged = "" if result.store.is_exact or not result.done else ", which are judged by their sizes"
