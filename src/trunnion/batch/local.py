@@ -20,6 +20,7 @@ from typing import Any, Final
 from trunnion.batch.task import Costs, Outcome, Status, Task
 from trunnion.batch.workers import Assignment, died, timed_out
 from trunnion.errors import InputError, Problem
+from trunnion.files.interrupts import children_without_interrupts
 
 #: How often a file is tried whose worker dies: the first time another one may have taken the memory.
 TRIES: Final = 2
@@ -121,7 +122,8 @@ class LocalWorkers:
     def _start(self) -> _Worker:
         ours, theirs = self._context.Pipe()
         process = self._context.Process(target=_serve, args=(theirs, self._function, self._folder.name), daemon=True)
-        process.start()
+        with children_without_interrupts():
+            process.start()
         theirs.close()
         return _Worker(process, ours)
 
@@ -216,7 +218,7 @@ def _end(worker: _Worker) -> None:
 def _serve(pipe: "Connection[Any, Any]", function: Callable[[Task], Outcome], folder: str) -> None:
     """Work on tasks until nobody gives any more, with temporary files in a folder that outlives the process."""
     tempfile.tempdir = folder
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C goes to all processes of a terminal: the first one decides
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # for a process that was not started so
     with suppress(EOFError, OSError):
         pipe.send(None)
         while True:

@@ -54,7 +54,7 @@ def unsealed(content: bytes | None, seal: Seal) -> bytes:
     """
     name = f"share {seal.number + 1} of {seal.of}"
     if not content:
-        raise BrokenSealError(f"{name} is gone")
+        raise BrokenSealError(f"{name} is gone, or empty")
     found, checksum, share = _read(content)
     if found is None:
         raise BrokenSealError(f"{name} is no share of a simulation")

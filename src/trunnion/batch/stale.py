@@ -91,6 +91,7 @@ def _removed(record: Record, store: Store) -> Iterator[Problem]:
             continue
         if there in checksums:
             store.remove(name)
+            store.remove_empty(name)
             yield Problem(
                 name, 0, f"is removed: {record.file} has no such result any more", "", Severity.WARNING, code="BAT360"
             )

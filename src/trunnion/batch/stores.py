@@ -5,6 +5,7 @@ A file appears whole or not at all. Names are relative, with ``/``.
 
 import errno
 import os
+import stat
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -16,6 +17,9 @@ from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
 from trunnion.files import atomic_file
+
+#: The cure where a disk is full.
+_SPACE: Final = "make space there, and run the batch again: it goes on where it was"
 
 #: Files that are asked for at once where that takes a journey each.
 _AT_ONCE: Final = 256
@@ -47,6 +51,9 @@ class Store(Protocol):
     def remove(self, name: str) -> None:
         """Remove a file, if it is there."""
 
+    def remove_empty(self, name: str) -> None:
+        """Remove the folders in which a file was and nothing is any more."""
+
     def digest(self, name: str) -> str | None:
         """SHA-256 of a file; None: there is none."""
 
@@ -73,6 +80,9 @@ class TakenError(InputError):
     """A name has no file, and cannot have one: something that is no file stands there, or in place of its folder."""
 
 
+#: What the system says where there is no more space.
+_FULL: Final = (errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC))
+
 #: What the system says where a folder is in place of a file, or a file in place of a folder; or of names too long.
 _TAKEN: Final = (errno.EEXIST, errno.ENOTDIR, errno.EISDIR, errno.ENAMETOOLONG)
 
@@ -80,6 +90,34 @@ _TAKEN: Final = (errno.EEXIST, errno.ENOTDIR, errno.EISDIR, errno.ENAMETOOLONG)
 def _taken(name: str, error: OSError) -> TakenError:
     what = f"its result would be {name[:200]}, which cannot be a file there: {error.strerror or error}"
     return TakenError(Problem(name, 0, what, "rename what stands there, or choose another folder", code="BAT320"))
+
+
+def _leads_out(name: str) -> TakenError:
+    what = f"its result would be {name}, which leads out of the folder of results by a link"
+    return TakenError(Problem(name, 0, what, "remove the link, or choose another folder", code="BAT320"))
+
+
+def _refuse_odd(path: Path, folder: Path, name: str) -> None:
+    """Refuse what is no regular file, as to open a pipe waits for ever, and what links lead to outside the folder."""
+    if path.is_symlink() and not is_within(path, folder):
+        raise _leads_out(name)
+    try:
+        mode = path.stat().st_mode
+    except OSError:  # it is not there, or to read it tells
+        return
+    if stat.S_ISDIR(mode):
+        raise _taken(name, IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR)))
+    if not stat.S_ISREG(mode):
+        raise _taken(name, OSError(errno.EEXIST, "something that is no file stands there"))
+    if not is_within(path, folder):
+        raise _leads_out(name)
+
+
+def _remove_empty(path: Path, folder: Path) -> None:
+    """Remove the folders above a path, up to the folder of results, as long as they are empty."""
+    with suppress(OSError):
+        for parent in path.relative_to(folder).parents[:-1]:
+            (folder / parent).rmdir()
 
 
 class FolderStore:
@@ -94,6 +132,7 @@ class FolderStore:
 
     def read(self, name: str) -> bytes | None:
         """A file; None: there is none."""
+        _refuse_odd(self._folder / name, self._folder, name)
         try:
             return (self._folder / name).read_bytes()
         except (FileNotFoundError, NotADirectoryError):
@@ -117,20 +156,25 @@ class FolderStore:
                 raise _taken(name, error) from None
             raise self._unusable(name, "cannot be written", error) from None
         if not is_within(path.parent, self._folder):
-            what = f"its result would be {name}, which leads out of the folder of results by a link"
-            raise TakenError(Problem(name, 0, what, "remove the link, or choose another folder", code="BAT320"))
-        if path.is_dir():
-            raise _taken(name, IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR)))
+            raise _leads_out(name)
+        _refuse_odd(path, self._folder, name)
         if not lasting:  # to wait for the disk takes longer than most of the work on a small file
             part = path.with_name(f".{os.getpid()}.{os.urandom(4).hex()}.part")
             try:
                 part.write_bytes(content)
                 part.replace(path)
             except OSError as error:
+                with suppress(OSError):
+                    part.unlink()
                 raise self._unusable(name, "cannot be written", error) from None
             return
-        with atomic_file(path) as sink:
-            sink.write(content)
+        try:
+            with atomic_file(path) as sink:
+                sink.write(content)
+        except InputError as error:
+            if isinstance(cause := error.__context__, OSError):
+                raise self._unusable(name, "cannot be written", cause) from None
+            raise
 
     def remove(self, name: str) -> None:
         """Remove a file, if it is there; what leads out of the folder by a link stays."""
@@ -138,6 +182,10 @@ class FolderStore:
         if is_within(path.parent, self._folder):
             with suppress(FileNotFoundError, NotADirectoryError):
                 path.unlink()
+
+    def remove_empty(self, name: str) -> None:
+        """Remove the folders in which a file was and nothing is any more."""
+        _remove_empty(self._folder / name, self._folder)
 
     def digest(self, name: str) -> str | None:
         """SHA-256 of a file; None: there is none."""
@@ -157,7 +205,7 @@ class FolderStore:
         return sorted(each.relative_to(self._folder).as_posix() for each in found if each.is_file())
 
     def _unusable(self, name: str, what: str, error: OSError) -> InputError:
-        cure = "choose another folder for the results"
+        cure = _SPACE if error.errno in _FULL else "choose another folder for the results"
         return InputError(
             Problem(str(self._folder / name), 0, f"{what}: {error.strerror or error}", cure, code="FIL230")
         )
@@ -178,10 +226,12 @@ class UrlStore:
         self._protocol = protocol if isinstance(protocol, str) else protocol[0]
         self.address = self.worker_url = "" if self._protocol == "memory" else url
         self.is_exact = self._protocol in ("file", "local", "memory")
+        self._is_local = self._protocol in ("file", "local")
         self._moves = self._protocol in ("file", "local", "sftp", "ssh", "ftp", "smb")
 
     def read(self, name: str) -> bytes | None:
         """A file; None: there is none."""
+        self._refuse_odd(name)
         try:
             return bytes(self._files.cat_file(self._path(name)))
         except (FileNotFoundError, NotADirectoryError):
@@ -205,15 +255,19 @@ class UrlStore:
     def write(self, name: str, content: bytes, *, lasting: bool = True) -> None:
         """Write a file, or replace it."""
         path = self._path(name)
+        self._refuse_odd(name)
+        part = f"{path}.{os.getpid()}.{os.urandom(4).hex()}.part"
         try:
             self._files.makedirs(path.rpartition("/")[0], exist_ok=True)
             if not self._moves:
                 self._files.pipe_file(path, content)
                 return
-            part = f"{path}.{os.getpid()}.{os.urandom(4).hex()}.part"
             self._files.pipe_file(part, content)
             self._files.mv(part, path)
         except OSError as error:
+            if self._moves:
+                with suppress(OSError):
+                    self._files.rm_file(part)
             if error.errno in _TAKEN:
                 raise _taken(name, error) from None
             raise self._unusable(error) from None
@@ -222,6 +276,11 @@ class UrlStore:
         """Remove a file, if it is there."""
         with suppress(FileNotFoundError):
             self._files.rm_file(self._path(name))
+
+    def remove_empty(self, name: str) -> None:
+        """Remove the folders in which a file was and nothing is any more; stores of objects have none."""
+        if self._is_local:
+            _remove_empty(Path(self._path(name)), Path(self._root))
 
     def digest(self, name: str) -> str | None:
         """SHA-256 of a file; None: there is none."""
@@ -244,11 +303,16 @@ class UrlStore:
             return []
         return sorted(PurePosixPath(each).relative_to(self._root).as_posix() for each in found)
 
+    def _refuse_odd(self, name: str) -> None:
+        if self._is_local:
+            _refuse_odd(Path(self._path(name)), Path(self._root), name)
+
     def _path(self, name: str) -> str:
         return f"{self._root}/{name}"
 
     def _unusable(self, error: Exception) -> InputError:
-        cure = "look at its address and rights, and run the batch again"
+        is_full = isinstance(error, OSError) and error.errno in _FULL
+        cure = _SPACE if is_full else "look at its address and rights, and run the batch again"
         return InputError(Problem(self.label, 0, f"does not take results: {error}", cure, code="BAT130"))
 
 

@@ -8,7 +8,8 @@ No tile looks at another one while it is cut, so that a share is exactly what th
 tiles measured comes in the order of tiles again: volumes are added in the same order, and equal to the last bit.
 
 A share is a ZIP archive with a file for each chunk and each tile; in each of these NumPy's arrays (``.npy``) stand one
-after another. Reading it runs no code, and its checksums tell whether it is damaged.
+after another. Reading it runs no code, and its checksums tell whether it is damaged. No more memory is taken for one of
+these files than lattice and rows allow, whatever sizes it claims to have.
 """
 
 import heapq
@@ -25,16 +26,26 @@ from numpy.typing import NDArray
 
 from trunnion.model.run import Run
 from trunnion.simulation.cutting.measurements import Chunk, ColumnMeasured, TileMeasured, column_count, is_volume
-from trunnion.simulation.cutting.sweeps import tool_ranges
-from trunnion.simulation.stock.lattice import Lattice
+from trunnion.simulation.cutting.sweeps import MOST_PIECES, tool_ranges
+from trunnion.simulation.stock.lattice import BUNDLE_AXES, Lattice
 from trunnion.simulation.stock.material import TILE_RAYS, Stock, Tile, tile_corners
 from trunnion.simulation.tools.pieces import RevolvedPieces
 
 #: zlib's level: higher ones make it hardly smaller, and take several times as long.
 _LEVEL: Final = 1
 
-#: Arrays of a chunk, and of a tile.
-_CHUNK_ARRAYS, _TILE_ARRAYS = 4, 4
+#: Types of the arrays of a chunk and of a tile, and what a row of each is.
+_CHUNK: Final = ((np.dtype(np.int32), (3,)), (np.dtype(np.int32), ()), (np.dtype(float), ()), (np.dtype(float), (3,)))
+_TILE: Final = ((np.dtype(np.int32), ()), (np.dtype(float), ()), (np.dtype(np.int32), ()), (np.dtype(np.int8), (3,)))
+
+#: Bytes that the headers of a file's arrays take at most.
+_HEADERS: Final = 4096
+
+#: Stretches that a ray may have: some for each of its cells, far more than material is ever divided into.
+_LEAST_STRETCHES, _STRETCHES_OF_CELL = 1024, 16
+
+
+_Kind = tuple[np.dtype[Any], tuple[int, ...]]
 
 
 class Share(NamedTuple):
@@ -139,11 +150,14 @@ class JoinedShares:
     def finish(self, stock: Stock) -> None:
         """Give stock that nothing has cut the tiles that the shares have left of it."""
         for number, tile in enumerate(stock.tiles):
+            cells = stock.lattice.counts[BUNDLE_AXES[tile.bundle][2]]
+            most = _LEAST_STRETCHES + _STRETCHES_OF_CELL * cells
             name = _tile_name(number)
             archive = next((each for each in self._archives if name in each.NameToInfo), None)
             if archive is None:
                 raise DamagedShareError(f"no share has {name}")
-            _put(tile, *_read(archive, name, _TILE_ARRAYS))
+            rays, ends = len(tile.count), 2 * len(tile.count) * most
+            _put(tile, most, *_read(archive, name, _TILE, (rays, ends, ends, ends)))
 
 
 def _chunk_name(job: int, first: int) -> str:
@@ -154,24 +168,64 @@ def _tile_name(number: int) -> str:
     return f"tile {number}"
 
 
-def _read(archive: zipfile.ZipFile, name: str, count: int) -> list[NDArray[Any]]:
-    """The arrays of a member."""
+def _read(archive: zipfile.ZipFile, name: str, kinds: Sequence[_Kind], most: Sequence[int]) -> list[NDArray[Any]]:
+    """The arrays of a member, of ``kinds`` and with at most so many rows each."""
     try:
-        content = BytesIO(archive.read(name))
-        return [np.lib.format.read_array(content, allow_pickle=False) for _ in range(count)]
+        info = archive.getinfo(name)
+        if info.compress_type not in (zipfile.ZIP_DEFLATED, zipfile.ZIP_STORED):
+            raise ValueError("it is packed otherwise")
+        sizes = (rows * kind.itemsize * math.prod(shape) for rows, (kind, shape) in zip(most, kinds, strict=True))
+        if info.file_size > _HEADERS + sum(sizes):
+            raise ValueError("it is larger than it can be")
+        content = BytesIO(archive.read(info))
+        arrays = [_array(content, *kind) for kind in kinds]
+        if content.read(1) or any(len(array) > rows for array, rows in zip(arrays, most, strict=True)):
+            raise ValueError("it has more than it can have")
+        return arrays
     except (zipfile.BadZipFile, zlib.error, KeyError, ValueError, EOFError, OSError, RuntimeError) as error:
         raise DamagedShareError(f"{name}: {error}") from None
+    except MemoryError:
+        raise DamagedShareError(f"{name}: it takes more memory than there is") from None
+
+
+def _array(content: BytesIO, kind: np.dtype[Any], shape: tuple[int, ...]) -> NDArray[Any]:
+    """The next array of a member; what it says of its size must be there."""
+    if np.lib.format.read_magic(content) != (1, 0):
+        raise ValueError("it was written otherwise")
+    (*rows, found), _, found_kind = _header(content)
+    if (tuple(rows), found_kind) != (shape, kind):
+        raise ValueError("it has other arrays")
+    size = found * math.prod(shape) * kind.itemsize
+    data = content.read(size)
+    if len(data) != size:
+        raise ValueError("it is cut short")
+    return np.frombuffer(data, kind).reshape(found, *shape)
+
+
+def _header(content: BytesIO) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
+    """What an array says of itself, the number of its rows last."""
+    (found, *rest), is_fortran, kind = np.lib.format.read_array_header_1_0(content)
+    if is_fortran and rest:
+        raise ValueError("its arrays lie otherwise")
+    return (*rest, found), is_fortran, kind
 
 
 def _measured(
     archive: zipfile.ZipFile, name: str, bundles: Sequence[int], rows: range, most_columns: int
 ) -> Iterator[TileMeasured]:
     """Yield what the tiles of a share measured in a chunk of rows."""
-    blocks, row, value, place = _read(archive, name, _CHUNK_ARRAYS)
-    if len(blocks) and not (
-        np.all(blocks >= 0) and blocks[:, 0].max() < len(bundles) and blocks[:, 1].max() < most_columns
-        and blocks[:, 2].sum() == len(row) == len(value) and rows.start <= row.min() and row.max() < rows.stop
-    ):  # fmt: skip
+    most_blocks = len(bundles) * most_columns
+    most = most_blocks * len(rows) * MOST_PIECES
+    blocks, row, value, place = _read(archive, name, _CHUNK, (most_blocks, most, most, most_blocks * len(rows)))
+    is_own = len(blocks) == len(row) == len(value) == len(place) == 0
+    if len(blocks) and np.all(blocks[:, :2] >= 0) and np.all(blocks[:, 2] > 0):
+        depths = blocks[~np.array([is_volume(each) for each in blocks[:, 1].tolist()]), 2]
+        is_own = bool(
+            blocks[:, 0].max() < len(bundles) and blocks[:, 1].max() < most_columns
+            and blocks[:, 2].sum(dtype=np.int64) == len(row) == len(value) and depths.sum(dtype=np.int64) == len(place)
+            and rows.start <= row.min() and row.max() < rows.stop
+        )  # fmt: skip
+    if not is_own:
         raise DamagedShareError(f"{name} belongs to another simulation")
     columns: list[ColumnMeasured] = []
     at = placed = 0
@@ -185,8 +239,9 @@ def _measured(
             columns = []
 
 
-def _put(tile: Tile, count: NDArray[Any], *spans: NDArray[Any]) -> None:
-    """Make the material of a tile what a share has left of it."""
-    if count.shape != tile.count.shape or any(len(each) != 2 * count.sum() for each in spans):
+def _put(tile: Tile, most: int, count: NDArray[Any], *spans: NDArray[Any]) -> None:
+    """Make the material of a tile what a share has left of it, at most so many stretches of each ray."""
+    is_own = count.shape == tile.count.shape and 0 <= count.min() and count.max() <= most
+    if not is_own or any(len(each) != 2 * int(count.sum(dtype=np.int64)) for each in spans):
         raise DamagedShareError("a tile has other rays than the stock")
     tile.fill(count, *spans)

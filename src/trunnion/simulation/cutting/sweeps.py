@@ -30,7 +30,7 @@ _XYZ = int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z)
 CHUNK_ROWS = 8192
 
 #: Sweeps that one row may have: a rotary axis that winds a thousand turns is an error of the program.
-_MOST_PIECES = 4096
+MOST_PIECES = 4096
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -146,7 +146,7 @@ def _pieces(run: Run, first: int, joints: Floats, tip: Floats, axis: Floats, siz
         )
         length[row] = turn * radius
     pieces = np.maximum(pieces, np.ceil(length / (2.0 * sizes.radius)))
-    return np.asarray(np.minimum(pieces, _MOST_PIECES), np.int64)
+    return np.asarray(np.minimum(pieces, MOST_PIECES), np.int64)
 
 
 def unknown_swivels(run: Run, low: Floats, high: Floats) -> Ints:
