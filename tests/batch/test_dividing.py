@@ -1,7 +1,10 @@
 """Files that are divided among tasks: their results are those of one task, and only what is missing is done again."""
 
+import os
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -15,16 +18,18 @@ from tests.support.batches import (
     tree,
     write_files,
 )
+from tests.support.dask_clusters import needs_dask
 from tests.support.divided import write_divided, write_jobs
+from trunnion.api.observer import Observer
 from trunnion.batch import Status, run_batch
 from trunnion.batch.dividing import SHARES
 from trunnion.batch.jobs_file import load_batch
 from trunnion.batch.local import LocalWorkers
 from trunnion.batch.running import BatchResult, run_jobs
-from trunnion.batch.stores import FolderStore
+from trunnion.batch.stores import FolderStore, open_store
 from trunnion.batch.task import Outcome, Task
 from trunnion.batch.work import work
-from trunnion.errors import InputError
+from trunnion.errors import InputError, Problem, Severity
 
 TEXTS = {"a/x.cls": "one", "b/x.cls": "two", "c.cls": "fail", "d.cls": "refuse"}
 
@@ -259,3 +264,141 @@ def test_what_shares_cost_is_part_of_what_the_file_costs(tmp_path: Path) -> None
     *shares, (joins, together) = spent
     assert joins
     assert record.costs.processor_s == together > sum(each for _, each in shares) > 0.0
+
+
+class Listening(Observer):
+    """Keeps what is told: code, severity, text."""
+
+    def __init__(self) -> None:
+        self.told: list[tuple[str, Severity, str]] = []
+
+    def problems(self, problems: Sequence[Problem]) -> None:
+        self.told += [(each.code or "", each.severity, each.what) for each in problems]
+
+
+def stopped_before_joining(folder: Path, texts: dict[str, str], shares: int) -> Path:
+    """Results of a batch that was stopped with so many of the four shares of each file; the folder of shares."""
+    write_files(folder / "in", texts)
+    with pytest.raises(Interrupted):
+        run_simply(divided_batch(folder / "in", 4), StoppingStore(folder / "out", 1 + shares), AsTheyCome())
+    assert len(kept(folder / "out")) == shares
+    return folder / "out" / SHARES
+
+
+def by_number(folder: Path) -> dict[int, Path]:
+    """Kept shares by what they hold."""
+    return {int(path.read_bytes().rpartition(b"\n(")[2].split(b",")[0]): path for path in folder.iterdir()}
+
+
+ODD = ["another file", "another number", "changed", "cut short", "no seal", "empty", "odd seal"]
+
+
+@pytest.mark.parametrize("how", ODD)
+def test_a_share_that_is_not_what_its_name_says_is_told_and_it_alone_is_made_again(tmp_path: Path, how: str) -> None:
+    mine = by_number(stopped_before_joining(tmp_path / "mine", {"x.cls": "one"}, 3))
+    other = by_number(stopped_before_joining(tmp_path / "other", {"x.cls": "two"}, 3))
+    content = mine[1].read_bytes()
+    assert content.endswith(b"\n(1, 4) of one")
+    mine[1].write_bytes({
+        "another file": other[1].read_bytes(), "another number": mine[2].read_bytes(),
+        "changed": content.replace(b"of one", b"of two"), "cut short": content[:-1],
+        "no seal": b"(1, 4) of one", "empty": b"",
+        "odd seal": b'trunnion share 1 {"sha256": 1, "key": [], "number": 1, "of": 4, "file": {}}\n',
+    }[how])  # fmt: skip
+    again, listening = AsTheyCome(), Listening()
+    out = tmp_path / "mine/out"
+    assert run_simply(divided_batch(tmp_path / "mine/in", 4), FolderStore(out), again, listening).passed
+    assert again.shares == [("x.cls", 1), ("x.cls", 3)]
+    ((code, severity, what),) = listening.told
+    assert (code, severity) == ("BAT395", Severity.WARNING)
+    assert "share 2 of 4" in what
+    assert tree(out) == whole(tmp_path / "mine")
+
+
+def test_of_shares_that_are_joined_only_the_damaged_ones_are_lost(tmp_path: Path) -> None:
+    write_files(tmp_path / "in", {"x.cls": "one"})
+
+    def damaging(task: Task) -> Outcome:
+        if task.shares:
+            by_number(tmp_path / "out" / SHARES)[2].write_bytes(b"odd")
+        return simple_work(task)
+
+    out, again = FolderStore(tmp_path / "out"), AsTheyCome()
+    result = run_simply(divided_batch(tmp_path / "in", 4), out, AsTheyCome(function=damaging))
+    (failure,) = result.failures()
+    assert failure.error is not None
+    assert (failure.error.code, "share 3 of 4" in failure.error.what) == ("BAT395", True)
+    assert sorted(by_number(tmp_path / "out" / SHARES)) == [0, 1, 3]
+    assert run_simply(divided_batch(tmp_path / "in", 4), out, again).passed
+    assert again.shares == [("x.cls", 2)]
+
+
+def test_what_another_run_has_joined_meanwhile_counts(tmp_path: Path) -> None:
+    write_files(tmp_path / "in", {"x.cls": "one"})
+    batch, out = divided_batch(tmp_path / "in", 3), FolderStore(tmp_path / "out")
+
+    def overtaken(task: Task) -> Outcome:
+        if task.shares:
+            assert run_simply(batch, out, AsTheyCome()).passed
+            assert kept(tmp_path / "out") == []
+        return simple_work(task)
+
+    assert run_simply(batch, out, AsTheyCome(function=overtaken)).counts == {Status.PASSED: 1}
+    assert tree(tmp_path / "out") == whole(tmp_path)
+
+
+@pytest.mark.parametrize("what", ["folder", "pipe", "link"])
+@pytest.mark.parametrize("is_url", [False, pytest.param(True, marks=needs_dask)])
+def test_what_is_no_file_in_the_place_of_a_share_fails_its_file_before_any_work(
+    tmp_path: Path, what: str, is_url: bool
+) -> None:
+    folder = stopped_before_joining(tmp_path, {"x.cls": "one", "y.cls": "two"}, 2)
+    path = by_number(folder)[1]
+    content = path.read_bytes()
+    path.unlink()
+    if what == "folder":
+        path.mkdir()
+    elif what == "link":
+        (tmp_path / "elsewhere").write_bytes(content)
+        path.symlink_to(tmp_path / "elsewhere")
+    elif hasattr(os, "mkfifo"):
+        os.mkfifo(path)
+    else:
+        pytest.skip("there are no such pipes here")
+    team = AsTheyCome()
+    store = open_store((tmp_path / "out").as_uri() if is_url else tmp_path / "out")
+    result = run_simply(divided_batch(tmp_path / "in", 4), store, team)
+    (failure,) = result.failures()
+    assert failure.error is not None
+    assert (failure.file, failure.error.code) == ("x.cls", "BAT320")
+    assert team.shares == [("y.cls", k) for k in range(4)]
+
+
+def test_shares_of_another_batch_are_told(tmp_path: Path) -> None:
+    stopped_before_joining(tmp_path, {"x.cls": "one"}, 2)
+    listening = Listening()
+    renamed = replace(divided_batch(tmp_path / "in", 4), home="renamed")
+    assert run_simply(renamed, FolderStore(tmp_path / "out"), AsTheyCome(), listening).passed
+    ((code, severity, what),) = listening.told
+    assert (code, severity) == ("BAT370", Severity.WARNING)
+    assert "shares of 1 simulation of another batch" in what
+    assert len(kept(tmp_path / "out")) == 2
+
+
+def test_shares_of_a_file_that_is_gone_from_a_folder_are_removed_and_those_of_one_left_out_stay(tmp_path: Path) -> None:
+    stopped_before_joining(tmp_path, {"x.cls": "one", "y.cls": "two"}, 2)
+    batch = divided_batch(tmp_path / "in", 4)
+    without = replace(batch, jobs=[replace(batch.jobs[0], files=["y.cls"])])
+    for left in (2, 0):
+        assert run_simply(without, FolderStore(tmp_path / "out"), AsTheyCome()).passed
+        assert len(kept(tmp_path / "out")) == left
+        (tmp_path / "in/x.cls").unlink(missing_ok=True)
+
+
+@pytest.mark.parametrize("tiles", ["", 0, "x", "2.5"])
+def test_a_number_of_tiles_that_is_none_is_told(tmp_path: Path, tiles: Any) -> None:
+    write_files(tmp_path, {"x.ngc": "G0 X1\n"})
+    with pytest.raises(InputError, match=r"tiles.*whole number"):
+        run_batch(
+            tmp_path, action="simulate", machine="xyzac_trt", stock="box:1,1,1", results=tmp_path / "out", tiles=tiles
+        )

@@ -113,6 +113,8 @@ def test_files_that_a_file_of_jobs_does_not_name_any_more_lose_their_programs(tm
     told = run(named(batch_of(tmp_path / "in", is_whole=True), "a/x.cls"), tmp_path / "out")
     assert [name for name, _ in told] == ALL[1:]
     assert programs(tmp_path / "out") == ALL[:1]
+    folders = sorted(path.name for path in (tmp_path / "out").iterdir() if path.is_dir())
+    assert folders == [".trunnion-batch", "a"]
 
 
 def test_results_of_another_batch_stay(tmp_path: Path) -> None:

@@ -1,5 +1,8 @@
 """Places of results: folders, and those of fsspec."""
 
+import errno
+import os
+import shutil
 import uuid
 from pathlib import Path
 
@@ -71,3 +74,44 @@ def test_results_do_not_leave_the_folder_by_a_link(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="leads out"):
         open_store(tmp_path / "out").write("a/x", b"")
     assert not list((tmp_path / "elsewhere").iterdir())
+
+
+@pytest.mark.parametrize("is_lasting", [True, False])
+def test_a_full_disk_is_told_with_its_cure(
+    store: Store, tmp_path: Path, is_lasting: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if not store.address:
+        pytest.skip("it is no disk")
+    store.write("a/before", b"")
+
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    for owner, name in ((os, "replace"), (os, "rename"), (shutil, "move"), (Path, "replace")):
+        monkeypatch.setattr(owner, name, full)
+    with pytest.raises(InputError, match="make space there"):
+        store.write("a/x", b"content", lasting=is_lasting)
+    assert [path.name for path in (tmp_path / "out/a").iterdir() if not path.is_dir()] == ["before"]
+
+
+def test_a_folder_that_nothing_is_in_any_more_goes_with_its_file(store: Store, tmp_path: Path) -> None:
+    for name in ("a/b/x", "a/y"):
+        store.write(name, b"")
+    for name, left in (("a/b/x", ["a", "a/y"]), ("a/y", [])):
+        store.remove(name)
+        store.remove_empty(name)
+        if store.address:
+            out = tmp_path / "out"
+            assert sorted(path.relative_to(out).as_posix() for path in out.rglob("*")) == left
+            assert out.is_dir()
+
+
+@pytest.mark.parametrize("is_dangling", [True, False])
+def test_a_link_that_leads_out_is_neither_read_nor_written(tmp_path: Path, is_dangling: bool) -> None:
+    write_files(tmp_path, {"out/x": "", **({} if is_dangling else {"mine": "one"})})
+    (tmp_path / "out/link").symlink_to(tmp_path / "mine")
+    store = open_store(tmp_path / "out")
+    for act in (lambda: store.read("link"), lambda: store.write("link", b"two")):
+        with pytest.raises(InputError, match=r"leads out.*BAT320"):
+            act()
+    assert is_dangling is not (tmp_path / "mine").exists()

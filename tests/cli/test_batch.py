@@ -7,9 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.batches import run_simply, simple_batch, write_files
+from tests.support.batch_work import simple_work
+from tests.support.batches import AsTheyCome, run_simply, simple_batch, write_files
 from tests.support.locations import ROOT, YL569
 from trunnion.batch.stores import FolderStore
+from trunnion.batch.task import Outcome, Task
 from trunnion.cli import main
 from trunnion.cli.batch import result_lines
 from trunnion.cli.progress import progress_lines
@@ -135,3 +137,13 @@ def test_how_far_work_is_comes_line_by_line_in_a_pipe(capsys: pytest.CaptureFixt
     with progress_lines("batch", 3, "files", every=600.0) as advance:
         advance(3)
     assert capsys.readouterr().err == ""
+
+
+def test_reports_of_what_failed_are_told_as_written(tmp_path: Path) -> None:
+    def reporting(task: Task) -> Outcome:
+        return replace(simple_work(task), files={f"{task.result}.html": b"why"})
+
+    write_files(tmp_path / "in", {"x.cls": "refuse"})
+    team = AsTheyCome(function=reporting)
+    lines = [*result_lines(run_simply(simple_batch(tmp_path / "in"), FolderStore(tmp_path / "out"), team))]
+    assert "written now: x.mpf.html" in lines

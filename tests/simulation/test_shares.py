@@ -1,9 +1,12 @@
 """A simulation in shares is that of one process, to the last bit."""
 
+import tracemalloc
 from collections import Counter
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 from typing import Any
+from zipfile import ZIP_DEFLATED, ZIP_LZMA, ZipFile
 
 import numpy as np
 import pytest
@@ -22,6 +25,7 @@ from trunnion.simulation.stock import material
 from trunnion.simulation.stock.deviation import missing_from
 from trunnion.simulation.stock.lattice import Lattice
 from trunnion.simulation.stock.solids import make_stock
+from trunnion.simulation.stock.spans import Spans
 
 Given = dict[str, Any]
 
@@ -203,3 +207,68 @@ def test_what_no_tile_knows_alone_is_not_divided(rich: tuple[Path, Given, trunni
     for divide in (lambda: shares_of(project, {}, 2), lambda: joined(project, {}, [])):
         with pytest.raises(InputError, match=r"2, each.*SIM116"):
             divide()
+
+
+def _npy(shape: tuple[int, ...], kind: Any, data: bytes = b"") -> bytes:
+    """An array as NumPy writes it, whose header says what it likes."""
+    content = BytesIO()
+    said = {"descr": np.lib.format.dtype_to_descr(np.dtype(kind)), "fortran_order": False, "shape": shape}
+    np.lib.format.write_array_header_1_0(content, said)
+    return content.getvalue() + data
+
+
+def _tile(
+    count: bytes, ends: bytes = b"", rows: bytes = b"", normals: bytes = b"", packed: int = ZIP_DEFLATED
+) -> bytes:
+    content = BytesIO()
+    with ZipFile(content, "w", packed) as archive:
+        archive.writestr("tile 0", count + ends + rows + normals)
+    return content.getvalue()
+
+
+#: What the tile of four rays is that has one stretch of each ray.
+_SOUND = {
+    "count": _npy((4,), np.int32, np.ones(4, np.int32).tobytes()), "ends": _npy((8,), float, bytes(64)),
+    "rows": _npy((8,), np.int32, bytes(32)), "normals": _npy((8, 3), np.int8, bytes(24)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("wrong", [
+    {"count": _npy((4_000_000_000, 30), np.int32)},
+    {"ends": _npy((4_000_000_000,), float)},
+    {"normals": _npy((4_000_000_000, 3), np.int8)},
+    {"normals": _npy((8, 3), np.int8, bytes(100_000_000))},
+    {"ends": _npy((8,), object, bytes(64))},
+    {"ends": _npy((8,), np.float32, bytes(32))},
+    {"ends": _npy((2, 4), float, bytes(64))},
+    {"ends": _npy((), float, bytes(64))},
+    {"ends": _npy((-8,), float, bytes(64))},
+    {"rows": _npy((9,), np.int32, bytes(36))},
+    {"count": _npy((4,), np.int32, np.array([1, 1, -1, 3], np.int32).tobytes())},
+    {"count": _npy((4,), np.int32, np.array([0, 0, 0, 2**31 - 1], np.int32).tobytes())},
+    {"packed": ZIP_LZMA},
+])  # fmt: skip
+def test_no_share_takes_more_memory_than_its_tiles_can(wrong: dict[str, Any]) -> None:
+    lattice = Lattice(np.zeros(3), np.ones(3), (1, 2, 2))
+    spans = Spans(np.arange(5), np.tile([0.0, 1.0], 4), np.zeros((8, 3), np.int8), np.full(8, -1, np.int32))
+    stock = material.Stock.of_spans(lattice, (spans, spans, spans), only=[0])
+    JoinedShares([_tile(**_SOUND)]).finish(stock)
+    shares = JoinedShares([_tile(**{**_SOUND, **wrong})])
+    tracemalloc.start()
+    with pytest.raises(DamagedShareError):
+        shares.finish(stock)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert most < 1_000_000
+
+
+def test_a_share_for_which_there_is_no_memory_is_damaged(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> bytes:
+        raise MemoryError
+
+    lattice = Lattice(np.zeros(3), np.ones(3), (1, 2, 2))
+    spans = Spans(np.arange(5), np.tile([0.0, 1.0], 4), np.zeros((8, 3), np.int8), np.full(8, -1, np.int32))
+    shares = JoinedShares([_tile(**_SOUND)])
+    monkeypatch.setattr(ZipFile, "read", full)
+    with pytest.raises(DamagedShareError, match="memory"):
+        shares.finish(material.Stock.of_spans(lattice, (spans, spans, spans), only=[0]))

@@ -151,14 +151,14 @@ def folder_batch(
     InputError
         If an argument cannot be used, or there are no such files.
     """
-    given = {name: value for name, value in arguments.items() if value}
+    given = {name: value for name, value in arguments.items() if value and name != "tiles"}
     beside = {name: _listed(given.pop(name)) for name in ("cl", "subprograms") if given.get(name)}
     for argument, names in beside.items():
         for name in names:
             if fault := beside_fault(name):
                 cure = 'write a name such as "{folder}/{stem}.cls"'
                 raise InputError(argument_problem(argument, f'"{name[:100]}" {fault}', cure, code="ARG140"))
-    report, tiles = str(given.pop("report", "")), check_tiles(action, given.pop("tiles", 1))
+    report, tiles = str(given.pop("report", "")), check_tiles(action, arguments.get("tiles", 1))
     said, shared, extensions = judged(action, given, folder)
     sought = (extensions.read,) if extensions.read else CL_EXTENSIONS
     files = [

@@ -1,6 +1,5 @@
 """Ctrl-C and other signals that end a command wait where they would leave half of something behind."""
 
-import ctypes
 import signal
 import sys
 from collections.abc import Callable, Iterator
@@ -42,6 +41,8 @@ def children_without_interrupts() -> Iterator[None]:
 def _let_console_ignore(ignores: bool) -> None:
     """Windows hands down no handlers of signals, but whether a process takes the Ctrl-C of its console."""
     if sys.platform == "win32":
+        import ctypes
+
         ctypes.windll.kernel32.SetConsoleCtrlHandler(None, ignores)
 
 
