@@ -111,7 +111,8 @@ def test_a_link_that_leads_out_is_neither_read_nor_written(tmp_path: Path, is_da
     write_files(tmp_path, {"out/x": "", **({} if is_dangling else {"mine": "one"})})
     (tmp_path / "out/link").symlink_to(tmp_path / "mine")
     store = open_store(tmp_path / "out")
-    for act in (lambda: store.read("link"), lambda: store.write("link", b"two")):
-        with pytest.raises(InputError, match=r"leads out.*BAT320"):
-            act()
+    with pytest.raises(InputError, match=r"leads out.*BAT320"):
+        store.read("link")
+    with pytest.raises(InputError, match=r"leads out.*BAT320"):
+        store.write("link", b"two")
     assert is_dangling is not (tmp_path / "mine").exists()

@@ -1,8 +1,8 @@
 """Files whose work is divided: shares that are kept until all of them are there, and a task that joins them.
 
-A share is a task of its own, with a key of all that it is made from in the name under which it is kept, and in its seal:
-a share that is there, with its seal unbroken, is one that is done. So a worker that dies, or a batch that is stopped, loses the shares in
-work, and no others. Once the joined result is written, its shares are removed.
+A share is a task of its own, with a key of all that it is made from in the name under which it is kept, and in its
+seal: one that is there, with its seal unbroken, is done. So a worker that dies, or a batch that is stopped, loses the
+shares in work, and no others. Once the joined result is written, its shares are removed.
 """
 
 from collections import deque

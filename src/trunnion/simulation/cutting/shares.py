@@ -19,7 +19,7 @@ import zipfile
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from io import BytesIO
-from typing import Any, Final, NamedTuple
+from typing import IO, Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -177,10 +177,10 @@ def _read(archive: zipfile.ZipFile, name: str, kinds: Sequence[_Kind], most: Seq
         sizes = (rows * kind.itemsize * math.prod(shape) for rows, (kind, shape) in zip(most, kinds, strict=True))
         if info.file_size > _HEADERS + sum(sizes):
             raise ValueError("it is larger than it can be")
-        content = BytesIO(archive.read(info))
-        arrays = [_array(content, *kind) for kind in kinds]
-        if content.read(1) or any(len(array) > rows for array, rows in zip(arrays, most, strict=True)):
-            raise ValueError("it has more than it can have")
+        with archive.open(info) as content:
+            arrays = [_array(content, *kind, rows) for kind, rows in zip(kinds, most, strict=True)]
+            if content.read(1):  # at the end its checksum is compared, too
+                raise ValueError("it has more than it can have")
         return arrays
     except (zipfile.BadZipFile, zlib.error, KeyError, ValueError, EOFError, OSError, RuntimeError) as error:
         raise DamagedShareError(f"{name}: {error}") from None
@@ -188,12 +188,12 @@ def _read(archive: zipfile.ZipFile, name: str, kinds: Sequence[_Kind], most: Seq
         raise DamagedShareError(f"{name}: it takes more memory than there is") from None
 
 
-def _array(content: BytesIO, kind: np.dtype[Any], shape: tuple[int, ...]) -> NDArray[Any]:
-    """The next array of a member; what it says of its size must be there."""
+def _array(content: IO[bytes], kind: np.dtype[Any], shape: tuple[int, ...], most: int) -> NDArray[Any]:
+    """The next array of a member, with at most so many rows; what it says of its size must be there."""
     if np.lib.format.read_magic(content) != (1, 0):
         raise ValueError("it was written otherwise")
     (*rows, found), _, found_kind = _header(content)
-    if (tuple(rows), found_kind) != (shape, kind):
+    if (tuple(rows), found_kind) != (shape, kind) or not 0 <= found <= most:
         raise ValueError("it has other arrays")
     size = found * math.prod(shape) * kind.itemsize
     data = content.read(size)
@@ -202,7 +202,7 @@ def _array(content: BytesIO, kind: np.dtype[Any], shape: tuple[int, ...]) -> NDA
     return np.frombuffer(data, kind).reshape(found, *shape)
 
 
-def _header(content: BytesIO) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
+def _header(content: IO[bytes]) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
     """What an array says of itself, the number of its rows last."""
     (found, *rest), is_fortran, kind = np.lib.format.read_array_header_1_0(content)
     if is_fortran and rest:
@@ -241,7 +241,7 @@ def _measured(
 
 def _put(tile: Tile, most: int, count: NDArray[Any], *spans: NDArray[Any]) -> None:
     """Make the material of a tile what a share has left of it, at most so many stretches of each ray."""
-    is_own = count.shape == tile.count.shape and 0 <= count.min() and count.max() <= most
+    is_own = count.shape == tile.count.shape and count.min() >= 0 and count.max() <= most
     if not is_own or any(len(each) != 2 * int(count.sum(dtype=np.int64)) for each in spans):
         raise DamagedShareError("a tile has other rays than the stock")
     tile.fill(count, *spans)
