@@ -192,22 +192,14 @@ def _array(content: IO[bytes], kind: np.dtype[Any], shape: tuple[int, ...], most
     """The next array of a member, with at most so many rows; what it says of its size must be there."""
     if np.lib.format.read_magic(content) != (1, 0):
         raise ValueError("it was written otherwise")
-    (*rows, found), _, found_kind = _header(content)
-    if (tuple(rows), found_kind) != (shape, kind) or not 0 <= found <= most:
+    said, is_fortran, found_kind = np.lib.format.read_array_header_1_0(content)
+    if (said[1:], found_kind) != (shape, kind) or not said or (is_fortran and shape) or not 0 <= said[0] <= most:
         raise ValueError("it has other arrays")
-    size = found * math.prod(shape) * kind.itemsize
+    size = said[0] * math.prod(shape) * kind.itemsize
     data = content.read(size)
     if len(data) != size:
         raise ValueError("it is cut short")
-    return np.frombuffer(data, kind).reshape(found, *shape)
-
-
-def _header(content: IO[bytes]) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
-    """What an array says of itself, the number of its rows last."""
-    (found, *rest), is_fortran, kind = np.lib.format.read_array_header_1_0(content)
-    if is_fortran and rest:
-        raise ValueError("its arrays lie otherwise")
-    return (*rest, found), is_fortran, kind
+    return np.frombuffer(data, kind).reshape(said)
 
 
 def _measured(
