@@ -22,7 +22,7 @@ from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.program.word_values import fault_of_value
 from trunnion.readers.rs274.block import Block, block_reader, g_code_text, read_block
-from trunnion.readers.rs274.expressions import BlockError
+from trunnion.readers.rs274.expressions import BlockError, Value
 from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS
 from trunnion.wording import counted
 
@@ -54,7 +54,7 @@ class FanucInterpreter(CycleInterpreter):
         return ActiveProgram(source, 0)
 
     def _may_scan(self, source: SourceText) -> bool:
-        in_doubt = self._spindle_stands or self._not_stated or self._needs_number
+        in_doubt = self._spindle_stands or self._not_stated or self._needs_number or self.control.length_ended_at
         return self._stack[-1].modal is None and not in_doubt and super()._may_scan(source)
 
     def _system_value(self, key: int) -> float | None:
@@ -72,6 +72,17 @@ class FanucInterpreter(CycleInterpreter):
             return value / control.length_unit if key <= 5023 else value
         return None
 
+    def _set_system_value(self, key: int, value: Value) -> bool:
+        """Stop at a message of #3006, end at an alarm of #3000; the text is in the comment behind it."""
+        if key == words.MESSAGE_VARIABLE:
+            self.control.note_wait(f"#{key} stops the program with a message")
+            self.control.add_event("stop")
+        elif key == words.ALARM_VARIABLE:
+            number = "" if value is None else f" {value:g}"
+            self._note(f"#{key} raises alarm{number}: the program ends here", Severity.ERROR, "NC226")
+            raise ProgramEnd
+        return key in (words.MESSAGE_VARIABLE, words.ALARM_VARIABLE)
+
     # Blocks
 
     def _execute_block(self, active: ActiveProgram, line: int, text: str) -> None:
@@ -88,6 +99,7 @@ class FanucInterpreter(CycleInterpreter):
             return
         block = read_block(reader, self._report_repeated_word)
         self._translate(block, self.control.settings.words)
+        self._report_same_group(block.g, words.GROUPS)
         if words.NURBS in block.g or self._nurbs.is_open:
             self._add_to_nurbs(block)
         else:
@@ -178,12 +190,14 @@ class FanucInterpreter(CycleInterpreter):
         for code in block.g:
             if code in _SCALING:
                 self._modal_g_code(code)
-        control.settings.scale_dwell(block)
+        in_cycle = self.motion_code in cycles.CYCLES or not cycles.CYCLES.isdisjoint(block.g)
+        if words.DWELL in block.g or (in_cycle and not words.takes_number(block)):
+            control.settings.scale_dwell(block)
         if words.DWELL not in block.g:
             angles = "IJKR" if words.TILT in block.g else ""
             mode, inches = control.modal.feed_mode.current, control.length_unit != 1.0
             plain = {letter for code, letter in words.VALUES if code in block.g}
-            if self.motion_code in cycles.CYCLES or not cycles.CYCLES.isdisjoint(block.g):
+            if in_cycle:
                 plain.add(control.settings.repeat_letter)
             if words.JUMP_ON_INPUT in block.m:
                 plain.add("Q")
@@ -233,9 +247,11 @@ class FanucInterpreter(CycleInterpreter):
         elif code in (words.LENGTH_OFF, 430, 440):
             block.take("H")
             control.vectors = False
+            control.length_ended_at = 0
             control.set_tcp(False)
-            control.set_mode("length", g_code_text(code), control.length_active, code != words.LENGTH_OFF)
-            control.set_length(code != words.LENGTH_OFF)
+            on = code != words.LENGTH_OFF and self._numbers_length(block)
+            control.set_mode("length", g_code_text(code), control.length_active, on)
+            control.set_length(on)
             if code == 440:
                 self._note("G44: the tool length with the other sign is not simulated", Severity.ERROR, "NC220")
         elif code == words.ROTATION_OFF:
@@ -254,6 +270,11 @@ class FanucInterpreter(CycleInterpreter):
             self._report_g_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
             if code in (410, 420):
                 self._check_look_ahead()
+
+    def _numbers_length(self, block: Block) -> bool:
+        """Whether the H in force names a tool length: H0 is none."""
+        number = block.words["H"].value if "H" in block.words else float(self._length_number)
+        return number != 0.0
 
     def _smoothness(self, block: Block) -> None:
         """Execute the word that chooses a smoothness, P, and how far corners may be rounded, E."""
@@ -286,6 +307,7 @@ class FanucInterpreter(CycleInterpreter):
         posture = block.take("P")
         if posture not in (None, 0.0, 1.0):
             self._note(f"P{posture:g} of G43.4 and G43.5 is not known", Severity.ERROR, "NC215")
+        control.length_ended_at = 0
         vectors = code == words.TCP_VECTOR
         if control.tcp and control.vectors != vectors:
             self._note(
