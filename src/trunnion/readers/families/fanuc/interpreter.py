@@ -73,14 +73,13 @@ class FanucInterpreter(CycleInterpreter):
         return None
 
     def _set_system_value(self, key: int, value: Value) -> bool:
-        """Stop at a message of #3006, end at an alarm of #3000; the text is in the comment behind it."""
+        """Stop at a message of #3006, and report an alarm of #3000; the blocks behind it are read all the same."""
         if key == words.MESSAGE_VARIABLE:
             self.control.note_wait(f"#{key} stops the program with a message")
             self.control.add_event("stop")
         elif key == words.ALARM_VARIABLE:
             number = "" if value is None else f" {value:g}"
-            self._note(f"#{key} raises alarm{number}: the program ends here", Severity.ERROR, "NC226")
-            raise ProgramEnd
+            self._note(f"#{key} raises alarm{number}: the program goes no farther", Severity.ERROR, "NC226")
         return key in (words.MESSAGE_VARIABLE, words.ALARM_VARIABLE)
 
     # Blocks

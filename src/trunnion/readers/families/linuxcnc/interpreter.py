@@ -135,7 +135,9 @@ class LinuxcncInterpreter(CycleInterpreter):
             if code not in _AFTER_MOTION:
                 self._m_code(code, block)
         special = self._g_codes(block)
-        selected = [code for code in block.g if code in cycles.CYCLES or code == CANCEL]
+        selected = [code for code in block.g if code in cycles.CYCLES]
+        if CANCEL in block.g and not self._has_motion_code(block):
+            selected = [CANCEL]
         if special in words.TAKING_AXIS_WORDS or any(code in words.NO_MOTION for code in block.g):
             self.motion_code = CANCEL if CANCEL in selected else self.motion_code
         else:
@@ -162,16 +164,11 @@ class LinuxcncInterpreter(CycleInterpreter):
 
     @staticmethod
     def _has_motion_code(block: Block) -> bool:
-        """Whether the last G code for motions and cycles in a block is not G80."""
-        codes = [
-            code
+        """Whether a block has a G code for motions and cycles besides G80, which counts then."""
+        return any(
+            code in MOTIONS or code in words.TAKEN_AS_LINES or code == words.RIGID_TAP or code in cycles.CYCLES
             for code in block.g
-            if code in MOTIONS
-            or code in cycles.CYCLES
-            or code in words.TAKEN_AS_LINES
-            or code in (CANCEL, words.RIGID_TAP)
-        ]
-        return bool(codes) and codes[-1] != CANCEL
+        )
 
     def _g_code(self, code: int, block: Block) -> None:
         control = self.control
