@@ -470,4 +470,4 @@ def test_a_text_may_bring_a_block_number_that_it_jumps_to(tmp_path: Path, base: 
     lines = posted.text.splitlines()
     at = lines.index("N9000 M9")
     assert re.fullmatch(rf"N\d+ {jump}", lines[at - 1])
-    assert re.match(r"N\d+ ", lines[at + 1])
+    assert re.match(r"N\d+ ", next(line for line in lines[at + 1 :] if line[0] != "("))
