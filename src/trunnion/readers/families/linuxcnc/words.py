@@ -186,10 +186,13 @@ AXIS_OFFSET_SWITCHES: Final = frozenset({921, 922, 923})
 SPECIAL: Final = frozenset({DWELL, SET_DATA, *HOMES, *HOMES.values(), *AXIS_OFFSETS, *AXIS_OFFSET_SWITCHES})
 TAKING_AXIS_WORDS: Final = frozenset({SET_DATA, *HOMES, *AXIS_OFFSETS})
 
+#: Turning cycles.
+_TURNING: Final = (700, 710, 711, 712, 720, 721, 722, 760)
+
 #: G codes, in tenths, and M codes of which a block has one: the groups of LinuxCNC's interpreter. G80 may stand beside
 #: a motion.
 GROUPS: Final = (
-    frozenset({0, 10, 20, 30, 50, 51, 52, 53, RIGID_TAP, 760, *TAKEN_AS_LINES, *(CYCLES - {CANCEL})}),
+    frozenset({0, 10, 20, 30, 50, 51, 52, 53, RIGID_TAP, *TAKEN_AS_LINES, *(CYCLES - {CANCEL}), *_TURNING}),
     frozenset({DWELL, SET_DATA, *HOMES, *HOMES.values(), *AXIS_OFFSETS, MACHINE}),
     AXIS_OFFSET_SWITCHES,
     frozenset({170, 171, 180, 181, 190, 191}),
@@ -208,10 +211,9 @@ GROUPS: Final = (
 GROUPS_M: Final = (
     frozenset({0, 1, 2, 30, 60}),
     frozenset({6, 61}),
-    frozenset({3, 4, 5, 19}),
+    frozenset({3, 4, 5, 19, *range(70, 74)}),
     frozenset({7, 8, 9}),
     frozenset(range(48, 54)),
     frozenset(INPUTS_AND_OUTPUTS),
-    frozenset(range(70, 74)),
     frozenset(range(100, 200)),
 )
