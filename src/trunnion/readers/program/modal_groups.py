@@ -18,5 +18,5 @@ def same_group(codes: Sequence[int], groups: Iterable[Collection[int]], text_of:
     for group in groups:
         found = [text_of(code) for code in dict.fromkeys(codes) if code in group]
         if len(found) > 1:
-            what = f"{' and '.join(found)} in one block, of which the control takes one at most"
+            what = f"{' and '.join(found[:2])} in one block, of which the control takes one at most"
             yield f"{what}: write them in blocks of their own"
