@@ -15,6 +15,8 @@ def same_group(codes: Sequence[int], groups: Iterable[Collection[int]], text_of:
     text_of
         Gives the word of a code.
     """
+    if len(codes) < 2:
+        return
     for group in groups:
         found = [text_of(code) for code in dict.fromkeys(codes) if code in group]
         if len(found) > 1:
