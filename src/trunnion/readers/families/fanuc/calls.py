@@ -51,9 +51,15 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
     def _system_value(self, key: int) -> float | None:
         """Return the value of a system variable; None for one that is not simulated."""
 
-    @abstractmethod
     def _set_system_value(self, key: int, value: Value) -> bool:
-        """Act on a value of a system variable; returns whether the control acts on it."""
+        """Stop at a message of #3006, and report an alarm of #3000; the blocks behind it are read all the same."""
+        if key == words.MESSAGE_VARIABLE:
+            self.control.note_wait(f"#{key} stops the program with a message")
+            self.control.add_event("stop")
+        elif key == words.ALARM_VARIABLE:
+            number = "" if value is None else f" {value:g}"
+            self._note(f"#{key} raises alarm{number}: the program goes no farther", Severity.ERROR, "NC226")
+        return key in (words.MESSAGE_VARIABLE, words.ALARM_VARIABLE)
 
     def _macro(self, active: ActiveProgram, block: Block) -> None:
         """G65 and G66: a macro with arguments, called now or after every motion."""

@@ -22,7 +22,7 @@ from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.program.word_values import fault_of_value
 from trunnion.readers.rs274.block import Block, block_reader, g_code_text, read_block
-from trunnion.readers.rs274.expressions import BlockError, Value
+from trunnion.readers.rs274.expressions import BlockError
 from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS
 from trunnion.wording import counted
 
@@ -71,16 +71,6 @@ class FanucInterpreter(CycleInterpreter):
             value = float(control.current_joints[control.machine.column(axes[key - 5021])])
             return value / control.length_unit if key <= 5023 else value
         return None
-
-    def _set_system_value(self, key: int, value: Value) -> bool:
-        """Stop at a message of #3006, and report an alarm of #3000; the blocks behind it are read all the same."""
-        if key == words.MESSAGE_VARIABLE:
-            self.control.note_wait(f"#{key} stops the program with a message")
-            self.control.add_event("stop")
-        elif key == words.ALARM_VARIABLE:
-            number = "" if value is None else f" {value:g}"
-            self._note(f"#{key} raises alarm{number}: the program goes no farther", Severity.ERROR, "NC226")
-        return key in (words.MESSAGE_VARIABLE, words.ALARM_VARIABLE)
 
     # Blocks
 

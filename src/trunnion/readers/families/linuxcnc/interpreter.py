@@ -117,7 +117,8 @@ class LinuxcncInterpreter(CycleInterpreter):
                 found = [code for code in codes if code in group]
                 if len(found) > 1:
                     names = [g_code_text(code) if letter == "G" else f"M{code}" for code in found]
-                    raise BlockError(f"{' and '.join(names[:2])} are of one group, of which a block has one", code="NC212")
+                    what = f"{' and '.join(names[:2])} are of one group, of which a block has one"
+                    raise BlockError(what, code="NC212")
 
     def _execute_words(self, block: Block) -> None:
         control = self.control
