@@ -20,6 +20,7 @@ from trunnion.errors import InputError
 from trunnion.simulation.cutting import shares as shares_module
 from trunnion.simulation.cutting import sweeps
 from trunnion.simulation.cutting.shares import DamagedShareError, JoinedShares, Share, tiles_of
+from trunnion.simulation.cutting.stretch_kernel import MET_IDLE, REMOVED
 from trunnion.simulation.simulator import Job, cut_share, simulate
 from trunnion.simulation.stock import material
 from trunnion.simulation.stock.deviation import missing_from
@@ -251,6 +252,11 @@ _SOUND = {
     {"rows": _npy((9,), np.int32, bytes(36))},
     {"count": _npy((4,), np.int32, np.array([1, 1, -1, 3], np.int32).tobytes())},
     {"count": _npy((4,), np.int32, np.array([0, 0, 0, 2**31 - 1], np.int32).tobytes())},
+    {  # four rays may have as many together, one of them may not
+        "count": _npy((4,), np.int32, np.array([0, 0, 0, 4000], np.int32).tobytes()),
+        "ends": _npy((8000,), float, bytes(64000)), "rows": _npy((8000,), np.int32, bytes(32000)),
+        "normals": _npy((8000, 3), np.int8, bytes(24000)),
+    },
 ])  # fmt: skip
 @pytest.mark.parametrize("packed", [ZIP_DEFLATED, ZIP_STORED])
 def test_no_share_takes_more_memory_than_its_tiles_can(wrong: dict[str, bytes], packed: int) -> None:
@@ -263,6 +269,43 @@ def test_no_share_takes_more_memory_than_its_tiles_can(wrong: dict[str, bytes], 
     most = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert most < 1_000_000
+
+
+def _chunk(blocks: list[list[int]], rows: list[int], values: int, places: int) -> bytes:
+    content = BytesIO()
+    with ZipFile(content, "w", ZIP_DEFLATED) as archive:
+        archive.writestr(
+            "chunk",
+            _npy((len(blocks), 3), np.int32, np.array(blocks, np.int32).tobytes())
+            + _npy((len(rows),), np.int32, np.array(rows, np.int32).tobytes())
+            + _npy((values,), float, bytes(8 * values)) + _npy((places, 3), float, bytes(24 * places)),
+        )  # fmt: skip
+    return content.getvalue()
+
+
+@pytest.mark.parametrize("wrong", [
+    ([[3, REMOVED, 2]], [5, 6], 2, 0),
+    ([[-1, REMOVED, 2]], [5, 6], 2, 0),
+    ([[0, 9, 2]], [5, 6], 2, 2),
+    ([[0, REMOVED, 2]], [4, 6], 2, 0),
+    ([[0, REMOVED, 2]], [5, 15], 2, 0),
+    ([[0, REMOVED, 1]], [5, 6], 2, 0),
+    ([[0, REMOVED, 3], [1, REMOVED, -1]], [5, 6], 2, 0),
+    ([[0, REMOVED, 2]], [5, 6], 3, 0),
+    ([[0, REMOVED, 2]], [5, 6], 2, 2),
+    ([[0, MET_IDLE, 2]], [5, 6], 2, 1),
+    ([], [5], 1, 0),
+    ([[0, REMOVED, 1]] * 28, [5] * 28, 28, 0),
+])  # fmt: skip
+def test_a_chunk_that_no_share_of_these_rows_can_have_is_refused(wrong: tuple[Any, ...]) -> None:
+    def measured(*chunk: Any) -> list[Any]:
+        archive = ZipFile(BytesIO(_chunk(*chunk)))
+        return list(shares_module._measured(archive, "chunk", [0, 1, 2], range(5, 15), 9))
+
+    (sound,) = measured([[0, REMOVED, 2], [0, MET_IDLE, 1]], [5, 6, 14], 3, 1)
+    assert [len(each.row) for each in sound.columns] == [2, 1]
+    with pytest.raises(DamagedShareError):
+        measured(*wrong)
 
 
 def test_a_share_that_is_packed_otherwise_is_refused() -> None:
