@@ -59,7 +59,8 @@ class CoordinateControl(RowRecorder):
         self.tilted = False
         self._tilted_from = self._shifted_from = -1
         self._rows_in_use = RowsInUse()
-        # Work offsets that were written since the last motion at the part: row, line, file and word; and the first row of each.
+        # Work offsets that were written since the last motion at the part: row, line, file and word; the first row of
+        # each.
         self._stored_offsets: list[tuple[int, int, int, str]] = []
         self._stored_systems: dict[int, int] = {}
         self._trailing = TrailingModes(self._used_until)
