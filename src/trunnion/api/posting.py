@@ -35,12 +35,13 @@ from trunnion.api.settings import Settings
 from trunnion.api.targets import OutputLike, Target, open_target
 from trunnion.api.turned_parts import checked_angles, is_turned, turned_toolpaths
 from trunnion.api.writing import named_verification, read_back_while_writing, write
+from trunnion.controls.vocabulary import HOOKS_NOTICE
 from trunnion.errors import Problem, Severity, TrunnionError
 from trunnion.files import OutputGroup, file_on_disk
 from trunnion.jit import compile_ahead
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
-from trunnion.model.toolpath import Toolpath
+from trunnion.model.toolpath import Message, Toolpath
 from trunnion.verification import Verification, rows_from_starts, verify, without_columns
 
 if TYPE_CHECKING:  # imported where a program is simulated: others start sooner
@@ -204,14 +205,27 @@ def post_beside(
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
         changes = Hooks(load_hooks(hook_files), job.machine.name, job.control.name, job.settings)
         toolpaths = load_toolpaths(cl, job, strict, observer, changes.change)
+        toolpaths, carried = _without_notices(toolpaths, job)
         toolpaths = turned_toolpaths(toolpaths, *angles, absolute=job.options.absolute_frame)
         decisions = tuple(changes.decisions) if job.options.explain else ()
         notices: tuple[str, ...] = ()
         if is_placed or is_turned(*angles):
             notices = placed_notices(*angles, job.machine.workpiece_zero, job.machine.tool_length)
-        job = replace(job, notices=(*notices, *changes.notices), decisions=decisions)
+        job = replace(job, notices=(*notices, *carried, *changes.notices), decisions=decisions)
         target.files.protect(file_on_disk(toolpath.file) for toolpath in toolpaths)
         return post_toolpaths(toolpaths, job, target, observer, later)
+
+
+def _without_notices(toolpaths: list[Toolpath], job: PostJob) -> tuple[list[Toolpath], tuple[str, ...]]:
+    """Toolpaths without the notices of hooks that they were converted with, and these for the head of the program."""
+    operations = (operation for toolpath in toolpaths for operation in toolpath.operations)
+    texts = (event.text for operation in operations for event in operation.events if isinstance(event, Message))
+    if not any(text.strip().upper().startswith(HOOKS_NOTICE) for text in texts):
+        return toolpaths, ()
+    from trunnion.conversion import take_notices  # few CL files have some
+
+    taken = [take_notices(toolpath, job.control.family) for toolpath in toolpaths]
+    return [toolpath for toolpath, _ in taken], tuple(dict.fromkeys(text for _, found in taken for text in found))
 
 
 def post_toolpaths(
