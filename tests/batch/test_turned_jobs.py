@@ -100,3 +100,23 @@ def test_angles_without_cl_files_and_beyond_a_turn_are_told_with_their_lines(tmp
     text = '[[job]]\naction = "convert"\nfiles = ["*.mpf"]\nto_cl = true\nturn_deg = 45\n'
     with pytest.raises(trunnion.InputError, match="BAT110"):
         load_batch(jobs(tmp_path, text))
+
+
+def test_zero_and_tool_length_of_a_post_are_settings(posted: Path, tmp_path: Path) -> None:
+    """Those of the defaults and of the job, in which order they may stand; the head of the program has them."""
+    head = "zero_mm = [1, 2, -60]\ntool_length_mm = 120\n"
+    (tmp_path / "a.cls").write_bytes((posted / "a.cls").read_bytes())
+    job = '[[job]]\nfiles = ["a.cls"]\nturn_deg = 45\n'
+    for name, text in (
+        ("defaults", head + job),
+        ("job", job + head),
+        ("over", head.replace("1, 2", "3, 4") + job + head),
+        ("setting", head.replace("1, 2", "3, 4") + job + "[job.settings]\nzero = [1, 2, -60]\n"),
+    ):
+        assert run(jobs(tmp_path, text), tmp_path / name).passed
+        program = (tmp_path / name / "a.mpf").read_text("utf-8")
+        assert "WORKPIECE ZERO X1.000 Y2.000 Z-60.000 MM" in program
+        assert "ZERO FOR TOOL LENGTH 120 MM" in program
+    twice = job + head + "[job.settings]\nzero = [1, 2, -60]\n"
+    with pytest.raises(trunnion.InputError, match=r"zero_mm.*is stated besides settings.zero"):
+        load_batch(jobs(tmp_path, twice))

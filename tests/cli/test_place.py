@@ -7,8 +7,9 @@ from xml.etree import ElementTree
 import pytest
 
 import trunnion
-from trunnion.api.placed_heads import StatedPlace, stated_place
+from trunnion.api.placed_heads import stated_place
 from trunnion.cli import main
+from trunnion.model.clamping import Clamping, StatedPlace
 
 BLADE = "tests/golden/yl569/3_blade_finish.cls"
 HUB = "tests/golden/yl569/2_hub_rough.cls"
@@ -296,11 +297,11 @@ def test_what_is_converted_from_a_placed_program_says_how_the_part_is_clamped_an
         HUB, machine=source, output=program, turn=30.5, tilt=-10.0, force=True,
         settings={"zero": (1.0, 2.0, -33.25), "tool_length": 100.0},
     )  # fmt: skip
-    assert stated_place(program) == StatedPlace(30.5, -10.0, (1.0, 2.0, -33.25), 100.0)
+    assert stated_place(program) == StatedPlace(Clamping(30.5, -10.0), (1.0, 2.0, -33.25), 100.0)
     for machine in FAMILIES:
         other = tmp_path / f"{machine}.nc"
         trunnion.convert(program, machine=source, to_machine=machine, output=other, force=True)
-        assert stated_place(other) == StatedPlace(30.5, -10.0)
+        assert stated_place(other) == StatedPlace(Clamping(30.5, -10.0))
         text = other.read_text("utf-8")
         assert text.count("PART TURNED") == text.count("PART TILTED") == 1
         assert "WORKPIECE ZERO X" not in text

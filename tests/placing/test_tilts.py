@@ -10,12 +10,16 @@ from hypothesis import strategies as st
 
 import trunnion
 from tests.support.placed_paths import brute_margin, limited_machines, random_rows, turned_by
-from trunnion.api.placed_heads import StatedPlace, placed_notices, stated_place, unlike_bodies, unlike_head
+from trunnion.api.placed_heads import placed_notices, stated_place, unlike_bodies, unlike_cl_files, unlike_zero
 from trunnion.arrays import Floats
+from trunnion.errors import Problem
 from trunnion.machines import Machine, load_machine
+from trunnion.model.clamping import Clamping, StatedPlace
 from trunnion.placing.best_turn import Grid, best_of_turn, best_orientations
 from trunnion.placing.path_rows import PathRows, about_x, turn_and_tilt
 from trunnion.placing.turns import TurnedPath, choices_of
+
+YL569 = load_machine("yl569")
 
 PHASES = [Phase.explicit, Phase.generate]
 
@@ -137,40 +141,70 @@ def test_a_part_that_no_table_reaches_as_it_is_drawn_is_placed_and_posted_tilted
     assert posted.passed
 
 
+def unlike_head(
+    program: Path, turn: float, tilt: float, of_cl: Clamping | None = None, machine: Machine = YL569
+) -> list[Problem]:
+    """What a comparison with CL files warns of that are turned by these angles."""
+    clamped = (of_cl or Clamping()).then(turn, tilt)
+    assert clamped is not None
+    return unlike_cl_files(program, Clamping(turn, tilt), clamped, of_cl, machine)
+
+
+def head(path: Path, *notices: str) -> Path:
+    path.write_text("\n".join(f"({text})" for text in notices) + "\nN10 G21\n", "utf-8")
+    return path
+
+
 def test_notices_are_found_again(tmp_path: Path) -> None:
-    program = tmp_path / "head.nc"
-    notices = placed_notices(-45.0, 30.0, (1.0, -2.0, 3.5), 120.25)
+    notices = placed_notices(Clamping(-45.0, 30.0), (1.0, -2.0, 3.5), 120.25)
     assert notices[1].startswith("PART TURNED 315 DEG ABOUT Z, COUNTER-CLOCKWISE")
-    longest = placed_notices(312.656, -37.125, (-246.014, -407.304, -136.189), 1120.125)
+    longest = placed_notices(Clamping(312.656, -37.125), (-246.014, -407.304, -136.189), 1120.125)
     assert max(map(len, longest)) <= 76  # one line each
     assert notices[3] == "ZERO FOR TOOL LENGTH 120.25 MM, FROM GAUGE POINT TO TIP"
-    program.write_text("\n".join(f"({text})" for text in notices), "utf-8")
+    program = head(tmp_path / "head.nc", *notices)
     assert unlike_head(tmp_path, 315.0, 30.0) == unlike_head(tmp_path / "none.nc", 0.0, 0.0) == []
     assert unlike_head(program, 315.0, 30.0) == unlike_head(program, -45.0, 30.0) == []
     assert [problem.code for problem in unlike_head(program, 45.0, 30.0)] == ["PLC220"]
     assert [problem.code for problem in unlike_head(program, 315.0, 0.0)] == ["PLC220"]
-    assert stated_place(program) == StatedPlace(315.0, 30.0, (1.0, -2.0, 3.5), 120.25)
+    assert stated_place(program) == StatedPlace(Clamping(315.0, 30.0), (1.0, -2.0, 3.5), 120.25)
+
+
+def test_a_comparison_is_told_the_angles_that_lead_from_the_cl_file_to_the_head(tmp_path: Path) -> None:
+    program = head(tmp_path / "head.nc", *placed_notices(Clamping(45.0, 20.0)))
+    stated = Clamping(30.0, 20.0)
+    assert unlike_head(program, 15.0, 0.0, stated) == unlike_head(program, -345.0, 0.0, stated) == []
+    (plain,) = unlike_head(program, 0.0, 0.0, stated)
+    assert plain.cure.startswith("give the turn 15, so that")
+    assert "the CL file states that it is tilted by 20 degrees about X and turned by 30 degrees about Z" in plain.what
+    (more,) = unlike_head(program, 10.0, 0.0, stated)
+    assert "what is given makes that tilted by 20 degrees about X and turned by 40 degrees about Z" in more.what
+    (drawn,) = unlike_head(program, 0.0, 0.0)
+    assert drawn.cure.startswith("give the turn 45 and the tilt 20, so that")
+    (upright,) = unlike_head(program, 0.0, 0.0, Clamping(0.0, 5.0))
+    assert upright.cure.startswith("give the turn 45 and the tilt 15, so that")
+    (other,) = unlike_head(program, 0.0, 0.0, Clamping(30.0, 5.0))
+    assert other.cure.startswith("no turn and tilt lead from one to the other")
 
 
 def test_a_zero_and_a_tool_length_other_than_those_of_the_head_are_told(tmp_path: Path) -> None:
     program = tmp_path / "head.nc"
-    program.write_text("\n".join(f"({text})" for text in placed_notices(0.0, 0.0, (1.0, -2.0, 3.5), 120.0)), "utf-8")
+    program.write_text("\n".join(f"({text})" for text in placed_notices(Clamping(), (1.0, -2.0, 3.5), 120.0)), "utf-8")
     machine = load_machine("yl569")
     same = replace(machine, workpiece_zero=(1.0, -2.001, 3.5), tool_length=120.0)
-    assert unlike_head(program, 0.0, 0.0, machine) == unlike_head(program, 0.0, 0.0, same) == []
-    (other,) = unlike_head(program, 0.0, 0.0, replace(machine, workpiece_zero=(1.0, -2.0, 3.6)))
+    assert unlike_zero(program, machine) == unlike_head(program, 0.0, 0.0, None, same) == []
+    (other,) = unlike_zero(program, replace(machine, workpiece_zero=(1.0, -2.0, 3.6)))
     assert other.code == "PLC240"
     assert "the workpiece zero is at 1,-2,3.5, and the slides are judged with zero 1,-2,3.6" in other.what
-    (longer,) = unlike_bodies(program, 0.0, 0.0, replace(machine, tool_length=150.0))
+    (longer,) = unlike_bodies(program, Clamping(), replace(machine, tool_length=150.0))
     assert "holds for a tool length of 120 mm" in longer.what
     # It says that the part is not turned: a turn is another clamping.
     assert [problem.code for problem in unlike_head(program, 45.0, 0.0)] == ["PLC220"]
-    assert "clamped as it is drawn" in unlike_bodies(program, 45.0, 0.0, machine)[0].what
-    unknown = placed_notices(0.0, 0.0, (1.0, -2.0, 3.5), None)
+    assert "clamped as it is drawn" in unlike_bodies(program, Clamping(45.0), machine)[0].what
+    unknown = placed_notices(Clamping(), (1.0, -2.0, 3.5), None)
     assert unknown[2] == "ZERO FOR TOOL LENGTH 0 MM: NONE WAS STATED"
     program.write_text("\n".join(f"; {text}" for text in unknown), "utf-8")
     found = stated_place(program)
-    assert found is not None
+    assert found.zero == (1.0, -2.0, 3.5)
     assert found.tool_length is None
 
 

@@ -15,7 +15,7 @@ from trunnion.api.converting_cl import convert_cl, write_and_prove
 from trunnion.api.input_files import machine_files
 from trunnion.api.job import PostJob, prepare
 from trunnion.api.observer import SILENT, Observer
-from trunnion.api.placed_heads import carried_notices
+from trunnion.api.placed_heads import damaged_notices, placed_notices, stated_place
 from trunnion.api.post_result import PostResult
 from trunnion.api.posting import post_toolpaths
 from trunnion.api.reading import FilePath, MachineLike, as_machine, read_program
@@ -184,7 +184,10 @@ def convert_beside(
     source = as_machine(machine)
     target_machine = source if to_machine is None else as_machine(to_machine, "to_machine")
     control = load_control(source.control)
-    job = replace(prepare(target_machine, settings, force=force), notices=carried_notices(program))
+    place = stated_place(program)
+    job = prepare(target_machine, settings, force=force)
+    if place.clamping is not None:
+        job = replace(job, notices=placed_notices(place.clamping), clamping=place.clamping)
     check_conversion_settings(job, to_cl)
     definitions = [*machine_files(machine, source), *machine_files(to_machine or target_machine, target_machine)]
     source = set_up_machine(source, zero, tool_length)
@@ -192,6 +195,7 @@ def convert_beside(
         compile_ahead(readers.KERNELS if to_cl else kernels.CONVERTING)
         divided = job.subprograms(target.files, target.path) is not None
         converter = _ProgramConverter(str(nc), observer, force)
+        converter.report(damaged_notices(program, place))
         run = read_program(program, machine=source, subprograms=others)
         converted = converter.read(run, control, None if to_cl else job.machine)
         if subprograms and not (divided or to_cl):

@@ -12,6 +12,7 @@ from trunnion.cl import DIALECTS
 from trunnion.cl.read_back import read_back_problems
 from trunnion.cl.writers import WRITERS
 from trunnion.errors import InputError, Problem, RefusedError, argument_problem, merge_repeated
+from trunnion.model.clamping import clamped_notices
 from trunnion.model.toolpath import Toolpath
 
 #: Settings of a conversion from CL file to CL file, and what they may be.
@@ -60,7 +61,8 @@ def convert_cl(
         raise InputError((*error.problems, hint)) from None
     observer.problems(toolpath.remarks)
     inch = texts["units"] == "inch" if "units" in texts else toolpath.unit == _INCH
-    remarks = write_and_prove(toolpath, target, dialect, inch=inch)
+    clamped = () if toolpath.clamping is None else tuple(clamped_notices(toolpath.clamping))
+    remarks = write_and_prove(toolpath, target, dialect, inch=inch, comments=clamped)
     observer.problems(remarks)
     return toolpath, (*toolpath.remarks, *remarks)
 

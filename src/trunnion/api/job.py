@@ -25,6 +25,7 @@ from trunnion.controls.vocabulary import MM, PROGRAM_CHOICES
 from trunnion.errors import InputError, argument_problem
 from trunnion.files import OutputFiles
 from trunnion.machines import Machine
+from trunnion.model.clamping import Clamping
 from trunnion.model.motion import Decision, MachiningMode, PoleStrategy
 from trunnion.output.capabilities import control_capabilities
 from trunnion.output.subprograms import SubprogramOutput
@@ -65,6 +66,7 @@ class PostJob:
     beside        files of subprograms that exist already and that templates call
     simulation    stock and all else that the program is simulated with; None: it is not; and the files of that
     notices       comments for the head of the program
+    clamping      how the part is clamped
     decisions     what was decided before planning, for reports
     forcing       what a refusal says of ``force``; empty where it cannot be asked for
     """
@@ -82,6 +84,7 @@ class PostJob:
     simulation: "SimulationInput | None" = None
     simulation_files: tuple[str | os.PathLike[str], ...] = ()
     notices: tuple[str, ...] = ()
+    clamping: Clamping = field(default_factory=Clamping)
     decisions: tuple[Decision, ...] = ()
     forcing: str = FORCING
 

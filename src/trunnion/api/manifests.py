@@ -22,6 +22,7 @@ from trunnion.api.post_result import PostResult
 from trunnion.api.reading import FilePath
 from trunnion.errors import InputError, Problem, Severity, unusable_file
 from trunnion.files import file_on_disk
+from trunnion.model.clamping import clamping_data
 from trunnion.output.program import Program
 from trunnion.reporting.text import clean, finite_or_none
 from trunnion.verification import Verification, durations
@@ -122,6 +123,7 @@ def manifest_bytes(
         "program": clean(main),
         "machine": {"key": clean(job.machine.key), "name": clean(job.machine.name)},
         "control": clean(program.control.name),
+        **clamping_data(job.clamping),
         "may_run": result.passed,
         "simulation_passed": None if result.simulation is None else result.simulation.passed,
         "files": files,

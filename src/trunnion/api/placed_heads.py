@@ -1,167 +1,134 @@
 """What the head of a program says of a part that is clamped otherwise than it is drawn, and of its zero.
 
-Comments state the tilt, the turn, the workpiece zero on the machine and the tool length for which that zero holds. They
-are read again wherever the program is compared or simulated, and held against what is given there.
+The head is what stands before the first block that does something. What it says is held against what is given wherever
+the program is compared or simulated.
 """
 
 import math
-import re
-from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from trunnion.controls.vocabulary import DRAWN_NOTICE, LENGTH_NOTICE, TILTED_NOTICE, TURNED_NOTICE, ZERO_NOTICE
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
+from trunnion.model.clamping import (
+    SAME,
+    Clamping,
+    StatedPlace,
+    are_one_angle,
+    clamped_notices,
+    head_comments,
+    number,
+    read_place,
+    zero_notices,
+)
 
-_VALUE: Final = r"(-?[0-9]+(?:\.[0-9]+)?)"
-
-#: So much of a program is its head, bytes.
+#: So much of a program is its head at most, bytes.
 _HEAD: Final = 1 << 16
 
-#: Angles in degrees and lengths in mm that differ by less are the same: they are printed in thousandths.
-_SAME: Final = 2e-3
 
-
-@dataclass(frozen=True, slots=True)
-class StatedPlace:
-    """What the head of a program states.
-
-    turn, tilt   of the part, degrees
-    zero         on the machine, with all axes at zero, mm; None: it is not stated
-    tool_length  for which the zero holds, mm; None: it is not stated
-    """
-
-    turn: float
-    tilt: float
-    zero: Vector | None = None
-    tool_length: float | None = None
-
-
-def placed_notices(
-    turn: float, tilt: float, zero: Vector | None = None, tool_length: float | None = None
-) -> tuple[str, ...]:
-    """Comments for the head of a program: how the part is clamped, degrees, and where its zero (3,) is, mm.
+def placed_notices(clamping: Clamping, zero: Vector | None = None, tool_length: float | None = None) -> tuple[str, ...]:
+    """Comments for the head of a program: how the part is clamped, and where its zero (3,) is, mm.
 
     ``tool_length`` is the one that the slides are planned with, mm; None: none was stated, and 0 was taken.
     """
-    return (*_clamped(turn, tilt), *([] if zero is None else _zero(zero, tool_length)))
+    return (*clamped_notices(clamping), *([] if zero is None else zero_notices(zero, tool_length)))
 
 
-def _clamped(turn: float, tilt: float) -> Iterator[str]:
-    turn %= 360.0
-    if tilt:
-        side = "UP" if tilt > 0.0 else "DOWN"
-        yield f"{TILTED_NOTICE} {number(tilt)} DEG FIRST, ABOUT ITS X, RIGHT-HANDED, ITS +Y SIDE {side}"
-    if turn or tilt:
-        yield f"{TURNED_NOTICE} {number(turn)} DEG ABOUT Z, COUNTER-CLOCKWISE SEEN FROM ABOVE, FROM +Z"
-    else:
-        yield f"{DRAWN_NOTICE}, NOT TURNED"
+def stated_place(program: Path) -> StatedPlace:
+    """What the head of a program states of its part; nothing where it cannot be read twice, as what a pipe holds."""
+    if not program.is_file():
+        return StatedPlace()
+    try:
+        with program.open("rb") as stream:
+            head = stream.read(_HEAD).decode("latin-1")
+    except OSError:
+        return StatedPlace()
+    return read_place(list(head_comments(enumerate(head.splitlines(), 1))))
 
 
-def _zero(zero: Vector, tool_length: float | None) -> Iterator[str]:
-    x, y, z = zero
-    yield f"{ZERO_NOTICE}{x:.3f} Y{y:.3f} Z{z:.3f} MM ON THE MACHINE, AXES AT 0"
-    if tool_length is None:
-        yield f"{LENGTH_NOTICE} 0 MM: NONE WAS STATED"
-    else:
-        yield f"{LENGTH_NOTICE} {number(tool_length)} MM, FROM GAUGE POINT TO TIP"
+def damaged_notices(program: Path, stated: StatedPlace) -> list[Problem]:
+    """Warnings of notices that are not as they were written, or that contradict each other."""
+    cure = "compare it with the setup sheet or post it again: how the part is clamped, or where, is not known"
+    return [Problem(str(program), line, what, cure, Severity.WARNING, code="PLC250") for line, what in stated.faults]
 
 
-def number(value: float) -> str:
-    """Degrees or mm in thousandths, as short as they can be written."""
-    return f"{round(value, 3) + 0.0:.3f}".rstrip("0").removesuffix(".")
+def unlike_cl_files(
+    program: Path, given: Clamping, clamped: Clamping, of_cl: Clamping | None, machine: Machine
+) -> list[Problem]:
+    """Warnings for who compares a program with CL files where its head says otherwise how its part is clamped.
 
-
-def carried_notices(program: Path) -> tuple[str, ...]:
-    """Comments on how its part is clamped for a program that is made of another one, if that states it."""
-    stated = stated_place(program)
-    return () if stated is None else tuple(_clamped(stated.turn, stated.tilt))
-
-
-def unlike_head(program: Path, turn: float, tilt: float, machine: Machine | None = None) -> list[Problem]:
-    """Warnings where a head says otherwise how its part is clamped, degrees, for who compares it with CL files.
-
-    With a ``machine`` also where zero and tool length are others than those of the machine.
+    Parameters
+    ----------
+    given
+        Turn and tilt by which the CL files are turned before they are compared.
+    clamped
+        How the part is clamped then: as the CL files state, and turned by what is given.
+    of_cl
+        What the CL files state; None: nothing.
+    machine
+        Where its zero and tool length are known, those of the head are held against them.
     """
     stated = stated_place(program)
-    if stated is None:
-        return []
-    found = [] if machine is None else _other_zero(program, stated, machine)
-    if not _is_clamped_so(stated, turn, tilt):
-        cure = f"give {_told(stated)}, so that the CL files are turned before they are compared"
-        found.insert(0, Problem(str(program), 0, _said(stated), cure, Severity.WARNING, code="PLC220"))
+    found = _unlike_zero(program, stated, machine)
+    if stated.clamping is not None and not stated.clamping.is_like(clamped):
+        told = "" if of_cl is None else f"; the CL file states that it is {of_cl}"
+        cure = _cure_of_comparison(stated.clamping, of_cl or Clamping())
+        what = f"its head says that the part is {stated.clamping}{told}"
+        if of_cl is not None and not (are_one_angle(given.turn, 0.0) and are_one_angle(given.tilt, 0.0)):
+            what += f", and what is given makes that {clamped}"
+        found.insert(0, Problem(str(program), 0, what, cure, Severity.WARNING, code="PLC220"))
     return found
 
 
-def unlike_bodies(program: Path, turn: float, tilt: float, machine: Machine) -> list[Problem]:
-    """As ``unlike_head``, for who simulates the program with bodies that are turned so."""
+def _cure_of_comparison(stated: Clamping, of_cl: Clamping) -> str:
+    """Which angles bring the CL files to how the part is clamped, if any do."""
+    turn, tilt = (stated.turn - of_cl.turn) % 360.0, stated.tilt - of_cl.tilt
+    reached = of_cl.then(turn, tilt)
+    if reached is None or not reached.is_like(stated):
+        turn = stated.turn
+        reached = of_cl.then(turn, tilt)
+    if reached is None or not reached.is_like(stated):
+        return "no turn and tilt lead from one to the other: compare with the CL files that it was made from"
+    return f"give {_told(turn, tilt)}, so that the CL files are turned before they are compared"
+
+
+def unlike_bodies(program: Path, given: Clamping, machine: Machine) -> list[Problem]:
+    """Warnings for who simulates a program with bodies as they are drawn, which are clamped as it is ``given``."""
     stated = stated_place(program)
-    if stated is None:
-        return []
-    found = _other_zero(program, stated, machine)
-    if not _is_clamped_so(stated, turn, tilt):
-        cure = f"give {_told(stated)}, so that stock, part and fixtures are turned; or give them as they are clamped"
-        found.insert(0, Problem(str(program), 0, _said(stated), cure, Severity.WARNING, code="PLC230"))
+    found = _unlike_zero(program, stated, machine)
+    if stated.clamping is not None and not stated.clamping.is_like(given):
+        told = _told(stated.clamping.turn, stated.clamping.tilt)
+        cure = f"give {told}, so that stock, part and fixtures are turned; or give them as they are clamped"
+        what = f"its head says that the part is {stated.clamping}"
+        found.insert(0, Problem(str(program), 0, what, cure, Severity.WARNING, code="PLC230"))
     return found
 
 
-def _is_clamped_so(stated: StatedPlace, turn: float, tilt: float) -> bool:
-    off = abs((stated.turn - turn + 180.0) % 360.0 - 180.0)
-    return off < _SAME and abs(stated.tilt - tilt) < _SAME
+def unlike_zero(program: Path, machine: Machine) -> list[Problem]:
+    """Warnings where a head is damaged, or where the machine has another zero or tool length than it states."""
+    return _unlike_zero(program, stated_place(program), machine)
 
 
-def _other_zero(program: Path, stated: StatedPlace, machine: Machine) -> list[Problem]:
-    """A warning where zero or tool length of the machine are known, and the head states others."""
-    said = []
+def _unlike_zero(program: Path, stated: StatedPlace, machine: Machine) -> list[Problem]:
+    found, said = damaged_notices(program, stated), []
     zero, length = machine.workpiece_zero, machine.tool_length
-    if stated.zero is not None and zero is not None and math.dist(stated.zero, zero) >= _SAME:
+    if stated.zero is not None and zero is not None and math.dist(stated.zero, zero) >= SAME:
         said.append(f"the workpiece zero is at {','.join(map(number, stated.zero))}")
-    if stated.tool_length is not None and length is not None and abs(stated.tool_length - length) >= _SAME:
+    if stated.tool_length is not None and length is not None and abs(stated.tool_length - length) >= SAME:
         said.append(f"its zero holds for a tool length of {number(stated.tool_length)} mm")
     if not said:
-        return []
+        return found
     given = [*([] if zero is None else [f"zero {','.join(map(number, zero))}"])]
     given += [] if length is None else [f"tool length {number(length)}"]
     what = f"its head says that {' and that '.join(said)}, and the slides are judged with {' and '.join(given)}"
     cure = "give those of the head, or make sure that the program keeps the limits there as well"
-    return [Problem(str(program), 0, what, cure, Severity.WARNING, code="PLC240")]
+    return [*found, Problem(str(program), 0, what, cure, Severity.WARNING, code="PLC240")]
 
 
-def _told(stated: StatedPlace) -> str:
+def _told(turn: float, tilt: float) -> str:
     """The angles, as somebody is told to give them."""
-    if stated.turn == stated.tilt == 0.0:
+    if are_one_angle(turn, 0.0) and are_one_angle(tilt, 0.0):
         return "no turn and no tilt"
-    return f"the turn {number(stated.turn)}" + (f" and the tilt {number(stated.tilt)}" if stated.tilt else "")
-
-
-def _said(stated: StatedPlace) -> str:
-    """What a head says of its part, in words."""
-    if stated.turn == stated.tilt == 0.0:
-        return "its head says that the part is clamped as it is drawn"
-    tilted = f"tilted by {number(stated.tilt)} degrees about X and " if stated.tilt else ""
-    return f"its head says that the part is {tilted}turned by {number(stated.turn)} degrees about Z"
-
-
-def stated_place(program: Path) -> StatedPlace | None:
-    """What the head of a program states of its part; None: nothing."""
-    if not program.is_file():  # what a pipe holds can be read once
-        return None
-    try:
-        with program.open("rb") as stream:
-            head = stream.read(_HEAD).decode("latin-1").upper()
-    except OSError:
-        return None
-    turn, tilt = (re.search(rf"{words}\s+{_VALUE}\s+DEG", head) for words in (TURNED_NOTICE, TILTED_NOTICE))
-    if turn is None and DRAWN_NOTICE not in head:
-        return None
-    zero = re.search(rf"{ZERO_NOTICE}{_VALUE}\s+Y{_VALUE}\s+Z{_VALUE}\s+MM", head)
-    length = re.search(rf"{LENGTH_NOTICE}\s+{_VALUE}\s+MM,", head)
-    return StatedPlace(
-        turn=0.0 if turn is None else float(turn[1]),
-        tilt=0.0 if tilt is None else float(tilt[1]),
-        zero=None if zero is None else (float(zero[1]), float(zero[2]), float(zero[3])),
-        tool_length=None if length is None else float(length[1]),
-    )
+    tilted = "" if are_one_angle(tilt, 0.0) else f" and the tilt {number(tilt)}"
+    return f"the turn {number(turn % 360.0)}{tilted}"

@@ -18,6 +18,7 @@ from trunnion.api.placing_inputs import PlacedInput, read_input
 from trunnion.api.placing_table import larger_than_table, limit_of_table, standing_on
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.api.settings import Settings, as_texts, set_up_machine
+from trunnion.api.turned_parts import clamped_after
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.machines import Machine
@@ -137,6 +138,8 @@ def place(
     remarks: list[Problem] = []
     standing = standing_on(loaded, stock, part, remarks)
     given = read_input(files, loaded, texts, check_paths("subprograms", subprograms), observer, tilts_by_size)
+    for tilt in tilts_by_size:  # what could not be said in the head of a program is told before it is searched
+        clamped_after(given.clamping, (0.0, tilt), given.rows.stretches[0].file)
     bodies = None
     among = BodiesInput(fixtures, part, stock, tools, libraries, unit)
     if goal == Goal.COLLISIONS or among.are_given:
@@ -229,6 +232,7 @@ def _placement(
         between_mm=0.0 if found is None or best.path is None else _between(best.path, found),
         problems=tuple(problems),
         toolpaths=given.toolpaths,
+        clamping=given.clamping,
         tool_length_mm=machine.tool_length,
         _find_region=region,
         _margin_at=margin_at,

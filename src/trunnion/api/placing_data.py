@@ -7,6 +7,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
+from trunnion.model.clamping import clamping_data
 from trunnion.placing.placement import AxisUse, BodyDistance, Limit, Place, Placement
 
 _DECIMALS: Final = 6
@@ -50,6 +51,8 @@ def placement_data(found: Placement) -> dict[str, object]:
             "tolerance_mm": _number(region.tolerance),
         },
         "between_mm": _number(found.between_mm),
+        "stated": clamping_data(found.clamping),
+        "clamped": clamping_data(found.clamped),
         "distance_mm": None if found.distance_mm is None else _number(found.distance_mm),
         "nearest_anywhere": _nearest(found.nearest_anywhere),
         "most_distance_mm": None if found.most_distance_mm is None else _number(found.most_distance_mm),

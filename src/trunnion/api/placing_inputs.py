@@ -12,14 +12,16 @@ import numpy as np
 from trunnion import readers
 from trunnion.api.arguments import is_stream, wrong_argument
 from trunnion.api.observer import SILENT, Observer
+from trunnion.api.placed_heads import damaged_notices, stated_place
 from trunnion.api.planning import plan
 from trunnion.api.reading import ToolpathLike, read_toolpaths
 from trunnion.api.settings import Settings, as_texts, number_setting
-from trunnion.api.turned_parts import turned_toolpaths
+from trunnion.api.turned_parts import stated_clamping, turned_toolpaths
 from trunnion.arrays import Flags, Ints
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.machines import Machine
 from trunnion.model.arc_extremes import ArcPaths
+from trunnion.model.clamping import Clamping
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.placing.path_rows import PathRows, Stretch, about_x, joined_rows
@@ -39,6 +41,7 @@ _ROTARY_WORDS = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWor
 class PlacedInput:
     """What is placed: rows, and the toolpaths that they come from, of CL files; none, of NC programs.
 
+    clamping  how the part is clamped, as the files state; None: they state nothing
     tool   (n,) which of ``tools`` is in the spindle in each row
     tools  numbers and names as the files have them; empty: none was called
     """
@@ -48,6 +51,7 @@ class PlacedInput:
     tools: tuple[str, ...]
     toolpaths: tuple[Toolpath, ...] = ()
     problems: tuple[Problem, ...] = ()
+    clamping: Clamping | None = None
 
     @property
     def used_tools(self) -> list[int]:
@@ -96,8 +100,24 @@ def read_input(
         raise InputError(Problem(str(programs[0]), 0, what, "give CL files or NC programs, not both", code="PLC110"))
     if programs:
         runs = [_run_of(program, machine, subprograms) for program in programs]
-        return _of_runs(runs)
-    return _planned_tilted(toolpaths, machine, texts, observer, tilts)
+        clamping, problems = _clamping_of_programs(programs)
+        return replace(_of_runs(runs), problems=problems, clamping=clamping)
+    clamping = stated_clamping(toolpaths)
+    return replace(_planned_tilted(toolpaths, machine, texts, observer, tilts), clamping=clamping)
+
+
+def _clamping_of_programs(programs: Sequence[Path]) -> tuple[Clamping | None, tuple[Problem, ...]]:
+    """How the part of programs is clamped, as their heads say, and what is damaged there."""
+    stated = [stated_place(program) for program in programs]
+    problems = [each for program, own in zip(programs, stated, strict=True) for each in damaged_notices(program, own)]
+    first = next((own.clamping for own in stated if own.clamping is not None), None)
+    for program, own in zip(programs, stated, strict=True):
+        if first is not None and not (own.clamping or Clamping()).is_like(first):
+            says = "says nothing of its part" if own.clamping is None else f"says that its part is {own.clamping}"
+            what = f"its head {says}, and that of another one that it is {first}"
+            cure = "place programs of one clamping together"
+            raise InputError(Problem(str(program), 0, what, cure, code="PLC310"))
+    return first, tuple(problems)
 
 
 def toolpaths_to_post(

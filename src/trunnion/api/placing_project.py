@@ -9,20 +9,23 @@ from trunnion.api.project_file import load_project, project_inputs
 from trunnion.api.reading import FilePath
 from trunnion.api.settings import SettingValue
 from trunnion.api.turned_parts import checked_angles, is_turned
-from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.model.clamping import Clamping
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlacedSetup:
     """What a project states of the part that is placed; all as ``trunnion.place`` takes it.
 
-    read  all files that the project leads to, none of which may be written over
+    read      all files that the project leads to, none of which may be written over
+    problems  warnings: what of it does not count here
     """
 
     files: tuple[str, ...]
     machine: str
     settings: Mapping[str, SettingValue]
     read: tuple[FilePath, ...]
+    problems: tuple[Problem, ...] = ()
 
 
 def placed_setup(project: Path, name: str | None = None) -> PlacedSetup:
@@ -39,9 +42,12 @@ def placed_setup(project: Path, name: str | None = None) -> PlacedSetup:
         raise InputError(Problem(str(project), 0, what, cure, code="PLC160"))
     setup = _setup(loaded, project, name)
     settings = dict(setup.settings)
-    if is_turned(*checked_angles(setup.turn, setup.tilt)):
-        settings.pop("zero", None)  # it is that of the turned part: there is no present place of the drawn one
-    return PlacedSetup(setup.cl, setup.machine, settings, tuple(project_inputs(loaded)))
+    angles, problems = checked_angles(setup.turn, setup.tilt), list[Problem]()
+    if is_turned(*angles) and settings.pop("zero", None) is not None:
+        what = f"its zero is that of the part {Clamping(*angles)}, and it is placed as drawn: it has no present zero"
+        cure = "give the zero too, if there is one for the part as it is drawn"
+        problems.append(Problem(str(project), 0, what, cure, Severity.WARNING, code="PLC330"))
+    return PlacedSetup(setup.cl, setup.machine, settings, tuple(project_inputs(loaded)), tuple(problems))
 
 
 def _setup(loaded: Project, project: Path, name: str | None) -> PostedSetup:

@@ -23,6 +23,7 @@ from trunnion.api.writing import named_run
 from trunnion.definitions.messages import did_you_mean
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.machines import Machine
+from trunnion.model.clamping import Clamping, are_one_angle, number
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.placing.path_rows import turn_and_tilt
@@ -45,10 +46,8 @@ _OF_SETUP: Final = ("part", "fixtures", "tools", "libraries", "unit")
 _MOST_PLACES: Final = 50
 
 
-def simulation_input(
-    given: SimulationLike, machine: Machine, angles: tuple[float, float] = (0.0, 0.0)
-) -> SimulationInput:
-    """What is to be simulated with a part that is clamped at these ``angles``; the programs are not known yet.
+def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput:
+    """What is to be simulated; programs, and how the part is clamped, are not known yet.
 
     Raises
     ------
@@ -66,9 +65,9 @@ def simulation_input(
     if project is None:
         base = SimulationInput("", [SetupInput((), machine)])
     else:
-        base = _of_project(check_path("simulation", project), machine, stated, angles)
+        base = _of_project(check_path("simulation", project), machine, stated)
     own = {name: stated[name] for name in _OF_SETUP if name in stated}
-    setup = replace(base.setups[0], machine=machine, turn=angles[0], tilt=angles[1], **own)
+    setup = replace(base.setups[0], machine=machine, **own)
     found = replace(base, setups=[setup], **{name: stated[name] for name in _WHOLE if name in stated})
     if not found.stock:
         raise InputError(
@@ -77,6 +76,24 @@ def simulation_input(
     if isinstance(found.stock, str) and not is_mesh(found.stock):
         stock_shape(found.stock)  # what cannot be is told before any work
     return found
+
+
+def simulated_as_clamped(given: SimulationInput, clamping: Clamping) -> SimulationInput:
+    """What is simulated with a part that is clamped so.
+
+    Raises
+    ------
+    InputError
+        If a project states that it is clamped otherwise.
+    """
+    setup = given.setups[0]
+    for name, angle in (("turn", clamping.turn), ("tilt", clamping.tilt)):
+        wanted = getattr(setup, name)
+        if wanted is not None and not are_one_angle(wanted, angle):
+            file, line, key = setup.places[name]
+            what = f"{key} is {number(wanted)}, and the part of the post is clamped at {number(angle)} degrees"
+            raise InputError(Problem(file, line, what, f"give the {name} {number(wanted)}", code="SIM113"))
+    return replace(given, setups=[replace(setup, turn=clamping.turn, tilt=clamping.tilt)])
 
 
 def simulated_bodies(given: SimulationInput) -> Iterator[tuple[str, TriangleMesh]]:
@@ -102,9 +119,7 @@ def _drawn_bodies(given: SimulationInput) -> Iterator[tuple[str, TriangleMesh]]:
             yield kind, mesh if isinstance(mesh, TriangleMesh) else load_mesh(mesh)
 
 
-def _of_project(
-    path: Path, machine: Machine, stated: Mapping[str, Any], angles: tuple[float, float]
-) -> SimulationInput:
+def _of_project(path: Path, machine: Machine, stated: Mapping[str, Any]) -> SimulationInput:
     """A project, whose programs are not looked at: the one that is posted is simulated."""
     if not is_project(path):
         cure = "give the path of a project (.toml)"
@@ -118,12 +133,6 @@ def _of_project(
         file, line, key = setup.places["machine"]
         what = f"{key} is {as_machine(setup.machine).key}, and the program is posted for {machine.key}"
         raise InputError(Problem(file, line, what, "post it for the machine of the project", code="SIM113"))
-    for name, angle in zip(("turn", "tilt"), angles, strict=True):
-        wanted = getattr(setup, name)
-        if wanted is not None and wanted != angle:
-            file, line, key = setup.places[name]
-            what = f"{key} is {wanted:g}, and the part of the post is clamped at {angle:g} degrees"
-            raise InputError(Problem(file, line, what, f"give the {name} {wanted:g}", code="SIM113"))
     for name, own in (("zero", machine.workpiece_zero), ("tool_length", machine.tool_length)):
         wanted = getattr(setup, name)
         if wanted is not None and wanted != own:

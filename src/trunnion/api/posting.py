@@ -33,7 +33,7 @@ from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.api.reports import write_refusal
 from trunnion.api.settings import Settings
 from trunnion.api.targets import OutputLike, Target, open_target
-from trunnion.api.turned_parts import checked_angles, is_turned, turned_toolpaths
+from trunnion.api.turned_parts import checked_angles, clamped_after, stated_clamping, turned_toolpaths
 from trunnion.api.writing import named_verification, read_back_while_writing, write
 from trunnion.controls.vocabulary import HOOKS_NOTICE
 from trunnion.errors import Problem, Severity, TrunnionError
@@ -198,20 +198,26 @@ def post_beside(
         from trunnion.api.posted_simulation import simulation_files, simulation_input
 
         read = tuple(simulation_files(simulation))
-        job = replace(job, simulation=simulation_input(simulation, job.machine, angles), simulation_files=read)
+        job = replace(job, simulation=simulation_input(simulation, job.machine), simulation_files=read)
         inputs += read
     with open_target(output, papers=papers.by_name(), inputs=inputs, group=group) as target:
         compile_ahead(kernels.POSTING)
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
         changes = Hooks(load_hooks(hook_files), job.machine.name, job.control.name, job.settings)
         toolpaths = load_toolpaths(cl, job, strict, observer, changes.change)
+        stated = stated_clamping(toolpaths)
+        clamping = clamped_after(stated, angles, toolpaths[0].file if toolpaths else target.name)
         toolpaths, carried = _without_notices(toolpaths, job)
         toolpaths = turned_toolpaths(toolpaths, *angles, absolute=job.options.absolute_frame)
         decisions = tuple(changes.decisions) if job.options.explain else ()
         notices: tuple[str, ...] = ()
-        if is_placed or is_turned(*angles):
-            notices = placed_notices(*angles, job.machine.workpiece_zero, job.machine.tool_length)
-        job = replace(job, notices=(*notices, *carried, *changes.notices), decisions=decisions)
+        if is_placed or stated is not None or not clamping.is_as_drawn:
+            notices = placed_notices(clamping, job.machine.workpiece_zero, job.machine.tool_length)
+        job = replace(job, notices=(*notices, *carried, *changes.notices), decisions=decisions, clamping=clamping)
+        if simulation is not None and job.simulation is not None:
+            from trunnion.api.posted_simulation import simulated_as_clamped
+
+            job = replace(job, simulation=simulated_as_clamped(job.simulation, clamping))
         target.files.protect(file_on_disk(toolpath.file) for toolpath in toolpaths)
         return post_toolpaths(toolpaths, job, target, observer, later)
 
@@ -363,7 +369,7 @@ def _prove(
         return None
     found = verify(run, toolpaths, tolerances=expected.tolerances, settings=expected.settings, columns=columns)
     found = named_verification(found, target.name, job.beside)
-    return replace(found, operations=rows_from_starts(run, found.operations, starts))
+    return replace(found, operations=rows_from_starts(run, found.operations, starts), clamping=job.clamping)
 
 
 def _nothing_checked(job: PostJob, target: Target) -> Problem:

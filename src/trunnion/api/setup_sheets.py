@@ -10,9 +10,10 @@ import numpy as np
 from trunnion.api.job import PostJob
 from trunnion.api.papers import MADE_BY
 from trunnion.api.post_result import PostResult
-from trunnion.controls.vocabulary import PLACED_NOTICES, RADIUS_NUMBER_WORD
+from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD
 from trunnion.errors import Severity
 from trunnion.machines import Machine
+from trunnion.model.clamping import PLACED_NOTICES
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.run import NO_OFFSET, Run
 from trunnion.model.toolpath import CutterComp, CycleOn, Insert, Kind, Operation, SpindleOn, Stop, Tool

@@ -11,7 +11,6 @@ from typing import Any, Final
 
 import numpy as np
 
-from trunnion.api.placed_heads import number
 from trunnion.api.reading import FilePath
 from trunnion.api.reports import check_report_name
 from trunnion.api.simulation_data import simulation_data
@@ -19,6 +18,7 @@ from trunnion.api.simulation_result import NearMiss, SimulationFinding, Simulati
 from trunnion.api.turned_parts import is_turned
 from trunnion.arrays import Floats
 from trunnion.files import atomic_file
+from trunnion.model.clamping import number
 from trunnion.reporting.simulation_content import (
     DeviationBin,
     FindingRow,

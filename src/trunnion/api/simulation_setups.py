@@ -21,11 +21,12 @@ from trunnion.api.placed_heads import unlike_bodies
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.api.settings import set_up_machine, work_offset_setting
 from trunnion.api.simulation_result import NO_CALL
-from trunnion.api.turned_parts import checked_angles, is_turned, turned_toolpaths
+from trunnion.api.turned_parts import checked_angles, is_turned, toolpaths_clamped
 from trunnion.api.verifying import rapid_feed_of
 from trunnion.arrays import Floats
-from trunnion.errors import ArgumentName, InputError, Problem, argument_problem
+from trunnion.errors import ArgumentName, InputError, Problem, Severity, argument_problem
 from trunnion.machines import Machine
+from trunnion.model.clamping import Clamping
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.placing.path_rows import turn_and_tilt
@@ -140,12 +141,13 @@ def prepare_setup(
     others, rapid_feed = check_paths("subprograms", given.subprograms), rapid_feed_of(machine)
     runs = tuple(restore_rapids(as_run(program, machine, others), rapid_feed) for program in programs)
     _check_programs(runs, machine)
+    remarks += _without_motion(runs)
     for program in programs:
         if not isinstance(program, Run):
-            remarks += unlike_bodies(Path(program), *angles, machine)
+            remarks += unlike_bodies(Path(program), Clamping(*angles), machine)
     toolpaths = as_toolpaths(given.cl, None, False, observer)
     if not given.cl_is_turned:
-        toolpaths = turned_toolpaths(toolpaths, *angles)
+        toolpaths = toolpaths_clamped(toolpaths, *angles)
     tools = _tools(runs, given.tools, tool_libraries(given.libraries, given.unit), toolpaths)
     if given.work_offset is not None:
         remarks += _other_offsets(runs, given.work_offset, machine)
@@ -249,6 +251,13 @@ def _check_programs(runs: Sequence[Run], machine: Machine) -> None:
             (file, line), first = wrong[0]
             what = f"{first.text}; {counted(len(wrong), 'line')} of it not understood"
             raise InputError(Problem(file, line, what, f"is this a program of {machine.key}?", code="SIM140"))
+
+
+def _without_motion(runs: Sequence[Run]) -> list[Problem]:
+    """Programs that move nothing: an error where none of a set-up does, for then nothing was simulated."""
+    severity = Severity.WARNING if any(len(run) for run in runs) else Severity.ERROR
+    what, cure = "there is no motion in it: nothing was simulated", "give the program that moves the tool"
+    return [Problem(run.files[0], 0, what, cure, severity, code="SIM148") for run in runs if not len(run)]
 
 
 def _other_offsets(runs: Sequence[Run], wanted: str, machine: Machine) -> list[Problem]:

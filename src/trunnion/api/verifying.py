@@ -11,18 +11,19 @@ from trunnion.api import kernels
 from trunnion.api.arguments import check_choice, check_observer, check_paths, check_whole, wrong_argument
 from trunnion.api.cl_statements import replace_unknown_statements
 from trunnion.api.observer import SILENT, Observer
-from trunnion.api.placed_heads import unlike_head
+from trunnion.api.placed_heads import stated_place, unlike_cl_files, unlike_zero
 from trunnion.api.program_warnings import program_warnings
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.api.recording import as_recording
 from trunnion.api.settings import check_operation_names, check_tolerance, m_code, set_up_machine, work_offset_setting
-from trunnion.api.turned_parts import checked_angles, turned_toolpaths
+from trunnion.api.turned_parts import checked_angles, clamped_after, stated_clamping, turned_toolpaths
 from trunnion.controls import Control, load_control
 from trunnion.controls.setting_rules import tool_number
-from trunnion.errors import InputError, argument_problem
+from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.jit import compile_ahead
 from trunnion.machines import Machine
 from trunnion.model.axis_tolerance import AxisTolerance
+from trunnion.model.clamping import Clamping
 from trunnion.model.recording import Recording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Operation, Toolpath
@@ -195,9 +196,18 @@ def verify(
         given = {"tool": tool, "work_offset": work_offset, "edge": edge, "cl_units": units, "dialect": dialect}
         toolpaths = _changed_by_hooks(toolpaths, hook_files, loaded, control, given)
     toolpaths = replace_unknown_statements(toolpaths, control, loaded)
+    stated, clamped = stated_clamping(toolpaths), None
     if toolpaths:
+        clamped = clamped_after(stated, angles, toolpaths[0].file)
         toolpaths = turned_toolpaths(toolpaths, *angles, absolute=frame == "absolute")
-        observer.problems([] if isinstance(nc, Run) else unlike_head(Path(nc), *angles, loaded))
+    if not isinstance(nc, Run):
+        program, turned_by = Path(nc), Clamping(*angles)
+        observer.problems(
+            unlike_zero(program, loaded)
+            if clamped is None
+            else unlike_cl_files(program, turned_by, clamped, stated, loaded)
+        )
+        clamped = clamped or stated_place(program).clamping
     for toolpath in toolpaths:
         observer.problems(toolpath.remarks)
     if edge is None and toolpaths and "edge" in defaults:
@@ -229,6 +239,10 @@ def verify(
         ),
         columns=columns,
     )
+    found = replace(found, clamping=clamped)
+    if not len(run):
+        what, cure = "there is no motion in it: nothing of a path was checked", "give the program that moves the tool"
+        observer.problems([Problem(run.files[0], 0, what, cure, Severity.WARNING, code="NC185")])
     return found if recording is None else verification.with_recording(found, recording, recorded_tolerance)
 
 

@@ -12,7 +12,7 @@ from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.api.settings import Settings, set_up_machine
 from trunnion.api.simulation_result import NO_CALL
 from trunnion.api.targets import check_output_name
-from trunnion.api.viewing_inputs import of_project, view_program
+from trunnion.api.viewing_inputs import bodies_not_clamped_so, of_project, view_program
 from trunnion.api.viewing_stock import view_simulation, with_stock
 from trunnion.errors import InputError, argument_problem
 from trunnion.files import OutputPlace, atomic_file
@@ -113,6 +113,8 @@ def _prepared(
     simulated = view_simulation(placed, **{name: given[name] for name in of_stock})
     others = check_paths("subprograms", given["subprograms"])
     viewed = view_program(files, placed, cl=given["cl"], subprograms=others, settings=settings, observer=observer)
+    if any(given[name] for name in ("stock", "part", "fixtures")):
+        observer.problems(bodies_not_clamped_so(files[0], viewed.toolpaths))
     fixtures = check_paths("fixtures", given["fixtures"])
     around = [load_mesh(mesh, name=f"fixture {k}") for k, mesh in enumerate(fixtures, 1)]
     design = None if given["part"] is None else load_mesh(check_path("part", given["part"]), name="part")

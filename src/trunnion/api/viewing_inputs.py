@@ -12,18 +12,19 @@ from typing import Any, Final
 
 from trunnion.api.arguments import is_stream
 from trunnion.api.observer import Observer
+from trunnion.api.placed_heads import stated_place
 from trunnion.api.posting import post
 from trunnion.api.project_file import read_project
 from trunnion.api.reading import ToolpathLike, as_run, as_toolpaths
 from trunnion.api.settings import Settings
 from trunnion.api.simulation_setups import SetupInput
-from trunnion.api.turned_parts import checked_angles, is_turned
+from trunnion.api.turned_parts import checked_angles, is_turned, stated_clamping
 from trunnion.api.verifying import rapid_feed_of, verify
 from trunnion.cl import is_cl_file
 from trunnion.cl.sources import cl_sources
 from trunnion.controls import load_control
 from trunnion.encoding import decode
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, Problem, Severity
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Toolpath
 from trunnion.verification import Verification, restore_rapids
@@ -100,6 +101,15 @@ def view_program(
     verification = verify(run, machine=machine, cl=toolpaths, observer=observer)
     texts = tuple(decode(Path(file).read_bytes(), run.encoding) for file in run.files)
     return ViewedProgram(verification, texts, toolpaths, _cl_texts(cl))
+
+
+def bodies_not_clamped_so(file: Path, toolpaths: Sequence[Toolpath]) -> list[Problem]:
+    """A warning where a program is for a part that is clamped turned: a view shows bodies as they are given."""
+    stated = stated_clamping(toolpaths) if is_cl_file(file) else stated_place(file).clamping
+    if stated is None or stated.is_as_drawn:
+        return []
+    what = f"it says that the part is {stated}, and a view shows stock, part and fixtures as they are given"
+    return [Problem(str(file), 0, what, "give them as they are clamped", Severity.WARNING, code="PAG116")]
 
 
 def _posted(

@@ -115,6 +115,9 @@ def _vector(_: _Tables, table: Table, key: str) -> list[float] | None:
     return None if found is None else list(found)
 
 
+#: Keys that a post has as settings.
+_PLACE_SETTINGS: Final = {"zero_mm": "zero", "tool_length_mm": "tool_length"}
+
 #: Keys of a job besides those that say which files it has and where its results go.
 _OPTIONS: Final[Mapping[str, _Option]] = {
     "machine": _Option("machine", _ALL, _Tables.machine),
@@ -134,8 +137,8 @@ _OPTIONS: Final[Mapping[str, _Option]] = {
     "tolerance_mm": _Option("tolerance", _VERIFY, _number),
     "span_deg": _Option("span", _VERIFY, _number),
     "span_tip_mm": _Option("span_tip", _VERIFY, _number),
-    "zero_mm": _Option("zero", _CONVERT | _VERIFY | _SIMULATE, _vector),
-    "tool_length_mm": _Option("tool_length", _CONVERT | _VERIFY | _SIMULATE, _number),
+    "zero_mm": _Option("zero", _ALL, _vector),
+    "tool_length_mm": _Option("tool_length", _ALL, _number),
     "turn_deg": _Option("turn", _POST | _VERIFY | _SIMULATE, _angle(360.0)),
     "tilt_deg": _Option("tilt", _POST | _VERIFY | _SIMULATE, _angle(90.0)),
     "stock": _Option("stock", _SIMULATE, _Tables.stock),
@@ -188,9 +191,12 @@ def read_batch_table(root: Table, path: Path) -> Batch:
         if name in [job.name for job in jobs]:
             table.add_problem("name", f'is "{name[:100]}" twice', "tell jobs apart")
         _refuse_keys(table, action, stated)
-        values = {key: value for key, value in default_values.items() if action in _OPTIONS[key].actions} | stated
+        of_defaults = {key: value for key, value in default_values.items() if action in _OPTIONS[key].actions}
+        if action is Action.POST:
+            of_defaults, stated = _with_place_settings(defaults, of_defaults), _with_place_settings(table, stated)
+        values = of_defaults | stated
         if "settings" in values:
-            values["settings"] = default_values.get("settings", {}) | stated.get("settings", {})
+            values["settings"] = of_defaults.get("settings", {}) | stated.get("settings", {})
         inputs = _inputs(table, found, path, results)
         jobs += _judged(table, name, action, inputs, values, output, path.parent)
     defaults.report_unread_keys()
@@ -199,6 +205,17 @@ def read_batch_table(root: Table, path: Path) -> Batch:
     root.report_unread_keys()
     root.raise_problems()
     return Batch(path.parent, jobs, results, home_of(path), is_whole=True)
+
+
+def _with_place_settings(table: Table, values: Mapping[str, Any]) -> dict[str, Any]:
+    """What a table states of a post, with the workpiece zero and the tool length among its settings."""
+    found = dict(values)
+    place = {name: value for key, name in _PLACE_SETTINGS.items() if (value := found.pop(key, None)) is not None}
+    own = found.get("settings", {})
+    for key, name in _PLACE_SETTINGS.items():
+        if name in place and name in own:
+            table.add_problem(key, f"is stated besides settings.{name}", "state one of them", code="BAT110")
+    return {**found, "settings": {**place, **own}} if place else found
 
 
 def _judged(

@@ -15,11 +15,15 @@ from trunnion.cl.statement import Statement, comments_of, parse
 from trunnion.cl.statements.operations import LENGTH_UNITS
 from trunnion.cl.swallowed import SwallowedStatements
 from trunnion.cl.word_classes import acts_on_machine, drives_tool, words_that_count
+from trunnion.model.clamping import Clamping, may_be_notice, read_place
 from trunnion.model.toolpath import Frame
 
 #: Statements no longer than this are likely to come again, and their parsed form is kept; at most so many.
 _CACHED_STATEMENT_BYTES = 64
 _CACHE_SIZE = 4096
+
+#: Comments on the clamping of the part that are kept.
+_MOST_NOTICES = 100
 
 #: A file that begins with more unknown statements, and no known one, is no CL file.
 _MAX_UNKNOWN_STATEMENTS = 1000
@@ -64,6 +68,7 @@ class ClInterpreter:
         self._known_statements = 0
         self._unknown_statements = 0
         self._parse_cache: dict[bytes, tuple[Handler | None, Statement]] = {}
+        self._notices: list[tuple[int, str]] = []
 
     @property
     def builders(self) -> list[OperationBuilder]:
@@ -101,6 +106,8 @@ class ClInterpreter:
             if mark & COMMENT:
                 comment = raw[2:].decode(self._encoding, "replace").rstrip()
                 self._swallowed.refuse_in_comment(comment)
+                if not row and len(self._notices) < _MOST_NOTICES and may_be_notice(comment):
+                    self._notices.append((line, comment))
                 if self._dialect.comment is not None:
                     self._dialect.comment(self._state, comment)
                 return
@@ -156,6 +163,14 @@ class ClInterpreter:
             # What follows the last operation is done after its last row.
             last = state.builders[-1]
             last.events.extend(replace(event, row=last.stop - last.first) for event in state.builder.events)
+
+    def clamping(self) -> Clamping | None:
+        """How comments before the first point say that the part is clamped; those that are damaged are reported."""
+        found = read_place(self._notices)
+        for line, what in found.faults:
+            cure = "correct it, or take it away: how the part is clamped is not known"
+            self._diagnostics.remark(line, what, cure, code="PLC250")
+        return found.clamping
 
     def _report_lost_systems(self) -> None:
         """Report operations without MSYS among others that have one: their points would move by as much as it says."""

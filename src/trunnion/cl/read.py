@@ -173,6 +173,7 @@ def read_source(
         dialect=recognized.dialect.name,
         recognized=f"{recognized.dialect.title}: {recognized.why}",
         states_system=interpreter.states_system,
+        clamping=interpreter.clamping(),
         reopen=source.open if source.packed else None,
         system=tuple(number * (unit if k % 4 == 3 else 1.0) for k, number in enumerate(interpreter.system)),
     )  # fmt: skip

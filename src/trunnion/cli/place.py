@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from trunnion.api.input_files import machine_files
-from trunnion.api.placed_heads import number
 from trunnion.api.placing import place
 from trunnion.api.placing_data import placement_data
 from trunnion.api.placing_inputs import toolpaths_to_post
@@ -21,6 +20,7 @@ from trunnion.cli.results import as_json, print_result, tell
 from trunnion.cli.terminal import Terminal, output_place
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.files import atomic_file, check_outputs
+from trunnion.model.clamping import are_one_angle, number
 from trunnion.placing.placement import AxisUse, Limit, Place, Placement, RotaryUse, TurnMargin
 from trunnion.placing.table_limits import KEPT
 from trunnion.wording import counted, format_duration, one_line
@@ -42,6 +42,7 @@ def run(arguments: argparse.Namespace) -> int:
     read += [*arguments.fixtures, *library_files(arguments.libraries)]
     if project is not None:
         read += project.read
+        Terminal().problems(project.problems)
         arguments.files, arguments.machine = list(project.files), arguments.machine or project.machine
     if arguments.machine is None:
         raise InputError(argument_problem("machine", "is missing", "name the machine", code="ARG130"))
@@ -138,7 +139,7 @@ def placement_lines(found: Placement) -> Iterator[str]:
         left = f"{best.margin_mm:.3f} mm to the limits"
         yield f"{found.machine}: best zero {_point(best)}, {_clamped(best)}: {left}"
     if best.fits:
-        yield from (f"  {line}" for line in _sense(best))
+        yield from (f"  {line}" for line in _sense(found))
     for axis in best.axes:
         yield f"  {_use(axis)}"
     for rotary in best.rotary:
@@ -182,17 +183,23 @@ def _clamped(place: Place | TurnMargin) -> str:
     return f"{tilted}turned {number(place.turn_deg)} degrees"
 
 
-def _sense(best: Place) -> Iterator[str]:
+def _sense(found: Placement) -> Iterator[str]:
     """How the part is clamped: in words that do not ask for a rule of hands."""
-    if best.tilt_deg:
-        side = "up" if best.tilt_deg > 0.0 else "down"
-        angle = number(best.tilt_deg)
+    best, stated, whole = found.best, found.clamping, found.clamped
+    assert best is not None
+    if whole is None:
+        return
+    if stated is not None and not stated.is_as_drawn:
+        yield f"the part is {stated} already, as its file states; with that, against the drawing:"
+    if not are_one_angle(whole.tilt, 0.0):
+        side = "up" if whole.tilt > 0.0 else "down"
+        angle = number(whole.tilt)
         yield f"first a fixture angle of {angle} degrees about X of the part, right-handed: its +Y side goes {side}"
-    turn = number(best.turn_deg % 360.0)
-    if turn != "0":
-        then = "then " if best.tilt_deg else ""
+    if not are_one_angle(whole.turn, 0.0):
+        then = "" if are_one_angle(whole.tilt, 0.0) else "then "
+        turn = number(whole.turn % 360.0)
         yield f"{then}turn the part by {turn} degrees about Z, counter-clockwise seen from above (from +Z)"
-    elif not best.tilt_deg:
+    if whole.is_as_drawn:
         yield "the part is clamped as it is drawn"
 
 

@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from typing import Final
 
 from trunnion.api.input_files import machine_files
-from trunnion.api.placed_heads import number
 from trunnion.api.project_file import library_files, project_files
 from trunnion.api.reading import load_machine
 from trunnion.api.reports import check_report_name
@@ -19,6 +18,7 @@ from trunnion.cli.results import as_json, print_result
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import Severity
 from trunnion.files import atomic_file, check_outputs
+from trunnion.model.clamping import number
 from trunnion.simulation.meshes import check_mesh_name, save_mesh
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.stock.surface import stock_surface

@@ -97,14 +97,6 @@ FORCED_NOTICE: Final = "MUST NOT RUN AS IT IS"
 #: The same in a program whose motion a user's hooks have changed.
 HOOKS_NOTICE: Final = "MOTION CHANGED BY HOOKS"
 
-#: The same in a program that says how its part is clamped, where its zero is, and for which tool length.
-TURNED_NOTICE: Final = "PART TURNED"
-TILTED_NOTICE: Final = "PART TILTED"
-DRAWN_NOTICE: Final = "PART CLAMPED AS DRAWN"
-ZERO_NOTICE: Final = "WORKPIECE ZERO X"
-LENGTH_NOTICE: Final = "ZERO FOR TOOL LENGTH"
-PLACED_NOTICES: Final = (TURNED_NOTICE, TILTED_NOTICE, DRAWN_NOTICE, ZERO_NOTICE, LENGTH_NOTICE)
-
 #: Values of the records of tools and of operations, for templates with expressions.
 TOOL_VALUES: Final = (
     "call", "number", "name", "kind", "diameter", "corner_radius", "length", "flute_length", "taper_angle", "tip_angle",

@@ -6,7 +6,6 @@ from itertools import groupby
 import numpy as np
 
 from trunnion.arrays import Ints
-from trunnion.controls.vocabulary import PLACED_NOTICES
 from trunnion.conversion.program_events import ProgramEvent
 from trunnion.conversion.unsupported import Warnings
 from trunnion.model.run import Run
@@ -139,8 +138,7 @@ class EventBuilder:
         match event.kind:
             case "comment":
                 text = event.text.upper()
-                # How the part is clamped goes into the head of what is made of it; its zero is that of this machine.
-                if text and text not in self._phase_comments and not text.startswith(PLACED_NOTICES):
+                if text and text not in self._phase_comments:
                     yield Message(row, line, _one_line(event.text))
             case "tool":
                 if str(value).isdigit() and int(str(value)):

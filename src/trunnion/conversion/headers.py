@@ -18,6 +18,7 @@ from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.sections import ProgramSection
 from trunnion.conversion.settings import parse_number
 from trunnion.conversion.template_matching import LinePattern, TemplatePatterns, match_lines
+from trunnion.model.clamping import head_comments, may_be_notice
 from trunnion.model.run import ProgrammedWord, Run
 
 _MM_PER_INCH = 25.4
@@ -66,6 +67,9 @@ class HeaderReader:
             first, last = self._path_lines(section, next_line)
             if section is sections[0]:
                 head = self._text.line_texts(1, section.line if section.line > 1 else first)
+                # How the part is clamped goes into the head of what is made of it; its zero is that of this machine.
+                of_part = {number for number, text in head_comments(head) if may_be_notice(text)}
+                self.template_lines |= of_part
                 program_start = without_notices(head, self._control.family)
                 self.forced_line = next((number for number, text in head if FORCED_NOTICE in text), 0)
                 self.template_lines |= match_lines(program_start, self._patterns.of("program_start"), program_values)

@@ -16,6 +16,7 @@ import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Ints, Lines
 from trunnion.errors import Problem
+from trunnion.model.clamping import Clamping
 from trunnion.model.splines import Splines
 
 
@@ -371,6 +372,7 @@ class Toolpath:
     system      the coordinate system of the points in that of the model where the file gives it and its meaning is not
                 settled: 3 rows of 4 numbers, mm
     states_system  each operation states where its coordinate system lies in the absolute one of the CAM system
+    clamping    how the part is clamped, as comments in the head of the file say; None: they say nothing
     reopen      opens the text of a file that is packed or a stream once more; None: it is the file of that path
     """
 
@@ -384,6 +386,7 @@ class Toolpath:
     recognized: str = ""
     system: tuple[float, ...] = ()
     states_system: bool = True
+    clamping: Clamping | None = None
     reopen: Callable[[], BinaryIO] | None = None
 
     def __repr__(self) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Problem
 from trunnion.machines.machine import Vector
+from trunnion.model.clamping import Clamping
 from trunnion.model.toolpath import Toolpath
 from trunnion.placing.region import Region
 
@@ -161,6 +162,7 @@ class Placement:
     between_mm  how far slides may go beyond that between rows where rotary axes turn
     problems  warnings
     toolpaths  of CL files; empty for NC programs
+    clamping  how the part is clamped, as the files state; turns and tilts come after that. None: they state nothing
     tool_length_mm    of the tool that slides keep their limits with; None: it is not known
     nearest_anywhere  of bodies whose distance no place and no turn changes, such as tool and fixture, the nearest two
     most_distance_mm  with the goal ``collisions``: at no turn that was tried a place keeps the others farther apart
@@ -176,6 +178,7 @@ class Placement:
     between_mm: float = 0.0
     problems: tuple[Problem, ...] = ()
     toolpaths: tuple[Toolpath, ...] = ()
+    clamping: Clamping | None = None
     tool_length_mm: float | None = None
     nearest_anywhere: BodyDistance | None = None
     most_distance_mm: float | None = None
@@ -223,6 +226,11 @@ class Placement:
     def tilt_deg(self) -> float | None:
         """The tilt of the best place about X, right-handed; it comes before the turn."""
         return None if self.best is None else self.best.tilt_deg
+
+    @property
+    def clamped(self) -> Clamping | None:
+        """How the part is clamped against its drawing at the best place, as far as the files state it."""
+        return None if self.best is None else (self.clamping or Clamping()).then(self.best.turn_deg, self.best.tilt_deg)
 
     @property
     def margin_mm(self) -> float | None:

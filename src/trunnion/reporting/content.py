@@ -18,6 +18,7 @@ import numpy as np
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
 from trunnion.model.arc_extremes import RunArcs
+from trunnion.model.clamping import Clamping
 from trunnion.model.motion import Decision
 from trunnion.model.toolpath import Kind
 from trunnion.reporting.extents import AxisExtent, TipExtent, axis_extent, tip_extent
@@ -60,6 +61,7 @@ class ReportContent:
     units: tuple[str, ...] = ()
     simulation: SimulationContent | None = None
     recorded: RecordedContent | None = None
+    clamping: Clamping | None = None
 
 
 def collect_content(
@@ -96,6 +98,7 @@ def collect_content(
         units=tuple(_UNITS[inches] for inches in dict.fromkeys(run.state.inches.values.tolist())),
         simulation=simulation,
         recorded=recorded_content(verification),
+        clamping=verification.clamping,
     )
 
 

@@ -58,6 +58,7 @@ def _title(content: ReportContent) -> str:
         ("waiting", format_duration(content.waiting_seconds) if content.waiting_seconds > 0.0 else ""),
         ("Made", content.made),
         ("Lengths", _units_text(content.units)),
+        ("Part", "" if content.clamping is None or content.clamping.is_as_drawn else str(content.clamping)),
     ]
     entries = "".join(
         f"<div><dt>{name}</dt><dd><bdi>{escape(value)}</bdi></dd></div>" for name, value in items if value

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from trunnion.model.clamping import clamping_data
 from trunnion.model.motion import Decision
 from trunnion.reporting.content import ReportContent
 from trunnion.reporting.extents import AxisExtent, BlockReference, Extremes, TipExtent
@@ -52,6 +53,7 @@ def _head(content: ReportContent) -> dict[str, object]:
         "control": content.control or None,
         "made": content.made or None,
         "program_units": list(content.units),
+        **clamping_data(content.clamping),
         "passed": content.passed,
         "checks": [_check(check) for check in content.checks],
         "motions": content.motions,

@@ -10,6 +10,7 @@ from dataclasses import asdict
 from importlib.resources import files
 from typing import Final
 
+from trunnion.model.clamping import clamping_data
 from trunnion.reporting.extents import AxisExtent, BlockReference
 from trunnion.reporting.html_text import (
     capitalised,
@@ -68,6 +69,7 @@ def sheet_json(sheet: SetupSheet) -> bytes:
         "program_units": list(content.units),
         "work_offsets": list(sheet.offsets),
         "zero": sheet.zero,
+        **clamping_data(content.clamping),
         "tool_length": sheet.tool_length,
         "coordinates": sheet.system,
         "seconds": content.seconds,

@@ -9,6 +9,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Lines
 from trunnion.machines import Machine
+from trunnion.model.clamping import Clamping
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 
@@ -108,6 +109,8 @@ class Verification:
     tip_feed  (n,)   float64   speed of the tip relative to the workpiece, mm/min
     cl_line   (n,)   int32     line of the CL file that the row belongs to, 0 for none
 
+    ``clamping`` is how the part is clamped, as far as somebody said it; None: nobody did.
+
     ``operations`` divide the rows among them; there are none without CL files. ``recorded`` compares the machine as it
     was recorded; None: it was not.
     """
@@ -122,6 +125,7 @@ class Verification:
     operations: tuple[OperationRows, ...] = ()
     recorded: "RecordedComparison | None" = None
     waiting: Floats = field(default_factory=lambda: np.zeros(0))
+    clamping: Clamping | None = None
 
     @property
     def passed(self) -> bool:

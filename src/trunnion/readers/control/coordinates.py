@@ -197,6 +197,12 @@ class CoordinateControl(RowRecorder):
         if used and not (clears and first < used):
             self._stored_offsets.append((self.row, self.line, self.modal.file.current, word))
 
+    def warn_of_unknown_zero(self, word: str) -> None:
+        """Warn of the first block that writes values of a work offset, if they cannot be held against the zero."""
+        if self.machine.workpiece_zero is None and not self._stored_systems:
+            text = f"{word} writes the work offset, and nobody said where the workpiece zero is on the machine"
+            self.note(text, Severity.WARNING, "NC352")
+
     def report_unused_offsets(self) -> None:
         """Report each stored work offset behind the last motion at the part: only the next program moves with it.
 

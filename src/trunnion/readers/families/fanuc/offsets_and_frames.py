@@ -148,6 +148,8 @@ class OffsetInterpreter(CallInterpreter):
             for value, was in zip(values, old, strict=True)
         ]
         new = _changed(old, added)
+        if new.any():
+            control.warn_of_unknown_zero(f"G10 L{kind:g} P{number:g}")
         control.note_stored_offset(f"G10 L{kind:g} P{number:g}", system, clears=not new.any())
         control.set_values(system, new)
 

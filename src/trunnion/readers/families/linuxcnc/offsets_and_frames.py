@@ -114,6 +114,8 @@ class OffsetInterpreter(OWordInterpreter):
             raise BlockError("an offset is larger than any machine", code="NC215")
         control.note_shift()
         clears = not offset.values.any() and not offset.rotation
+        if not clears:
+            control.warn_of_unknown_zero(f"G10 L{kind:g} P{system:g}")
         control.note_stored_offset(f"G10 L{kind:g} P{system:g}", number, clears=clears)
         control.set_values(number, offset)
 
