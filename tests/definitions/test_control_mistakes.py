@@ -197,7 +197,7 @@ def test_an_extends_that_goes_round_or_is_too_long_has_its_line(tmp_path: Path) 
         ("{# OURS #}\nM8 %}", 6, "has %} without {% before it: 'M8 %}'; write {% where it begins"),
         ("{# OURS #}\n{title}\n{{ title | uper }}", 7, "no filter or format 'uper'; did you mean \"upper\"?"),
         ("{% if title = 'A' %}\nM8\n{% endif %}", 5, "with =, which compares nothing; write == to compare"),
-        ("M8 %}", 3, "has %} without {% before it: 'M8 %}'"),
+        ("M8 %}", 5, "has %} without {% before it: 'M8 %}'"),
     ],
 )
 def test_a_slip_in_a_text_is_told_at_its_line(
