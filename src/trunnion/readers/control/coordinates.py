@@ -26,6 +26,9 @@ from trunnion.readers.control.trailing_modes import Place, TrailingModes
 #: Millimetres of an inch.
 INCH: Final = 25.4
 
+#: What of the next program a stored work offset changes, for messages.
+OFFSET: Final = "the work offset of"
+
 
 class CoordinateControl(RowRecorder):
     """Knows the coordinate systems in force, and keeps the maps of the rows up to date.
@@ -61,7 +64,7 @@ class CoordinateControl(RowRecorder):
         self._rows_in_use = RowsInUse()
         # Work offsets that were written since the last motion at the part: row, line, file and word; the first row of
         # each.
-        self._stored_offsets: list[tuple[int, int, int, str]] = []
+        self._stored_offsets: list[tuple[int, int, int, str, str]] = []
         self._stored_systems: dict[int, int] = {}
         self._trailing = TrailingModes(self._used_until)
         self._plane = AffineMap()
@@ -179,15 +182,15 @@ class CoordinateControl(RowRecorder):
         """
         return self._shifted_from >= self._in_use.at_part
 
-    def note_stored_offset(self, word: str, system: int, *, clears: bool) -> None:
-        """Remember where the program wrote a work offset that the control keeps beyond its end.
+    def note_stored_offset(self, word: str, system: int, *, clears: bool, what: str = OFFSET) -> None:
+        """Remember where the program wrote a work offset, or a position, that the control keeps beyond its end.
 
         Parameters
         ----------
         word
             Of the block, for messages.
         system
-            Which offset it wrote.
+            Which offset it wrote; a number of its own for anything else.
         clears
             Whether it is zero now: that only tidies up an offset which the program wrote before it moved.
         """
@@ -195,7 +198,7 @@ class CoordinateControl(RowRecorder):
         if self._stored_offsets and self._stored_offsets[0][0] < used:
             self._stored_offsets.clear()
         if used and not (clears and first < used):
-            self._stored_offsets.append((self.row, self.line, self.modal.file.current, word))
+            self._stored_offsets.append((self.row, self.line, self.modal.file.current, word, what))
 
     def warn_of_unknown_zero(self, word: str) -> None:
         """Warn of the first block that writes values of a work offset, if they cannot be held against the zero."""
@@ -209,10 +212,11 @@ class CoordinateControl(RowRecorder):
         A program without such motions sets up the machine, and may write them.
         """
         here = self.line
-        for row, line, file, word in self._stored_offsets:
-            if row >= self._in_use.at_part:
+        for row, line, file, word, what in self._stored_offsets:
+            # Other positions, such as another home, are for moves to machine positions.
+            if row >= (self._in_use.at_part if what == OFFSET else self.row):
                 self.line = line if file == self.modal.file.current else here
-                text = f"{word} behind the last motion at the part changes the work offset of the next program"
+                text = f"{word} behind the last motion at the part changes {what} the next program"
                 self._note_left(f"{text}: write it before the motions that need it")
         self.line = here
 
