@@ -216,7 +216,8 @@ class CoordinateControl(RowRecorder):
             # Other positions, such as another home, are for moves to machine positions.
             if row >= (self._in_use.at_part if what == OFFSET else self.row):
                 self.line = line if file == self.modal.file.current else here
-                text = f"{word} behind the last motion at the part changes {what} the next program"
+                motion = "the last motion at the part" if what == OFFSET else "the last motion"
+                text = f"{word} behind {motion} changes {what} the next program"
                 self._note_left(f"{text}: write it before the motions that need it")
         self.line = here
 
