@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from trunnion.api.input_files import machine_files
 from trunnion.api.placing import place
+from trunnion.api.placing_bodies import BodiesInput
 from trunnion.api.placing_data import placement_data
 from trunnion.api.placing_inputs import toolpaths_to_post
 from trunnion.api.placing_post import post_placed
@@ -63,6 +64,7 @@ def run(arguments: argparse.Namespace) -> int:
     check_outputs([target for target in targets if target not in (None, "-")], read)
     settings = {**({} if project is None else as_texts(project.settings)), **dict(arguments.settings)}
     length = arguments.tool_length or settings.get("tool_length")
+    stated = BodiesInput() if project is None else project.bodies
     files: Sequence[ToolpathLike] = cl_inputs(arguments.files)
     if arguments.apply is not None:
         files = toolpaths_to_post(files, machine=machine, settings=settings, observer=Terminal())
@@ -76,12 +78,12 @@ def run(arguments: argparse.Namespace) -> int:
         tool_length=length,
         settings=settings,
         subprograms=arguments.subprograms,
-        fixtures=arguments.fixtures,
-        part=arguments.part,
-        stock=arguments.stock,
-        tools=arguments.tools,
-        libraries=arguments.libraries,
-        unit=arguments.unit,
+        fixtures=arguments.fixtures or stated.fixtures,
+        part=arguments.part or stated.part,
+        stock=arguments.stock or stated.stock,
+        tools=arguments.tools or stated.tools,
+        libraries=arguments.libraries or stated.libraries,
+        unit=arguments.unit or stated.unit,
         observer=Terminal(),
     )
     lines = tell if arguments.apply == "-" else print_result
@@ -144,11 +146,10 @@ def placement_lines(found: Placement) -> Iterator[str]:
         yield f"  {_use(axis)}"
     for rotary in best.rotary:
         yield f"  {_rotary_use(rotary)}"
-    if best.table_mm is not None:
-        yield f"  table: {max(best.table_mm, 0.0):.3f} left to its edge"
+    yield from (f"  {line}" for line in _table(found, best))
     yield from (f"  {line}" for line in body_lines(found))
     if found.limits:
-        what = "it is held by" if best.fits else "these conflict:"
+        what = _held(found, best)
         yield f"  {what} {'; '.join(dict.fromkeys(map(_limit, found.limits)))}{_overlap(found)}"
     if present is not None:
         gain = best.margin_mm - present.margin_mm
@@ -171,6 +172,27 @@ def placement_lines(found: Placement) -> Iterator[str]:
         yield f"  clamped so, the zero may be anywhere within {_ends(box.low, box.high)}"
         if not found.region.is_box:
             yield f"  and not beyond {_ends(found.region.low, found.region.high)}, where not every place fits"
+
+
+def _table(found: Placement, best: Place) -> Iterator[str]:
+    """Which table the part stands on, and how far from its edge; or that nothing keeps it there."""
+    table = found.table
+    if table is None:
+        return
+    x, y = table.centre
+    where = f" on the {table.axis} axis" if table.axis else ""
+    named = f"the definition's, {table}, its middle{where} at X{x:.3f} Y{y:.3f}"
+    if best.table_mm is not None:
+        yield f"table: {max(best.table_mm, 0.0):.3f} left to its edge; it is {named}"
+    elif best.fits and not table.has(best.zero_mm):
+        yield f"the zero is beyond the table, {named}: give stock or part to keep them on it"
+
+
+def _held(found: Placement, best: Place) -> str:
+    """What the limits that are told do."""
+    if not best.fits:
+        return "these conflict:"
+    return "it is held by" if found.goal == "margin" else f"nearest limit{'s' if len(found.limits) > 1 else ''}:"
 
 
 def _beyond_table(place: Place) -> str:
