@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from trunnion.api.input_files import machine_files
+from trunnion.api.placed_program import ProgramUse, other_positions
 from trunnion.api.placing import place
 from trunnion.api.placing_bodies import BodiesInput
 from trunnion.api.placing_data import placement_data
@@ -101,10 +102,19 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.apply is not None and found.fits:
         settings = settings if length is None else {**settings, "tool_length": length}
         output = output_place(arguments.apply)
-        post_placed(
+        posted = post_placed(
             found, machine=machine, output=output, settings=settings, sheet=arguments.sheet, observer=Terminal()
         )
+        use = None if posted.run is None else other_positions(found, posted.run)
+        if use is not None:
+            (tell if arguments.json == "-" else lines)(f"  {_other_positions(use)}")
     return 0 if found.fits else 1
+
+
+def _other_positions(use: ProgramUse) -> str:
+    """Where the program has other rotary positions than the place."""
+    ends = ", ".join(f"{name} {low + 0.0:.3f} to {high + 0.0:.3f}" for name, low, high in use.rotary)
+    return f"the program takes other rotary positions, at feed {ends} degrees: {use.margin_mm:.3f} mm to the limits"
 
 
 def _project(arguments: argparse.Namespace) -> "PlacedSetup | None":
@@ -158,9 +168,9 @@ def placement_lines(found: Placement) -> Iterator[str]:
         gained = (
             ""
             if found.goal != "margin"
-            else f"; the best place has {abs(gain):.3f} mm {'more' if gain >= 0 else 'less'}"
+            else f"; the best place{_where(best)} has {abs(gain):.3f} mm {'more' if gain >= 0 else 'less'}"
         )
-        yield f"  present zero {_point(present)}: {state}{gained}"
+        yield f"  present zero {_point(present)}{_where(best, present)}: {state}{gained}"
     if found.goal not in ("margin", "collisions") and best.value is not None:
         now = "" if present is None else f"; at the present zero {_goal_number(found.goal, present)}"
         yield f"  {_value(found.goal, best)}{now}"
@@ -198,6 +208,12 @@ def _held(found: Placement, best: Place) -> str:
 def _beyond_table(place: Place) -> str:
     beyond = 0.0 if place.table_mm is None else -place.table_mm
     return f" ({beyond:.3f} mm beyond the table)" if beyond > KEPT else ""
+
+
+def _where(best: Place, place: Place | None = None) -> str:
+    """How the part is clamped at a place, by default the best: where that is not how it is now."""
+    is_turned = not (are_one_angle(best.turn_deg, 0.0) and are_one_angle(best.tilt_deg, 0.0))
+    return f", {_clamped(place or best)}{'' if place else ','}" if is_turned else ""
 
 
 def _clamped(place: Place | TurnMargin) -> str:
