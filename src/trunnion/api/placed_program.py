@@ -33,7 +33,7 @@ def other_positions(found: Placement, run: Run) -> ProgramUse | None:
     if found.best is None or not len(rows):
         return None
     machine = run.machine
-    turned = run.joints[np.ix_(rows, list(machine.rotary))]
+    turned = run.joints[rows][:, list(machine.rotary)]
     ends = list(zip(turned.min(axis=0).tolist(), turned.max(axis=0).tolist(), strict=True))
     if all(_is_within(low, high, use) for (low, high), use in zip(ends, found.best.rotary, strict=True)):
         return None
@@ -51,7 +51,7 @@ def _is_within(low: float, high: float, use: RotaryUse) -> bool:
 def _slide_margin(run: Run, rows: Ints) -> float:
     """What the nearest slide has left in some rows, at their ends and on arcs, mm."""
     arcs, slides = RunArcs.of(run), list(run.machine.linear)
-    reached, count = run.joints[np.ix_(rows, slides)], np.isin(arcs.rows, rows)
+    reached, count = run.joints[rows][:, slides], np.isin(arcs.rows, rows)
     low = np.concatenate((reached, arcs.axes.low[count][:, slides])).min(axis=0)
     high = np.concatenate((reached, arcs.axes.high[count][:, slides])).max(axis=0)
     limits = run.machine.limits[slides]

@@ -61,7 +61,7 @@ def place(
     stock: str | Path | TriangleMesh | None = None,
     part: str | Path | TriangleMesh | None = None,
     fixtures: str | Path | TriangleMesh | Iterable[str | Path | TriangleMesh] = (),
-    tools: Iterable[str | ToolShape] = (),
+    tools: str | ToolShape | Iterable[str | ToolShape] = (),
     libraries: Sequence[FilePath] = (),
     unit: Literal["mm", "inch"] | None = None,
     observer: Observer = SILENT,

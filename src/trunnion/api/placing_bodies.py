@@ -56,9 +56,7 @@ class PlacedBodies:
     problems: tuple[Problem, ...]
 
 
-def read_bodies(
-    given: BodiesInput, placed: PlacedInput, machine: Machine, *, is_needed: bool = True
-) -> PlacedBodies:
+def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine, *, is_needed: bool = True) -> PlacedBodies:
     """Read the bodies that a path is placed among; where they are not needed, a warning says that none could meet.
 
     Raises

@@ -1,8 +1,9 @@
 """A set-up of a project as it is placed."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
 from trunnion.api.placing_bodies import BodiesInput, MeshLike, stock_mesh
 from trunnion.api.project import PostedSetup, Project
@@ -21,8 +22,8 @@ class PlacedSetup:
 
     read      all files that the project leads to, none of which may be written over
     problems  warnings: what of it does not count here
-    bodies    stock, part, fixtures and tools, as they lie in the workpiece frame of the set-up; the stock as it is before
-              the first one
+    bodies    stock, part, fixtures and tools, as they lie in the workpiece frame of the set-up; the stock as it is
+              before the first one
     """
 
     files: tuple[str, ...]
@@ -30,7 +31,7 @@ class PlacedSetup:
     settings: Mapping[str, SettingValue]
     read: tuple[FilePath, ...]
     problems: tuple[Problem, ...] = ()
-    bodies: BodiesInput = BodiesInput()
+    bodies: BodiesInput = field(default_factory=BodiesInput)
 
 
 def placed_setup(project: Path, name: str | None = None) -> PlacedSetup:
@@ -67,7 +68,8 @@ def _bodies(given: SimulationInput, number: int, problems: list[Problem]) -> Bod
             stock = None if stock is None else stock_mesh(stock, problems).moved(pose.matrix)
             part = None if part is None else read_mesh(part, "part", problems).moved(pose.matrix)
         part = part if setup.part is None else setup.part
-    return BodiesInput(tuple(own.fixtures), part, stock, tuple(own.tools), own.libraries, own.unit)
+    unit: Literal["mm", "inch"] | None = "mm" if own.unit == "mm" else "inch" if own.unit == "inch" else None
+    return BodiesInput(tuple(own.fixtures), part, stock, tuple(own.tools), own.libraries, unit)
 
 
 def _setup(loaded: Project, project: Path, name: str | None) -> PostedSetup:

@@ -414,8 +414,12 @@ def _add_stock(parser: argparse.ArgumentParser) -> None:
         help="a fixture, as the program counts; may be repeated",
     )  # fmt: skip
     parser.add_argument("--near", type=_tolerance, metavar="MM", help="tell bodies that come as near as this, too")
-    parser.add_argument("--cell", type=_cell, metavar="MM", help="width of the cells; a 200th of the stock's side")
-    parser.add_argument("--accuracy", type=_tolerance, metavar="MM", help="of motions and tools; by default a tenth of a cell")
+    parser.add_argument(
+        "--cell", type=_cell, metavar="MM", help="width of the cells; by default a 200th of the stock's side"
+    )
+    parser.add_argument(
+        "--accuracy", type=_tolerance, metavar="MM", help="of motions and tools; by default a tenth of a cell"
+    )
 
 
 def _add_batch(parser: argparse.ArgumentParser) -> None:

@@ -63,7 +63,10 @@ def add_fit(parser: argparse.ArgumentParser) -> None:
         "files", nargs="+", metavar="CL|NC", help="CL files of one program; or, with --machine, a program"
     )
     parser.add_argument(
-        "--machines", default="all", metavar="NAME_OR_FILE,…", help="machines that are asked; by default all shipped ones"
+        "--machines",
+        default="all",
+        metavar="NAME_OR_FILE,…",
+        help="machines that are asked; by default all shipped ones",
     )
     parser.add_argument("--machine", metavar="NAME_OR_FILE", help="machine that the NC program is for")
     parser.add_argument("--zero", metavar="X,Y,Z", help="workpiece zero of the NC program on its own machine, mm")
