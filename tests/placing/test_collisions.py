@@ -76,7 +76,7 @@ class Placed:
         bodies += [guarded_on_part(mesh, BodyKind.FIXTURE) for mesh in fixtures]
         if tool:
             bodies += guarded_tool(parse_tool(tool, {}), machine, "1", LENGTH, 0)
-        self.guard = Guard(tuple(guarded_pairs(machine, bodies)), np.zeros(len(rows), np.int64), {})
+        self.guard = Guard(guarded_pairs(machine, bodies).kept, np.zeros(len(rows), np.int64), {})
         self.machine, self.rows = machine, rows
         self.results, self.best, self.bound = farthest_orientations(
             lambda tilt: self.paths(tilt), Grid(np.array(turns)), self.guard, lambda _: None
@@ -323,7 +323,7 @@ def test_places_keep_their_margin_though_the_search_knows_no_limits_at_first(see
     machine, rows = swarf(load_machine("matsuura_mx330"), seed)
     path = TurnedPath.of(machine, next(choices_of(rows))[0], rows, np.zeros(3))
     bodies = guarded_machine(machine_bodies(machine))
-    guard = Guard(tuple(guarded_pairs(machine, bodies)), np.zeros(len(rows), np.int64), {})
+    guard = Guard(guarded_pairs(machine, bodies).kept, np.zeros(len(rows), np.int64), {})
     cuts, others = path.at(0.0), path.at(0.0)
     assert not isinstance(cuts, Obstacle)
     assert not isinstance(others, Obstacle)

@@ -13,7 +13,7 @@ from trunnion.api.arguments import check_choice, check_observer, check_paths
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.orientations import orientations
 from trunnion.api.placing_bodies import BodiesInput, read_bodies
-from trunnion.api.placing_distances import with_bodies, with_distance
+from trunnion.api.placing_distances import standing_at, with_bodies, with_distance
 from trunnion.api.placing_inputs import PlacedInput, read_input
 from trunnion.api.placing_table import larger_than_table, limit_of_table, standing_on
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
@@ -159,6 +159,11 @@ def place(
         most: float | None = None
         if bodies is not None and goal == Goal.COLLISIONS and bodies.guard.is_changed:
             results, best, most = farthest_orientations(paths_at, grid, bodies.guard, advance)
+            stands = standing_at(best, bodies.guard)
+            if best.cost is None and stands:  # what touches everywhere may do so since the part stands on it
+                judged = bodies.guard.without(stands)
+                if judged.is_changed:
+                    results, best, most = farthest_orientations(paths_at, grid, judged, lambda _: None)
         else:
             sought = Goal.MARGIN if goal == Goal.COLLISIONS else Goal(goal)
             results, best = best_orientations(paths_at, grid, advance, goal=sought)

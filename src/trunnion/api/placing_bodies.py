@@ -73,11 +73,11 @@ def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine) -> Pl
     for number, shape in tools.items():
         bodies += guarded_tool(shape, machine, placed.tools[number] or NO_CALL, lengths.get(number, 0.0), number)
     pairs = guarded_pairs(machine, [*bodies, *carried])
-    if not pairs:
+    if not pairs.kept:
         what = f"{machine.key} and the arguments have no two bodies that could meet"
         cure = "state bodies of the machine ([[body]]), or give fixtures, part, stock and tools"
         raise InputError(argument_problem("goal", what, cure, code="PLC190"))
-    guard = Guard(tuple(pairs), placed.tool, lengths)
+    guard = Guard(pairs.kept, placed.tool, lengths, pairs.left_out)
     if not guard.is_changed:
         what = "no place and no turn changes how far the tool is from what is clamped with the part"
         cure = "state the bodies of the machine ([[body]]) to have them kept apart"

@@ -35,11 +35,19 @@ _HOLDS: Final = 0.05
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Guard:
-    """What is kept apart: pairs of bodies, the tool of each row (n,), and lengths of tools, mm."""
+    """What is kept apart: pairs of bodies, the tool of each row (n,), and lengths of tools, mm.
+
+    ``left_out`` names the bodies of the machine that are no pair since they overlap at home.
+    """
 
     pairs: tuple[GuardedPair, ...]
     tool: Ints
     lengths: Mapping[int, float]
+    left_out: tuple[tuple[str, str], ...] = ()
+
+    def without(self, pairs: Sequence[GuardedPair]) -> "Guard":
+        """The same without some pairs."""
+        return replace(self, pairs=tuple(pair for pair in self.pairs if pair not in pairs)) if pairs else self
 
     @property
     def is_changed(self) -> bool:
