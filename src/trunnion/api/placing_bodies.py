@@ -13,6 +13,7 @@ from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.machines import Machine
 from trunnion.placing.collisions.best_clearance import Guard
 from trunnion.placing.collisions.guarded_pairs import (
+    Changes,
     Guarded,
     guarded_machine,
     guarded_on_part,
@@ -73,7 +74,7 @@ def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine) -> Pl
     for number, shape in tools.items():
         bodies += guarded_tool(shape, machine, placed.tools[number] or NO_CALL, lengths.get(number, 0.0), number)
     pairs = guarded_pairs(machine, [*bodies, *carried])
-    if not pairs.kept:
+    if not any(pair.weight == 1.0 or pair.changes is Changes.PLACE for pair in pairs.kept):
         what = f"{machine.key} and the arguments have no two bodies that could meet"
         cure = "state bodies of the machine ([[body]]), or give fixtures, part, stock and tools"
         raise InputError(argument_problem("goal", what, cure, code="PLC190"))

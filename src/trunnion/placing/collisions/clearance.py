@@ -30,7 +30,7 @@ _UP: Final = np.array([0.0, 0.0, 1.0])
 class Nearest:
     """Where two bodies are nearest to each other.
 
-    distance       mm; 0: they touch
+    distance       mm, times the weight of the pair; 0: they touch
     moment, share  of ``Moments``: on the way to it
     one, other     (n, 3): points whose hulls are as far apart there, and no nearer to each other than the bodies at any
                    other zero, in the frames of the bodies
@@ -103,6 +103,7 @@ class Clearance:
 
     def _follow(self, pieces: _Pieces, zero: Floats, limit: float) -> Nearest | None:
         course, pair, found = self._course(pieces.pair), pieces.pair, None
+        limit /= pair.weight
         away = float(np.linalg.norm(zero - self.near))
         for ranges in self._of_tool(pair.tool):
             if pieces.surfaces is None:
@@ -112,10 +113,10 @@ class Clearance:
                 )  # fmt: skip
                 if moment >= 0:
                     limit = low
-                    found = Nearest(pair, low, moment, share, pieces.one.corners, pieces.other.corners)
+                    found = Nearest(pair, low * pair.weight, moment, share, pieces.one.corners, pieces.other.corners)
             else:
                 found = self._follow_surfaces(pieces, course, zero, away, ranges, limit) or found
-                limit = limit if found is None else found.distance
+                limit = limit if found is None else found.distance / pair.weight
         return found
 
     def _follow_surfaces(
@@ -145,7 +146,7 @@ class Clearance:
             moment += 1
             if moment < end and not course.begins[moment]:
                 for own in self._halve(pieces, zero, moment, float(way[moment] - way[moment - 1]), limit):
-                    limit, found = own.distance, own
+                    limit, found = own.distance / own.pair.weight, own
             if limit <= 0.0:
                 break
         return found
@@ -168,7 +169,7 @@ class Clearance:
         return pieces.surfaces.gap(self.pose(pieces.pair, zero, moment, share))
 
     def _nearest(self, pieces: _Pieces, gap: SurfaceGap, moment: int, share: float) -> Nearest:
-        return Nearest(pieces.pair, gap.distance, moment, share, gap.one, gap.other)
+        return Nearest(pieces.pair, gap.distance * pieces.pair.weight, moment, share, gap.one, gap.other)
 
     def inside(self, zero: Floats) -> Nearest | None:
         """A body that is inside of another one, whose surfaces never meet, at the zero (3,); None: there is none.

@@ -4,18 +4,26 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 from itertools import product
+from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, Mount
-from trunnion.machines.links import WORKPIECE, axes_between, is_nearer_the_tool
+from trunnion.machines.links import BED, WORKPIECE, axes_between, carrier, is_nearer_the_tool
 from trunnion.simulation.collisions.bodies import Body, BodyKind, tool_bodies, tool_pose
 from trunnion.simulation.collisions.hull_pieces import HullPiece, mesh_pieces, section_pieces
 from trunnion.simulation.collisions.pairs import are_on_one_side, body_pairs, may_meet, seen_at_home, side_of
-from trunnion.simulation.collisions.queries import Solid, touches
+from trunnion.simulation.collisions.queries import PairQuery, Solid, touches
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.tools.profile import ToolShape
+
+
+#: Bodies of one side of the machine that are nearer to each other than this at home, mm, run along each other: they
+#: count as so far apart there; nearer ones than the last as if they were as far apart as that.
+_RUNS: Final = 50.0
+_FAR: Final = 1000.0
+_LEAST: Final = 0.1
 
 
 class Changes(Enum):
@@ -44,11 +52,15 @@ class Guarded:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GuardedPair:
-    """Two bodies: the second is nearer to the part along the chain of axes, and carried with it if either is."""
+    """Two bodies: the second is nearer to the part along the chain of axes, and carried with it if either is.
+
+    ``weight``: so many times as far apart as they are do they count as.
+    """
 
     one: Guarded
     other: Guarded
     changes: Changes
+    weight: float = 1.0
 
     @property
     def names(self) -> tuple[str, str]:
@@ -141,7 +153,23 @@ def piece_pairs(pair: GuardedPair) -> Iterator[tuple[HullPiece, HullPiece]]:
 def _pair(machine: Machine, one: Guarded, other: Guarded) -> GuardedPair:
     if not other.carried and not is_nearer_the_tool(machine, one.body.link, other.body.link):
         one, other = other, one
-    return GuardedPair(one, other, _changes(machine, one, other))
+    return GuardedPair(one, other, _changes(machine, one, other), _weight(machine, one.body, other.body))
+
+
+def _weight(machine: Machine, one: Body, other: Body) -> float:
+    """More than 1 for bodies of one side of the machine that run close to each other, as slides and cradles do.
+
+    They count in proportion to how far they are apart at home. So do those that only rotary axes move: no place
+    changes them. Those of the bed that two axes move count as they are.
+    """
+    links = one.link, other.link
+    if not one.kind is other.kind is BodyKind.MACHINE or not are_on_one_side(machine, *links):
+        return 1.0
+    if BED in (carrier(machine, link) for link in links) and len(axes_between(machine, *links)) > 1:
+        return 1.0
+    apart = PairQuery(Solid(one.mesh), Solid(other.mesh)).distance(seen_at_home(machine, *links))
+    slides = set(axes_between(machine, *links)) & set(machine.linear)
+    return 1.0 if apart >= (_RUNS if slides else _FAR) else _FAR / max(apart, _LEAST)
 
 
 def _never_meets_stock(machine: Machine, one: Guarded, other: Guarded) -> bool:
