@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal, TypeAlias
+from typing import Final, Literal, TypeAlias
 
 from trunnion.api.placing_inputs import PlacedInput
 from trunnion.api.reading import FilePath
@@ -26,6 +26,9 @@ from trunnion.simulation.stock.solids import StockShape, stock_shape
 from trunnion.simulation.tools.choice import choose_tools, tools_of_toolpaths
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.text import parse_tool
+
+#: Tools whose lengths differ by less are as long, mm.
+_LIKE_LENGTH: Final = 1e-6
 
 MeshLike: TypeAlias = str | Path | TriangleMesh
 
@@ -83,6 +86,7 @@ def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine) -> Pl
         what = "no place and no turn changes how far the tool is from what is clamped with the part"
         cure = "state the bodies of the machine ([[body]]) to have them kept apart"
         problems.append(argument_problem("goal", what, cure, Severity.WARNING, code="PLC270"))
+    problems += _other_lengths(placed, lengths, machine)
     if machine.tool_length is None and lengths:
         machine = replace(machine, tool_length=max(lengths.values()))
     return PlacedBodies(guard, machine, tuple(dict.fromkeys(problems)))
@@ -143,3 +147,14 @@ def _lengths(
             cure = "give it: the bodies of the machine stand so far above the part"
             raise InputError(argument_problem("tool_length", what, cure, code="SIM310"))
     return lengths
+
+
+def _other_lengths(placed: PlacedInput, lengths: Mapping[int, float], machine: Machine) -> Iterable[Problem]:
+    """A warning where tools have other lengths than the one that is stated for all, which programs are checked with."""
+    stated = machine.tool_length
+    other = {} if stated is None else {k: own for k, own in lengths.items() if abs(own - stated) > _LIKE_LENGTH}
+    if other:
+        tools = ", ".join(f"{placed.tools[k] or NO_CALL} of {own:g} mm" for k, own in other.items())
+        what = f"says {stated:g} mm, and places are sought with the lengths of the tools: {tools}"
+        cure = "post and check with each tool's own length: with another one slides stand elsewhere"
+        yield argument_problem("tool_length", what, cure, Severity.WARNING, code="PLC290")

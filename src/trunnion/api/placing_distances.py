@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from trunnion.errors import Problem, Severity
 from trunnion.placing.best_turn import TurnResult
 from trunnion.placing.collisions.best_clearance import Guard, NearestRow, nearest_at
 from trunnion.placing.collisions.guarded_pairs import Changes, GuardedPair, standing
@@ -41,6 +42,16 @@ def standing_at(best: TurnResult, guard: Guard) -> list[GuardedPair]:
     if best.path is None or best.best is None:
         return []
     return standing(best.path.machine, guard.pairs, turn_and_tilt(best.turn, best.tilt), best.best.zero)
+
+
+def touch_warnings(found: Placement) -> list[Problem]:
+    """A warning where bodies touch at the best place of a goal that does not judge them."""
+    touching = found.touching
+    if touching is None:
+        return []
+    what = f"{touching.between[0]} and {touching.between[1]} touch at the best place; the goal {found.goal} allows it"
+    cure = "place with --goal collisions, or change fixture, tool or path"
+    return [Problem(touching.file, touching.line, what, cure, Severity.WARNING, code="PLC300")]
 
 
 def with_distance(found: Placement, most: float | None) -> Placement:

@@ -18,7 +18,6 @@ from trunnion.simulation.collisions.queries import PairQuery, Solid, touches
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.tools.profile import ToolShape
 
-
 #: Bodies of one side of the machine that are nearer to each other than this at home, mm, run along each other: they
 #: count as so far apart there; nearer ones than the last as if they were as far apart as that.
 _RUNS: Final = 50.0
