@@ -451,3 +451,23 @@ def test_blocks_behind_the_end_of_a_klartext_program_are_refused(tmp_path: Path,
 def test_comments_and_declared_words_behind_the_approach_are_written(tmp_path: Path) -> None:
     lines = program(tmp_path, 'after_approach = ";G64 IS ON\\nM61"', more=KNOWN)
     assert lines.count("M61") == lines.count(";G64 IS ON") == 3
+
+
+def test_a_limit_of_the_look_ahead_may_stand_before_the_first_cut(tmp_path: Path) -> None:
+    assert "G103 P1" in program(tmp_path, "first_cut = 'G103 P1'", extends="haas_umc750")
+    assert "unknown word G103" in refusal(tmp_path, "first_cut = 'G103 P1'", extends="matsuura_mx330").what
+
+
+@pytest.mark.parametrize(
+    ("base", "jump"), [("matsuura_mx330", "GOTO9000"), ("haas_umc750", "GOTO9000"), ("yl569", "GOTOF N9000")]
+)
+def test_a_text_may_bring_a_block_number_that_it_jumps_to(tmp_path: Path, base: str, jump: str) -> None:
+    (tmp_path / "part.cls").write_text(LEVEL_ONLY, encoding="utf-8")
+    ours = machine(tmp_path, f'before_operation = "{jump}\\nN9000 M9"', extends=base)
+    posted = trunnion.post(tmp_path / "part.cls", machine=ours, settings={"numbers": "on"})
+    assert posted.passed
+    assert posted.text is not None
+    lines = posted.text.splitlines()
+    at = lines.index("N9000 M9")
+    assert re.fullmatch(rf"N\d+ {jump}", lines[at - 1])
+    assert re.match(r"N\d+ ", next(line for line in lines[at + 1 :] if line[0] != "("))

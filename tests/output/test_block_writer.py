@@ -144,3 +144,23 @@ def test_a_number_beyond_its_word_is_refused_and_names_the_limit() -> None:
     with pytest.raises(WordRangeError, match="word S100000 is beyond 99999") as caught:
         writer.write_table({"S": np.array([5, 100000, 7])})
     assert caught.value.row == 1
+
+
+@pytest.mark.parametrize(
+    ("numbers", "expected"),
+    [
+        (BlockNumbers(), "N10 M8\nN9000 M9\n/N9001 M5\nN20 NUT\n"),
+        (BlockNumbers(every=2), "N10 M8\nN9000 M9\n/N9001 M5\nNUT\n"),
+        (BlockNumbers(numbered=False), "M8\nN9000 M9\n/N9001 M5\nNUT\n"),
+        (BlockNumbers(letter=""), "10 M8\n20 N9000 M9\n/30 N9001 M5\n40 NUT\n"),
+    ],
+)
+def test_a_block_that_brings_its_number_gets_no_second_one(numbers: BlockNumbers, expected: str) -> None:
+    sink = io.BytesIO()
+    writer = BlockWriter(sink, WORDS, numbers)
+    writer.write_lines(["M8", "N9000 M9"])
+    writer.set_block_skip(True)
+    writer.write_lines(["N9001 M5"])
+    writer.set_block_skip(False)
+    writer.write_lines(["NUT"])
+    assert sink.getvalue().decode() == expected

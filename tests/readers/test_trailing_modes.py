@@ -112,6 +112,19 @@ def test_a_cycle_in_force_at_the_end_is_told(tmp_path: Path, machine: str, block
     assert [text[:16] for _, _, text in found] == (["ends with G81 on"] if told else [])
 
 
+@pytest.mark.parametrize("word", ["G28.1", "G30.1"])
+def test_a_position_that_the_next_program_goes_to_is_told(tmp_path: Path, word: str) -> None:
+    ((severity, _, text),) = left(tmp_path, "xyzac_trt", cut("xyzac_trt", 10), word)
+    assert severity is Severity.ERROR
+    assert text.startswith(f"{word} behind the last motion changes the position that {word[:3]} goes to in the next")
+    assert left(tmp_path, "xyzac_trt", word, cut("xyzac_trt", 10)) == []
+
+
+def test_no_tool_length_is_left_on_by_h0(tmp_path: Path) -> None:
+    assert left(tmp_path, "matsuura_mx330", cut("matsuura_mx330", 10), "G43 H0") == []
+    assert len(left(tmp_path, "matsuura_mx330", cut("matsuura_mx330", 10), "G43 H1")) == 1
+
+
 SHOP = (TESTS / "data" / "shop.cls").read_text(encoding="utf-8").replace("BORHED/40.5,DEEP\n", "")
 
 

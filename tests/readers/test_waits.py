@@ -22,6 +22,9 @@ WAITS = [
     ("matsuura_mx330", "G4 P3600000", "a dwell of 1:00:00 h"),
     ("matsuura_mx330", "G4 X90.", "a dwell of 1:30 min"),
     ("matsuura_mx330", "G4 P500", ""),
+    ("matsuura_mx330", "#3006=1(CHECK PART)", "#3006 stops the program"),
+    ("haas_umc750", "IF [1 EQ 1] THEN #3006=1", "#3006 stops the program"),
+    ("matsuura_mx330", "IF [1 EQ 2] THEN #3000=1", ""),
     ("haas_umc750", "G4 P120.", "a dwell of 2:00 min"),
     ("haas_umc750", "G4 P120", ""),
     ("xyzac_trt", "G4 P500", "a dwell of 8:20 min"),
@@ -71,3 +74,13 @@ def test_post_names_the_waits_of_templates_and_counts_them(tmp_path: Path) -> No
     assert stops.summary == "1 stops; 3 dwells of 6:00:00 h and 3 stops of the program's own between operations"
     assert posted.text is not None
     assert "TAKES ROUGH TOP 2:00:0" in posted.text
+
+
+@pytest.mark.parametrize("machine", ["matsuura_mx330", "haas_umc750"])
+def test_an_alarm_is_an_error_and_a_message_a_stop(tmp_path: Path, machine: str) -> None:
+    program = tmp_path / "part.nc"
+    program.write_text(HEADS[machine] + "G0 X1.\n#3006=1(CHECK)\nG0 X2.\n#3000=7(BAD)\nG0 X3.\nM30\n%\n")
+    run = trunnion.read_program(program, machine=machine)
+    (error,) = run.errors
+    assert (error.code, error.text) == ("NC226", "#3000 raises alarm 7: the program goes no farther")
+    assert [event.kind for event in run.events if event.kind == "stop"] == ["stop"]

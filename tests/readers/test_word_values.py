@@ -26,7 +26,7 @@ WORDS = [
     ("matsuura_mx330", ["G52 X1.", "G92 X5."], ["G52", "G92"]),
     ("xyzac_trt", ["G52 X1", "G4 P1"], ["G52", "G4 P-1"]),
     ("yl569", ["G4 F1", "G4 S3"], ["G4"]),
-    ("yl569", ["G60 G64 FNORM CFC NORM"], ["G331 Z-9 K1", "G332 Z-9 K1", "G33 Z-9 K1", "G63 Z-9", "G331", "G96 S99"]),
+    ("yl569", ["G60 CFC", "G64 FNORM"], ["G331 Z-9 K1", "G332 Z-9 K1", "G33 Z-9 K1", "G63 Z-9", "G331", "G96 S99"]),
     ("yl569", ["WALIMON", "M40"], ["G25 S99", "G26 S1000", "G26 X5", "LIMS=1000", "SVC=90", "M41", "G621", "G810"]),
     ("yl569", ["FGROUP()", "FGROUP(Z,X,Y)"], ["FGROUP(Z)", "FGROUP(X,Y,Z,C)", "FL[X]=9", "VELOLIM[X]=50", "FLIN"]),
     ("yl569", ["OTOL=0.1 STOL=2 ADISPOS=.5"], ["OTOL=5", "STOL=99", "ADISPOS=9", "CTOLG=9", "OTOLG=9", "RTLIOF"]),

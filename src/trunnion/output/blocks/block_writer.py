@@ -61,6 +61,8 @@ class BlockWriter:
         self._begins = False
         self.switch_file(sink)
         self._letter = np.frombuffer(numbers.letter.encode(), np.uint8)
+        numbered = numbers.letter and numbers.numbered
+        self._own_number = re.compile(rf"[ \t]*{re.escape(numbers.letter)}[0-9]") if numbered else None
         self._skip = np.zeros(0, np.uint8)
         self._words: dict[str, Word] = {}
         self._keys: list[str] = []
@@ -218,14 +220,17 @@ class BlockWriter:
 
     def _write(self, table: Ints, forced: Ints, words: _WordColumns, lines: _Lines) -> None:
         """Run the kernel and write its bytes; ``words.last`` is updated."""
-        encoded = [text.encode(self._form.encoding).replace(b"\n", self._form.line_end) for text in lines.texts]
+        own = [self._brings_number(text) for text in lines.texts]
+        bare = [brings or self._is_remark(text) for brings, text in zip(own, lines.texts, strict=True)]
+        skip = self._skip.tobytes().decode()
+        texts = [skip + text if brings else text for brings, text in zip(own, lines.texts, strict=True)]
+        encoded = [text.encode(self._form.encoding).replace(b"\n", self._form.line_end) for text in texts]
         text_bytes = np.frombuffer(b"".join(encoded) or b" ", np.uint8)
         ends = np.cumsum([len(text) for text in encoded], dtype=np.int64) if encoded else np.zeros(1, np.int64)
         head = BLOCK_NUMBER_BYTES + len(self._letter) + len(self._line_end)
         row_bytes = head + len(words.rule) * _WORD_BYTES + 1
         text_room = sum(len(encoded[k]) + head + 1 for k in lines.of)
         out = np.empty(table.shape[1] * row_bytes + text_room, np.uint8)
-        unnumbered = tuple(self._numbers.unnumbered)
         written = write_blocks(
             table,
             forced,
@@ -233,7 +238,7 @@ class BlockWriter:
             lines.of,
             text_bytes,
             ends,
-            np.array([text.startswith(unnumbered) for text in lines.texts] or [False], np.bool_),
+            np.array(bare or [False], np.bool_),
             words.rule,
             words.spelling,
             words.last,
@@ -250,6 +255,14 @@ class BlockWriter:
         )
         if self._begins and written:
             self._note_number(out[:written].tobytes())
+
+    def _is_remark(self, text: str) -> bool:
+        """Whether a line is a remark where these have neither a number nor a skip sign."""
+        return bool(self._numbers.unnumbered) and text.startswith(tuple(self._numbers.unnumbered))
+
+    def _brings_number(self, text: str) -> bool:
+        """Whether a line brings its own block number, for others to jump to: it gets no second one."""
+        return self._own_number is not None and self._own_number.match(text) is not None
 
     def _note_number(self, data: bytes) -> None:
         """Find the number of an operation's first block; comments without numbers may stand above it."""

@@ -58,7 +58,7 @@ class CoordinateControl(RowRecorder):
         self.tilted = False
         self._tilted_from = self._shifted_from = -1
         # Work offsets that were written since the last motion: row, line, file and word; and the first row of each.
-        self._stored_offsets: list[tuple[int, int, int, str]] = []
+        self._stored_offsets: list[tuple[int, int, int, str, str]] = []
         self._stored_systems: dict[int, int] = {}
         self._trailing = TrailingModes()
         self._plane = AffineMap()
@@ -176,15 +176,15 @@ class CoordinateControl(RowRecorder):
         """
         return self.row == self._shifted_from
 
-    def note_stored_offset(self, word: str, system: int, *, clears: bool) -> None:
-        """Remember where the program wrote a work offset that the control keeps beyond its end.
+    def note_stored_offset(self, word: str, system: int, *, clears: bool, what: str = "the work offset of") -> None:
+        """Remember where the program wrote a work offset, or a position, that the control keeps beyond its end.
 
         Parameters
         ----------
         word
             Of the block, for messages.
         system
-            Which offset it wrote.
+            Which offset it wrote; a number of its own for anything else.
         clears
             Whether it is zero now: that only tidies up an offset which the program wrote before it moved.
         """
@@ -192,7 +192,7 @@ class CoordinateControl(RowRecorder):
         if self._stored_offsets and self._stored_offsets[0][0] != self.row:
             self._stored_offsets.clear()
         if self.row and not (clears and first < self.row):
-            self._stored_offsets.append((self.row, self.line, self.modal.file.current, word))
+            self._stored_offsets.append((self.row, self.line, self.modal.file.current, word, what))
 
     def warn_of_unknown_zero(self, word: str) -> None:
         """Warn of the first block that writes values of a work offset, if they cannot be held against the zero."""
@@ -206,10 +206,10 @@ class CoordinateControl(RowRecorder):
         A program without motions sets up the machine, and may write them.
         """
         here = self.line
-        for row, line, file, word in self._stored_offsets:
+        for row, line, file, word, what in self._stored_offsets:
             if row == self.row:
                 self.line = line if file == self.modal.file.current else here
-                text = f"{word} behind the last motion changes the work offset of the next program"
+                text = f"{word} behind the last motion changes {what} the next program"
                 self.note(f"{text}: write it before the motions that need it", Severity.ERROR, "NC351")
         self.line = here
 

@@ -20,10 +20,14 @@ from trunnion.readers.program.settings import control_of
 EFFECTS: Final = (
     "no effect", "comes back", "comes back home", "stop", "optional stop", "tool change", "spindle clockwise",
     "spindle counter-clockwise", "spindle off", "coolant flood", "coolant mist", "coolant off", "tcp on", "tcp off",
+    "waits",
 )  # fmt: skip
 
 #: The effect of a word after which the machine is elsewhere.
 HOME: Final = "comes back home"
+
+#: The effect of a word at which the program waits, for the operator or a signal.
+WAITS: Final = "waits"
 
 #: Effects that act before the motion of their block; all others act after it.
 _BEFORE_MOTION: Final = (
@@ -31,7 +35,7 @@ _BEFORE_MOTION: Final = (
 )  # fmt: skip
 
 #: Effects that are not events of their own: the word itself says what happens.
-_SILENT: Final = frozenset({"no effect", "comes back", HOME})
+_SILENT: Final = frozenset({"no effect", "comes back", HOME, WAITS})
 
 _OWN: Final = (
     "is a word of the control itself, or begins with one: the declaration would hide it",
@@ -204,7 +208,7 @@ class KnownWords:
         for word in words:
             for effect in word.effects:
                 if (effect in _BEFORE_MOTION) is before_motion:
-                    self._execute(effect)
+                    self._execute(effect, word)
             if word.is_silent and before_motion and word.code is not None:
                 self._control.add_event("m", float(word.code))
 
@@ -213,11 +217,11 @@ class KnownWords:
         if tool is not None and "tool change" in word.effects:
             self._control.select_tool(f"{int(tool[1])}")
         for effect in word.effects:
-            self._execute(effect)
+            self._execute(effect, word)
         if word.is_silent:
             self._control.add_event("known", text)
 
-    def _execute(self, effect: str) -> None:
+    def _execute(self, effect: str, word: KnownWord) -> None:
         control = self._control
         kind, _, value = effect.partition(" ")
         match effect:
@@ -227,6 +231,8 @@ class KnownWords:
                 control.change_tool()
             case "tcp on" | "tcp off":
                 control.set_tcp(value == "on")
+            case _ if effect == WAITS:
+                control.note_wait(f"{word.word} waits" + (f": {word.means}" if word.means else ""))
             case _ if effect == HOME:
                 control.go_home()
             case _ if kind == "spindle":

@@ -3,7 +3,7 @@
 import math
 import re
 from abc import abstractmethod
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, TypeVar
 
@@ -19,6 +19,7 @@ from trunnion.readers.control.row_recorder import ScannedRows
 from trunnion.readers.control.virtual_control import LINEAR, RAPID
 from trunnion.readers.program import interpreter
 from trunnion.readers.program.interpreter import Interpreter, ProgramEnd
+from trunnion.readers.program.modal_groups import same_group
 from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.program.word_values import Values, fault_of_value
 from trunnion.readers.rs274.block import Block, g_code_text, split_line
@@ -175,6 +176,11 @@ class Rs274Interpreter(Interpreter[A]):
         """Put the family's words in place of the control's own; report those that the control does not have."""
         for word in meanings.translate(block):
             self._note(f"unknown word {word}", Severity.ERROR, "NC211")
+
+    def _report_same_group(self, codes: Sequence[int], groups: Iterable[Collection[int]]) -> None:
+        """Report two G codes of a block, in tenths, that set one mode; ``groups`` are those that set one each."""
+        for fault in same_group(codes, groups, g_code_text):
+            self._note(fault, Severity.ERROR, "NC212")
 
     def _modal_g_code(self, code: int) -> bool:
         """Execute a G code that all these languages share; False if it is another one."""

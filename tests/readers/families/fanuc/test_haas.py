@@ -1,10 +1,12 @@
 """What a Haas does otherwise than a Fanuc, read from programs; facts from its operator's manual."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 import trunnion
+from trunnion.machines import load_machine
 from trunnion.model.run import Run
 
 HEAD = "%\nO00001\nG21 G90 G94\nT5 M6\nG54\nS500 M3\nG43 H5 G0 X0. Y0. Z50.\n"
@@ -171,3 +173,75 @@ def test_a_local_subprogram_without_m99_ends_at_the_next_program(tmp_path: Path)
     run = read(tmp_path, "M97 P1\nX5.\nM30\nN1 X1.\nO00002\nX9.\nM99")
     assert any("runs into the next one" in error.text for error in run.errors)
     assert run.tip[1:, 0].tolist() == pytest.approx([1.0, 5.0])
+
+
+@pytest.mark.parametrize(
+    ("call", "x"),
+    [("#100=2\nM98 P#100", -2.0), ("M98 P2.", -2.0), ("M98 P2", -2.0), ("#100=7\nM97 P#100", -7.0), ("M97 P7.", -7.0)],
+)
+@pytest.mark.parametrize("cycle", ["", "G98 G81 X0. Y0. Z-5. R2. F100.\n"])
+def test_the_number_of_a_program_or_block_is_no_time(call: str, x: float, cycle: str, tmp_path: Path) -> None:
+    # A thousand times 2 and 7 are there as well.
+    parts = "".join(f"{name}\nG80 G53 G0 X{-k}.\nM99\n" for name, k in (("N7", 7), ("N7000", 40)))
+    parts += "".join(f"O{k:05d}\nG80 G53 G0 X{-k / 100 if k > 9 else -k:.1f}\nM99\n" for k in (2, 2000))
+    (tmp_path / "part.nc").write_text(f"{HEAD}{cycle}{call}\nM30\n{parts}%\n")
+    run = trunnion.read_program(tmp_path / "part.nc", machine="haas_umc750")
+    assert run.errors == ()
+    assert float(run.joints[-1][run.machine.column("X")]) == pytest.approx(x)
+
+
+def test_a_look_ahead_with_a_point_is_told_as_it_is_written(tmp_path: Path) -> None:
+    assert any("look-ahead P1.5:" in error for error in errors(tmp_path, "G103 P1.5"))
+
+
+LENGTH = replace(load_machine("haas_umc750"), workpiece_zero=(-380.0, -250.0, -500.0), tool_length=100.0)
+
+
+def slides(folder: Path, lines: str) -> list[float]:
+    """Where Z of the machine stands at the rows of a program, mm."""
+    (folder / "part.nc").write_text(f"{HEAD}{lines}\nM30\n%\n")
+    run = trunnion.read_program(folder / "part.nc", machine=LENGTH)
+    return [float(value) for value in run.joints[:, LENGTH.column("Z")]]
+
+
+def test_home_takes_the_tool_length_off(tmp_path: Path) -> None:
+    assert slides(tmp_path, "G0 Z50.")[-1] == pytest.approx(-350.0)
+    assert slides(tmp_path, "G28 G91 Z0.\nG90\nG0 X10. Y0.\nG0 Z50.")[-1] == pytest.approx(-450.0)
+    assert slides(tmp_path, "G28 G91 Z0.\nG90\nG43 H5 G0 Z50.")[-1] == pytest.approx(-350.0)
+    # The point on the way still counts with the length (the manual's example).
+    assert slides(tmp_path, "G28 Z7.")[-2:] == pytest.approx([-393.0, 0.0])
+
+
+@pytest.mark.parametrize("lines", ["G0 Z50.", "G1 Z-1. F100.", "G98 G81 X1. Z-5. R2. F100.", "G1 X1. F100.\nX2. Z3."])
+def test_z_without_the_length_that_home_has_taken_off_is_an_error(lines: str, tmp_path: Path) -> None:
+    (error,) = errors(tmp_path, f"G28 G91 Z0.\nG90 G0 X5.\n{lines}")
+    assert error == "Z without the tool length, which G28 in line 8 has taken off: write G43 with it"
+    for cure in ("G43 H5 G0 Z60.", "G234 H5 Z60.", "G49"):
+        assert errors(tmp_path, f"G28 G91 Z0.\nG90 G0 X5.\n{cure}\n{lines}") == []
+    assert errors(tmp_path, f"G49\nG28 G91 Z0.\nG90 G0 X5.\n{lines}") == [], "no length was there"
+
+
+def test_home_under_tcp_is_an_error(tmp_path: Path) -> None:
+    assert any("G28 with TCP on" in error for error in errors(tmp_path, "G234 H5 Z60.\nG28 G91 Z0."))
+
+
+def test_home_without_axes_takes_all_of_them(tmp_path: Path) -> None:
+    run = read(tmp_path, "G0 X5. B30. C40.\nG28")
+    assert run.errors == ()
+    home = [float(axis.home) for axis in run.machine.axes]
+    assert run.joints[-1].tolist() == pytest.approx(home)
+    fanuc = read(tmp_path, "G28", "matsuura_mx330")
+    assert any("need the axes that go home" in error.text for error in fanuc.errors)
+
+
+def test_what_a_haas_may_leave_on_names_no_parameter_of_a_fanuc(tmp_path: Path) -> None:
+    (left,) = (each for each in read(tmp_path, "G1 X1. F10.\nG49\nG91").diagnostics if each.code == "NC351")
+    assert "3402" not in left.text
+    assert "depends on the settings of the control" in left.text
+
+
+@pytest.mark.parametrize(("word", "reason"), [("M95 (00:10)", "sleep"), ("M109", "operator"), ("M78", "skip signal")])
+def test_words_that_wait_are_told_as_waits(word: str, reason: str, tmp_path: Path) -> None:
+    told = {each.code: each.text for each in read(tmp_path, word).diagnostics}
+    assert list(told) == ["NC226"]
+    assert reason in told["NC226"]

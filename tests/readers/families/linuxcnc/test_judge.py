@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import HealthCheck, Phase, example, given, settings
 from hypothesis import strategies as st
 
 from tests.support.linuxcnc.interpreter import RefusedByLinuxcncError, canonical, needs_linuxcnc
@@ -263,6 +263,7 @@ def programs(draw: st.DrawFn) -> str:
     ]  # fmt: skip
     for which in draw(st.lists(st.integers(0, len(parts) - 1), min_size=1, max_size=8)):
         parts[which]()
+    writer.settle()  # what is set behind the last motion is left to the next program
     return "\n".join([*writer.lines, "M2", ""])
 
 
@@ -301,7 +302,74 @@ REFUSED = {
     "a subprogram that is not there": "o<nowhere> call",
     "no number": "G0 X",
     "a letter alone": "G0 X1 Y",
+    "two G words of one group": "G90 G91",
+    "a G word twice": "G90 G90",
+    "home between two distances": "G28 G91 Z0 G90",
+    "two motions": "G0 G1 X1 F10",
+    "a motion and a cycle": "F10\nG0 G81 X1 Z-1 R1",
+    "two words that take the axes": "G4 P1 G10 L2 P1 X0",
+    "home and the machine frame": "G53 G28",
+    "two M words of one group": "M3 M4",
+    "two coolants": "M7 M8",
+    "two outputs": "M62 P0 M65 P1",
+    "two user words": "M110 M111",
+    "two inputs": "M66 P0 E1 L0",
+    "an analog input that is waited for": "M66 E0 L3 Q5",
+    "no input": "M66",
+    "no input but a time": "M66 L3 Q5",
+    "a wait of no time": "M66 P0 L3 Q0",
+    "a wait without a time": "M66 P0 L4",
+    "an output without its number": "M62",
+    "an analog output without its number": "M67 Q1",
 }
+
+TAKEN = (
+    "M66 P0", "M66 E0", "M66 P0 L0", "M66 E0 L0 Q0", "M66 P0 L0 Q5", "M66 P0 L3 Q5", "M67 E0 Q1", "M62 P1", "M64 P0",
+    "G80 G0 X1", "G0 G80 X1", "G92.1 G28", "G0 G17 G90 G94 G40 G49 G54 G64 G80", "G53 G0 X1", "M3 S100 M8", "M66 P0 M3",
+)  # fmt: skip
+
+
+#: Codes of all groups.
+CODES = (
+    "G0", "G1", "G2", "G3", "G5", "G5.2", "G33", "G38.2", "G73", "G76", "G81", "G89", "G71", "G80", "G4",
+    "G10", "G28", "G28.1", "G30", "G52", "G53", "G92", "G92.1", "G92.3", "G17", "G18.1", "G20", "G21", "G40",
+    "G41", "G42.1", "G43", "G43.1", "G49", "G54", "G59.3", "G61", "G64", "G7", "G8", "G90", "G91", "G90.1",
+    "G91.1", "G93", "G95", "G96", "G97", "G98", "G99", "M0", "M2", "M3", "M19", "M6", "M61", "M7", "M9",
+    "M48", "M53", "M62", "M66", "M68", "M70", "M73", "M100", "M128",
+)  # fmt: skip
+
+
+@settings(max_examples=60, phases=[Phase.generate], suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(pair=st.tuples(st.sampled_from(CODES), st.sampled_from(CODES)))
+@example(pair=("G80", "G80"))
+@example(pair=("G43.1", "G49"))
+def test_codes_are_of_one_group_where_linuxcnc_says_so(pair: tuple[str, str], tmp_path: Path) -> None:
+    path = tmp_path / "part.ngc"
+    path.write_text(f"{' '.join(pair)}\nM2\n")
+    try:
+        canonical(path)
+        theirs = False
+    except RefusedByLinuxcncError as refused:
+        theirs = "from same modal group" in str(refused)
+    ours = any("of one group" in error.text for error in run_program(path, MACHINE).errors)
+    assert ours == theirs
+
+
+@pytest.mark.parametrize("text", TAKEN)
+def test_what_linuxcnc_takes_is_taken(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "part.ngc"
+    path.write_text(f"G21\n{text}\nM2\n")
+    canonical(path)
+    assert run_program(path, MACHINE).errors == ()
+
+
+@pytest.mark.parametrize(
+    "text", ["G80 G0 X1\nY2", "G0 G80 X1\nY2", "F9\nG81 X2 Z-1 R1\nG80 G1 X3\nX4", "F9\nG81 X2 Z-1 R1\nG80 G81 X3\nX4"]
+)
+def test_a_motion_counts_beside_the_end_of_a_cycle(text: str, tmp_path: Path) -> None:
+    path = tmp_path / "part.ngc"
+    path.write_text(f"G21 G90 G17\nG0 X0 Y0 Z2\n{text}\nM2\n")
+    agree(run_program(path, MACHINE), canonical(path))
 
 
 @pytest.mark.parametrize("text", REFUSED.values(), ids=REFUSED.keys())

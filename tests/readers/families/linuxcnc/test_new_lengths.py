@@ -21,6 +21,8 @@ ROUND = "G21 G90 G54\nT1 M6\nG0 A0 C40\n"
         (TURNED + "G43 H1\nM428\nG43 H1\nG0 X0 Y0 Z50", []),
         (TURNED + "G43 H1\nM428\nG43\nG0 X0 Y0 Z50", []),
         (TURNED + "M428\nG49\nG0 X0 Y0 Z50", []),
+        # H0 is that of the tool in the spindle, as rs274 with a tool table shows.
+        (TURNED + "G43 H1\nM428\nG43 H0\nG0 X0 Y0 Z50", []),
         # Another length; the end of it; axes that turn with TCP on.
         (TURNED + "G43 H1\nM428\nG43 H2\nG0 X0 Y0 Z50", [6]),
         (TURNED + "G43 H1\nM428\nG0 X0 Y0 Z50\nG49\nM429", [7]),

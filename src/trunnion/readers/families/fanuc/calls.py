@@ -16,7 +16,7 @@ from trunnion.readers.families.fanuc.variables import Variables
 from trunnion.readers.program.interpreter import ProgramEnd
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.rs274.block import Block, Number
-from trunnion.readers.rs274.expressions import BlockError
+from trunnion.readers.rs274.expressions import BlockError, Value
 from trunnion.readers.rs274.interpreter import Rs274Interpreter
 
 #: How often a subprogram may be repeated by one call.
@@ -37,7 +37,7 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         self.jump_words = _jump_words(settings_of(machine))
         super().__init__(path, machine, options)
-        self._variables = Variables(self._system_value)
+        self._variables = Variables(self._system_value, self._set_system_value)
         self._flow = Flow(self._note, self._variables)
 
     def _lines_of(self, active: ActiveProgram) -> tuple[int, int | None]:
@@ -50,6 +50,16 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
     @abstractmethod
     def _system_value(self, key: int) -> float | None:
         """Return the value of a system variable; None for one that is not simulated."""
+
+    def _set_system_value(self, key: int, value: Value) -> bool:
+        """Stop at a message of #3006, and report an alarm of #3000; the blocks behind it are read all the same."""
+        if key == words.MESSAGE_VARIABLE:
+            self.control.note_wait(f"#{key} stops the program with a message")
+            self.control.add_event("stop")
+        elif key == words.ALARM_VARIABLE:
+            number = "" if value is None else f" {value:g}"
+            self._note(f"#{key} raises alarm{number}: the program goes no farther", Severity.ERROR, "NC226")
+        return key in (words.MESSAGE_VARIABLE, words.ALARM_VARIABLE)
 
     def _macro(self, active: ActiveProgram, block: Block) -> None:
         """G65 and G66: a macro with arguments, called now or after every motion."""

@@ -26,17 +26,18 @@ class FanucControl(Rs274Control):
     local     the shift of G52, (3,) mm
     rotation  G68 as one map
     vectors   G43.5: words I J K of lines are vectors
+    length_ended_at  line of the G28 that has taken the tool length off, 0 if a G word has set it since
     plane_of_pose  the tilted plane is that of the rotary position
     """
 
     # A reset, and with it the end of a program, keeps units and stroke limits in any case (docs/reader-fanuc.md).
     kept_modes = frozenset({"units", "limits"})
     doubtful_modes = frozenset({"distances", "plane", "feed", "compensation", "offset", "length"})
-    reset_by = "whether a reset ends it depends on parameter 3402"
 
     def __init__(self, machine: Machine, note: Note, settings: Settings, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, shortest=shortest)
         self.settings = settings
+        self.reset_by = f"whether a reset ends it depends on {settings.kept_by}"
         self._letter_tables = {
             (whole_feeds, vectors, turning): self._make_table(whole_feeds, vectors, turning)
             for whole_feeds in (True, False)
@@ -51,6 +52,7 @@ class FanucControl(Rs274Control):
         self._rotated_in_space = False
         self.vectors = False
         self.plane_of_pose = False
+        self.length_ended_at = 0
         self.count_in(settings.unit)
         # Of two axes in one table or one head the one that carries the other decides, on mixed machines the table.
         self.deciding_axis = 1 if all(machine.axes[k].mount is Mount.PART for k in machine.rotary) else 0

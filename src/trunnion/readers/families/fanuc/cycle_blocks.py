@@ -9,7 +9,7 @@ from trunnion.machines import Machine
 from trunnion.model.run import Diagnostic
 from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.control.virtual_control import RAPID
-from trunnion.readers.families.fanuc import cycles
+from trunnion.readers.families.fanuc import cycles, words
 from trunnion.readers.families.fanuc.offsets_and_frames import OffsetInterpreter
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.rs274.block import Block
@@ -64,10 +64,11 @@ class CycleInterpreter(OffsetInterpreter):
             if self.motion_code in block.g:
                 self._select_without_words(block.take(letter))
             return
+        without = "ZP" if words.takes_number(block) else "Z"
         given = {
             letter: value
             for letter in cycles.MODAL_WORDS
-            if letter != "Z" and (value := block.take(letter)) is not None
+            if letter not in without and (value := block.take(letter)) is not None
         }
         if along in axes:
             given["Z"] = axes[along][0]
@@ -116,6 +117,10 @@ class CycleInterpreter(OffsetInterpreter):
 
     def _check_cut(self, axes: Collection[str], *, of_machine: bool) -> None:
         """Report a cut that a thread has left without a spindle, or that a new plane has left without a position."""
+        if self.control.length_ended_at and "Z" in axes and not of_machine:
+            what = f"Z without the tool length, which G28 in line {self.control.length_ended_at} has taken off"
+            self._note(f"{what}: write G43 with it", Severity.ERROR, "NC361")
+            self.control.length_ended_at = 0
         if self._not_stated and not of_machine:
             if self.motion_code != 0:
                 missing = ", ".join(sorted(self._not_stated))
@@ -136,25 +141,26 @@ class CycleInterpreter(OffsetInterpreter):
                     f"{found[0]} of a cycle, which describes pecks or a retract, is not simulated", code="NC220"
                 )
         dwell = block.words.get("P")
-        if settings.point_is_seconds and dwell is not None and dwell.whole and dwell.value:
+        in_doubt = settings.point_is_seconds and dwell is not None and dwell.whole and dwell.value
+        if in_doubt and not words.takes_number(block):
             raise BlockError(
                 "P of a cycle without a point: no source says whether it counts seconds or milliseconds", code="NC217"
             )
 
     def _hole(self) -> cycles.Hole:
-        control, words = self.control, self._modal_words
+        control, given = self.control, self._modal_words
         assert self._initial is not None
         initial = self._initial / control.length_unit
-        retract, bottom = words["R"], words["Z"]
+        retract, bottom = given["R"], given["Z"]
         if not control.absolute:
             retract += initial
             bottom += retract
-        peck = abs(words.get("Q", 0.0))
+        peck = abs(given.get("Q", 0.0))
         lateral = (peck, 0.0)
-        if "I" in words:
-            lateral = words["I"], words.get("J", 0.0)
-        elif "J" in words:
-            lateral = 0.0, words["J"]
+        if "I" in given:
+            lateral = given["I"], given.get("J", 0.0)
+        elif "J" in given:
+            lateral = 0.0, given["J"]
         return cycles.Hole(
             retract=retract,
             bottom=bottom,
@@ -162,6 +168,6 @@ class CycleInterpreter(OffsetInterpreter):
             to_initial=self._to_initial,
             peck=peck,
             lateral=lateral,
-            dwell=max(words.get("P", 0.0), 0.0) / 1000.0,
+            dwell=max(given.get("P", 0.0), 0.0) / 1000.0,
             units=1.0 / control.length_unit,
         )

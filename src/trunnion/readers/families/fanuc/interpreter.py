@@ -54,7 +54,7 @@ class FanucInterpreter(CycleInterpreter):
         return ActiveProgram(source, 0)
 
     def _may_scan(self, source: SourceText) -> bool:
-        in_doubt = self._spindle_stands or self._not_stated or self._needs_number
+        in_doubt = self._spindle_stands or self._not_stated or self._needs_number or self.control.length_ended_at
         return self._stack[-1].modal is None and not in_doubt and super()._may_scan(source)
 
     def _system_value(self, key: int) -> float | None:
@@ -88,6 +88,7 @@ class FanucInterpreter(CycleInterpreter):
             return
         block = read_block(reader, self._report_repeated_word)
         self._translate(block, self.control.settings.words)
+        self._report_same_group(block.g, words.GROUPS)
         if words.NURBS in block.g or self._nurbs.is_open:
             self._add_to_nurbs(block)
         else:
@@ -178,12 +179,14 @@ class FanucInterpreter(CycleInterpreter):
         for code in block.g:
             if code in _SCALING:
                 self._modal_g_code(code)
-        control.settings.scale_dwell(block)
+        in_cycle = self.motion_code in cycles.CYCLES or not cycles.CYCLES.isdisjoint(block.g)
+        if words.DWELL in block.g or (in_cycle and not words.takes_number(block)):
+            control.settings.scale_dwell(block)
         if words.DWELL not in block.g:
             angles = "IJKR" if words.TILT in block.g else ""
             mode, inches = control.modal.feed_mode.current, control.length_unit != 1.0
             plain = {letter for code, letter in words.VALUES if code in block.g}
-            if self.motion_code in cycles.CYCLES or not cycles.CYCLES.isdisjoint(block.g):
+            if in_cycle:
                 plain.add(control.settings.repeat_letter)
             if words.JUMP_ON_INPUT in block.m:
                 plain.add("Q")
@@ -233,9 +236,11 @@ class FanucInterpreter(CycleInterpreter):
         elif code in (words.LENGTH_OFF, 430, 440):
             block.take("H")
             control.vectors = False
+            control.length_ended_at = 0
             control.set_tcp(False)
-            control.set_mode("length", g_code_text(code), control.length_active, code != words.LENGTH_OFF)
-            control.set_length(code != words.LENGTH_OFF)
+            on = code != words.LENGTH_OFF and self._numbers_length(block)
+            control.set_mode("length", g_code_text(code), control.length_active, on)
+            control.set_length(on)
             if code == 440:
                 self._note("G44: the tool length with the other sign is not simulated", Severity.ERROR, "NC220")
         elif code == words.ROTATION_OFF:
@@ -254,6 +259,11 @@ class FanucInterpreter(CycleInterpreter):
             self._report_g_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
             if code in (410, 420):
                 self._check_look_ahead()
+
+    def _numbers_length(self, block: Block) -> bool:
+        """Whether the H in force names a tool length: H0 is none."""
+        number = block.words["H"].value if "H" in block.words else float(self._length_number)
+        return number != 0.0
 
     def _smoothness(self, block: Block) -> None:
         """Execute the word that chooses a smoothness, P, and how far corners may be rounded, E."""
@@ -286,6 +296,7 @@ class FanucInterpreter(CycleInterpreter):
         posture = block.take("P")
         if posture not in (None, 0.0, 1.0):
             self._note(f"P{posture:g} of G43.4 and G43.5 is not known", Severity.ERROR, "NC215")
+        control.length_ended_at = 0
         vectors = code == words.TCP_VECTOR
         if control.tcp and control.vectors != vectors:
             self._note(

@@ -158,8 +158,8 @@ class OffsetInterpreter(CallInterpreter):
     def _go_home(self, code: int, block: Block) -> None:
         """G28 and G30: through the programmed point to the reference position."""
         control = self.control
-        axes = self._axis_words(block)
-        if not axes:
+        axes, settings = self._axis_words(block), control.settings
+        if not axes and not settings.home_takes_all:
             raise BlockError("G28 and G30 need the axes that go home")
         if code == words.OTHER_HOME:
             which = block.take("P")
@@ -170,8 +170,24 @@ class OffsetInterpreter(CallInterpreter):
         moving = {name: word for name, word in axes.items() if control.absolute or word[0] != 0.0}
         if moving and (set(moving) - set("XYZ") or not np.array_equal(before, self._target(moving))):
             control.move(moving, None)
-        control.go_to_machine({name: float(control.machine.axis(name).home) for name in axes})
+        names = axes or dict.fromkeys((*"XYZ", *control.rotary_names))
+        control.go_to_machine({name: float(control.machine.axis(name).home) for name in names})
         control.motion = motion
+        if settings.home_ends_length:
+            self._end_length_at_home()
+
+    def _end_length_at_home(self) -> None:
+        """Take the tool length off behind G28, where the control does."""
+        control = self.control
+        if control.tcp:
+            what = "G28 with TCP on: whether it ends TCP with the tool length is not known; write G49 before it"
+            self._note(what, Severity.ERROR, "NC341")
+            return
+        if control.length_active:
+            control.length_ended_at = control.line
+        control.set_mode("length", "G28", control.length_active, False)
+        control.set_length(False)
+        control.modal.edge.set(control.row, -1)
 
     def _target(self, axes: dict[str, AxisWord]) -> Floats:
         control = self.control

@@ -11,6 +11,7 @@ from trunnion.readers.program.family_reader import FamilyReader, g_words
 from trunnion.readers.program.raw_text import NUMBER, RS274_COMMENT, RS274_VALUE, raw_words
 
 #: Common variables are the program's; those from 1000 on are the control's. M48 and M49 switch overrides.
+#: How many blocks are read ahead (G103) moves nothing, and a control that has another G103 refuses it in the proof.
 RAW_WORDS: Final = raw_words(
     (RS274_COMMENT,),
     (
@@ -18,6 +19,7 @@ RAW_WORDS: Final = raw_words(
         rf"#(?:[0-9]|[12][0-9]|3[0-3]|1[0-9]{{2}}|[5-9][0-9]{{2}})[ \t]*=[ \t]*{RS274_VALUE}",
         rf"G0*4[ \t]*[PXU]{NUMBER}",
         r"G(?:0*[0-3]|17|20|21|40|49|5[4-9]|69|80|90|91|9[345])",
+        r"G103(?:[ \t]*P[0-9]+)?",
         rf"[FS]{NUMBER}",
         r"T[0-9]+",
         r"M0*(?P<m>[0-9]+)",

@@ -15,6 +15,9 @@ from trunnion.readers.rs274.word_meanings import NO_WORDS, WordMeanings, read_wo
 LENGTHS: Final = "XYZUVWIJKRQ"
 ANGLES: Final = "ABC"
 
+#: What decides on a Fanuc which modes a reset, and so the end of a program, ends.
+KEPT_BY: Final = "parameter 3402"
+
 #: P of G54.1 on a control with all of them.
 HIGHEST_EXTENDED: Final = 300
 
@@ -38,6 +41,9 @@ class Settings:
     program_digits     digits of program numbers in M98 P; more say how often
     needs_program_number  a main program begins with its O number
     threads_stop_spindle  the spindle stands still after threads, until M3 or M4
+    home_ends_length  G28 takes the tool length off for the blocks behind it
+    home_takes_all  G28 without axes takes all of them home
+    kept_by  what decides which modes the end of a program ends, as messages say it
     extended_offsets  the highest P of G54.1, or of the word that the control has in its place
     whole_feeds_count  whole numbers of F count in least increments, whatever the feed mode
     """
@@ -53,6 +59,9 @@ class Settings:
     needs_program_number: bool = False
     threads_stop_spindle: bool = False
     whole_feeds_count: bool = False
+    home_ends_length: bool = False
+    home_takes_all: bool = False
+    kept_by: str = KEPT_BY
     extended_offsets: int = HIGHEST_EXTENDED
 
     def length(self, inches: bool) -> float:
@@ -130,6 +139,9 @@ def settings_of(machine: Machine) -> Settings:
         needs_program_number=table.flag("needs_program_number", False),
         threads_stop_spindle=table.flag("threads_stop_spindle", False),
         whole_feeds_count=table.text("whole_feeds", "feeds", one_of=("feeds", "increments")) == "increments",
+        home_ends_length=table.flag("home_ends_length", False),
+        home_takes_all=table.flag("home_takes_all", False),
+        kept_by=table.text("kept_by", KEPT_BY),
         extended_offsets=table.integer("extended_offsets", HIGHEST_EXTENDED, at_least=1, at_most=HIGHEST_EXTENDED),
     )
     table.report_unread_keys()

@@ -71,11 +71,15 @@ ARITHMETIC: Final = Arithmetic(
 class Variables:
     """The variables of a running program.
 
-    system_value   returns a system variable, None for one that is not simulated
+    system_value       returns a system variable, None for one that is not simulated
+    set_system_value   acts on a value that a program gives a system variable; returns whether it is one that acts
     """
 
-    def __init__(self, system_value: Callable[[int], float | None]) -> None:
+    def __init__(
+        self, system_value: Callable[[int], float | None], set_system_value: Callable[[int, Value], bool]
+    ) -> None:
         self._system_value = system_value
+        self._set_system_value = set_system_value
         self._common: dict[int, float] = {}
         self._local: list[dict[int, float]] = [{}]
 
@@ -99,7 +103,9 @@ class Variables:
         return self.value(key) is not None
 
     def set(self, key: int | str, value: Value) -> None:
-        """Set a variable, or make it empty."""
+        """Set a variable, or make it empty; one of the control may act on it."""
+        if isinstance(key, int) and key >= SYSTEM_FROM and self._set_system_value(key, value):
+            return
         if isinstance(key, str) or not (0 < key <= LOCAL_COUNT or COMMON_FROM <= key < SYSTEM_FROM):
             raise BlockError(f"#{key} is not a variable that programs set", code="NC223")
         table = self._local[-1] if key <= LOCAL_COUNT else self._common

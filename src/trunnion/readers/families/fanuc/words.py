@@ -2,7 +2,9 @@
 
 from typing import Final
 
+from trunnion.readers.families.fanuc.cycles import CYCLES
 from trunnion.readers.program.word_values import one_of, whole
+from trunnion.readers.rs274.block import Block
 
 #: Work offsets G54 to G59.
 OFFSETS: Final = (540, 550, 560, 570, 580, 590)
@@ -164,6 +166,18 @@ SMOOTHNESSES: Final = whole(1, 3)
 #: How many blocks a control reads ahead; 0, as many as it can.
 BLOCKS_AHEAD: Final = whole(0, 15)
 
+#: Words whose P is a number of something, also where a cycle is in force.
+_WITH_NUMBER: Final = frozenset(
+    {SET_DATA, OTHER_HOME, MORE_OFFSETS, ALIGN_TOOL, MACRO, MODAL_MACRO, TILT, TCP, TCP_VECTOR, SMOOTHNESS, LOOK_AHEAD}
+)
+_WITH_NUMBER_M: Final = frozenset({98, 99, 198, LOCAL_CALL, JUMP_ON_INPUT})
+
+
+def takes_number(block: Block) -> bool:
+    """Whether P of a block is the number of a program, a block or an offset, or chooses something: no time."""
+    return not (_WITH_NUMBER.isdisjoint(block.g) and _WITH_NUMBER_M.isdisjoint(block.m))
+
+
 #: G10: what it writes into the data of tools, by L.
 TOOL_DATA: Final = {
     1: "writes the offset of a tool",
@@ -192,6 +206,33 @@ ARGUMENTS: Final = {
     "A": 1, "B": 2, "C": 3, "I": 4, "J": 5, "K": 6, "D": 7, "E": 8, "F": 9, "H": 11, "M": 13, "Q": 17, "R": 18,
     "S": 19, "T": 20, "U": 21, "V": 22, "W": 23, "X": 24, "Y": 25, "Z": 26,
 }  # fmt: skip
+
+#: System variables that act when a program sets them: stop with a message, and raise an alarm.
+MESSAGE_VARIABLE: Final = 3006
+ALARM_VARIABLE: Final = 3000
+
+#: G codes of which the control takes one a block, the last, for the whole block (groups 1 to 16 of the manuals).
+GROUPS: Final = (
+    frozenset({0, 10, 20, 30, NURBS, 330, *CYCLES}),
+    frozenset({170, 180, 190}),
+    frozenset({900, 910}),
+    frozenset({930, 940, 950}),
+    frozenset({200, 210}),
+    frozenset({400, 410, 412, 420, 422}),
+    frozenset({430, 431, 432, TCP, TCP_VECTOR, 440, LENGTH_OFF}),
+    frozenset({980, 990}),
+    frozenset({*OFFSETS, MORE_OFFSETS}),
+    frozenset({610, 620, 630, 640}),
+    frozenset({ROTATE, TILT, 683, 684, ROTATION_OFF}),
+    frozenset({MODAL_MACRO, 661, MODAL_MACRO_OFF}),
+    frozenset({220, 230}),
+    frozenset({500, 510}),
+    frozenset({501, 511}),
+    frozenset({150, 160}),
+    frozenset({121, 131}),
+    frozenset({960, 970}),
+    frozenset({PLANE_OF_POSE, NO_PLANE_OF_POSE}),
+)
 
 #: Keywords of control flow.
 FLOW: Final = ("IF", "GOTO", "WHILE", "DO", "END", "THEN")

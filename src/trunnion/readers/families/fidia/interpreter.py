@@ -69,6 +69,7 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
         reader = block_reader(text.replace("HD", "H"), _NO_ARITHMETIC, _NO_PARAMETERS)
         block = read_block(reader, self._report_repeated_word)
         self._translate(block, self.control.settings.words)
+        self._report_same_group(block.g, words.GROUPS)
         if block.assignments:
             raise BlockError("parameters are not simulated", code="NC220")
         self._execute_words(block, None if tool is None else tool.group(1))

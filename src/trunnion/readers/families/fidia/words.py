@@ -37,6 +37,17 @@ WORDS_OF_CODE: Final = {170: "Q", 180: "Q", 190: "Q", 210: "XYZ", 220: "XYZIJKP"
 #: What the values of these words may be, by G code and letter: Q1 is the tool along the positive axis.
 VALUES: Final = {(code, "Q"): one_of(1) for code in (170, 180, 190)}
 
+#: G codes that set one mode each, so that two of them in a block contradict each other.
+GROUPS: Final = (
+    frozenset({0, 10, 20, 30}),
+    frozenset({170, 180, 190}),
+    frozenset({900, 910}),
+    frozenset({400, 410, 420}),
+    frozenset(UNITS),
+    frozenset({*TCP_ON, *TCP_OFF}),
+    frozenset({TAKE_PLANE, NO_PLANE}),
+)
+
 #: M codes: the tool change with its offset, and the retract of Z.
 TOOL: Final = 306
 RETRACT: Final = 242

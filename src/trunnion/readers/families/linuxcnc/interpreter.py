@@ -104,9 +104,21 @@ class LinuxcncInterpreter(CycleInterpreter):
             return
         block = read_block(reader, self._report_repeated_word)
         self._translate(block, self.control.own_words)
+        self._refuse_same_group(block)
         self._execute_words(block)
         for key, value in block.assignments:
             self._parameters.set(key, value or 0.0)
+
+    @staticmethod
+    def _refuse_same_group(block: Block) -> None:
+        """Refuse two G codes or two M codes of one group, also twice the same, as LinuxCNC does."""
+        for letter, codes, groups in (("G", block.g, words.GROUPS), ("M", block.m, words.GROUPS_M)):
+            for group in groups:
+                found = [code for code in codes if code in group]
+                if len(found) > 1:
+                    names = [g_code_text(code) if letter == "G" else f"M{code}" for code in found]
+                    what = f"{' and '.join(names[:2])} are of one group, of which a block has one"
+                    raise BlockError(what, code="NC212")
 
     def _execute_words(self, block: Block) -> None:
         control = self.control
@@ -124,7 +136,9 @@ class LinuxcncInterpreter(CycleInterpreter):
             if code not in _AFTER_MOTION:
                 self._m_code(code, block)
         special = self._g_codes(block)
-        selected = [code for code in block.g if code in cycles.CYCLES or code == CANCEL]
+        selected = [code for code in block.g if code in cycles.CYCLES]
+        if CANCEL in block.g and not self._has_motion_code(block):
+            selected = [CANCEL]
         if special in words.TAKING_AXIS_WORDS or any(code in words.NO_MOTION for code in block.g):
             self.motion_code = CANCEL if CANCEL in selected else self.motion_code
         else:
@@ -151,16 +165,11 @@ class LinuxcncInterpreter(CycleInterpreter):
 
     @staticmethod
     def _has_motion_code(block: Block) -> bool:
-        """Whether the last G code for motions and cycles in a block is not G80."""
-        codes = [
-            code
+        """Whether a block has a G code for motions and cycles besides G80, which counts then."""
+        return any(
+            code in MOTIONS or code in words.TAKEN_AS_LINES or code == words.RIGID_TAP or code in cycles.CYCLES
             for code in block.g
-            if code in MOTIONS
-            or code in cycles.CYCLES
-            or code in words.TAKEN_AS_LINES
-            or code in (CANCEL, words.RIGID_TAP)
-        ]
-        return bool(codes) and codes[-1] != CANCEL
+        )
 
     def _g_code(self, code: int, block: Block) -> None:
         control = self.control
@@ -216,8 +225,8 @@ class LinuxcncInterpreter(CycleInterpreter):
             self._note(f"{name} H: the length of another tool is not simulated", Severity.ERROR, "NC220")
 
     def _length_number(self, block: Block) -> int:
-        """Return which length G43 takes: that of H, or of the tool in the spindle; 0 if its number is unknown."""
-        if "H" in block.words:
+        """Return which length G43 takes: that of H; with H0 or none of the tool in the spindle, 0 if it is unknown."""
+        if "H" in block.words and block.words["H"].value:
             return int(block.words["H"].value)
         name = self.control.tool_in_spindle
         return int(name) if name.isdigit() else 0
@@ -227,6 +236,8 @@ class LinuxcncInterpreter(CycleInterpreter):
         if code == words.WAIT_FOR_INPUT and block.words.get("L") is not None and block.words["L"].value:
             seconds = block.words["Q"].value if "Q" in block.words else 0.0
             control.note_wait(f"M66 waits for an input, up to {format_duration(max(seconds, 0.0))}")
+        if code in words.INPUTS_AND_OUTPUTS and (fault := words.fault_of_signal(code, block)):
+            self._note(f"{fault}: LinuxCNC refuses it", Severity.ERROR, "NC218")
         for letter in words.WITHOUT_PATH_EFFECT_M.get(code, "") or words.WORDS_OF_M_CODE.get(code, ""):
             value, known = block.take(letter), words.VALUES_M.get((code, letter))
             fault = "" if value is None or known is None else fault_of_value(f"M{code}", letter, value, known)

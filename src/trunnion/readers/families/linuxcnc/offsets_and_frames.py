@@ -16,7 +16,7 @@ from trunnion.readers.families.linuxcnc.control import ORDER, LinuxcncControl, O
 from trunnion.readers.families.linuxcnc.flow import OWordInterpreter
 from trunnion.readers.families.linuxcnc.words import AXIS_OFFSET_SWITCHES, AXIS_OFFSETS, DWELL, HOMES, SET_DATA
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
-from trunnion.readers.rs274.block import Block
+from trunnion.readers.rs274.block import Block, g_code_text
 from trunnion.readers.rs274.expressions import BlockError
 
 
@@ -61,6 +61,8 @@ class OffsetInterpreter(OWordInterpreter):
             stored = control.machine_position()
             home = next(go for go, store in HOMES.items() if store == code)
             self._stored_positions[home] = {name: float(stored[axis]) for axis, name in enumerate(ORDER)}
+            what = f"the position that {g_code_text(home)} goes to in"
+            control.note_stored_offset(g_code_text(code), code, clears=False, what=what)
 
     # Offsets
 

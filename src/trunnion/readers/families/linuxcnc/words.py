@@ -2,7 +2,10 @@
 
 from typing import Final
 
+from trunnion.readers.families.linuxcnc.cycles import CYCLES
 from trunnion.readers.program.word_values import one_of, whole
+from trunnion.readers.rs274.block import Block
+from trunnion.readers.rs274.interpreter import CANCEL
 
 #: Work offsets, in the order of their numbers in G10 and ``#5220``.
 OFFSETS: Final = (540, 550, 560, 570, 580, 590, 591, 592, 593)
@@ -115,6 +118,25 @@ KINEMATICS_OUTPUT: Final = 3
 #: Reads an input; with L other than 0 it waits for it, up to Q seconds.
 WAIT_FOR_INPUT: Final = 66
 
+#: M codes that need to know which output or input.
+INPUTS_AND_OUTPUTS: Final = range(62, 69)
+
+
+def fault_of_signal(code: int, block: Block) -> str:
+    """Return why LinuxCNC refuses a block with one of ``INPUTS_AND_OUTPUTS``; empty if it does not."""
+    digital, analog = (letter in block.words for letter in "PE")
+    if code in ANALOG_OUTPUTS:
+        return "" if analog else f"M{code} without the output E"
+    if code != WAIT_FOR_INPUT:
+        return "" if digital else f"M{code} without the output P"
+    if digital == analog:
+        return "M66 with a digital and an analog input" if digital else "M66 without the input, P or E"
+    mode, seconds = (block.words[letter].value if letter in block.words else 0.0 for letter in "LQ")
+    if mode and analog:
+        return f"M66 E waits for no analog input: L{mode:g}"
+    return f"M66 L{mode:g} without the seconds Q that it waits" if mode and seconds <= 0.0 else ""
+
+
 #: Lets a signal scale the feed, unless its P is 0.
 ADAPTIVE_FEED: Final = 52
 
@@ -163,3 +185,35 @@ AXIS_OFFSET_SWITCHES: Final = frozenset({921, 922, 923})
 #: All of them, and those that take the axis words of their block.
 SPECIAL: Final = frozenset({DWELL, SET_DATA, *HOMES, *HOMES.values(), *AXIS_OFFSETS, *AXIS_OFFSET_SWITCHES})
 TAKING_AXIS_WORDS: Final = frozenset({SET_DATA, *HOMES, *AXIS_OFFSETS})
+
+#: Turning cycles.
+_TURNING: Final = (700, 710, 711, 712, 720, 721, 722, 760)
+
+#: G codes, in tenths, and M codes of which a block has one: the groups of LinuxCNC's interpreter. G80 may stand beside
+#: a motion.
+GROUPS: Final = (
+    frozenset({0, 10, 20, 30, 50, 51, 52, 53, RIGID_TAP, *TAKEN_AS_LINES, *(CYCLES - {CANCEL}), *_TURNING}),
+    frozenset({DWELL, SET_DATA, *HOMES, *HOMES.values(), *AXIS_OFFSETS, MACHINE}),
+    AXIS_OFFSET_SWITCHES,
+    frozenset({170, 171, 180, 181, 190, 191}),
+    frozenset({900, 910}),
+    frozenset({901, 911}),
+    frozenset({930, 940, 950}),
+    frozenset({200, 210}),
+    frozenset({400, 410, 411, 420, 421}),
+    frozenset({*LENGTHS, *ADDED_LENGTHS}),
+    frozenset({980, 990}),
+    frozenset(OFFSETS),
+    frozenset({610, 611, CONTINUOUS}),
+    frozenset({960, 970}),
+    frozenset({70, 80}),
+)
+GROUPS_M: Final = (
+    frozenset({0, 1, 2, 30, 60}),
+    frozenset({6, 61}),
+    frozenset({3, 4, 5, 19, *range(70, 74)}),
+    frozenset({7, 8, 9}),
+    frozenset(range(48, 54)),
+    frozenset(INPUTS_AND_OUTPUTS),
+    frozenset(range(100, 200)),
+)

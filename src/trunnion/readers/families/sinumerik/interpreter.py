@@ -35,6 +35,7 @@ from trunnion.readers.families.sinumerik.words import (
     EXACT_STOPS,
     FRAMES,
     G_FEEDS,
+    G_GROUPS,
     G_LIMITS,
     G_MACHINE,
     G_NO_MOTION,
@@ -55,6 +56,7 @@ from trunnion.readers.families.sinumerik.words import (
     WITHOUT_PATH_EFFECT,
 )
 from trunnion.readers.program.interpreter import ProgramEnd
+from trunnion.readers.program.modal_groups import same_group
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
 from trunnion.readers.scan.letter_blocks import read_blocks
@@ -175,6 +177,8 @@ class SinumerikInterpreter(CallInterpreter):
 
     def _execute_block(self, active: ActiveProgram, block: Block) -> None:
         """Execute the words of a block in the order of the control."""
+        for fault in same_group(block.g, G_GROUPS, "G{}".format):
+            self._note(fault, Severity.ERROR, "NC212")
         for code in block.g:
             self._g_code(code)
         for word in block.words:

@@ -64,6 +64,26 @@ G_WITHOUT_PATH_EFFECT: Final = {
     462: "collision monitoring",
 }
 
+#: G words of which a block has one at most: the groups of the control.
+G_GROUPS: Final = (
+    frozenset({0, 1, 2, 3, 33, 331, 332}),
+    frozenset({4, 63, 74, 75, 147, 148, 247, 248, 347, 348}),
+    frozenset({25, 26, 58, 59, 110, 111, 112}),
+    frozenset(G_PLANES),
+    frozenset(G_RADIUS_COMPENSATION),
+    G_OFFSETS,
+    G_MACHINE,
+    frozenset({60, 64, 641, 642, 643, 644, 645}),
+    frozenset({601, 602, 603}),
+    frozenset(G_UNITS),
+    frozenset({90, 91}),
+    frozenset(G_FEEDS),
+    frozenset({450, 451}),
+    frozenset({140, 141, 142, 143}),
+    frozenset({340, 341}),
+    frozenset({460, 461, 462}),
+)
+
 #: How the control goes through the ends of blocks, by G code: ``RowRecorder.add_exact_stop``.
 EXACT_STOPS: Final = {9: "block", 60: "on", 64: "off", 641: "off", 642: "off", 643: "off", 644: "off", 645: "off"}
 

@@ -1,0 +1,24 @@
+"""G words of one group: a block has one of them at most; which of two counts differs from control to control."""
+
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+
+
+def same_group(codes: Sequence[int], groups: Iterable[Collection[int]], text_of: Callable[[int], str]) -> Iterator[str]:
+    """Yield what is wrong with the G codes of a block: different ones of one group.
+
+    Parameters
+    ----------
+    codes
+        In the order of the block.
+    groups
+        The codes that set one mode, for each mode.
+    text_of
+        Gives the word of a code.
+    """
+    if len(codes) < 2:
+        return
+    for group in groups:
+        found = [text_of(code) for code in dict.fromkeys(codes) if code in group]
+        if len(found) > 1:
+            what = f"{' and '.join(found[:2])} in one block, of which the control takes one at most"
+            yield f"{what}: write them in blocks of their own"
