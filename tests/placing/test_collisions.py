@@ -78,9 +78,11 @@ class Placed:
             bodies += guarded_tool(parse_tool(tool, {}), machine, "1", LENGTH, 0)
         self.guard = Guard(guarded_pairs(machine, bodies).kept, np.zeros(len(rows), np.int64), {})
         self.machine, self.rows = machine, rows
-        self.results, self.best, self.bound = farthest_orientations(
+        self.results, self.best, bound = farthest_orientations(
             lambda tilt: self.paths(tilt), Grid(np.array(turns)), self.guard, lambda _: None
         )
+        assert bound is not None
+        self.bound: float = bound
 
     def paths(self, tilt: float = 0.0) -> list[TurnedPath]:
         rows = self.rows.turned(about_x(tilt))

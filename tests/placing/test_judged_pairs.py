@@ -123,3 +123,16 @@ def test_what_runs_along_the_bed_counts_by_its_distance_at_home(gap: float, link
     rail = box_body("rail", "bed", (-50, -90, z - 500), (50, -gap, z + 700))
     kept, _ = pairs_of(with_bodies("yl569", [slide, rail]))
     assert kept["slide", "rail"].weight == pytest.approx(weight, rel=1e-6)
+
+
+def test_a_tool_beside_the_head_that_tilts_it_does_not_decide() -> None:
+    """The tool, 10 wide and 100 long, hangs 30 beside an arm of the link that carries its last axis."""
+    machine = load_machine("generic_head_head_ca")
+    arm = box_body("arm", machine.names[-2], (35, -20, -100), (60, 20, 0))
+    machine = with_bodies("generic_head_head_ca", [arm])
+    tool = parse_tool("1=flat:10,length=100,flutes=40", {})
+    pairs = guarded_pairs(
+        machine, [*guarded_machine(machine_bodies(machine)), *guarded_tool(tool, machine, "1", 100.0, 0)]
+    )
+    assert {pair.changes for pair in pairs.kept} == {Changes.TURN}
+    assert all(pair.weight == pytest.approx(10_000.0 / 30.0, rel=0.01) for pair in pairs.kept)

@@ -18,10 +18,12 @@ from trunnion.simulation.collisions.queries import PairQuery, Solid, touches
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.tools.profile import ToolShape
 
-#: Bodies of one side of the machine that are nearer to each other than this at home, mm, run along each other: they
-#: count as so far apart there; nearer ones than the last as if they were as far apart as that.
+#: Bodies of one side of the machine that slides move, and that are nearer to each other than this at home, mm, run along
+#: each other: they count as so far apart there. Those that only rotary axes move count as so far apart as the third.
+#: Nearer ones than the last count as if they were as far apart as that.
 _RUNS: Final = 50.0
 _FAR: Final = 1000.0
+_FAR_TURNING: Final = 10_000.0
 _LEAST: Final = 0.1
 
 
@@ -152,7 +154,8 @@ def piece_pairs(pair: GuardedPair) -> Iterator[tuple[HullPiece, HullPiece]]:
 def _pair(machine: Machine, one: Guarded, other: Guarded) -> GuardedPair:
     if not other.carried and not is_nearer_the_tool(machine, one.body.link, other.body.link):
         one, other = other, one
-    return GuardedPair(one, other, _changes(machine, one, other), _weight(machine, one.body, other.body))
+    weight = 1.0 if other.carried else _weight(machine, one.body, other.body)
+    return GuardedPair(one, other, _changes(machine, one, other), weight)
 
 
 def _weight(machine: Machine, one: Body, other: Body) -> float:
@@ -162,13 +165,14 @@ def _weight(machine: Machine, one: Body, other: Body) -> float:
     changes them. Those of the bed that two axes move count as they are.
     """
     links = one.link, other.link
-    if not one.kind is other.kind is BodyKind.MACHINE or not are_on_one_side(machine, *links):
+    if not are_on_one_side(machine, *links):
         return 1.0
     if BED in (carrier(machine, link) for link in links) and len(axes_between(machine, *links)) > 1:
         return 1.0
     apart = PairQuery(Solid(one.mesh), Solid(other.mesh)).distance(seen_at_home(machine, *links))
-    slides = set(axes_between(machine, *links)) & set(machine.linear)
-    return 1.0 if apart >= (_RUNS if slides else _FAR) else _FAR / max(apart, _LEAST)
+    if not set(axes_between(machine, *links)) & set(machine.linear):
+        return max(1.0, _FAR_TURNING / max(apart, _LEAST))
+    return 1.0 if apart >= _RUNS else _FAR / max(apart, _LEAST)
 
 
 def _never_meets_stock(machine: Machine, one: Guarded, other: Guarded) -> bool:
