@@ -18,9 +18,9 @@ from trunnion.simulation.collisions.queries import PairQuery, Solid, touches
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.tools.profile import ToolShape
 
-#: Bodies of one side of the machine that slides move, and that are nearer to each other than this at home, mm, run along
-#: each other: they count as so far apart there. Those that only rotary axes move count as so far apart as the third.
-#: Nearer ones than the last count as if they were as far apart as that.
+#: Bodies of one side of the machine that slides move, and that are nearer to each other than this at home, mm, run
+#: along each other: they count as so far apart there. Those that only rotary axes move count as so far apart as the
+#: third. Nearer ones than the last count as if they were as far apart as that.
 _RUNS: Final = 50.0
 _FAR: Final = 1000.0
 _FAR_TURNING: Final = 10_000.0
