@@ -42,6 +42,9 @@ SETTINGS = {"title": "BATCH"}
 #: Every so manieth file cannot be read, and is for a spindle that there is not.
 WRONG, REFUSED = 97, 101
 
+#: A fifth of all files lies between the deaths of workers and scheduler.
+FEWEST = 5
+
 
 def generate(folder: Path, count: int) -> None:
     """Write CL files, the same ones on every run, a hundred in a folder."""
@@ -75,8 +78,9 @@ def plain_loop(folder: Path) -> dict[str, object]:
 class Counter(Observer):
     """Counts files, and does something after some of them."""
 
-    def __init__(self, acts: dict[int, Callable[[], None]]) -> None:
+    def __init__(self, acts: dict[int, Callable[[], None]], count: int) -> None:
         self._acts, self._done = acts, 0
+        self._each = min(100, count)
         self.memory: list[int] = []
 
     def progress(self, stage: str, total: int, unit: str) -> AbstractContextManager[Callable[[int], None]]:
@@ -84,7 +88,7 @@ class Counter(Observer):
 
     def _count(self, more: int) -> None:
         self._done += more
-        if self._done % 100 == 0:
+        if self._done % self._each == 0:
             self.memory.append(resident())
         if act := self._acts.get(self._done):
             act()
@@ -136,9 +140,11 @@ def nothing(task: Task) -> Outcome:
 def main() -> int:
     """Run it, and judge."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--files", type=int, default=10_000)
+    parser.add_argument("--files", type=int, default=10_000, help="how many; at least 5, by default 10000")
     parser.add_argument("--folder", type=Path, help="work here; by default in a temporary folder")
     asked = parser.parse_args()
+    if asked.files < FEWEST:
+        parser.error(f"--files is {asked.files}; give at least {FEWEST}")
     with tempfile.TemporaryDirectory() as temporary:
         return measure(asked.folder or Path(temporary), asked.files)
 
@@ -159,7 +165,7 @@ def measure(folder: Path, count: int) -> int:
         with Cluster(folder, 2) if scheduler else nullcontext() as cluster:
             if cluster is not None:
                 wait_for(cluster)
-            observer = Counter(disturbances(cluster, count) if cluster is not None and is_disturbed else {})
+            observer = Counter(disturbances(cluster, count) if cluster is not None and is_disturbed else {}, count)
             with timed(f"batch, two workers: {results}", count):
                 result = run_batch(
                     folder / "in", results=folder / results, action="post", machine=MACHINE, settings=SETTINGS,

@@ -4,7 +4,7 @@ Reads and plans a CL file of ``make_cls.py``, and places it: the best place over
 and the region there. Prints the table of docs/placing.md. Kernels are compiled, and warm, before anything is measured.
 """
 
-import sys
+import argparse
 import tempfile
 import time
 from pathlib import Path
@@ -16,8 +16,11 @@ from trunnion.api.placing import place
 
 def main() -> None:
     """Place a path on some machines."""
-    points = int(sys.argv[1]) if len(sys.argv) > 1 else 1_000_000
-    names = sys.argv[2:] or ["yl569", "generic_head_head_ca", "generic_head_table_bc"]
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("points", nargs="?", type=int, default=1_000_000, metavar="POINTS", help="by default a million")
+    parser.add_argument("machines", nargs="*", metavar="MACHINE", help="names; by default three kinds of machines")
+    asked = parser.parse_args()
+    points, names = asked.points, asked.machines or ["yl569", "generic_head_head_ca", "generic_head_table_bc"]
     with tempfile.TemporaryDirectory() as folder:
         few, many = Path(folder) / "few.cls", Path(folder) / "many.cls"
         for file, count in ((few, 500), (many, points)):

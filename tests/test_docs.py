@@ -49,14 +49,16 @@ def test_the_python_of_a_page_runs(
     assert shown or page != "README.md"
 
 
-def test_the_first_sample_of_placing_is_what_is_printed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+@pytest.mark.parametrize("asked", ["--plot placing.svg", "--goal collisions"])
+def test_the_samples_of_placing_are_what_is_printed(
+    asked: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Word for word; the ends of boxes and regions within what their search leaves open."""
     monkeypatch.chdir(ROOT)
     blocks = re.findall(r"^```\n(.*?)^```", (ROOT / "docs" / "placing.md").read_text(encoding="utf-8"), re.M | re.S)
-    command, printed = blocks[0].replace("\\\n", " ").split(), blocks[1]
-    assert main([*command[1:-1], str(tmp_path / command[-1])]) == 0
+    at = next(k for k, block in enumerate(blocks) if block.startswith("trunnion place ") and asked in block)
+    command, printed = blocks[at].replace("\\\n", " ").split(), blocks[at + 1]
+    assert main([str(tmp_path / word) if word.endswith(".svg") else word for word in command[1:]]) == 0
     out, number = capsys.readouterr().out, re.compile(r"-?\d+\.\d{3}")
     assert number.sub("#", out) == number.sub("#", printed)
     numbers = [[float(each) for each in number.findall(text)] for text in (out, printed)]

@@ -11,6 +11,7 @@ import trunnion
 from tests.support.locations import YL569
 from trunnion.api.fitting import FitStatus, MachineFit
 from trunnion.cli import main
+from trunnion.errors import InputError
 from trunnion.machines import Machine, load_machine, shipped_machines
 from trunnion.machines.loading import EXAMPLES
 
@@ -110,14 +111,13 @@ def test_a_part_that_is_turned_fits_where_it_did_not(tmp_path: Path) -> None:
 def test_what_is_wrong_with_one_machine_ends_no_other(tmp_path: Path, capfd: Capture) -> None:
     broken, file = tmp_path / "broken.toml", YL569 / "2_hub_rough.cls"
     broken.write_text("schema = 1\nname = 3\n", encoding="utf-8")
-    asked = f"{broken},yl569,hs664rt,none_such"
+    asked = f"{broken},yl569,hs664rt"
     assert main(["fit", str(file), "--machines", asked, "--turns", "360", "--json", "-", "--tool-length", "100"]) == 0
     data = {each["machine"]: each for each in json.loads(capfd.readouterr().out)["machines"]}
     assert list(data)[:2] == ["yl569", "hs664rt"]
     assert {key: each["status"] for key, each in data.items()} == {
-        "yl569": "fits", "hs664rt": "open", broken.as_posix(): "does not fit", "none_such": "does not fit",
+        "yl569": "fits", "hs664rt": "open", broken.as_posix(): "does not fit",
     }  # fmt: skip
-    assert "there is no shipped machine of this name" in data["none_such"]["reasons"][0]
     assert "[DEF" in data[broken.as_posix()]["reasons"][0]
     assert data["hs664rt"]["reasons"] == ["no limits of X and Y and Z are stated, so only the other axes are judged"]
     assert data["yl569"]["seconds"] > 0.0
@@ -223,6 +223,22 @@ def test_the_turns_are_those_of_place(tmp_path: Path) -> None:
     (quarters,) = trunnion.fit(file, machines=[narrow], tool_length=100.0, turns=90.0)
     assert quarters.status is FitStatus.NOT
     assert quarters.reasons[1].startswith("the part was tried turned about Z by 4 angles from 0 to 270: give other")
+
+
+def test_a_name_that_is_no_machine_is_refused_with_the_one_that_is_near(tmp_path: Path) -> None:
+    """A definition that is wrong is the reason of its machine alone."""
+    file, wrong = written(tmp_path, "GOTO/0,0,20,0,0,1", "GOTO/9,0,20,0,0,1"), tmp_path / "wrong.toml"
+    wrong.write_text('extends = "nosuch"\n', encoding="utf-8")
+    missing = tmp_path / "missing.toml"
+    with pytest.raises(InputError) as caught:
+        trunnion.fit(file, machines=f"yl569,dmu56,{missing},{wrong}", tool_length=100.0)
+    assert [(problem.file, problem.code) for problem in caught.value.problems] == [
+        ("dmu56", "DEF110"),
+        (str(missing), "FIL110"),
+    ]
+    assert 'did you mean "dmu65"?' in caught.value.problems[0].cure
+    found = trunnion.fit(file, machines=f"yl569,{wrong}", tool_length=100.0, turns=[0.0])
+    assert [each.status for each in found] == [FitStatus.FITS, FitStatus.NOT]
 
 
 def test_travel_from_a_place_that_is_assumed_is_open(tmp_path: Path) -> None:

@@ -110,7 +110,10 @@ SLOWER = (
     ("yl569", "dmu65"), ("dmu65", "matsuura_mx330"), ("matsuura_mx330", "hs664rt"), ("hs664rt", "xyzbc_trt"),
     ("xyzbc_trt", "yl569"), ("yl569", "yl569"),
 ])  # fmt: skip
-def test_a_converted_program_keeps_the_notice_at_its_head(part: Path, tmp_path: Path, source: str, target: str) -> None:
+@pytest.mark.parametrize("by_cl", [False, True])
+def test_a_converted_program_keeps_the_notice_at_its_head(
+    part: Path, tmp_path: Path, source: str, target: str, by_cl: bool
+) -> None:
     names = [f"AN OPERATION WITH A RATHER LONG NAME {letter}" for letter in "ABC"]
     text = part.read_text()
     for old, new in zip(("ROUGH TOP", "DRILL SIDE", "FINISH SIDE"), names, strict=True):
@@ -118,16 +121,21 @@ def test_a_converted_program_keeps_the_notice_at_its_head(part: Path, tmp_path: 
     part.write_text(text)
     file = hook(part, SLOWER)
     trunnion.post(part, machine=source, hooks=[file], output=tmp_path / "part.nc")
-    found = trunnion.convert(tmp_path / "part.nc", machine=source, to_machine=target, output=tmp_path / "out.nc")
-    assert found.posted is not None
-    assert found.posted.passed
+    if by_cl:
+        back = tmp_path / "back.cls"
+        trunnion.convert(tmp_path / "part.nc", machine=source, to_cl=True, output=back)
+        assert trunnion.post(back, machine=target, output=tmp_path / "out.nc").passed
+    else:
+        found = trunnion.convert(tmp_path / "part.nc", machine=source, to_machine=target, output=tmp_path / "out.nc")
+        assert found.posted is not None
+        assert found.posted.passed
+        assert "title" not in found.settings
     out = (tmp_path / "out.nc").read_text()
     assert out.upper().count("MOTION CHANGED BY HOOKS SHOP.PY") == 1
     head = "".join(re.sub(r"^N?\d+ |[ ;()]", "", line) for line in out.splitlines()[:6]).upper()
     assert "MOTIONCHANGEDBYHOOKSSHOP.PY" in head
     for name in names:
         assert name.replace(" ", "") in head, "also behind the end of a line"
-    assert "title" not in found.settings
 
 
 def test_a_program_without_such_a_notice_gets_none(part: Path, tmp_path: Path) -> None:

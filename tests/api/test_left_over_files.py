@@ -153,9 +153,13 @@ def test_files_of_a_setup_that_is_gone_are_named_as_long_as_they_stay(tmp_path: 
 def test_a_setup_that_writes_to_other_files_leaves_the_old_ones(tmp_path: Path) -> None:
     assert post_setups(tmp_path, FIRST, SECOND) == []
     renamed = SECOND.replace('"two.', '"three.').replace("three.cls", "two.cls")
-    told = ["two.html, two.lst, two.mpf are of a set-up that it no longer has"]
-    assert post_setups(tmp_path, FIRST, renamed) == told
-    assert post_setups(tmp_path, FIRST, renamed.replace("second", "other")) == told, "a name is no file"
+    told = "two.html, two.lst, two.mpf are of set-up {} under its earlier name"
+    assert post_setups(tmp_path, FIRST, renamed) == [told.format("second")]
+    assert post_setups(tmp_path, FIRST, renamed.replace("second", "other")) == [told.format("other")], "of the same CL"
+    changed = renamed.replace("two.cls", "one.cls")
+    assert post_setups(tmp_path, FIRST, changed) == [told.format("second")], "of the same name"
+    other = changed.replace("second", "other")
+    assert post_setups(tmp_path, "", other)[0].endswith("under its earlier name"), "one.cls is posted by another set-up"
 
 
 def test_projects_of_one_folder_know_nothing_of_each_other(tmp_path: Path) -> None:
@@ -186,3 +190,55 @@ def test_the_command_warns_of_a_setup_that_is_gone(tmp_path: Path, capsys: pytes
 def test_a_paper_that_a_setup_no_longer_asks_for_is_not_of_one_that_is_gone(tmp_path: Path) -> None:
     assert post_setups(tmp_path, FIRST, SECOND) == []
     assert post_setups(tmp_path, FIRST, SECOND.replace('listing = "two.lst"\n', "")) == []
+
+
+def test_an_unnamed_setup_that_writes_to_another_file_is_named_as_the_program(tmp_path: Path) -> None:
+    text = 'cl = ["one.cls"]\noutput = "{}.mpf"\n'
+    assert post_setups(tmp_path, text.format("one")) == []
+    assert post_setups(tmp_path, text.format("two")) == ["one.mpf is of its program under the earlier name"]
+
+
+def test_a_program_that_somebody_else_has_written_since_is_live(tmp_path: Path) -> None:
+    assert post_setups(tmp_path, FIRST, SECOND) == []
+    other = tmp_path / "other.toml"
+    other.write_text(HEAD + SECOND)
+    assert trunnion.post_project(other).problems == ()
+    for _ in range(2):
+        assert post_setups(tmp_path, FIRST) == [], "the other project has it now"
+    assert post_setups(tmp_path, FIRST, SECOND) == []
+    post(tmp_path / "two.mpf", BLADE)
+    assert post_setups(tmp_path, FIRST) == [], "it was posted alone"
+
+
+def test_a_program_that_a_setup_still_uses_is_live(tmp_path: Path) -> None:
+    assert post_setups(tmp_path, FIRST, SECOND) == []
+    kept = '[[setup]]\nname = "second"\nprograms = ["two.mpf"]\n'
+    assert post_setups(tmp_path, FIRST, kept) == []
+    released = FIRST + 'released = ["two.mpf"]\n'
+    (tmp_path / "project.toml").write_text(HEAD + released)
+    result = trunnion.post_project(tmp_path / "project.toml")
+    assert not [problem for problem in result.problems if problem.code == "PRJ155"]
+    assert post_setups(tmp_path, FIRST) == ["two.html, two.lst, two.mpf are of a set-up that it no longer has"]
+
+
+def test_papers_may_go_on_with_a_program_of_another_name(tmp_path: Path) -> None:
+    post_setups(tmp_path, FIRST, SECOND)
+    post_setups(tmp_path, FIRST, SECOND.replace("two.mpf", "bottom.mpf"))
+    told = post_setups(tmp_path, FIRST, SECOND.replace("two.mpf", "Two.mpf"))
+    assert told
+    assert all(each.endswith(".mpf is of set-up second under its earlier name") for each in told)
+    (tmp_path / "two.html").write_text("with notes of the operator")
+    with pytest.raises(trunnion.InputError, match="no post has written it"):
+        post_setups(tmp_path, FIRST, SECOND.replace("two.mpf", "four.mpf"))
+
+
+def test_setups_may_swap_their_outputs(tmp_path: Path) -> None:
+    assert post_setups(tmp_path, FIRST, SECOND) == []
+    swapped = FIRST.replace("one.mpf", "two.mpf"), SECOND.replace("two.mpf", "one.mpf")
+    assert post_setups(tmp_path, *swapped) == []
+
+
+def test_a_program_is_no_paper(tmp_path: Path) -> None:
+    post(tmp_path / "one.html", HUB)
+    with pytest.raises(trunnion.InputError, match="no post has written it"):
+        post_setups(tmp_path, FIRST)

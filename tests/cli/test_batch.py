@@ -1,7 +1,9 @@
 """``trunnion batch``: the results of the single commands, and a table of what failed."""
 
 import shutil
+import sqlite3
 from collections.abc import Sequence
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -100,6 +102,30 @@ def test_what_cannot_be_done_ends_with_2_before_any_work(
     assert main(["batch", "in", *arguments]) == 2
     assert told in capsys.readouterr().err
     assert sorted(path.name for path in tmp_path.iterdir()) == ["in"]
+
+
+def test_a_folder_that_is_not_there_is_told_as_such(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["batch", "NOPE", "--action", "post", "--machine", "yl569", "--results", "x"]) == 2
+    told = capsys.readouterr().err
+    assert told.startswith("NOPE: error: there is no such folder")
+    assert "file of jobs" not in told
+
+
+def test_the_query_of_the_page_shows_margins_and_files_of_which_nothing_is_known(tmp_path: Path) -> None:
+    text = (ROOT / "docs" / "batch.md").read_text("utf-8")
+    query = text.split('sqlite3 programs.sqlite "')[1].split('"')[0]
+    shutil.copytree(ROOT / "examples" / "batch", tmp_path / "batch", ignore=shutil.ignore_patterns("programs"))
+    summary = tmp_path / "programs.sqlite"
+    jobs = str(tmp_path / "batch" / "jobs.toml")
+    assert main(["batch", jobs, "--workers", "1", "--summary", str(summary)]) == 0
+    with closing(sqlite3.connect(summary)) as table:
+        assert table.execute(query).fetchall() == [("released/hub.mpf", None)]
+        margins = table.execute(query.replace("< 5", "< 500")).fetchall()
+    assert [file for file, _ in margins] == ["released/hub.mpf", "blades/finish.cls", "blades/hub.cls"]
+    assert all(margin > 100.0 for _, margin in margins[1:])
 
 
 def test_a_file_of_jobs_states_everything_itself(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -4,14 +4,18 @@ import json
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 
 import trunnion
 from trunnion.api.placed_heads import stated_place
+from trunnion.api.placing_project import placed_setup
 from trunnion.cli import main
 from trunnion.model.clamping import Clamping, StatedPlace
+from trunnion.simulation.meshes import TriangleMesh, box_mesh, save_mesh
 
 BLADE = "tests/golden/yl569/3_blade_finish.cls"
+CONTOUR = "tests/golden/yl569/1_contour_rough.cls"
 HUB = "tests/golden/yl569/2_hub_rough.cls"
 
 
@@ -218,6 +222,99 @@ def test_a_set_up_of_a_project_is_placed(tmp_path: Path, capsys: pytest.CaptureF
     hooked.write_text('machine = "yl569"\ncl = ["blade.cls"]\noutput = "b.mpf"\nhooks = ["h.py"]\n', "utf-8")
     assert main(["place", str(hooked)]) == 2
     assert "PLC160" in capsys.readouterr().err
+
+
+def test_a_set_up_is_placed_with_what_is_clamped_there(capsys: pytest.CaptureFixture[str]) -> None:
+    """The nose is 110 mm above the tip, which goes 6 mm into the stock, and 8 mm into the part that was turned over.
+
+    The stock is 80 mm wide in Y on a table of 420 mm; options stand in place of what the project states.
+    """
+    part = ["place", "examples/project/part.toml", "--turn", "0", "--setup"]
+    assert main([*part, "top"]) == 0
+    out = capsys.readouterr().out
+    assert "table: 170.000 left to its edge; it is the definition's, 700 x 420 mm" in out
+    assert "nearest to each other: spindle nose and stock are 104.000 mm apart" in out
+    assert "wherever the part sits: cutter of shell end mill and fixture vice.stl are 14.000 mm apart" in out
+    assert main([*part, "bottom"]) == 0
+    assert "spindle nose and part are 102.000 mm apart" in capsys.readouterr().out
+    assert main([*part, "top", "--stock", "box:100,200,30,-50,-100,-30"]) == 0
+    assert "table: 110.000 left to its edge" in capsys.readouterr().out
+
+
+def test_stock_and_part_of_a_later_set_up_lie_as_poses_have_brought_them(tmp_path: Path) -> None:
+    project = tmp_path / "part.toml"
+    (tmp_path / "hub.cls").write_text(Path(HUB).read_text("utf-8"), "utf-8")
+    save_mesh(box_mesh(np.zeros(3), np.array([4.0, 5.0, 6.0])), tmp_path / "part.stl")
+    setup = '[[setup]]\nname = "{0}"\ncl = ["hub.cls"]\noutput = "{0}.mpf"\n'
+    text = 'machine = "yl569"\nstock = "box:10,20,30"\npart = "part.stl"\n'
+    text += setup.format("a") + setup.format("b")
+    text += "pose = { turn_deg = [180, 0, 0], origin_mm = [1, 0, 30] }\n" + setup.format("c")
+    project.write_text(text, "utf-8")
+    assert placed_setup(project, "a").bodies.stock == "box:10,20,30"
+    for name in "bc":
+        bodies = placed_setup(project, name).bodies
+        assert isinstance(bodies.stock, TriangleMesh)
+        assert isinstance(bodies.part, TriangleMesh)
+        for mesh, low, high in ((bodies.stock, (1, -20, 0), (11, 0, 30)), (bodies.part, (1, -5, 24), (5, 0, 30))):
+            assert mesh.vertices.min(axis=0) == pytest.approx(low)
+            assert mesh.vertices.max(axis=0) == pytest.approx(high)
+
+
+@pytest.mark.parametrize("goal", ["slides", "rotary", "overspeed"])
+def test_goals_other_than_the_margin_tell_the_nearest_limits(
+    goal: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data = tmp_path / "placed.json"
+    command = ["place", CONTOUR, "--machine", "yl569", "--tool-length", "100", "--turn", "0", "--goal", goal]
+    assert main([*command, "--json", str(data)]) == 0
+    out, found = capsys.readouterr().out, json.loads(data.read_text("utf-8"))
+    assert "  nearest limit" in out
+    assert "it is held by" not in out
+    least = min(axis["margin_mm"] for axis in found["best"]["axes"])
+    use = {axis["axis"]: axis for axis in found["best"]["axes"]}
+    assert found["limits"]
+    for limit in found["limits"]:
+        axis = use[limit["axis"]]
+        left = {"low": axis["least_mm"] - limit["limit_mm"], "high": limit["limit_mm"] - axis["greatest_mm"]}
+        assert left[limit["end"]] == pytest.approx(least, abs=2e-3)
+
+
+def test_the_edge_is_told_with_the_limits_that_are_nearest(capsys: pytest.CaptureFixture[str]) -> None:
+    """A stock of 300 by 420 mm fills the table in Y."""
+    command = ["place", CONTOUR, "--machine", "yl569", "--tool-length", "100", "--turn", "0", "--goal", "slides"]
+    assert main([*command, "--stock", "box:300,420,40,-150,-210,0"]) == 0
+    line = next(line for line in capsys.readouterr().out.splitlines() if "nearest limit" in line)
+    assert line.startswith("  nearest limits: the table's edge at Y -210; the table's edge at Y 210; ")
+
+
+def test_the_table_that_counts_is_told_and_a_zero_beyond_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    machine, command = tmp_path / "small.toml", ["place", HUB, "--tool-length", "100", "--turn", "0", "--machine"]
+    machine.write_text('extends = "yl569"\n[facts]\ntable_size_mm = [9, 8]\ntable_centre_mm = [100, 90]\n', "utf-8")
+    assert main([*command, str(machine)]) == 0
+    told = (
+        "the zero is beyond the table, the definition's, 9 x 8 mm, its middle at X100.000 Y90.000: give stock or part"
+    )
+    assert told in capsys.readouterr().out
+    assert main([*command, "yl569"]) == 0
+    assert "table" not in capsys.readouterr().out
+
+
+def test_a_program_with_other_rotary_positions_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The contour is cut upright: a tilt by 10 degrees is B 10 with C 135, or B -10 with C 315."""
+    program = tmp_path / "placed.mpf"
+    command = ["place", CONTOUR, "--machine", "yl569", "--tool-length", "120", "--zero", "0,0,0"]
+    assert main([*command, "--tilt", "-10", "--turn", "45", "--apply", str(program)]) == 0
+    out = capsys.readouterr().out
+    assert "  C 135.000 to 135.000 degrees" in out
+    assert "B-10. C315." in program.read_text("utf-8")
+    at_feed = "at feed C 315.000 to 315.000, B -10.000 to -10.000 degrees: 93.70"
+    assert f"  the program takes other rotary positions, {at_feed}" in out
+    present = "present zero 0.000,0.000,0.000, turned 0 degrees: 98.352 mm to the limits; the best place, tilted -10"
+    assert f"  {present} degrees about X, then turned 45 degrees, has 4.647 mm less" in out
+    assert main([*command, "--turn", "0", "--apply", str(program)]) == 0
+    out = capsys.readouterr().out
+    assert "other rotary positions" not in out
+    assert "98.352 mm to the limits; the best place has 0.000 mm more" in out
 
 
 def test_a_program_that_is_converted_still_says_how_the_part_is_clamped(tmp_path: Path) -> None:

@@ -119,6 +119,16 @@ def test_what_cannot_be_judged_is_refused(options: list[str], code: str, capsys:
     assert f"[{code}]" in capsys.readouterr().err
 
 
+def test_what_is_missing_is_told_where_no_bodies_could_meet(capsys: pytest.CaptureFixture[str]) -> None:
+    part = ["place", BLADE, "--machine", "yl569", "--turn", "0", "--tool-length", "110"]
+    assert main([*part, "--goal", "collisions"]) == 2
+    assert "--goal: error: yl569 has no spindle.gauge_point_mm, so that" in capsys.readouterr().err
+    assert main([*part, "--tool", TOOL]) == 0  # another goal does without bodies
+    told = capsys.readouterr()
+    assert "--tool: warning: yl569 has no spindle.gauge_point_mm, so that" in told.err
+    assert "nearest to each other" not in told.out
+
+
 def test_where_no_place_changes_distances_the_margin_decides(plate: str, capsys: pytest.CaptureFixture[str]) -> None:
     part = ["place", BLADE, "--machine", "generic_nutated_b45_c", "--turn", "0", "--tool-length", "110", "--tool", TOOL]
     assert main([*part, "--goal", "collisions", "--fixture", plate]) == 0

@@ -197,7 +197,7 @@ def test_an_extends_that_goes_round_or_is_too_long_has_its_line(tmp_path: Path) 
         ("{# OURS #}\nM8 %}", 6, "has %} without {% before it: 'M8 %}'; write {% where it begins"),
         ("{# OURS #}\n{title}\n{{ title | uper }}", 7, "no filter or format 'uper'; did you mean \"upper\"?"),
         ("{% if title = 'A' %}\nM8\n{% endif %}", 5, "with =, which compares nothing; write == to compare"),
-        ("M8 %}", 3, "has %} without {% before it: 'M8 %}'"),
+        ("M8 %}", 5, "has %} without {% before it: 'M8 %}'"),
     ],
 )
 def test_a_slip_in_a_text_is_told_at_its_line(
@@ -207,3 +207,24 @@ def test_a_slip_in_a_text_is_told_at_its_line(
     (said,) = told(tmp_path, capfd, "yl569", text)
     assert f"mine.toml:{line}: error: control.templates.before_operation" in said
     assert what in said
+
+
+@pytest.mark.parametrize(
+    ("written", "line"),
+    [
+        ('"""\n{}\n"""', 4),
+        ("'''\r\n{}'''", 4),
+        ('"""\n\nM30\n{}"""', 6),
+        ('"{}"', 3),
+        ('"""{}"""', 3),
+        ('"""M30\n{}\n"""', 4),
+    ],
+)
+@pytest.mark.parametrize("fault", ["{{ }}", "{nosuch}"])
+def test_a_fault_of_a_template_is_told_at_its_own_line(tmp_path: Path, fault: str, written: str, line: int) -> None:
+    machine = tmp_path / "ours.toml"
+    text = f'extends = "matsuura_mx330"\n[control.templates]\nprogram_end = {written.replace("{}", fault)}\n'
+    machine.write_bytes(text.encode())
+    with pytest.raises(trunnion.InputError) as caught:
+        load_control(trunnion.load_machine(machine).control)
+    assert [problem.line for problem in caught.value.problems] == [line]

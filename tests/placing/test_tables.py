@@ -149,7 +149,7 @@ def test_the_table_is_where_its_definition_says() -> None:
     assert found.region.high[:2].tolist() == pytest.approx([180.0, 90.0], abs=1e-5)
     shifted = replace(machine.axes[0], point=(30.0, -20.0, 0.0))  # without: it is about C
     under = replace(machine, axes=(shifted, *machine.axes[1:]))
-    assert ClampingArea.of(under) == ClampingArea((30.0, -20.0), (700.0, 420.0))
+    assert ClampingArea.of(under) == ClampingArea((30.0, -20.0), (700.0, 420.0), axis="C")
     head = trunnion.load_machine("generic_head_head_ca")
     assert ClampingArea.of(head) is None
     assert ClampingArea.of(replace(head, facts=facts)) == ClampingArea((30.0, -20.0), (700.0, 420.0))

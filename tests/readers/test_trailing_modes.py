@@ -152,6 +152,75 @@ def test_post_warns_of_what_a_foot_may_leave(tmp_path: Path) -> None:
     assert "parameter 3402" in problem.what
 
 
+#: Moves that use nothing of what a program has set: to machine positions, and of a rotary axis alone.
+HOMES = {
+    "matsuura_mx330": ("G53 G0 Z0.", "G91 G28 Z0.\nG90", "G0 C0."), "haas_umc750": ("G53 G0 Z0.", "G0 C0."),
+    "xyzac_trt": ("G53 G0 Z0", "G0 C0"),
+    "dmu65": ("L Z+560 R0 FMAX M91", "L C+0 R0 FMAX", "M140 MB MAX"),
+}  # fmt: skip
+
+#: Shifts, planes and stored offsets, with what sets them back.
+SET = [
+    ("matsuura_mx330", "G10 L2 P1 X5.", ""), ("matsuura_mx330", "G52 X5.", "G52 X0. Y0. Z0."),
+    ("matsuura_mx330", "G92 Z7.", ""), ("matsuura_mx330", "G68 X0. Y0. R30.", "G69"),
+    ("xyzac_trt", "G92 X5", "G92.1"), ("xyzac_trt", "G52 X5", "G52 X0"), ("xyzac_trt", "G10 L20 P1 X0", ""),
+    ("dmu65", "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+5", "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+0"),
+    ("dmu65", "CYCL DEF 8.0 MIRROR IMAGE\nCYCL DEF 8.1 X", "CYCL DEF 8.0 MIRROR IMAGE\nCYCL DEF 8.1"),
+    ("dmu65", "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+30", "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+0"),
+    ("dmu65", "CYCL DEF 11.0 SCALING\nCYCL DEF 11.1 SCL 2", "CYCL DEF 11.0 SCALING\nCYCL DEF 11.1 SCL 1"),
+    ("dmu65", "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 B+30 C+0",
+     "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 B+0 C+0\nCYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1"),
+    ("dmu65", "PLANE SPATIAL SPA+0 SPB+30 SPC+0 STAY", "PLANE RESET STAY"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("machine", "words", "back"), SET)
+def test_a_shift_that_only_machine_positions_follow_is_refused(
+    tmp_path: Path, machine: str, words: str, back: str
+) -> None:
+    for home in HOMES[machine]:
+        ((severity, _, text),) = left(tmp_path, machine, cut(machine, 10), words, home)
+        assert severity is Severity.ERROR, text
+        assert [each[0] for each in left(tmp_path, machine, cut(machine, 10), home, words)] == [Severity.ERROR]
+        if back:
+            assert left(tmp_path, machine, cut(machine, 10), words, home, back) == []
+            assert left(tmp_path, machine, cut(machine, 10), words, back, home) == []
+
+
+@pytest.mark.parametrize(("machine", "word"), [
+    (machine, word) for machine, word, _ in (*KEPT, *IN_DOUBT)
+    if word.split()[0] not in ("G91", "G66", "M89") and machine != "hs664rt"
+])  # fmt: skip
+def test_a_mode_that_only_machine_positions_follow_is_told(tmp_path: Path, machine: str, word: str) -> None:
+    home = HOMES[machine][0]
+    behind = left(tmp_path, machine, cut(machine, 10), home, word)
+    before = left(tmp_path, machine, cut(machine, 10), word, home)
+    assert len(behind) == 1
+    assert [(severity, text) for severity, _, text in before] == [(severity, text) for severity, _, text in behind]
+
+
+@pytest.mark.parametrize("machine", ["matsuura_mx330", "haas_umc750"])
+def test_g91_has_its_use_in_front_of_g28(tmp_path: Path, machine: str) -> None:
+    assert left(tmp_path, machine, cut(machine, 10), "G91 G28 Z0.") == []
+    assert len(left(tmp_path, machine, cut(machine, 10), "G90 G53 G0 Z0.", "G91")) == 1
+
+
+@pytest.mark.parametrize(("machine", "words"), [
+    *((machine, words) for machine, words, _ in SET), *((machine, word) for machine, word, _ in KEPT),
+])  # fmt: skip
+def test_a_program_that_never_cuts_is_not_refused_for_what_it_sets(tmp_path: Path, machine: str, words: str) -> None:
+    """PROGRAMS position at rapid; without that, words of a set-up are what it is for."""
+    for before in ((words,), (HOMES[machine][0], words), (words, HOMES[machine][0])):
+        assert {each[0] for each in left(tmp_path, machine, *before)} <= {Severity.WARNING}
+    program = tmp_path / "setup.nc"
+    if machine != "dmu65" and "G10" in words:
+        end = PROGRAMS[machine][2]
+        percent = "%\nO0001\n" if "%" in end else ""
+        program.write_text(f"{percent}{HOMES[machine][0]}\n{words}\n{end}\n", encoding="utf-8")
+        run = trunnion.read_program(program, machine=machine)
+        assert not [each for each in run.diagnostics if each.code == "NC351"]
+
+
 def test_a_mode_that_is_left_and_taken_up_again_is_as_it_was_used(tmp_path: Path) -> None:
     assert left(tmp_path, "matsuura_mx330", "G18", cut("matsuura_mx330", 10), "G17", "G18") == []
     ((_, _, text),) = left(tmp_path, "matsuura_mx330", "G18", cut("matsuura_mx330", 10), "G17", "G19")

@@ -135,7 +135,10 @@ class Case:
         for program in programs:
             named = papers.get(program[0], NO_PAPERS).by_name().values()
             places = [resolve_output(file).path for file in program]
-            EarlierJob(places[0]).remember(places, [resolve_output(file).path for file in named])
+            earlier = EarlierJob(places[0])
+            owner = earlier.owner
+            earlier.remember(places, [resolve_output(file).path for file in named])
+            earlier.set_owner(owner)
 
 
 @dataclass(frozen=True, slots=True)

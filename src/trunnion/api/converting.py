@@ -205,7 +205,8 @@ def convert_beside(
             if run.state.inches.values[-1] and control.settings.get("units") != INCH:
                 carried["units"] = INCH
             comments = [*job.notices, *(f"--set {key}={value}" for key, value in carried.items())]
-            converter.report(write_and_prove(converted.toolpath, target, dialect, comments=comments))
+            whole = conversion.with_whole_notices(converted.toolpath, control.family)
+            converter.report(write_and_prove(whole, target, dialect, comments=comments))
             posted = None
         else:
             given = "work_offset" in job.printed or any("work_offset" in own for own in job.own_settings.values())

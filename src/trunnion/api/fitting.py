@@ -20,7 +20,7 @@ from trunnion.api.posting import post
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_toolpaths
 from trunnion.api.settings import set_up_machine
 from trunnion.definitions import load_table
-from trunnion.errors import ArgumentName, InputError, Severity, TrunnionError, argument_problem
+from trunnion.errors import ArgumentName, InputError, Problem, Severity, TrunnionError, argument_problem
 from trunnion.machines import Machine, shipped_machines
 from trunnion.machines.loading import is_example, machine_library
 from trunnion.machines.machine import Vector
@@ -30,6 +30,9 @@ from trunnion.verification.results import durations
 
 #: Arguments that are the same for all machines: what is wrong with one is no reason of a machine.
 _OF_ALL: Final = ("tool_length", "turns")
+
+#: Codes of a name that is no machine, and of a file that is missing.
+_NOT_THERE: Final = ("DEF110", "FIL110")
 
 #: How reasons begin that a tool without a known length leaves open.
 _LENGTH: Final = "the tool counts as 0 mm long"
@@ -127,7 +130,7 @@ def fit(
     Raises
     ------
     InputError
-        When a file or an argument cannot be used. What is wrong with one machine is its reason.
+        When a file or an argument cannot be used, or a name is no machine. What is wrong with a machine is its reason.
     RefusedError
         When the NC program has words that are not understood.
 
@@ -144,6 +147,7 @@ def fit(
     [('yl569', 'fits'), ('hs664rt', 'open')]
     """
     asked = _asked(machines)
+    _check_are_there(asked)
     toolpaths = _toolpaths(files, machine, check_paths("subprograms", subprograms), zero, tool_length, observer)
     if tool_length is None:
         tool_length = _stated_length(toolpaths)
@@ -185,6 +189,19 @@ def _asked(machines: str | Iterable[MachineLike]) -> list[MachineLike]:
     if not asked or not all(isinstance(each, str | os.PathLike | Machine) for each in asked):
         raise wrong_argument("machines", machines, "give all, or names or files of machines")
     return asked
+
+
+def _check_are_there(asked: Sequence[MachineLike]) -> None:
+    """Raise ``InputError`` with every name that is no machine and every file that is missing."""
+    problems: list[Problem] = []
+    for each in asked:
+        try:
+            as_machine(each, "machines")
+        except InputError as error:
+            named = "" if isinstance(each, Machine) else os.fspath(each)
+            problems += [one for one in error.problems if (one.file, one.line) == (named, 0) and one.code in _NOT_THERE]
+    if problems:
+        raise InputError(problems)
 
 
 def _toolpaths(

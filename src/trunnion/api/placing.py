@@ -34,7 +34,7 @@ from trunnion.placing.placement import AxisUse, Limit, Place, Placement, RotaryU
 from trunnion.placing.planned_time import planned_seconds
 from trunnion.placing.region import Region, region_of
 from trunnion.placing.rotary_angles import Obstacle
-from trunnion.placing.table_limits import EDGES
+from trunnion.placing.table_limits import EDGES, ClampingArea
 from trunnion.placing.travel_limits import TABLE, Cut, CutSet
 from trunnion.placing.turns import TurnedPath, choices_of
 from trunnion.simulation.meshes import TriangleMesh
@@ -45,6 +45,9 @@ _CORNERS: Final = np.array(list(product((0.0, 1.0), repeat=3)))
 
 #: The step of turns at which bodies are kept apart, degrees: each of them is a search of its own.
 _COLLISION_TURNS: Final = 15.0
+
+#: Limits that are nearer than others by less are both told, mm.
+_AS_NEAR: Final = 1e-3
 
 GOALS: Final = tuple(str(goal) for goal in Goal)
 
@@ -63,7 +66,7 @@ def place(
     stock: str | Path | TriangleMesh | None = None,
     part: str | Path | TriangleMesh | None = None,
     fixtures: str | Path | TriangleMesh | Iterable[str | Path | TriangleMesh] = (),
-    tools: Iterable[str | ToolShape] = (),
+    tools: str | ToolShape | Iterable[str | ToolShape] = (),
     libraries: Sequence[FilePath] = (),
     unit: Literal["mm", "inch"] | None = None,
     observer: Observer = SILENT,
@@ -148,7 +151,7 @@ def place(
     bodies = None
     among = BodiesInput(fixtures, part, stock, tools, libraries, unit)
     if goal == Goal.COLLISIONS or among.are_given:
-        bodies = read_bodies(among, given, loaded)
+        bodies = read_bodies(among, given, loaded, is_needed=goal == Goal.COLLISIONS)
         loaded, remarks = bodies.machine, [*remarks, *bodies.problems]
         given = replace(given, rows=replace(given.rows, length=lengths_of(bodies.guard.lengths, given.tool)))
     problems = [*given.problems, *unknown_length(loaded), *dict.fromkeys(remarks)]
@@ -219,6 +222,8 @@ def _placement(
         found = place_at(machine, rows, best.cuts, _rounded(best.cuts, best.best.zero), best.turn)
         found = _with_value(replace(found, tilt_deg=best.tilt), best.path, Goal(goal))
     held = () if best.best is None else tuple(limit_of_cut(machine, rows, cut) for cut in best.best.holds)
+    if found is not None and found.fits and Goal(goal) is not Goal.MARGIN and best.cuts is not None:
+        held = nearest_limits(machine, best.cuts, found)
 
     @lru_cache(maxsize=1)
     def region() -> Region | None:
@@ -249,6 +254,7 @@ def _placement(
         toolpaths=given.toolpaths,
         clamping=given.clamping,
         tool_length_mm=machine.tool_length,
+        table=ClampingArea.of(machine),
         _find_region=region,
         _margin_at=margin_at,
     )
@@ -357,6 +363,18 @@ def limit_of_cut(machine: Machine, rows: PathRows, cut: Cut) -> Limit:
     if cut.slide == TABLE:
         return limit_of_table(machine, EDGES[cut.side])
     return limit_at(machine, rows, cut.row, cut.slide, cut.side)
+
+
+def nearest_limits(machine: Machine, cuts: CutSet, place: Place) -> tuple[Limit, ...]:
+    """The limits to which slides have the least left at a place, like ones all; before them edges that are as near."""
+    left = [(axis.least_mm - axis.low.limit_mm, axis.low) for axis in place.axes]
+    left += [(axis.high.limit_mm - axis.greatest_mm, axis.high) for axis in place.axes]
+    least = min(one for one, _ in left)
+    slides = tuple(limit for one, limit in left if one <= least + _AS_NEAR)
+    if cuts.edges is None or place.table_mm is None or place.table_mm > least + _AS_NEAR:
+        return slides
+    edges = cuts.edges.nearest_edges(np.array(place.zero_mm))
+    return (*(limit_of_table(machine, edge) for edge in edges), *slides)
 
 
 def limit_at(machine: Machine, rows: PathRows, row: int, slide: int, side: int) -> Limit:

@@ -22,7 +22,7 @@ from trunnion.placing.collisions.guarded_pairs import (
 )
 from trunnion.simulation.collisions import BodyKind, machine_bodies
 from trunnion.simulation.meshes import TriangleMesh, box_mesh, cylinder_mesh
-from trunnion.simulation.stock.solids import StockShape, stock_shape
+from trunnion.simulation.stock.solids import stock_shape
 from trunnion.simulation.tools.choice import choose_tools, tools_of_toolpaths
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.text import parse_tool
@@ -60,14 +60,14 @@ class PlacedBodies:
     problems: tuple[Problem, ...]
 
 
-def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine) -> PlacedBodies:
-    """Read the bodies that a path is placed among.
+def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine, *, is_needed: bool = True) -> PlacedBodies:
+    """Read the bodies that a path is placed among; where they are not needed, a warning says that none could meet.
 
     Raises
     ------
     InputError
         If a mesh or a tool cannot be used, or the length of a tool is not known and bodies of the machine are to be
-        kept apart.
+        kept apart; or if they are needed, and no two could meet.
     """
     problems: list[Problem] = []
     carried = list(_carried(given, problems))
@@ -77,12 +77,13 @@ def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine) -> Pl
     for number, shape in tools.items():
         bodies += guarded_tool(shape, machine, placed.tools[number] or NO_CALL, lengths.get(number, 0.0), number)
     pairs = guarded_pairs(machine, [*bodies, *carried])
-    if not any(pair.weight == 1.0 or pair.changes is Changes.PLACE for pair in pairs.kept):
-        what = f"{machine.key} and the arguments have no two bodies that could meet"
-        cure = "state bodies of the machine ([[body]]), or give fixtures, part, stock and tools"
-        raise InputError(argument_problem("goal", what, cure, code="PLC190"))
+    could_meet = any(pair.weight == 1.0 or pair.changes is Changes.PLACE for pair in pairs.kept)
+    if not could_meet:
+        problems.append(_none_could_meet(machine, is_needed=is_needed))
+        if is_needed:
+            raise InputError(problems[-1])
     guard = Guard(pairs.kept, placed.tool, lengths, pairs.left_out)
-    if not guard.is_changed:
+    if could_meet and not guard.is_changed:
         what = "no place and no turn changes how far the tool is from what is clamped with the part"
         cure = "state the bodies of the machine ([[body]]) to have them kept apart"
         problems.append(argument_problem("goal", what, cure, Severity.WARNING, code="PLC270"))
@@ -90,6 +91,21 @@ def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine) -> Pl
     if machine.tool_length is None and lengths:
         machine = replace(machine, tool_length=max(lengths.values()))
     return PlacedBodies(guard, machine, tuple(dict.fromkeys(problems)))
+
+
+def _none_could_meet(machine: Machine, *, is_needed: bool) -> Problem:
+    """What is missing where there are no two bodies to be kept apart."""
+    name, severity = ("goal", Severity.ERROR) if is_needed else ("tools", Severity.WARNING)
+    if machine.bodies and not machine.spindle_point_is_stated:
+        what = (
+            f"{machine.key} has no spindle.gauge_point_mm, so that its spindle and tools are not kept apart from the"
+            " rest of the machine, and nothing else could meet"
+        )
+        cure = "enter where the spindle nose stands with the slides at zero, or give tools, fixtures and part"
+    else:
+        what = f"{machine.key} and the arguments have no two bodies that could meet"
+        cure = "state bodies of the machine ([[body]]), or give fixtures, part, stock and tools"
+    return argument_problem(name, what, cure, severity, code="PLC190")
 
 
 def _carried(given: BodiesInput, problems: list[Problem]) -> Iterable[Guarded]:
@@ -100,11 +116,19 @@ def _carried(given: BodiesInput, problems: list[Problem]) -> Iterable[Guarded]:
     if given.part is not None:
         yield guarded_on_part(read_mesh(given.part, "part", problems), BodyKind.PART)
     if given.stock is not None:
-        mesh = _solid_of(stock_shape(given.stock, problems.append)).named("stock")
+        mesh = stock_mesh(given.stock, problems).named("stock")
         yield guarded_on_part(mesh, BodyKind.PART, is_stock=True)
 
 
-def _solid_of(shape: StockShape) -> TriangleMesh:
+def stock_mesh(stock: MeshLike, problems: list[Problem]) -> TriangleMesh:
+    """A stock as a mesh, mm; warnings are added to the problems.
+
+    Raises
+    ------
+    InputError
+        If a mesh cannot be used, or the text of a stock is none.
+    """
+    shape = stock_shape(stock, problems.append)
     if shape.mesh is not None:
         return shape.mesh
     if shape.is_cylinder:

@@ -50,6 +50,13 @@ def placement_data(found: Placement) -> dict[str, object]:
             "corners_mm": [_numbers(corner) for corner in region.corners],
             "tolerance_mm": _number(region.tolerance),
         },
+        "table": None
+        if found.table is None
+        else {
+            "size_mm": found.table.size and list(found.table.size),
+            "diameter_mm": found.table.diameter,
+            "centre_mm": list(found.table.centre),
+        },
         "between_mm": _number(found.between_mm),
         "stated": clamping_data(found.clamping),
         "clamped": clamping_data(found.clamped),

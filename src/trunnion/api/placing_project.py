@@ -1,13 +1,16 @@
 """A set-up of a project as it is placed."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
+from trunnion.api.placing_bodies import BodiesInput, MeshLike, stock_mesh
 from trunnion.api.project import PostedSetup, Project
 from trunnion.api.project_file import load_project, project_inputs
 from trunnion.api.reading import FilePath
 from trunnion.api.settings import SettingValue
+from trunnion.api.simulation_setups import SimulationInput, read_mesh
 from trunnion.api.turned_parts import checked_angles, is_turned
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.model.clamping import Clamping
@@ -19,6 +22,8 @@ class PlacedSetup:
 
     read      all files that the project leads to, none of which may be written over
     problems  warnings: what of it does not count here
+    bodies    stock, part, fixtures and tools, as they lie in the workpiece frame of the set-up; the stock as it is
+              before the first one
     """
 
     files: tuple[str, ...]
@@ -26,10 +31,11 @@ class PlacedSetup:
     settings: Mapping[str, SettingValue]
     read: tuple[FilePath, ...]
     problems: tuple[Problem, ...] = ()
+    bodies: BodiesInput = field(default_factory=BodiesInput)
 
 
 def placed_setup(project: Path, name: str | None = None) -> PlacedSetup:
-    """The CL files, the machine and the settings of a set-up, the zero among them.
+    """The CL files, the machine, the settings of a set-up, the zero among them, and what is clamped and cuts there.
 
     Raises
     ------
@@ -47,7 +53,23 @@ def placed_setup(project: Path, name: str | None = None) -> PlacedSetup:
         what = f"its zero is that of the part {Clamping(*angles)}, and it is placed as drawn: it has no present zero"
         cure = "give the zero too, if there is one for the part as it is drawn"
         problems.append(Problem(str(project), 0, what, cure, Severity.WARNING, code="PLC330"))
-    return PlacedSetup(setup.cl, setup.machine, settings, tuple(project_inputs(loaded)), tuple(problems))
+    bodies = _bodies(loaded.simulation, loaded.posted.index(setup), problems)
+    return PlacedSetup(setup.cl, setup.machine, settings, tuple(project_inputs(loaded)), tuple(problems), bodies)
+
+
+def _bodies(given: SimulationInput, number: int, problems: list[Problem]) -> BodiesInput:
+    """What stands on the table in a set-up of a project: as poses have brought it there, not yet turned."""
+    own = given.setups[number]
+    stock: MeshLike | None = given.stock or None
+    part: MeshLike | None = None
+    for k, setup in enumerate(given.setups[: number + 1]):
+        pose = setup.pose if k else None
+        if pose is not None:
+            stock = None if stock is None else stock_mesh(stock, problems).moved(pose.matrix)
+            part = None if part is None else read_mesh(part, "part", problems).moved(pose.matrix)
+        part = part if setup.part is None else setup.part
+    unit: Literal["mm", "inch"] | None = "mm" if own.unit == "mm" else "inch" if own.unit == "inch" else None
+    return BodiesInput(tuple(own.fixtures), part, stock, tuple(own.tools), own.libraries, unit)
 
 
 def _setup(loaded: Project, project: Path, name: str | None) -> PostedSetup:

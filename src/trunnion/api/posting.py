@@ -35,12 +35,13 @@ from trunnion.api.settings import Settings
 from trunnion.api.targets import OutputLike, Target, open_target
 from trunnion.api.turned_parts import checked_angles, clamped_after, stated_clamping, turned_toolpaths
 from trunnion.api.writing import named_verification, read_back_while_writing, write
+from trunnion.controls.vocabulary import HOOKS_NOTICE
 from trunnion.errors import Problem, Severity, TrunnionError
 from trunnion.files import OutputGroup, file_on_disk
 from trunnion.jit import compile_ahead
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
-from trunnion.model.toolpath import Toolpath
+from trunnion.model.toolpath import Message, Toolpath
 from trunnion.verification import Verification, rows_from_starts, verify, without_columns
 
 if TYPE_CHECKING:  # imported where a program is simulated: others start sooner
@@ -206,18 +207,31 @@ def post_beside(
         toolpaths = load_toolpaths(cl, job, strict, observer, changes.change)
         stated = stated_clamping(toolpaths)
         clamping = clamped_after(stated, angles, toolpaths[0].file if toolpaths else target.name)
+        toolpaths, carried = _without_notices(toolpaths, job)
         toolpaths = turned_toolpaths(toolpaths, *angles, absolute=job.options.absolute_frame)
         decisions = tuple(changes.decisions) if job.options.explain else ()
         notices: tuple[str, ...] = ()
         if is_placed or stated is not None or not clamping.is_as_drawn:
             notices = placed_notices(clamping, job.machine.workpiece_zero, job.machine.tool_length)
-        job = replace(job, notices=(*notices, *changes.notices), decisions=decisions, clamping=clamping)
+        job = replace(job, notices=(*notices, *carried, *changes.notices), decisions=decisions, clamping=clamping)
         if simulation is not None and job.simulation is not None:
             from trunnion.api.posted_simulation import simulated_as_clamped
 
             job = replace(job, simulation=simulated_as_clamped(job.simulation, clamping))
         target.files.protect(file_on_disk(toolpath.file) for toolpath in toolpaths)
         return post_toolpaths(toolpaths, job, target, observer, later)
+
+
+def _without_notices(toolpaths: list[Toolpath], job: PostJob) -> tuple[list[Toolpath], tuple[str, ...]]:
+    """Toolpaths without the notices of hooks that they were converted with, and these for the head of the program."""
+    operations = (operation for toolpath in toolpaths for operation in toolpath.operations)
+    texts = (event.text for operation in operations for event in operation.events if isinstance(event, Message))
+    if not any(text.strip().upper().startswith(HOOKS_NOTICE) for text in texts):
+        return toolpaths, ()
+    from trunnion.conversion import take_notices  # few CL files have some
+
+    taken = [take_notices(toolpath, job.control.family) for toolpath in toolpaths]
+    return [toolpath for toolpath, _ in taken], tuple(dict.fromkeys(text for _, found in taken for text in found))
 
 
 def post_toolpaths(

@@ -142,12 +142,13 @@ def post_into(
     check_within([file for _, results in posted for each in results for file in files_of(each)], project)
     with told_by_keys(project.path):
         simulation, of_setups = check_project(project, posted, observer)
-    found = [*(problem for each in of_setups for problem in each.problems), *_left_over(posted)]
     programs = [file for _, results in posted for each in results for file in files_of(each)]
-    found += left_over_setups(project, [*programs, *papers], [Path(each.file) for each in found])
-    group.afterwards(
-        partial(remember_setups, project, [each.output for _, results in posted for each in results if each.output])
-    )
+    used = [Path(name) for name in inputs]
+    found = [problem for each in of_setups for problem in each.problems]
+    found += _left_over(posted, [*programs, *papers, *used])
+    found += left_over_setups(project, [*programs, *papers], [Path(each.file) for each in found], used)
+    outputs = [(setup, each.output) for setup, results in posted for each in results if each.output is not None]
+    group.afterwards(partial(remember_setups, project, outputs))
     refused = [problem for problem in found if problem.severity is Severity.ERROR]
     warnings = [problem for problem in found if problem.severity is Severity.WARNING]
     observer.problems(warnings)
@@ -247,31 +248,36 @@ def _check_replaced(project: Project) -> None:
         extension = load_control(as_machine(setup.machine).control).extension
         # A program is replaced by a program, as after a clone; all else only if it is ours.
         named = [file for file in named if file.suffix.lower() != extension.lower()]
-        for file in (*named, *setup.papers.by_name().values()):
+        for file in named:
             found += _replaced(file, setup.output)
+        for file in setup.papers.by_name().values():
+            found += _replaced(file, setup.output, paper=True)
     if found:
         raise InputError(found)
 
 
-def _replaced(file: Path, first: Path) -> list[Problem]:
-    """The problem of a file that is there, is not empty, and is not as posts of the ``first`` have written it."""
+def _replaced(file: Path, first: Path, *, paper: bool = False) -> list[Problem]:
+    """The problem of a file that is there, is not empty, and is not as posts of the ``first`` have written it.
+
+    A paper may be of a program that had another name: it is not yours if any post has written it as it is.
+    """
     place = resolve_output(file).path
-    if not place.exists() or not place.stat().st_size or EarlierJob(resolve_output(first).path).wrote(place):
+    earlier = EarlierJob(resolve_output(first).path)
+    if not place.exists() or not place.stat().st_size or (earlier.wrote_paper if paper else earlier.wrote)(place):
         return []
     what = "would be replaced, although no post has written it as it is"
     cure = "remove it, or take the new one over with trunnion test"
     return [Problem(str(file), 0, what, cure, code="FIL250")]
 
 
-def _left_over(posted: Sequence[tuple[PostedSetup, tuple[PostResult, ...]]]) -> list[Problem]:
-    """Warnings of programs of operations that the CL files no longer have."""
-    found = []
-    for setup, results in posted:
+def _left_over(posted: Sequence[tuple[PostedSetup, tuple[PostResult, ...]]], used: Sequence[Path]) -> list[Problem]:
+    """Warnings of programs of operations that the CL files no longer have, but for files that are ``used``."""
+    found, known = list[Problem](), {resolve_output(file).path for file in used}
+    for setup, _ in posted:
         if setup.division is not Division.OPERATIONS:
             continue
-        written = {result.output.name for result in results if result.output is not None}
         for file in programs_of_operations(setup.output):
-            if file.name not in written:
+            if resolve_output(file).path not in known:
                 what = "is the program of an operation that the CL files no longer have"
                 found.append(
                     Problem(

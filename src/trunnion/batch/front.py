@@ -18,7 +18,7 @@ from trunnion.batch.summary import check_summary, write_summary
 from trunnion.batch.task import Action
 from trunnion.batch.work import work
 from trunnion.batch.workers import Workers
-from trunnion.errors import InputError, argument_problem
+from trunnion.errors import InputError, Problem, argument_problem
 
 #: Workers of one computer.
 _MOST_WORKERS: Final = 1024
@@ -138,6 +138,9 @@ def _batch(path: Path, given: Mapping[str, Any], results: FilePath | None) -> Ba
     """The jobs of a file, or those of a folder as arguments say."""
     stated = {name: value for name, value in given.items() if value}
     if not path.is_dir():
+        if stated and path.suffix != ".toml" and not path.exists():
+            what, cure = "there is no such folder", "check its name, and from where it counts"
+            raise InputError(Problem(str(path), 0, what, cure, code="FIL110"))
         if stated:
             what, cure = f"{path} is a file of jobs, which states it itself", "leave it out, or give a folder"
             raise InputError(argument_problem(next(iter(stated)), what, cure, code="ARG130"))

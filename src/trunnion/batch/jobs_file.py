@@ -106,6 +106,10 @@ def _number(_: _Tables, table: Table, key: str) -> float | None:
     return table.number(key, None, above=0.0)
 
 
+def _tool_length(_: _Tables, table: Table, key: str) -> float | None:
+    return table.number(key, None, above=0.0, at_most=_LONGEST_TOOL)
+
+
 def _angle(most: float) -> _Reader:
     return lambda _, table, key: table.number(key, None, at_least=-most, at_most=most)
 
@@ -114,6 +118,9 @@ def _vector(_: _Tables, table: Table, key: str) -> list[float] | None:
     found = table.vector(key, 3, None)
     return None if found is None else list(found)
 
+
+#: The setting ``tool_length`` takes no more, mm.
+_LONGEST_TOOL: Final = 10_000.0
 
 #: Keys that a post has as settings.
 _PLACE_SETTINGS: Final = {"zero_mm": "zero", "tool_length_mm": "tool_length"}
@@ -138,7 +145,7 @@ _OPTIONS: Final[Mapping[str, _Option]] = {
     "span_deg": _Option("span", _VERIFY, _number),
     "span_tip_mm": _Option("span_tip", _VERIFY, _number),
     "zero_mm": _Option("zero", _ALL, _vector),
-    "tool_length_mm": _Option("tool_length", _ALL, _number),
+    "tool_length_mm": _Option("tool_length", _ALL, _tool_length),
     "turn_deg": _Option("turn", _POST | _VERIFY | _SIMULATE, _angle(360.0)),
     "tilt_deg": _Option("tilt", _POST | _VERIFY | _SIMULATE, _angle(90.0)),
     "stock": _Option("stock", _SIMULATE, _Tables.stock),

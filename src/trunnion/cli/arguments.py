@@ -378,7 +378,7 @@ def _add_convert(parser: argparse.ArgumentParser) -> None:
     into.add_argument("--to-cl", action="store_true", help="write a CL file")
     into.add_argument("--to-machine", metavar="NAME_OR_FILE", help="write a program for this machine")
     parser.add_argument(
-        "--dialect", choices=WRITTEN_DIALECTS, dest="to_dialect", help="what the CL file is written in; clsf"
+        "--dialect", choices=WRITTEN_DIALECTS, dest="to_dialect", help="what the CL file is written in; by default clsf"
     )
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the program's own machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool there, gauge point to tip")
@@ -396,7 +396,8 @@ def _add_convert(parser: argparse.ArgumentParser) -> None:
 def _add_stock(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--stock", metavar="STOCK",
-        help="box:X,Y,Z[,x0,y0,z0] (sizes, lowest corner), cylinder:D,H[,z0], or a mesh file; mm",
+        help="box:X,Y,Z[,x0,y0,z0] (sizes, lowest corner; by default 0,0,0), cylinder:D,H[,z0] (by default 0), or a"
+        " mesh file; mm",
     )  # fmt: skip
     parser.add_argument("--part", metavar="MESH", help="the finished part, to compare with what is left of the stock")
     parser.add_argument(
@@ -413,8 +414,12 @@ def _add_stock(parser: argparse.ArgumentParser) -> None:
         help="a fixture, as the program counts; may be repeated",
     )  # fmt: skip
     parser.add_argument("--near", type=_tolerance, metavar="MM", help="tell bodies that come as near as this, too")
-    parser.add_argument("--cell", type=_cell, metavar="MM", help="width of the cells; a 200th of the stock's side")
-    parser.add_argument("--accuracy", type=_tolerance, metavar="MM", help="of motions and tools; a tenth of a cell")
+    parser.add_argument(
+        "--cell", type=_cell, metavar="MM", help="width of the cells; by default a 200th of the stock's side"
+    )
+    parser.add_argument(
+        "--accuracy", type=_tolerance, metavar="MM", help="of motions and tools; by default a tenth of a cell"
+    )
 
 
 def _add_batch(parser: argparse.ArgumentParser) -> None:

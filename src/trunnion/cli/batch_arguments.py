@@ -28,8 +28,12 @@ def add_batch(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--summary", metavar="FILE", help="a table of all files with their figures: .sqlite or .parquet"
     )
-    parser.add_argument("--workers", type=_whole, metavar="N", help="processes; as many as there are processors")
-    parser.add_argument("--timeout", type=_seconds, metavar="SECONDS", help="how long a file may take; any time")
+    parser.add_argument(
+        "--workers", type=_whole, metavar="N", help="processes; by default as many as there are processors"
+    )
+    parser.add_argument(
+        "--timeout", type=_seconds, metavar="SECONDS", help="how long a file may take; by default any time"
+    )
     parser.add_argument(
         "--scheduler", metavar="ADDRESS", help="let the workers of Dask do it: tcp://HOST:PORT or tls://"
     )
@@ -57,5 +61,7 @@ def add_batch(parser: argparse.ArgumentParser) -> None:
     folder.add_argument(
         "--tool", action="append", default=[], metavar="N=KIND:SIZES", dest="tools", help="simulate: a tool"
     )
-    folder.add_argument("--tiles", metavar="N", help="simulate: tasks among which each simulation is divided; one")
+    folder.add_argument(
+        "--tiles", metavar="N", help="simulate: tasks among which each simulation is divided; by default one"
+    )
     folder.add_argument("--report", choices=("html", "json"), help="a report of each file")

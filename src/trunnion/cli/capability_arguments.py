@@ -22,11 +22,11 @@ def add_sensitivity(parser: argparse.ArgumentParser) -> None:
         type=number,
         default=0.01,
         metavar="MM",
-        help="how far points and lengths are off; 0.01",
+        help="how far points and lengths are off; by default 0.01",
     )
     parser.add_argument(
         "--angle", type=number, default=5.0, metavar="ARCSEC",
-        help="how far directions and displayed angles are off, seconds of arc; 5",
+        help="how far directions and displayed angles are off, seconds of arc; by default 5",
     )  # fmt: skip
     parser.add_argument(
         "--zero-at", default="home", metavar="C=0,B=0|home|none",
@@ -42,7 +42,7 @@ def add_reach(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine whose reach is told")
     parser.add_argument("--part", metavar="MESH", help="part whose facets the tip is to reach along their normals")
     parser.add_argument(
-        "--lean", type=float, default=0.0, metavar="DEG", help="how far the tool may lean from a normal; 0"
+        "--lean", type=float, default=0.0, metavar="DEG", help="how far the tool may lean from a normal; by default 0"
     )
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
@@ -51,7 +51,7 @@ def add_reach(parser: argparse.ArgumentParser) -> None:
         type=number,
         default=5.0,
         metavar="DEG",
-        help="degrees between tilts, and between azimuths; 5",
+        help="degrees between tilts, and between azimuths; by default 5",
     )
     parser.add_argument("--json", metavar="FILE", help="everything as data; - is stdout")
     parser.add_argument("--plot", metavar="FILE", help="tool axes on the sphere, and volumes over the tilt (.svg)")
@@ -63,7 +63,10 @@ def add_fit(parser: argparse.ArgumentParser) -> None:
         "files", nargs="+", metavar="CL|NC", help="CL files of one program; or, with --machine, a program"
     )
     parser.add_argument(
-        "--machines", default="all", metavar="NAME_OR_FILE,…", help="machines that are asked; all shipped ones"
+        "--machines",
+        default="all",
+        metavar="NAME_OR_FILE,…",
+        help="machines that are asked; by default all shipped ones",
     )
     parser.add_argument("--machine", metavar="NAME_OR_FILE", help="machine that the NC program is for")
     parser.add_argument("--zero", metavar="X,Y,Z", help="workpiece zero of the NC program on its own machine, mm")
@@ -73,6 +76,6 @@ def add_fit(parser: argparse.ArgumentParser) -> None:
         type=number,
         default=5.0,
         metavar="DEG",
-        help="try the part at every so many degrees about Z; 5",
+        help="try the part at every so many degrees about Z; by default 5",
     )
     parser.add_argument("--json", metavar="FILE", help="everything as data; - is stdout")

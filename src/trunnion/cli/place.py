@@ -6,7 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from trunnion.api.input_files import machine_files
+from trunnion.api.placed_program import ProgramUse, other_positions
 from trunnion.api.placing import place
+from trunnion.api.placing_bodies import BodiesInput
 from trunnion.api.placing_data import placement_data
 from trunnion.api.placing_inputs import toolpaths_to_post
 from trunnion.api.placing_post import post_placed
@@ -63,6 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
     check_outputs([target for target in targets if target not in (None, "-")], read)
     settings = {**({} if project is None else as_texts(project.settings)), **dict(arguments.settings)}
     length = arguments.tool_length or settings.get("tool_length")
+    stated = BodiesInput() if project is None else project.bodies
     files: Sequence[ToolpathLike] = cl_inputs(arguments.files)
     if arguments.apply is not None:
         files = toolpaths_to_post(files, machine=machine, settings=settings, observer=Terminal())
@@ -76,12 +79,12 @@ def run(arguments: argparse.Namespace) -> int:
         tool_length=length,
         settings=settings,
         subprograms=arguments.subprograms,
-        fixtures=arguments.fixtures,
-        part=arguments.part,
-        stock=arguments.stock,
-        tools=arguments.tools,
-        libraries=arguments.libraries,
-        unit=arguments.unit,
+        fixtures=arguments.fixtures or stated.fixtures,
+        part=arguments.part or stated.part,
+        stock=arguments.stock or stated.stock,
+        tools=arguments.tools or stated.tools,
+        libraries=arguments.libraries or stated.libraries,
+        unit=arguments.unit or stated.unit,
         observer=Terminal(),
     )
     lines = tell if arguments.apply == "-" else print_result
@@ -99,10 +102,19 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.apply is not None and found.fits:
         settings = settings if length is None else {**settings, "tool_length": length}
         output = output_place(arguments.apply)
-        post_placed(
+        posted = post_placed(
             found, machine=machine, output=output, settings=settings, sheet=arguments.sheet, observer=Terminal()
         )
+        use = None if posted.run is None else other_positions(found, posted.run)
+        if use is not None:
+            (tell if arguments.json == "-" else lines)(f"  {_other_positions(use)}")
     return 0 if found.fits else 1
+
+
+def _other_positions(use: ProgramUse) -> str:
+    """Where the program has other rotary positions than the place."""
+    ends = ", ".join(f"{name} {low + 0.0:.3f} to {high + 0.0:.3f}" for name, low, high in use.rotary)
+    return f"the program takes other rotary positions, at feed {ends} degrees: {use.margin_mm:.3f} mm to the limits"
 
 
 def _project(arguments: argparse.Namespace) -> "PlacedSetup | None":
@@ -144,18 +156,17 @@ def placement_lines(found: Placement) -> Iterator[str]:
         yield f"  {_use(axis)}"
     for rotary in best.rotary:
         yield f"  {_rotary_use(rotary)}"
-    if best.table_mm is not None:
-        yield f"  table: {max(best.table_mm, 0.0):.3f} left to its edge"
+    yield from (f"  {line}" for line in _table(found, best))
     yield from (f"  {line}" for line in body_lines(found))
     if found.limits:
-        what = "it is held by" if best.fits else "these conflict:"
+        what = _held(found, best)
         yield f"  {what} {'; '.join(dict.fromkeys(map(_limit, found.limits)))}{_overlap(found)}"
     if present is not None:
         gain = best.margin_mm - present.margin_mm
         state = f"{present.margin_mm:.3f} mm to the limits" if present.fits else f"{-present.margin_mm:.3f} mm too far"
         state += _beyond_table(present)
-        gained = "" if found.goal != "margin" else f"; the best place has {gain_text(gain)}"
-        yield f"  present zero {_point(present)}: {state}{gained}"
+        gained = "" if found.goal != "margin" else f"; the best place{_where(best)} has {gain_text(gain)}"
+        yield f"  present zero {_point(present)}{_where(best, present)}: {state}{gained}"
     if found.goal not in ("margin", "collisions") and best.value is not None:
         now = "" if present is None else f"; at the present zero {_goal_number(found.goal, present)}"
         yield f"  {_value(found.goal, best)}{now}"
@@ -169,9 +180,36 @@ def placement_lines(found: Placement) -> Iterator[str]:
             yield f"  and not beyond {_ends(found.region.low, found.region.high)}, where not every place fits"
 
 
+def _table(found: Placement, best: Place) -> Iterator[str]:
+    """Which table the part stands on, and how far from its edge; or that nothing keeps it there."""
+    table = found.table
+    if table is None:
+        return
+    x, y = table.centre
+    where = f" on the {table.axis} axis" if table.axis else ""
+    named = f"the definition's, {table}, its middle{where} at X{x:.3f} Y{y:.3f}"
+    if best.table_mm is not None:
+        yield f"table: {max(best.table_mm, 0.0):.3f} left to its edge; it is {named}"
+    elif best.fits and not table.has(best.zero_mm):
+        yield f"the zero is beyond the table, {named}: give stock or part to keep them on it"
+
+
+def _held(found: Placement, best: Place) -> str:
+    """What the limits that are told do."""
+    if not best.fits:
+        return "these conflict:"
+    return "it is held by" if found.goal == "margin" else f"nearest limit{'s' if len(found.limits) > 1 else ''}:"
+
+
 def _beyond_table(place: Place) -> str:
     beyond = 0.0 if place.table_mm is None else -place.table_mm
     return f" ({beyond:.3f} mm beyond the table)" if beyond > KEPT else ""
+
+
+def _where(best: Place, place: Place | None = None) -> str:
+    """How the part is clamped at a place, by default the best: where that is not how it is now."""
+    is_turned = not (are_one_angle(best.turn_deg, 0.0) and are_one_angle(best.tilt_deg, 0.0))
+    return f", {_clamped(place or best)}{'' if place else ','}" if is_turned else ""
 
 
 def _clamped(place: Place | TurnMargin) -> str:

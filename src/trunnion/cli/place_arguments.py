@@ -47,13 +47,13 @@ def add_place(parser: argparse.ArgumentParser, setting: type[argparse.Action], k
     parser.add_argument(
         "--goal", choices=GOALS, default="margin",
         help="what the best place is best for: margin to the limits, travel of rotary axes or slides, time, fewest"
-        " blocks whose feed the axes cannot reach, or bodies farthest apart; margin",
+        " blocks whose feed the axes cannot reach, or bodies farthest apart; by default margin",
     )  # fmt: skip
     turns = parser.add_mutually_exclusive_group()
     turns.add_argument(
         "--turns", type=degrees, metavar="DEG",
         help="try the part at every so many degrees about Z, counter-clockwise seen from above (from +Z), and more"
-        " finely around the best; 5, with several tilts or the goal collisions 15",
+        " finely around the best; by default 5, with several tilts or the goal collisions 15",
     )  # fmt: skip
     turns.add_argument(
         "--turn", type=turn, action="append", metavar="DEG", dest="only",
@@ -83,8 +83,8 @@ def add_place(parser: argparse.ArgumentParser, setting: type[argparse.Action], k
     )  # fmt: skip
     parser.add_argument(
         "--stock", metavar="STOCK",
-        help="box:X,Y,Z[,x0,y0,z0] (sizes, lowest corner), cylinder:D,H[,z0], or a mesh file; mm. Seen from above it is"
-        " to stay on the table that the machine's definition states",
+        help="box:X,Y,Z[,x0,y0,z0] (sizes, lowest corner; by default 0,0,0), cylinder:D,H[,z0] (by default 0), or a"
+        " mesh file; mm. Seen from above it is to stay on the table that the machine's definition states",
     )  # fmt: skip
     parser.add_argument("--part", metavar="MESH", help="the finished part, for which the same holds")
     parser.add_argument(

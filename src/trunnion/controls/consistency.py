@@ -72,12 +72,9 @@ def _report_format(table: Table, template: Template, control: Control, name: str
 
 def _report_line(table: Table, template: Template, line: int, what: str, cure: str) -> None:
     """Report a mistake in a line of a template, counted from 0."""
-    if template.is_text:
-        file, at = template.place_of(line)
-        key = table.key_path(template.name)
-        table.problems.append(Problem(file, at, f"{key} {what}", cure, key=key, code="DEF510"))
-    else:
-        table.add_problem(template.name, what, cure, code="DEF510")
+    file, at = template.place_of(line)
+    key = table.key_path(template.name)
+    table.problems.append(Problem(file, at, f"{key} {what}", cure, key=key, code="DEF510"))
 
 
 def _check_names(

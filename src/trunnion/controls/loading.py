@@ -402,10 +402,11 @@ def _read_templates(table: Table, names: Sequence[str]) -> dict[str, Template]:
     found = {}
     for name in names:
         text = table.text(name)
-        file, line = table.location(name)
+        file, line = table.text_location(name)
         if any(sign in text for sign in _TEXT_SIGNS):
             found[name] = _read_text_template(table, name, text)
         else:
+            line += bool(line) * (len(text) - len(text.lstrip("\n")))
             found[name] = Template(name, tuple(text.strip("\n").split("\n")) if text.strip() else (), file, line)
     table.mark_read(*PLACES)
     table.report_unread_keys()
@@ -416,7 +417,7 @@ def _read_text_template(table: Table, name: str, text: str) -> Template:
     """A template with statements or expressions; Jinja is imported for the first one."""
     from trunnion.controls.texts.template import text_template
 
-    template, fault = text_template(name, text, *table.location(name))
+    template, fault = text_template(name, text, *table.text_location(name))
     if fault is not None:
         file, line = template.place_of(max(fault.line, 1) - 1)
         key = table.key_path(name)

@@ -66,7 +66,7 @@ class Printing:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Template:
-    """The lines of a template as they are written, with the file and line of its definition."""
+    """The lines of a template as they are written, with its file in the definition and the line of the first one."""
 
     name: str
     lines: tuple[str, ...]
@@ -101,7 +101,7 @@ class Template:
 
     def place_of(self, line: int) -> tuple[str, int]:
         """Return file and line of the definition of one of the lines, counted from 0."""
-        return self.file, self.line + line + (len(self.lines) > 1) if self.line else 0
+        return self.file, self.line + line if self.line else 0
 
     def fields_beside(self, name: str) -> list[set[str]]:
         """Return for each place of a field the other fields without which it is not printed."""

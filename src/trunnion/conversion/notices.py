@@ -36,6 +36,25 @@ def take_notices(toolpath: Toolpath, family: FamilyWriter) -> tuple[Toolpath, tu
     return replace(toolpath, operations=tuple(operations)), tuple(found)
 
 
+def with_whole_notices(toolpath: Toolpath, family: FamilyWriter) -> Toolpath:
+    """Return a toolpath with each notice of hooks as one message, as a post takes it from a CL file."""
+    operations = []
+    for operation in toolpath.operations:
+        whole = dict[int, Message | None]()
+        for messages, text in _notices(operation, family):
+            whole |= dict.fromkeys(map(id, messages[1:]))
+            whole[id(messages[0])] = replace(messages[0], text=text)
+        events = tuple(kept for event in operation.events if (kept := whole.get(id(event), event)) is not None)
+        operations.append(replace(operation, events=events) if whole else operation)
+    return replace(toolpath, operations=tuple(operations))
+
+
+def _is_notice(event: object) -> bool:
+    if not isinstance(event, Message) or event.display:
+        return False
+    return event.text.strip().upper().startswith(HOOKS_NOTICE)
+
+
 def without_notices(lines: Iterable[tuple[int, str]], family: FamilyWriter) -> list[tuple[int, str]]:
     """Return the lines of a head, by their numbers, without those that are notices of this program, and no title."""
     kept, notice = [], ""
@@ -58,7 +77,7 @@ def _notices(operation: Operation, family: FamilyWriter) -> list[tuple[list[Mess
         if not isinstance(message, Message) or message.display:
             continue
         text = message.text.strip()
-        if text.upper().startswith(HOOKS_NOTICE):
+        if _is_notice(message):
             notices.append(([message], text))
         elif notices and message.line == notices[-1][0][-1].line + 1:
             messages, before = notices[-1]

@@ -13,7 +13,7 @@ from typing import Final, TypeAlias
 
 from trunnion.definitions.merging import merge
 from trunnion.definitions.messages import as_written, did_you_mean
-from trunnion.definitions.source_lines import KeyPath, LocatedValue, key_lines, locate_values
+from trunnion.definitions.source_lines import KeyPath, LocatedValue, layout, locate_values, texts_below
 from trunnion.definitions.table import Table
 from trunnion.definitions.toml_faults import toml_fault
 from trunnion.errors import InputError, Problem, unusable_file
@@ -99,10 +99,10 @@ def _parse(label: str, data: bytes) -> LocatedValue:
         line = data.count(b"\n", 0, error.start) + 1
         raise InputError(Problem(label, line, "is not UTF-8 text", "save the file as UTF-8", code="DEF120")) from None
     try:
-        lines = key_lines(text)
+        found = layout(text)
         raw = tomllib.loads(text)
-        _check_whole_numbers(raw, label, lines)
-        return locate_values(raw, label, lines, (), 1)
+        _check_whole_numbers(raw, label, found.lines)
+        return locate_values(raw, label, found.lines, (), 1, texts_below(text, found))
     except RecursionError:
         raise InputError(
             Problem(label, 0, "nests too deeply", "a definition needs three levels", code="DEF120")

@@ -2,7 +2,7 @@
 
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass
 from typing import Final, NamedTuple, TypeAlias
 
@@ -24,6 +24,8 @@ _STRING_ENDS: Final = {
     "'''": re.compile(r"(?:[^']++|'(?!''))*+'{3,}+"),
 }
 
+_BELOW: Final = re.compile(r"(?:\"{3}|'{3})\r?\n")
+
 KeyPath: TypeAlias = tuple[str | int, ...]
 
 
@@ -31,12 +33,15 @@ KeyPath: TypeAlias = tuple[str | int, ...]
 class LocatedValue:
     """A value of a definition, with its file and line.
 
-    value  a scalar, a list of scalars or of lists, a dict of located values (a table), or a list of located tables
+    value         a scalar, a list of scalars or of lists, a dict of located values (a table), or a list of located
+                  tables
+    begins_below  the first line of a text stands in the line below that of its key and its opening quotation marks
     """
 
     value: object
     file: str
     line: int
+    begins_below: bool = False
 
 
 def _is_tables(value: object) -> bool:
@@ -45,7 +50,12 @@ def _is_tables(value: object) -> bool:
 
 
 def locate_values(
-    value: object, file: str, lines: Mapping[KeyPath, int], path: KeyPath = (), parent_line: int = 0
+    value: object,
+    file: str,
+    lines: Mapping[KeyPath, int],
+    path: KeyPath = (),
+    parent_line: int = 0,
+    below: Set[KeyPath] = frozenset(),
 ) -> LocatedValue:
     """Attach file and lines to a raw TOML value and everything in it.
 
@@ -53,16 +63,17 @@ def locate_values(
     lines        from ``key_lines``
     path         path of the value
     parent_line  line of values that have none of their own
+    below        from ``texts_below``
     """
     line = lines.get(path, parent_line)
     if isinstance(value, dict):
-        table = {str(key): locate_values(item, file, lines, (*path, key), line) for key, item in value.items()}
+        table = {str(key): locate_values(item, file, lines, (*path, key), line, below) for key, item in value.items()}
         return LocatedValue(table, file, line)
     if isinstance(value, list) and _is_tables(value):
         return LocatedValue(
-            [locate_values(item, file, lines, (*path, i), line) for i, item in enumerate(value)], file, line
+            [locate_values(item, file, lines, (*path, i), line, below) for i, item in enumerate(value)], file, line
         )
-    return LocatedValue(value, file, line)
+    return LocatedValue(value, file, line, path in below)
 
 
 class ValuePlace(NamedTuple):
@@ -117,6 +128,11 @@ def key_lines(text: str) -> dict[KeyPath, int]:
         If tables nest too deeply.
     """
     return layout(text).lines
+
+
+def texts_below(text: str, found: Layout) -> frozenset[KeyPath]:
+    """Keys of a TOML text whose texts begin in the line below their opening quotation marks."""
+    return frozenset(path for path, place in found.values.items() if _BELOW.match(text, place.start))
 
 
 class _Scanner:

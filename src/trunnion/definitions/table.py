@@ -95,6 +95,11 @@ class Table:
         content = self._values.get(key, self.content)
         return content.file, content.line
 
+    def text_location(self, key: str) -> tuple[str, int]:
+        """File and line of the first line of a text; the line is 0 if it has none."""
+        content = self._values.get(key, self.content)
+        return content.file, content.line + content.begins_below if content.line else 0
+
     def key_path(self, key: str) -> str:
         """Path of a key from the root of the definition, such as ``axis[1].limits_deg``."""
         return f"{self.path}.{key}" if self.path else key

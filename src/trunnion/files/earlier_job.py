@@ -4,7 +4,8 @@ In:     the place of a job's first file.
 Out:    whether a file there is still what that job wrote, and which of its files are of another program.
 
 The record is in the user's cache, a small file for each place: of each file its size, its digest, and a digest of the
-program that was written with it. Where it is missing every file is somebody else's.
+program that was written with it; and who wrote last, if that was a project. A paper has a record of its own, too: its
+program may get another name. Where a record is missing every file is somebody else's.
 """
 
 import hashlib
@@ -17,8 +18,15 @@ from typing import Final
 
 from trunnion.user_cache import user_cache
 
-#: Places that are remembered; of more the oldest are forgotten.
-_MOST_PLACES: Final = 1000
+#: Places that are remembered; of more the oldest are forgotten, down to the second number.
+_MOST_PLACES: Final = 4000
+_PLACES_KEPT: Final = 3500
+
+#: What stands in place of the digest of a program in the record that a paper has of its own.
+_PAPER: Final = "paper"
+
+#: The name, which no file has, under which a record holds its owner.
+_OWNER: Final = ""
 
 
 class EarlierJob:
@@ -37,6 +45,27 @@ class EarlierJob:
             return EarlierJob(file).wrote(file)
         known = self._digests.get(os.path.normcase(file.name))
         return known is not None and _is_as_known(file, known)
+
+    def wrote_paper(self, file: Path) -> bool:
+        """Whether a file that exists is as any job has written it as a paper, or one of these jobs at all."""
+        if self.wrote(file):
+            return True
+        own = EarlierJob(file)
+        known = own._digests.get(own._key(file), "")
+        return known.split(":")[2:] == [_PAPER] and _is_as_known(file, known)
+
+    @property
+    def owner(self) -> tuple[str, ...]:
+        """What the last job has stated by ``set_owner``; empty where it has not."""
+        try:
+            found = json.loads(self._digests.get(_OWNER, "[]"))
+        except (ValueError, RecursionError):
+            return ()
+        return tuple(str(each) for each in found) if isinstance(found, list) else ()
+
+    def set_owner(self, owner: Iterable[str]) -> None:
+        """Record for whom the last job has written, until another one writes."""
+        self._write({**self._read(), _OWNER: json.dumps(list(owner))})
 
     def written(self) -> list[Path]:
         """All files of the record that are there as these jobs have written them."""
@@ -69,17 +98,20 @@ class EarlierJob:
         """Record a program, and papers about it, that have been written; it does no harm where that is not possible."""
         if self._record is None:
             return
-        of_program = list(program)
-        files = [*of_program, *papers]
-        for other in (file for file in files if file.parent != self._folder):
+        of_program, about_it = list(program), list(papers)
+        for other in (file for file in of_program if file.parent != self._folder):
             EarlierJob(other).remember([other])
-        digests = {name: known for name, known in self._digests.items() if (self._folder / name).exists()}
-        found = {file: _digest(file) for file in files}
+        digests = {name: known for name, known in self._known_by_name().items() if (self._folder / name).exists()}
+        found = {file: _digest(file) for file in (*of_program, *about_it)}
         job = _job(found[file] for file in of_program)
         for file, digest in found.items():
             if digest:
                 digests[self._key(file)] = f"{file.stat().st_size}:{digest}:{job}"
         self._write(digests)
+        for paper in about_it:
+            if found[paper]:
+                own = EarlierJob(paper)
+                own._write({own._key(paper): f"{paper.stat().st_size}:{found[paper]}:{_PAPER}"})
 
     def remember_names(self, files: Iterable[Path]) -> None:
         """Record the names of these files, and of no others; what they hold is in records of their own."""
@@ -87,7 +119,11 @@ class EarlierJob:
 
     def _known(self) -> list[tuple[Path, str]]:
         """The files of the record, and what is known of each."""
-        return [(self._folder / name, known) for name, known in self._digests.items()]
+        return [(self._folder / name, known) for name, known in self._known_by_name().items()]
+
+    def _known_by_name(self) -> dict[str, str]:
+        """The record without its owner."""
+        return {name: known for name, known in self._digests.items() if name != _OWNER}
 
     def _write(self, digests: dict[str, str]) -> None:
         """Replace the record; it does no harm where that is not possible."""
@@ -135,8 +171,10 @@ def _digest(file: Path) -> str:
 
 
 def _forget_oldest(folder: Path) -> None:
+    if sum(1 for _ in folder.iterdir()) <= _MOST_PLACES:
+        return
     with os.scandir(folder) as entries:
         ages = [(entry.stat().st_mtime_ns, entry.path) for entry in entries]
-    for _, path in sorted(ages)[:-_MOST_PLACES]:
+    for _, path in sorted(ages)[:-_PLACES_KEPT]:
         with suppress(OSError):
             Path(path).unlink()

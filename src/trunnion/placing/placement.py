@@ -11,11 +11,12 @@ from trunnion.machines.machine import Vector
 from trunnion.model.clamping import Clamping
 from trunnion.model.toolpath import Toolpath
 from trunnion.placing.region import Region
+from trunnion.placing.table_limits import ClampingArea
 
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """A limit that holds a part: where a slide comes nearest to it.
+    """A limit, and where a slide comes nearest to it.
 
     axis       its name, or ``table``
     end        ``low`` or ``high``; of the table the edge: ``low X``, ``high X``, ``low Y``, ``high Y`` or ``rim``
@@ -156,7 +157,8 @@ class Placement:
     files     what was placed
     goal      what the best place is best for
     best      the best place; where the part fits nowhere, that with the least excess; None: no turn is within reach
-    limits    what keeps its margin from growing, the heaviest first; where it does not fit, what conflicts
+    limits    what keeps its margin from growing, the heaviest first; with other goals than ``margin`` the limits that
+              are nearest at the best place; where it does not fit, what conflicts
     present   the place of the definition or of the arguments; None: neither states one
     turns     what each turn allows, in order; those of the grid and those around the best
     between_mm  how far slides may go beyond that between rows where rotary axes turn
@@ -166,6 +168,7 @@ class Placement:
     tool_length_mm    of the tool that slides keep their limits with; None: it is not known
     nearest_anywhere  of bodies whose distance no place and no turn changes, such as tool and fixture, the nearest two
     left_out  names of pairs of bodies that are not judged: at home they overlap, on one side of the machine
+    table     of the machine's definition; None: it states none
     most_distance_mm  with the goal ``collisions``: at no turn that was tried a place keeps the others farther apart
     """
 
@@ -184,6 +187,7 @@ class Placement:
     nearest_anywhere: BodyDistance | None = None
     most_distance_mm: float | None = None
     left_out: tuple[tuple[str, str], ...] = ()
+    table: ClampingArea | None = None
     _find_region: Callable[[], Region | None] = field(default=lambda: None, repr=False)
     _margin_at: Callable[[Floats, float, float], float] = field(default=lambda *_: np.nan, repr=False)
 

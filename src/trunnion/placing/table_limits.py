@@ -14,7 +14,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.machines import Machine
-from trunnion.machines.machine import Mount
+from trunnion.machines.machine import Mount, Vector
 from trunnion.placing.turning import hull_points, is_upright
 
 #: An outline that is beyond an edge by less is on the table, mm: zeros are in thousandths.
@@ -51,11 +51,13 @@ class ClampingArea:
     centre    mm
     size      along X and Y, mm; None: no rectangle
     diameter  mm; None: no disc
+    axis      the rotary axis on which the middle is taken to be; empty where it is stated, or there is none
     """
 
     centre: tuple[float, float]
     size: tuple[float, float] | None = None
     diameter: float | None = None
+    axis: str = ""
 
     @staticmethod
     def of(machine: Machine) -> "ClampingArea | None":
@@ -67,9 +69,14 @@ class ClampingArea:
         if facts.table_size_mm is None and facts.table_diameter_mm is None:
             return None
         rotary = [machine.axes[k] for k in machine.rotary]
-        under = [axis.point[:2] for axis in rotary if axis.mount is Mount.PART and is_upright(axis)]
-        centre = facts.table_centre_mm or next(iter(under), (0.0, 0.0))
-        return ClampingArea(centre, facts.table_size_mm, facts.table_diameter_mm)
+        under = [axis for axis in rotary if axis.mount is Mount.PART and is_upright(axis)]
+        if facts.table_centre_mm is not None or not under:
+            return ClampingArea(facts.table_centre_mm or (0.0, 0.0), facts.table_size_mm, facts.table_diameter_mm)
+        return ClampingArea(under[0].point[:2], facts.table_size_mm, facts.table_diameter_mm, under[0].name)
+
+    def has(self, zero: Vector) -> bool:
+        """Whether a point of the machine frame, mm, is above it."""
+        return TableLimits(self, np.zeros((1, 2))).left(np.array(zero)) >= -KEPT
 
     def edge_position(self, edge: TableEdge) -> float:
         """Where an edge is along its axis; of the rim the diameter; mm."""
@@ -125,6 +132,12 @@ class TableLimits:
         if self.area.diameter is not None:
             least = min(least, 0.5 * self.area.diameter - float(np.hypot(*from_centre.T).max()))
         return least
+
+    def nearest_edges(self, zero: Floats) -> list[TableEdge]:
+        """The edges to which the outline has the least left with the zero (3,) there."""
+        limits = [*self.straight_edges(), *filter(None, (self.rim_at(zero),))]
+        left = [limit.bound - float(np.dot(limit.normal, zero[:2])) for limit in limits]
+        return [limit.edge for limit, one in zip(limits, left, strict=True) if one <= min(left) + KEPT]
 
     def straight_edges(self) -> Iterator[EdgeLimit]:
         """The half-spaces of a rectangle: of all its edges."""

@@ -177,7 +177,7 @@ def test_a_fault_is_told_at_its_line() -> None:
     assert fault is None
     with pytest.raises(InputError) as caught:
         template.expand(VALUES, printing())
-    assert caught.value.problems[0].line == 10
+    assert caught.value.problems[0].line == 9
     _, fault = text_template("program_end", ";A\n;B\n{{ title.upper }}", "a.toml", 7)
     assert isinstance(fault, Fault)
     assert (fault.line, fault.what) == (3, "asks for .upper, which nothing has")

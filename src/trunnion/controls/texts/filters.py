@@ -211,6 +211,9 @@ _OWN: Final[Mapping[str, Callable[..., Any]]] = {
     "join": _join,
 }
 
+#: Values that a filter takes in brackets, at most; all others take none, nor do number formats.
+MOST_ARGUMENTS: Final[Mapping[str, int]] = {"cut": 1, "pad": 2, "replace": 2, "default": 1, "round": 1, "join": 1}
+
 #: Letters that take as long as one step: those of a text that is looked through, and that are taken apart.
 _LETTERS_A_STEP: Final = 8
 _SLOW: Final = frozenset({"ascii"})

@@ -8,6 +8,7 @@ that people make within them. Jinja's own words never reach the user.
 """
 
 import re
+import unicodedata
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
@@ -64,6 +65,7 @@ class _Tag:
 
     def __str__(self) -> str:
         shown = " ".join(f"{self.opening}{self.body}{_ENDS[self.opening]}".split())
+        shown = "".join(f"<{_code_of(sign)}>" if _is_invisible(sign) else sign for sign in shown)
         return shown if len(shown) <= _SHOWN else f"{shown[:_SHOWN]}…"
 
 
@@ -166,11 +168,24 @@ def _slip(tag: _Tag) -> Fault | None:
     if tag.opening == "{#" or tag.fault is not None:
         return tag.fault
     bare = _TEXT.sub(lambda found: "'" + "_" * (len(found[0]) - 2) + "'", tag.expression)
+    unseen = next((sign for sign in _TEXT.sub("", tag.body) if _is_invisible(sign)), "")
+    if unseen:
+        name = unicodedata.name(unseen, "").lower()
+        what = f"has {tag} with a sign that nobody sees, {_code_of(unseen)}{name and f' ({name})'}"
+        return Fault(what, "delete it, and write the part anew", tag.line)
     for slip in (_statement_slip, _sign_slip, _comparison_slip, _bracket_slip, _missing_slip):
         found = slip(tag, bare)
         if found is not None:
             return Fault(found[0], found[1], tag.line)
     return None
+
+
+def _is_invisible(sign: str) -> bool:
+    return unicodedata.category(sign) == "Cf"
+
+
+def _code_of(sign: str) -> str:
+    return f"U+{ord(sign):04X}"
 
 
 def _statement_slip(tag: _Tag, bare: str) -> tuple[str, str] | None:
@@ -208,6 +223,11 @@ _SIGNS: Final[tuple[tuple[str, str], ...]] = (
     (r"&&?", "write and"), (r"\|\|", "write or"), (r"!(?!=)", "write not"), (r"<>", "write != for unequal"),
     (r"=>", "write >= for at least"), (r"=<", "write <= for at most"), (r"\?", "write a if b else c"),
     (r";", "leave it out"), (r"\$", "leave it out"), (r"\^", "powers are not there: multiply"),
+    ("[\u00d7\u00b7\u22c5\u2219\u2715\u2716]", "write * to multiply"), ("[\u00f7\u2215\u2044]", "write / to divide"),
+    ("[\u2212\u2010-\u2015]", "write the minus sign of the keyboard: -"), ("\u2264", "write <= for at most"),
+    ("\u2265", "write >= for at least"), ("\u2260", "write != for unequal"), ("\u00b0", "write numbers without units"),
+    ("[\u00b2\u00b3]", "powers are not there: multiply"), ("[\u00bc-\u00be]", "write a decimal number"),
+    ("\u221a", "roots are not there"),
 )  # fmt: skip
 
 

@@ -100,10 +100,6 @@ class TextTemplate(Template):
                 lines.append(simple)
         return tuple(lines)
 
-    def place_of(self, line: int) -> tuple[str, int]:
-        """Return file and line of the definition of one of the lines, counted from 0."""
-        return self.file, self.line + line + (len(self.lines) > 1) if self.line else 0
-
     def expand(self, values: Mapping[str, Value], printing: Printing) -> list[str]:
         """Return the lines of the program, without those whose values are absent, and without empty ones.
 

@@ -156,6 +156,8 @@ def _check(node: nodes.Node) -> None:
         raise Fault(f"has {what}, which templates do not have", _LANGUAGE, line)
     if isinstance(node, nodes.Name) and node.name.startswith("_"):
         raise Fault(f"has the name {node.name}, and names do not begin so", "", line)
+    if isinstance(node, nodes.Name) and node.name == "self":
+        raise Fault("has self, which templates do not have", "write a value by its own name, such as title", line)
     if isinstance(node, nodes.Getattr) and node.attr not in RECORD_VALUES | LOOP_VALUES:
         cure = did_you_mean(node.attr, RECORD_VALUES | LOOP_VALUES) or _LANGUAGE
         raise Fault(f"asks for .{node.attr}, which nothing has", cure, line)
@@ -181,7 +183,11 @@ def _check_constant(node: nodes.Const) -> None:
 
 
 def _check_arguments(node: nodes.Filter | nodes.Test) -> None:
-    if node.kwargs or node.dyn_args or node.dyn_kwargs or len(node.args) > 2:
+    named = node.kwargs or node.dyn_args or node.dyn_kwargs
+    if isinstance(node, nodes.Filter) and node.name not in filters.ALL and (node.args or named):
+        cure = did_you_mean(node.name, filters.MOST_ARGUMENTS) or "leave them out: a number format has its decimals"
+        raise Fault(f"gives {node.name} values in brackets, and it takes none", cure, node.lineno)
+    if named or (isinstance(node, nodes.Filter) and len(node.args) > filters.MOST_ARGUMENTS.get(node.name, 0)):
         raise Fault(f"gives {node.name} what it does not take", _LANGUAGE, node.lineno)
     if isinstance(node, nodes.Test) and (node.name not in filters.TESTS or node.args):
         cure = f"write one of {', '.join(sorted(filters.TESTS))}, or compare by =="

@@ -20,10 +20,14 @@ from trunnion.model.run import Orientation
 from trunnion.readers.control.affine_map import AffineMap, affine_matrix
 from trunnion.readers.control.arcs import ArcMap
 from trunnion.readers.control.row_recorder import MAX_POSITION, Note, RowRecorder
+from trunnion.readers.control.rows_in_use import RowsInUse
 from trunnion.readers.control.trailing_modes import Place, TrailingModes
 
 #: Millimetres of an inch.
 INCH: Final = 25.4
+
+#: What of the next program a stored work offset changes, for messages.
+OFFSET: Final = "the work offset of"
 
 
 class CoordinateControl(RowRecorder):
@@ -57,10 +61,12 @@ class CoordinateControl(RowRecorder):
         self.tcp = False
         self.tilted = False
         self._tilted_from = self._shifted_from = -1
-        # Work offsets that were written since the last motion: row, line, file and word; and the first row of each.
+        self._rows_in_use = RowsInUse()
+        # Work offsets that were written since the last motion at the part: row, line, file and word; the first row of
+        # each.
         self._stored_offsets: list[tuple[int, int, int, str, str]] = []
         self._stored_systems: dict[int, int] = {}
-        self._trailing = TrailingModes()
+        self._trailing = TrailingModes(self._used_until)
         self._plane = AffineMap()
         self._program = AffineMap()
         # Programmed values of axes that incremental words still count from after a frame change, by axis.
@@ -161,8 +167,8 @@ class CoordinateControl(RowRecorder):
 
     @property
     def in_unused_plane(self) -> bool:
-        """Whether the working plane is tilted and nothing has moved since."""
-        return self.tilted and self.row == self._tilted_from
+        """Whether the working plane is tilted and nothing has moved in it since."""
+        return self.tilted and self._tilted_from >= self._in_use.at_part
 
     def note_shift(self) -> None:
         """Remember where a shift, a rotation, a mirror image or a scale was set."""
@@ -170,13 +176,13 @@ class CoordinateControl(RowRecorder):
 
     @property
     def unused_shift(self) -> bool:
-        """Whether nothing has moved since a shift was set: what it does is left to the next program.
+        """Whether nothing has moved with it since a shift was set: what it does is left to the next program.
 
         Others may be left on: many sound programs begin with one and never cancel it.
         """
-        return self.row == self._shifted_from
+        return self._shifted_from >= self._in_use.at_part
 
-    def note_stored_offset(self, word: str, system: int, *, clears: bool, what: str = "the work offset of") -> None:
+    def note_stored_offset(self, word: str, system: int, *, clears: bool, what: str = OFFSET) -> None:
         """Remember where the program wrote a work offset, or a position, that the control keeps beyond its end.
 
         Parameters
@@ -188,10 +194,10 @@ class CoordinateControl(RowRecorder):
         clears
             Whether it is zero now: that only tidies up an offset which the program wrote before it moved.
         """
-        first = self._stored_systems.setdefault(system, self.row)
-        if self._stored_offsets and self._stored_offsets[0][0] != self.row:
+        first, used = self._stored_systems.setdefault(system, self.row), self._in_use.at_part
+        if self._stored_offsets and self._stored_offsets[0][0] < used:
             self._stored_offsets.clear()
-        if self.row and not (clears and first < self.row):
+        if used and not (clears and first < used):
             self._stored_offsets.append((self.row, self.line, self.modal.file.current, word, what))
 
     def warn_of_unknown_zero(self, word: str) -> None:
@@ -201,16 +207,18 @@ class CoordinateControl(RowRecorder):
             self.note(text, Severity.WARNING, "NC352")
 
     def report_unused_offsets(self) -> None:
-        """Report each stored work offset that was written behind the last motion: only the next program moves with it.
+        """Report each stored work offset behind the last motion at the part: only the next program moves with it.
 
-        A program without motions sets up the machine, and may write them.
+        A program without such motions sets up the machine, and may write them.
         """
         here = self.line
         for row, line, file, word, what in self._stored_offsets:
-            if row == self.row:
+            # Other positions, such as another home, are for moves to machine positions.
+            if row >= (self._in_use.at_part if what == OFFSET else self.row):
                 self.line = line if file == self.modal.file.current else here
-                text = f"{word} behind the last motion changes {what} the next program"
-                self.note(f"{text}: write it before the motions that need it", Severity.ERROR, "NC351")
+                motion = "the last motion at the part" if what == OFFSET else "the last motion"
+                text = f"{word} behind {motion} changes {what} the next program"
+                self._note_left(f"{text}: write it before the motions that need it")
         self.line = here
 
     # What the next program begins with
@@ -225,21 +233,43 @@ class CoordinateControl(RowRecorder):
         return usual.get(name, False)
 
     def report_trailing_modes(self) -> None:
-        """Report the modes that the program sets behind its last motion and that the next program begins with.
+        """Report the modes that the program sets behind the last motion with a use for them, if they outlive its end.
 
-        A program without motions sets up the machine, and may set them.
+        A program without motions at the part sets up the machine, and may set them.
         """
         here = self.line
-        for mode in self._trailing.changed(self.row):
+        for mode in self._trailing.changed():
             stays = mode.name in self.kept_modes
-            if not self.row or mode.after == self.usual(mode.name) or not (stays or mode.name in self.doubtful_modes):
+            if (
+                not self._in_use.at_part
+                or mode.after == self.usual(mode.name)
+                or not (stays or mode.name in self.doubtful_modes)
+            ):
                 continue
             self.line = mode.place.line if mode.place.file == self.modal.file.current else here
             begins = "begins with it" if stays else f"may begin with it ({self.reset_by})"
-            text = f"{mode.word} behind the last motion has no use in this program, and the next one {begins}"
-            cure = "leave it out, or set it back before the end"
-            self.note(f"{text}: {cure}", Severity.ERROR if stays else Severity.WARNING, "NC351")
+            text = f"{mode.word} behind the last motion at the part stays on, and the next program {begins}"
+            self._note_left(f"{text}: leave it out, or set it back before the end", stays=stays)
         self.line = here
+
+    def report_left(self, what: str, begins: str = "begins") -> None:
+        """Report a plane, a rotation or a shift that the program leaves on, and with which the next one ``begins``."""
+        self._note_left(f"ends with {what} on: the next program {begins} with it")
+
+    def _note_left(self, text: str, *, stays: bool = True) -> None:
+        """Note what is left to the next program; one that never cuts may leave it on purpose, as a set-up does."""
+        self.note(text, Severity.ERROR if stays and self._in_use.cuts else Severity.WARNING, "NC351")
+
+    @property
+    def _in_use(self) -> RowsInUse:
+        self._rows_in_use.update(self.columns, self.modal)
+        return self._rows_in_use
+
+    def _used_until(self, mode: str) -> int:
+        """Return the row behind the last one that uses a mode, 0 if none has: G91 has its use in ``G91 G28 Z0``."""
+        if mode == "distances":
+            return self.row
+        return self._in_use.at_feed if mode in ("feed", "M116") else self._in_use.at_part
 
     def report_left_on(self, word: str) -> None:
         """Report a word that is still in force at the end of the program, which the next program may begin with."""

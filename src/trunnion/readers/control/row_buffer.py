@@ -1,12 +1,13 @@
 """The columns of a run while its program runs: dense ones, and builders of compact ones."""
 
 from array import array
+from bisect import bisect_right
 from typing import Any, Final, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from trunnion.arrays import Floats, Ints
+from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.columns import RampColumn, StepColumn
 
 T = TypeVar("T", int, float, bool)
@@ -124,6 +125,12 @@ class StepColumnBuilder(Generic[T]):
             return
         self._rows.append(row)
         self._values.append(value)
+
+    def part(self, first: int, end: int) -> Flags:
+        """Return whether the value is other than 0 in the rows from ``first`` to before ``end``, (end - first,)."""
+        change = bisect_right(self._rows, first) - 1
+        at, values = np.array(self._rows[change:]), np.array(self._values[change:], np.bool_)
+        return np.asarray(values[np.searchsorted(at, np.arange(first, end), "right") - 1])
 
     def extend(self, rows: Ints, values: Floats) -> None:
         """Append changes at ascending rows beyond the last change; every value differs from the one before it."""

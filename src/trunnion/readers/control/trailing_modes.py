@@ -1,6 +1,6 @@
 """Modes that a program sets behind its last motion: they have no use in it, the next one may begin with them."""
 
-from collections.abc import Hashable, Iterator
+from collections.abc import Callable, Hashable, Iterator
 from dataclasses import dataclass
 
 
@@ -15,7 +15,7 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class TrailingMode:
-    """A mode that was set: its name, the word that set it last, where, and what was in force at the motion before."""
+    """A mode that was set: its name, the word that set it last, where, and what was in force when it was last used."""
 
     name: str
     word: str
@@ -25,18 +25,21 @@ class TrailingMode:
 
 
 class TrailingModes:
-    """The modes that were set since the last motion."""
+    """The modes that were set; ``used`` tells the row behind the last one that uses a mode of a name."""
 
-    def __init__(self) -> None:
+    def __init__(self, used: Callable[[str], int]) -> None:
         self._modes: dict[str, TrailingMode] = {}
+        self._used = used
 
     def set(self, name: str, word: str, place: Place, before: Hashable, after: Hashable) -> None:
         """Remember that a word has set a mode: what was in force until then, and what is from now on."""
         known = self._modes.get(name)
-        if known is not None and known.place.row == place.row:
+        if known is not None and known.place.row >= self._used(name):
             before = known.before
         self._modes[name] = TrailingMode(name, word, place, before, after)
 
-    def changed(self, row: int) -> Iterator[TrailingMode]:
-        """Yield the modes that are now others than at the last motion, which is the one before a row."""
-        return (mode for mode in self._modes.values() if mode.place.row == row and mode.before != mode.after)
+    def changed(self) -> Iterator[TrailingMode]:
+        """Yield the modes that are now others than at the last motion that used them."""
+        for name, mode in self._modes.items():
+            if mode.place.row >= self._used(name) and mode.before != mode.after:
+                yield mode

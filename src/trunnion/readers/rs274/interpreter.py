@@ -276,7 +276,7 @@ class Rs274Interpreter(Interpreter[A]):
             control.report_unused_offsets()
             control.report_trailing_modes()
             if left := control.left_on():
-                self._note(f"ends with {left} on: the next program begins with it", Severity.ERROR, "NC351")
+                control.report_left(left)
             for word in self._may_be_left_on():
                 control.report_left_on(word)
             control.add_event("end", f"M{code}")

@@ -23,15 +23,21 @@ from trunnion.verification.results import Check, Place
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _PlaneChange:
-    """An event after which a tilted plane is on or off; ``shifted``: frames shift the zero without rotating it.
+    """An event after which a tilted plane is on or off.
 
-    ``follows`` the rotary axes: they may turn while it is on, and it is not judged at the end, where a third of the
-    programs of other CAM systems leave it on (PLANE of Klartext). Otherwise a plane holds for one rotary position.
+    shifted   frames shift the zero without rotating it
+    source    the event that switched on what is on, for messages
+    level     the plane that is on is that of the work offset (angles of 0): programs end planes so, too
+    follows   the rotary axes: they may turn while it is on, and it is not judged at the end, where a third of the
+              programs of other CAM systems leave it on (PLANE of Klartext). Otherwise a plane holds for one rotary
+              position.
     """
 
     event: RunEvent
     on: bool
     shifted: bool
+    source: RunEvent
+    level: bool = False
     follows: bool = False
 
 
@@ -51,27 +57,36 @@ def check_turns(context: Context) -> Check:
 def _plane_changes(run: Run) -> list[_PlaneChange]:
     """What CYCLE800, G68.2, PLANE and frame words switch on and off."""
     found: list[_PlaneChange] = []
-    tilted = rotated = shifted = False
+    tilt: RunEvent | None = None
+    frame: RunEvent | None = None
+    rotated = level = follows = False
     for event in run.events:
-        if event.kind == "cycle800":
-            values = str(event.value).split(",")
-            tilted = bool(event.value) and values[1:2] != ['"0"']
-            rotated = shifted = False
-        elif event.kind == "tilt":
-            tilted, rotated, shifted = bool(event.value), False, False
+        if event.kind in ("cycle800", "tilt", "plane"):
+            # G53.1 turns the axes to the plane that is on.
+            if event.value != "G53.1":
+                tilt, level = event if _tilts(event) else None, False
+            frame, rotated, follows = None, False, event.kind == "plane"
+        elif event.kind == "level":
+            level = tilt is not None
         elif event.kind == "frame":
             word = str(event.value)
-            adds = word.startswith("A")
-            rotated = "ROT" in word or (rotated and adds)
-            shifted = word != "" and (not rotated or adds)
-        elif event.kind == "plane":
-            on = not str(event.value).startswith("RESET")
-            found.append(_PlaneChange(event, on, False, follows=True))
-            continue
+            turns = "ROT" in word
+            frame = frame if rotated and not turns and word.startswith("A") else event if word else None
+            rotated = turns or (rotated and word.startswith("A"))
         else:
             continue
-        found.append(_PlaneChange(event, tilted or rotated, shifted))
+        on = tilt is not None or rotated
+        source = frame if tilt is None or level else tilt
+        only_level = level and not rotated
+        found.append(_PlaneChange(event, on, frame is not None and not rotated, source or event, only_level, follows))
     return found
+
+
+def _tilts(event: RunEvent) -> bool:
+    """Whether the event of a plane switches one on."""
+    if event.kind == "cycle800":
+        return bool(event.value) and str(event.value).split(",")[1:2] != ['"0"']
+    return bool(event.value) and not str(event.value).startswith("RESET")
 
 
 def _turns_in_a_plane(context: Context, changes: list[_PlaneChange]) -> list[Place]:
@@ -125,8 +140,9 @@ def _planes_left_on(context: Context, changes: list[_PlaneChange]) -> Iterator[P
         last = by_event.get(id(event), last)
         if event.kind not in ("tool_change", "end") or last is None or (last.follows and event.kind == "end"):
             continue
-        if last.on or last.shifted:
+        tilted = last.on and not last.level
+        if tilted or last.shifted:
             what = "changes the tool" if event.kind == "tool_change" else "ends the program"
-            state = "in a tilted plane" if last.on else "with a frame on"
-            text = f"{what} {state}, which was switched on in line {last.event.line}"
+            state = "in a tilted plane" if tilted else "with a frame on"
+            text = f"{what} {state}, which was switched on in line {last.source.line}"
             yield context.place_of_event(event, 0.0, text)

@@ -133,6 +133,8 @@ class FanucControl(Rs274Control):
         self.rotation = AffineMap()
         self.set_plane(AffineMap(linear, self._shift + origin))
         self.add_event("tilt", "G68.2")
+        if AffineMap(linear, origin).is_identity:
+            self.add_event("level")
         if np.allclose(linear[:, 2], (0.0, 0.0, 1.0), rtol=0.0, atol=1e-9):
             self.preconditions.meet("G53.1")
         else:

@@ -96,7 +96,7 @@ class HeidenhainControl(PlaneControl):
         self.report_unused_offsets()
         self.report_trailing_modes()
         if left := self.left_on():
-            self.note(f"ends with {left} on: the next program may begin with it", Severity.ERROR, "NC351")
+            self.report_left(left, "may begin")
         if self.shortest_path and not self._cancels_shortest_path:
             self.note("ends with M126 on: taken to end with the program; M127 says so", Severity.WARNING, "NC363")
         elif self._cancels_shortest_path:

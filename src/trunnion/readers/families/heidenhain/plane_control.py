@@ -78,10 +78,15 @@ class PlaneControl(VirtualControl):
 
     def left_on(self) -> str:
         """Return a plane or a datum without use that the end of the program leaves on."""
-        if self.in_unused_plane:
+        if self.in_unused_plane and self._is_turned:
             return "a tilted plane"
         unused = self.unused_shift and not self.datum.frame(self.plane_axis).is_identity
         return "a datum of cycles 7, 8, 10, 11 or 26" if unused else ""
+
+    @property
+    def _is_turned(self) -> bool:
+        """Whether the plane has another direction than the work offset; its zero is that of the datum."""
+        return not AffineMap(self._plane.linear).is_identity
 
     def _require_settled_datum(self) -> None:
         """Let no motion depend on a datum that is unsettled."""
@@ -141,6 +146,8 @@ class PlaneControl(VirtualControl):
     def _enter_plane(self, plane: AffineMap, *, on_top: bool = False) -> None:
         self._datums.enter_plane(on_top=on_top)
         self.set_plane(plane)
+        if not self._is_turned:
+            self.add_event("level")
         self._require_settled_datum()
 
     def _rotary_solution(self, normal: Floats, positioning: Positioning) -> tuple[float, float] | None:

@@ -22,7 +22,7 @@ from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS
 from trunnion.wording import format_duration
 
 #: Comments that are messages to the operator.
-_MESSAGE: Final = re.compile(r"[ \t]*(?:MSG|DEBUG|PRINT),(.*)", re.IGNORECASE | re.DOTALL)
+_MESSAGE: Final = re.compile(r"[ \t]*(?:MSG|DEBUG|PRINT),[ \t]*(.*)", re.IGNORECASE | re.DOTALL)
 
 #: Comments that run Python, or end the program.
 _PROGRAM: Final = re.compile(r"\s*(PY|PYRUN|ABORT)\s*,", re.IGNORECASE)

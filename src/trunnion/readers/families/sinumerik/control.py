@@ -278,6 +278,8 @@ class SinumerikControl(VirtualControl):
         if rotary is not None:
             self.move_axes(Kind.RAPID, self.current_joints[self._slides].copy(), self.rotary_position(rotary))
         self.set_plane(total)
+        if total.is_identity:
+            self.add_event("level")
 
     def _rotary_solution(self, normal: Floats, direction: float) -> tuple[float, float] | None:
         """Return rotary values whose tool axis is ``normal``, with the second axis on the side of ``direction``."""
