@@ -15,6 +15,7 @@ from trunnion.arrays import Floats
 from trunnion.machines import Machine, MachineBody, load_machine
 from trunnion.placing.best_turn import Grid, TurnResult
 from trunnion.placing.collisions.best_clearance import Guard, NearestRow, Oriented, farthest_orientations, nearest_at
+from trunnion.placing.collisions.ceilings import Witness
 from trunnion.placing.collisions.clearance import ENOUGH, Clearance
 from trunnion.placing.collisions.guarded_pairs import (
     Changes,
@@ -318,6 +319,26 @@ def test_a_short_way_near_a_body_is_not_skipped() -> None:
         assert found is not None
         assert found.distance == pytest.approx(tips[:, 1].min() + zero[1] - 30.0, abs=0.011)
         assert abs(way[asked.moments.row[found.moment]] - 111.0) <= 0.6 + 1e-9
+
+
+def test_a_pair_counts_as_far_apart_as_its_weight_says() -> None:
+    """A head 30 wide to the left, and a wall that ends at Y0: with Y0 at 50 they are 150 - 30 + 50 = 170 apart."""
+    machine = gantry([], (-900, -900, -600), (900, 900, 600))
+    head = on_link("head", "spindle", box_mesh(np.array([-30.0, -30, 0]), np.array([20.0, 30, 90])))
+    wall = on_link("wall", "workpiece", box_mesh(np.array([-900.0, -200, -500]), np.array([900.0, 0, 500])))
+    zero, other = np.array([0.0, 50.0, 0.0]), np.array([[0.0, 60.0, 0.0]])
+    asked = clearance(
+        machine, upright((0, 150, 0), (9, 150, 0)), GuardedPair(head, wall, Changes.PLACE, 8.0), np.zeros(3)
+    )
+    found = asked.nearest(zero)
+    assert found is not None
+    assert found.distance == pytest.approx(8.0 * 170.0)
+    assert asked.nearest(zero, 8.0 * 170.0 - 1.0) is None
+    witness = Witness.of(asked, found)
+    assert witness.gaps(other).tolist() == pytest.approx([8.0 * 180.0])
+    floor = witness.floor(zero)
+    assert floor.height == pytest.approx(8.0 * 170.0)
+    assert floor.slope.tolist() == pytest.approx([0.0, 8.0, 0.0], abs=1e-6)
 
 
 @pytest.mark.parametrize("seed", [3, 8])

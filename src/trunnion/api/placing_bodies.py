@@ -82,7 +82,7 @@ def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine, *, is
         problems.append(_none_could_meet(machine, is_needed=is_needed))
         if is_needed:
             raise InputError(problems[-1])
-    guard = Guard(pairs.kept, placed.tool, lengths, pairs.left_out)
+    guard = Guard(pairs.kept if could_meet else (), placed.tool, lengths, pairs.left_out)
     if could_meet and not guard.is_changed:
         what = "no place and no turn changes how far the tool is from what is clamped with the part"
         cure = "state the bodies of the machine ([[body]]) to have them kept apart"
