@@ -73,9 +73,9 @@ def test_rows_at_the_pole_count_for_each_tool_at_every_turn() -> None:
     """Above the middle of many rows of a short tool one of a long one: the hull of the tips alone has it not."""
     around = [(50.0 * np.cos(a), 50.0 * np.sin(a), 0.0) for a in np.linspace(0.0, 6.28, 100)]
     above = [(50.0 * np.cos(a), 50.0 * np.sin(a), 20.0) for a in np.linspace(0.0, 6.28, 100)]
-    tip = np.array([*around, *above, (0.0, 0.0, 10.0)])
+    tip = np.array([*around, (0.0, 0.0, 10.0), *above])
     rows = path_rows(tip, np.tile([0.0, 0.0, 1.0], (len(tip), 1)), np.zeros(len(tip)), straight=True)
-    rows = replace(rows, length=np.append(np.full(200, 60.0), 180.0))
+    rows = replace(rows, length=np.where(np.arange(201) == 100, 180.0, 60.0))
     for turn in (0.0, 33.0):
         cuts = TurnedPath.of(mill(-900, 900), Choice.FIRST, rows, np.zeros(3)).at(turn)
         assert not isinstance(cuts, Obstacle)
