@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
+from functools import lru_cache
 from itertools import product
 from typing import Final
 
@@ -133,17 +134,20 @@ def standing(machine: Machine, pairs: Sequence[GuardedPair], turn: Floats, zero:
     """
     pose = np.eye(4)
     pose[:3, :3], pose[:3, 3] = turn, zero
-    found, solids = list[GuardedPair](), dict[int, Solid]()
+    found = list[GuardedPair]()
     for pair in pairs:
         one, other = pair.one, pair.other
         if not other.carried or not are_on_one_side(machine, one.body.link, other.body.link):
             continue
-        for each in (one, other):
-            solids.setdefault(id(each), Solid(each.body.mesh))
         seen = np.linalg.inv(pose) @ seen_at_home(machine, one.body.link, other.body.link)
-        if touches(solids[id(one)], solids[id(other)], seen):
+        if touches(_solid(one), _solid(other), seen):
             found.append(pair)
     return found
+
+
+@lru_cache(maxsize=32)  # large meshes take seconds, and several places are asked
+def _solid(guarded: Guarded) -> Solid:
+    return Solid(guarded.body.mesh)
 
 
 def piece_pairs(pair: GuardedPair) -> Iterator[tuple[HullPiece, HullPiece]]:
