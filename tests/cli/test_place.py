@@ -314,7 +314,7 @@ def test_a_program_with_other_rotary_positions_is_told(tmp_path: Path, capsys: p
     assert main([*command, "--turn", "0", "--apply", str(program)]) == 0
     out = capsys.readouterr().out
     assert "other rotary positions" not in out
-    assert "98.352 mm to the limits; the best place has 0.000 mm more" in out
+    assert "98.352 mm to the limits; the best place has the same" in out
 
 
 def test_a_program_that_is_converted_still_says_how_the_part_is_clamped(tmp_path: Path) -> None:

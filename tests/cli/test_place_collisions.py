@@ -66,7 +66,10 @@ def test_what_touches_at_every_place_is_told(tmp_path: Path, capsys: pytest.Capt
     assert not applied.exists()
     # What no other goal judges, it tells.
     assert main([*HEAD_HEAD[:4], "--turn", "0", "--tool", TOOL, "--fixture", tall]) == 0
-    assert "cutter of 2 and fixture tall.stl touch" in capsys.readouterr().out
+    told = capsys.readouterr()
+    assert "cutter of 2 and fixture tall.stl touch" in told.out
+    warning = next(line for line in told.err.splitlines() if line.endswith("[PLC300]"))
+    assert "warning: cutter of 2 and fixture tall.stl touch at the best place; the goal margin allows it" in warning
 
 
 def test_the_program_of_the_best_place_is_proven_with_the_length_of_the_tool(plate: str, tmp_path: Path) -> None:

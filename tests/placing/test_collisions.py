@@ -15,6 +15,7 @@ from trunnion.arrays import Floats
 from trunnion.machines import Machine, MachineBody, load_machine
 from trunnion.placing.best_turn import Grid, TurnResult
 from trunnion.placing.collisions.best_clearance import Guard, NearestRow, Oriented, farthest_orientations, nearest_at
+from trunnion.placing.collisions.ceilings import Witness
 from trunnion.placing.collisions.clearance import ENOUGH, Clearance
 from trunnion.placing.collisions.guarded_pairs import (
     Changes,
@@ -76,11 +77,13 @@ class Placed:
         bodies += [guarded_on_part(mesh, BodyKind.FIXTURE) for mesh in fixtures]
         if tool:
             bodies += guarded_tool(parse_tool(tool, {}), machine, "1", LENGTH, 0)
-        self.guard = Guard(tuple(guarded_pairs(machine, bodies)), np.zeros(len(rows), np.int64), {})
+        self.guard = Guard(guarded_pairs(machine, bodies).kept, np.zeros(len(rows), np.int64), {})
         self.machine, self.rows = machine, rows
-        self.results, self.best, self.bound = farthest_orientations(
+        self.results, self.best, bound = farthest_orientations(
             lambda tilt: self.paths(tilt), Grid(np.array(turns)), self.guard, lambda _: None
         )
+        assert bound is not None
+        self.bound: float = bound
 
     def paths(self, tilt: float = 0.0) -> list[TurnedPath]:
         rows = self.rows.turned(about_x(tilt))
@@ -318,12 +321,32 @@ def test_a_short_way_near_a_body_is_not_skipped() -> None:
         assert abs(way[asked.moments.row[found.moment]] - 111.0) <= 0.6 + 1e-9
 
 
+def test_a_pair_counts_as_far_apart_as_its_weight_says() -> None:
+    """A head 30 wide to the left, and a wall that ends at Y0: with Y0 at 50 they are 150 - 30 + 50 = 170 apart."""
+    machine = gantry([], (-900, -900, -600), (900, 900, 600))
+    head = on_link("head", "spindle", box_mesh(np.array([-30.0, -30, 0]), np.array([20.0, 30, 90])))
+    wall = on_link("wall", "workpiece", box_mesh(np.array([-900.0, -200, -500]), np.array([900.0, 0, 500])))
+    zero, other = np.array([0.0, 50.0, 0.0]), np.array([[0.0, 60.0, 0.0]])
+    asked = clearance(
+        machine, upright((0, 150, 0), (9, 150, 0)), GuardedPair(head, wall, Changes.PLACE, 8.0), np.zeros(3)
+    )
+    found = asked.nearest(zero)
+    assert found is not None
+    assert found.distance == pytest.approx(8.0 * 170.0)
+    assert asked.nearest(zero, 8.0 * 170.0 - 1.0) is None
+    witness = Witness.of(asked, found)
+    assert witness.gaps(other).tolist() == pytest.approx([8.0 * 180.0])
+    floor = witness.floor(zero)
+    assert floor.height == pytest.approx(8.0 * 170.0)
+    assert floor.slope.tolist() == pytest.approx([0.0, 8.0, 0.0], abs=1e-6)
+
+
 @pytest.mark.parametrize("seed", [3, 8])
 def test_places_keep_their_margin_though_the_search_knows_no_limits_at_first(seed: int) -> None:
     machine, rows = swarf(load_machine("matsuura_mx330"), seed)
     path = TurnedPath.of(machine, next(choices_of(rows))[0], rows, np.zeros(3))
     bodies = guarded_machine(machine_bodies(machine))
-    guard = Guard(tuple(guarded_pairs(machine, bodies)), np.zeros(len(rows), np.int64), {})
+    guard = Guard(guarded_pairs(machine, bodies).kept, np.zeros(len(rows), np.int64), {})
     cuts, others = path.at(0.0), path.at(0.0)
     assert not isinstance(cuts, Obstacle)
     assert not isinstance(others, Obstacle)

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import lru_cache
+from itertools import product
 from pathlib import Path
 from typing import Final, Literal
 
@@ -13,7 +14,7 @@ from trunnion.api.arguments import check_choice, check_observer, check_paths
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.orientations import orientations
 from trunnion.api.placing_bodies import BodiesInput, read_bodies
-from trunnion.api.placing_distances import with_bodies, with_distance
+from trunnion.api.placing_distances import standing_at, touch_warnings, with_bodies, with_distance
 from trunnion.api.placing_inputs import PlacedInput, read_input
 from trunnion.api.placing_table import larger_than_table, limit_of_table, standing_on
 from trunnion.api.reading import FilePath, MachineLike, ToolpathLike, as_machine
@@ -26,6 +27,7 @@ from trunnion.machines.machine import Vector
 from trunnion.placing.best_turn import Grid, TurnResult, best_orientations
 from trunnion.placing.between_rows import most_between
 from trunnion.placing.collisions.best_clearance import farthest_orientations
+from trunnion.placing.collisions.moments import lengths_of
 from trunnion.placing.goals import Goal, PlaceCost, rotary_travel
 from trunnion.placing.path_rows import PathRows, about_x, about_z
 from trunnion.placing.placement import AxisUse, Limit, Place, Placement, RotaryUse, TurnMargin
@@ -37,6 +39,9 @@ from trunnion.placing.travel_limits import TABLE, Cut, CutSet
 from trunnion.placing.turns import TurnedPath, choices_of
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.tools.profile import ToolShape
+
+#: From the lowest corner of a cube to each of them.
+_CORNERS: Final = np.array(list(product((0.0, 1.0), repeat=3)))
 
 #: The step of turns at which bodies are kept apart, degrees: each of them is a search of its own.
 _COLLISION_TURNS: Final = 15.0
@@ -148,6 +153,7 @@ def place(
     if goal == Goal.COLLISIONS or among.are_given:
         bodies = read_bodies(among, given, loaded, is_needed=goal == Goal.COLLISIONS)
         loaded, remarks = bodies.machine, [*remarks, *bodies.problems]
+        given = replace(given, rows=replace(given.rows, length=lengths_of(bodies.guard.lengths, given.tool)))
     problems = [*given.problems, *unknown_length(loaded), *dict.fromkeys(remarks)]
     observer.problems(problems)
     near = _first_guess(loaded)
@@ -162,6 +168,11 @@ def place(
         most: float | None = None
         if bodies is not None and goal == Goal.COLLISIONS and bodies.guard.is_changed:
             results, best, most = farthest_orientations(paths_at, grid, bodies.guard, advance)
+            stands = standing_at(best, bodies.guard)
+            if best.cost is None and stands:  # what touches everywhere may do so since the part stands on it
+                judged = bodies.guard.without(stands)
+                if judged.is_changed:
+                    results, best, most = farthest_orientations(paths_at, grid, judged, lambda _: None)
         else:
             sought = Goal.MARGIN if goal == Goal.COLLISIONS else Goal(goal)
             results, best = best_orientations(paths_at, grid, advance, goal=sought)
@@ -169,7 +180,11 @@ def place(
     if bodies is None:
         return found
     found = with_bodies(found, given.rows, bodies.guard, best.path, paths_at(0.0))
-    return found if goal != Goal.COLLISIONS else with_distance(found, most)
+    if goal == Goal.COLLISIONS:
+        return with_distance(found, most)
+    touching = touch_warnings(found)
+    observer.problems(touching)
+    return replace(found, problems=(*found.problems, *touching))
 
 
 def unknown_length(machine: Machine) -> list[Problem]:
@@ -317,7 +332,17 @@ def place_at(machine: Machine, rows: PathRows, cuts: CutSet, zero: Floats, turn:
 
 
 def _rounded(cuts: CutSet, zero: Floats) -> Floats:
-    """A place in whole thousandths of a millimetre, as controls have it, unless the part fits at the exact one only."""
+    """A place in whole thousandths of a millimetre, as controls have it, unless the part fits at the exact one only.
+
+    Of the eight around it the nearest at which slides and stock keep their limits, else that which is nearest of all.
+    """
+    down = np.floor(zero * 1000.0)
+    around = sorted(
+        ((down + corner) / 1000.0 for corner in _CORNERS), key=lambda each: float(np.linalg.norm(each - zero))
+    )
+    inside = next((each for each in around if cuts.at(each).least >= 0.0), None)
+    if inside is not None:
+        return np.asarray(inside)
     rounded = np.round(zero, 3)
     exact, near = (cuts.at(each).margin for each in (zero, rounded))
     return rounded if near >= 0.0 or exact < 0.0 else zero

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal, TypeAlias
+from typing import Final, Literal, TypeAlias
 
 from trunnion.api.placing_inputs import PlacedInput
 from trunnion.api.reading import FilePath
@@ -13,6 +13,7 @@ from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.machines import Machine
 from trunnion.placing.collisions.best_clearance import Guard
 from trunnion.placing.collisions.guarded_pairs import (
+    Changes,
     Guarded,
     guarded_machine,
     guarded_on_part,
@@ -25,6 +26,9 @@ from trunnion.simulation.stock.solids import stock_shape
 from trunnion.simulation.tools.choice import choose_tools, tools_of_toolpaths
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.text import parse_tool
+
+#: Tools whose lengths differ by less are as long, mm.
+_LIKE_LENGTH: Final = 1e-6
 
 MeshLike: TypeAlias = str | Path | TriangleMesh
 
@@ -73,15 +77,17 @@ def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine, *, is
     for number, shape in tools.items():
         bodies += guarded_tool(shape, machine, placed.tools[number] or NO_CALL, lengths.get(number, 0.0), number)
     pairs = guarded_pairs(machine, [*bodies, *carried])
-    if not pairs:
+    could_meet = any(pair.weight == 1.0 or pair.changes is Changes.PLACE for pair in pairs.kept)
+    if not could_meet:
         problems.append(_none_could_meet(machine, is_needed=is_needed))
         if is_needed:
             raise InputError(problems[-1])
-    guard = Guard(tuple(pairs), placed.tool, lengths)
-    if pairs and not guard.is_changed:
+    guard = Guard(pairs.kept if could_meet else (), placed.tool, lengths, pairs.left_out)
+    if could_meet and not guard.is_changed:
         what = "no place and no turn changes how far the tool is from what is clamped with the part"
         cure = "state the bodies of the machine ([[body]]) to have them kept apart"
         problems.append(argument_problem("goal", what, cure, Severity.WARNING, code="PLC270"))
+    problems += _other_lengths(placed, lengths, machine)
     if machine.tool_length is None and lengths:
         machine = replace(machine, tool_length=max(lengths.values()))
     return PlacedBodies(guard, machine, tuple(dict.fromkeys(problems)))
@@ -165,3 +171,14 @@ def _lengths(
             cure = "give it: the bodies of the machine stand so far above the part"
             raise InputError(argument_problem("tool_length", what, cure, code="SIM310"))
     return lengths
+
+
+def _other_lengths(placed: PlacedInput, lengths: Mapping[int, float], machine: Machine) -> Iterable[Problem]:
+    """A warning where tools have other lengths than the one that is stated for all, which programs are checked with."""
+    stated = machine.tool_length
+    other = {} if stated is None else {k: own for k, own in lengths.items() if abs(own - stated) > _LIKE_LENGTH}
+    if other:
+        tools = ", ".join(f"{placed.tools[k] or NO_CALL} of {own:g} mm" for k, own in other.items())
+        what = f"says {stated:g} mm, and places are sought with the lengths of the tools: {tools}"
+        cure = "post and check with each tool's own length: with another one slides stand elsewhere"
+        yield argument_problem("tool_length", what, cure, Severity.WARNING, code="PLC290")

@@ -5,9 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from trunnion.errors import Problem, Severity
+from trunnion.placing.best_turn import TurnResult
 from trunnion.placing.collisions.best_clearance import Guard, NearestRow, nearest_at
-from trunnion.placing.collisions.guarded_pairs import Changes
-from trunnion.placing.path_rows import PathRows
+from trunnion.placing.collisions.guarded_pairs import Changes, GuardedPair, standing
+from trunnion.placing.path_rows import PathRows, turn_and_tilt
 from trunnion.placing.placement import BodyDistance, Place, Placement
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.turns import TurnedPath
@@ -27,11 +29,29 @@ def with_bodies(
     best = _with_nearest(found.best, rows, guard, path)
     zero = np.array(best.zero_mm)
     always = nearest_at(path, guard, best.turn_deg, best.tilt_deg, zero, Changes.NOTHING)
+    left_out = tuple(dict.fromkeys((*guard.left_out, *(pair.names for pair in _standing(best, guard, path)))))
     present = found.present
     if present is not None:
         own = [each for each in drawn if _reaches(each, present)]
         present = _with_nearest(present, rows, guard, own[0]) if own else present
-    return replace(found, best=best, present=present, nearest_anywhere=_told(always, rows))
+    return replace(found, best=best, present=present, nearest_anywhere=_told(always, rows), left_out=left_out)
+
+
+def standing_at(best: TurnResult, guard: Guard) -> list[GuardedPair]:
+    """The pairs that a simulation does not check at the best place, where the part stands on bodies at home."""
+    if best.path is None or best.best is None:
+        return []
+    return standing(best.path.machine, guard.pairs, turn_and_tilt(best.turn, best.tilt), best.best.zero)
+
+
+def touch_warnings(found: Placement) -> list[Problem]:
+    """A warning where bodies touch at the best place of a goal that does not judge them."""
+    touching = found.touching
+    if touching is None:
+        return []
+    what = f"{touching.between[0]} and {touching.between[1]} touch at the best place; the goal {found.goal} allows it"
+    cure = "place with --goal collisions, or change fixture, tool or path"
+    return [Problem(touching.file, touching.line, what, cure, Severity.WARNING, code="PLC300")]
 
 
 def with_distance(found: Placement, most: float | None) -> Placement:
@@ -40,12 +60,21 @@ def with_distance(found: Placement, most: float | None) -> Placement:
         place if place is None or place.nearest is None else replace(place, value=place.nearest.distance_mm)
         for place in (found.best, found.present)
     )
-    return replace(found, best=best, present=present, most_distance_mm=most if best and best.nearest else None)
+    if best is None or best.nearest is None or most is None:
+        return replace(found, best=best, present=present)
+    return replace(found, best=best, present=present, most_distance_mm=max(most, best.nearest.distance_mm))
 
 
 def _with_nearest(place: Place, rows: PathRows, guard: Guard, path: TurnedPath) -> Place:
-    nearest = nearest_at(path, guard, place.turn_deg, place.tilt_deg, np.array(place.zero_mm), *_CHANGED)
+    judged = guard.without(_standing(place, guard, path))
+    nearest = nearest_at(path, judged, place.turn_deg, place.tilt_deg, np.array(place.zero_mm), *_CHANGED)
     return replace(place, nearest=_told(nearest, rows))
+
+
+def _standing(place: Place, guard: Guard, path: TurnedPath) -> list[GuardedPair]:
+    """The pairs that a simulation does not check at a place."""
+    turn = turn_and_tilt(place.turn_deg, place.tilt_deg)
+    return standing(path.machine, guard.pairs, turn, np.array(place.zero_mm))
 
 
 def _reaches(path: TurnedPath, place: Place) -> bool:

@@ -17,7 +17,7 @@ from trunnion.api.reading import FilePath, ToolpathLike, load_machine
 from trunnion.api.settings import as_texts
 from trunnion.arrays import Floats
 from trunnion.cli.cl_files import cl_inputs, named_files
-from trunnion.cli.place_bodies import body_lines, touch_line
+from trunnion.cli.place_bodies import body_lines, gain_text, touch_line
 from trunnion.cli.results import as_json, print_result, tell
 from trunnion.cli.terminal import Terminal, output_place
 from trunnion.errors import InputError, Problem, argument_problem
@@ -165,11 +165,7 @@ def placement_lines(found: Placement) -> Iterator[str]:
         gain = best.margin_mm - present.margin_mm
         state = f"{present.margin_mm:.3f} mm to the limits" if present.fits else f"{-present.margin_mm:.3f} mm too far"
         state += _beyond_table(present)
-        gained = (
-            ""
-            if found.goal != "margin"
-            else f"; the best place{_where(best)} has {abs(gain):.3f} mm {'more' if gain >= 0 else 'less'}"
-        )
+        gained = "" if found.goal != "margin" else f"; the best place{_where(best)} has {gain_text(gain)}"
         yield f"  present zero {_point(present)}{_where(best, present)}: {state}{gained}"
     if found.goal not in ("margin", "collisions") and best.value is not None:
         now = "" if present is None else f"; at the present zero {_goal_number(found.goal, present)}"
@@ -218,7 +214,12 @@ def _where(best: Place, place: Place | None = None) -> str:
 
 def _clamped(place: Place | TurnMargin) -> str:
     tilted = f"tilted {number(place.tilt_deg)} degrees about X, then " if place.tilt_deg else ""
-    return f"{tilted}turned {number(place.turn_deg)} degrees"
+    return f"{tilted}turned {number(_once(place.turn_deg))} degrees"
+
+
+def _once(turn: float) -> float:
+    """A turn as it is told, from 0 up to 360 degrees."""
+    return 0.0 if are_one_angle(turn, 0.0) else turn % 360.0
 
 
 def _sense(found: Placement) -> Iterator[str]:
@@ -235,7 +236,7 @@ def _sense(found: Placement) -> Iterator[str]:
         yield f"first a fixture angle of {angle} degrees about X of the part, right-handed: its +Y side goes {side}"
     if not are_one_angle(whole.turn, 0.0):
         then = "" if are_one_angle(whole.tilt, 0.0) else "then "
-        turn = number(whole.turn % 360.0)
+        turn = number(_once(whole.turn))
         yield f"{then}turn the part by {turn} degrees about Z, counter-clockwise seen from above (from +Z)"
     if whole.is_as_drawn:
         yield "the part is clamped as it is drawn"

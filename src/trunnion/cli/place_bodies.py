@@ -1,8 +1,12 @@
 """What ``trunnion place`` says of bodies."""
 
 from collections.abc import Iterator
+from typing import Final
 
 from trunnion.placing.placement import BodyDistance, Placement
+
+#: What differs by less is printed as the same, mm.
+_SAME: Final = 0.0005
 
 
 def body_lines(found: Placement) -> Iterator[str]:
@@ -36,5 +40,11 @@ def _gain(found: Placement) -> str:
     best, present = found.best, found.present
     if best is None or present is None or best.nearest is None or present.nearest is None:
         return ""
-    gain = best.nearest.distance_mm - present.nearest.distance_mm
-    return f"; the best place has {abs(gain):.3f} mm {'more' if gain >= 0.0 else 'less'}"
+    return f"; the best place has {gain_text(best.nearest.distance_mm - present.nearest.distance_mm)}"
+
+
+def gain_text(gain: float) -> str:
+    """How much more the best place has than the present one, mm."""
+    if abs(gain) < _SAME:
+        return "the same"
+    return f"{abs(gain):.3f} mm {'more' if gain > 0.0 else 'less'}"

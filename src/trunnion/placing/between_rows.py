@@ -25,6 +25,8 @@ def most_between(machine: Machine, rows: PathRows, positions: Floats, zero: Floa
         Of the rotary axes, degrees.
     """
     x, y, z = zero.tolist()
+    if rows.length is not None and np.isfinite(rows.length).any():
+        machine = replace(machine, tool_length=max(machine.tool_length or 0.0, float(np.nanmax(rows.length))))
     kinematics = kinematic_parameters(replace(machine, workpiece_zero=(x, y, z)))
     turn = np.abs(np.diff(positions, axis=0))
     pieces = np.maximum(np.ceil(turn.max(axis=1, initial=0.0) / STEP), 1.0)

@@ -70,7 +70,7 @@ class PlaceCost:
     @staticmethod
     def of(goal: Goal, machine: Machine, rows: PathRows, positions: Floats) -> "PlaceCost":
         """Of rows as the part is turned; ``machine`` without a workpiece zero, ``positions`` (n, 2) degrees."""
-        normals, offsets, _ = slide_forms(machine, rows.tip, positions)
+        normals, offsets, _ = slide_forms(machine, rows.tip, positions, rows.length)
         steps = np.abs(np.diff(positions, axis=0, prepend=positions[:1]))
         turning = np.zeros(len(rows))
         for k, column in enumerate(machine.rotary):

@@ -38,6 +38,7 @@ class PathRows:
     stretches in the order of their rows
     start     (m, 2) positions of the rotary axes before each stretch, degrees
     arcs, arc_row  the arcs among the ways to rows, and those rows
+    length    (n,) of the tools, gauge point to tip, mm; NaN, and None for all: that of the machine
     """
 
     tip: Floats
@@ -50,6 +51,7 @@ class PathRows:
     start: Floats
     arcs: ArcPaths
     arc_row: Ints
+    length: Floats | None = None
     _firsts: Ints = field(init=False)
 
     def __post_init__(self) -> None:
@@ -64,6 +66,10 @@ class PathRows:
         flags = np.zeros(len(self), np.bool_)
         flags[self._firsts] = True
         return flags
+
+    def length_at(self, rows: Ints) -> Floats | None:
+        """The lengths of the tools in some rows, (k,) mm."""
+        return None if self.length is None else self.length[rows]
 
     def stretch_of(self, row: int) -> Stretch:
         """The stretch of a row."""
@@ -96,11 +102,12 @@ class PathRows:
             self.seconds[rows],
             tuple(replace(self.stretches[owner[first]], first=first) for first in firsts.tolist()),
             self.start[owner[firsts]], self.arcs.select(arc), np.searchsorted(rows, self.arc_row[arc]),
+            self.length_at(rows),
         )  # fmt: skip
 
 
 def joined_rows(parts: Sequence[PathRows]) -> PathRows:
-    """Paths one after the other."""
+    """Paths one after the other, whose tools have no lengths yet."""
     firsts = np.cumsum([0, *(len(part) for part in parts)]).tolist()[:-1]
     arcs = [part.arcs for part in parts]
     return PathRows(

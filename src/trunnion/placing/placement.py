@@ -167,6 +167,7 @@ class Placement:
     clamping  how the part is clamped, as the files state; turns and tilts come after that. None: they state nothing
     tool_length_mm    of the tool that slides keep their limits with; None: it is not known
     nearest_anywhere  of bodies whose distance no place and no turn changes, such as tool and fixture, the nearest two
+    left_out  names of pairs of bodies that are not judged: at home they overlap, on one side of the machine
     table     of the machine's definition; None: it states none
     most_distance_mm  with the goal ``collisions``: at no turn that was tried a place keeps the others farther apart
     """
@@ -185,6 +186,7 @@ class Placement:
     tool_length_mm: float | None = None
     nearest_anywhere: BodyDistance | None = None
     most_distance_mm: float | None = None
+    left_out: tuple[tuple[str, str], ...] = ()
     table: ClampingArea | None = None
     _find_region: Callable[[], Region | None] = field(default=lambda: None, repr=False)
     _margin_at: Callable[[Floats, float, float], float] = field(default=lambda *_: np.nan, repr=False)

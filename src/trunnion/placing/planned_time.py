@@ -17,7 +17,7 @@ def planned_seconds(machine: Machine, rows: PathRows, positions: Floats, zero: F
 
     ``machine`` is without a workpiece zero; ``positions`` (n, 2) are those of the rotary axes, degrees.
     """
-    normals, offsets, _ = slide_forms(machine, rows.tip, positions)
+    normals, offsets, _ = slide_forms(machine, rows.tip, positions, rows.length)
     joints = np.empty((len(rows), 5))
     joints[:, list(machine.linear)] = normals @ zero + offsets
     joints[:, list(machine.rotary)] = positions

@@ -6,7 +6,7 @@ Out:    for each sample and slide k a normal a and an offset o, so that the slid
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -37,10 +37,25 @@ class SlideForms:
         return np.asarray(self.normals @ zero + self.offsets)
 
 
-def slide_forms(machine: Machine, tip: Floats, angles: Floats) -> tuple[Floats, Floats, int]:
-    """Normals (m, 3, 3), offsets (m, 3), and the first sample whose slides cannot follow, or -1."""
+def slide_forms(
+    machine: Machine, tip: Floats, angles: Floats, length: Floats | None = None
+) -> tuple[Floats, Floats, int]:
+    """Normals (m, 3, 3), offsets (m, 3), and the first sample whose slides cannot follow, or -1.
+
+    ``length`` (m,) has those of the tools, gauge point to tip, mm; where it is NaN, or missing, the machine's counts.
+    """
     normals, offsets = np.empty((len(tip), 3, 3)), np.empty((len(tip), 3))
-    return normals, offsets, _fill_forms(kinematic_parameters(machine), tip, angles, normals, offsets)
+    if length is None or not len(length):
+        return normals, offsets, _fill_forms(kinematic_parameters(machine), tip, angles, normals, offsets)
+    first = len(tip)
+    for own in np.unique(length).tolist():
+        there = machine if math.isnan(own) else replace(machine, tool_length=own)
+        which = np.flatnonzero(np.isnan(length) if math.isnan(own) else length == own)
+        normal, offset = np.empty((len(which), 3, 3)), np.empty((len(which), 3))
+        failed = _fill_forms(kinematic_parameters(there), tip[which], angles[which], normal, offset)
+        normals[which], offsets[which] = normal, offset
+        first = first if failed < 0 else min(first, int(which[failed]))
+    return normals, offsets, first if first < len(tip) else -1
 
 
 @kernel(writes="normals offsets")

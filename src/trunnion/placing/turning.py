@@ -74,8 +74,15 @@ def rows_that_stand(rows: PathRows, held: Flags) -> Flags:
     firsts = [stretch.first for stretch in rows.stretches]
     for first, end in zip(firsts, [*firsts[1:], len(rows)], strict=True):
         inside = first + np.flatnonzero(held[first:end])
-        keep[inside[hull_points(rows.tip[inside])]] = True
+        length = rows.length_at(inside)
+        for own in [None] if length is None else np.unique(length).tolist():
+            like = inside if own is None or length is None else inside[_is_like(length, own)]
+            keep[like[hull_points(rows.tip[like])]] = True
     return keep
+
+
+def _is_like(length: Floats, own: float) -> Flags:
+    return np.asarray(np.isnan(length) if np.isnan(own) else length == own)
 
 
 def hull_points(points: Floats) -> Ints:

@@ -170,13 +170,13 @@ class _Base:
 
 def path_forms(machine: Machine, rows: PathRows, positions: Floats) -> SlideForms | Obstacle:
     """The slides in all rows, and after them in samples between them; ``positions`` (n, 2) degrees."""
-    normals, offsets, failed = slide_forms(machine, rows.tip, positions)
+    normals, offsets, failed = slide_forms(machine, rows.tip, positions, rows.length)
     if failed >= 0:
         return Obstacle(failed)
     parts, row = [(normals, offsets)], [np.arange(len(rows))]
     for tip, angles, of in (turning_samples(rows, positions), arc_samples(rows, positions, normals)):
         if len(of):
-            normals, offsets, failed = slide_forms(machine, tip, angles)
+            normals, offsets, failed = slide_forms(machine, tip, angles, rows.length_at(of))
             if failed >= 0:
                 return Obstacle(int(of[failed]))
             parts.append((normals, offsets))

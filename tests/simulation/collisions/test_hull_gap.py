@@ -14,6 +14,7 @@ from trunnion.arrays import Floats
 from trunnion.placing.collisions.surfaces import SurfacePair
 from trunnion.simulation.collisions.hull_gap import gaps_at, pose_gap
 from trunnion.simulation.collisions.hull_pieces import mesh_pieces, section_pieces
+from trunnion.simulation.collisions.hull_points import farthest, hull_points
 from trunnion.simulation.collisions.queries import PairQuery, Solid
 from trunnion.simulation.meshes import TriangleMesh, box_mesh, cylinder_mesh
 from trunnion.simulation.tools.text import parse_tool
@@ -67,7 +68,7 @@ def test_hulls_are_as_far_apart_as_their_meshes(seed: int, kind: str) -> None:
         return hull_mesh(random.normal(size=(random.integers(5, 40), 3)) * random.uniform(0.5, 30.0, 3))
 
     one, other, pose, direction = body(), body(), random_pose(random, 120.0), UP.copy()
-    low, high = pose_gap(one.vertices, other.vertices, pose, direction)
+    low, high = pose_gap(hull_points(one.vertices), hull_points(other.vertices), pose, direction)
     expected = fcl_distance(one, other, pose)
     assert high == pytest.approx(expected, abs=1e-5)
     assert high - 1e-5 <= max(low, 0.0) <= high
@@ -77,7 +78,7 @@ def test_hulls_are_as_far_apart_as_their_meshes(seed: int, kind: str) -> None:
         assert (moved @ direction).min() - (other.vertices @ direction).max() == pytest.approx(low, abs=1e-9)
     shifts = random.uniform(-50.0, 50.0, (5, 3))
     gaps = np.empty(5)
-    gaps_at(one.vertices, other.vertices, pose, shifts, UP, gaps)
+    gaps_at(hull_points(one.vertices), hull_points(other.vertices), pose, shifts, UP, gaps)
     for shift, gap in zip(shifts, gaps, strict=True):
         there = pose.copy()
         there[:3, 3] += shift
@@ -87,9 +88,11 @@ def test_hulls_are_as_far_apart_as_their_meshes(seed: int, kind: str) -> None:
 def test_points_and_flat_hulls_have_distances_too() -> None:
     square = np.array([[0.0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]])
     for point, expected in (([2.0, 2, 3], 3.0), ([7.0, 2, 0], 3.0), ([7.0, 8, 0], 5.0), ([1.0, 1, 0], 0.0)):
-        found = pose_gap(np.array([point]), square, np.eye(4), UP.copy())
+        found = pose_gap(hull_points(np.array([point])), hull_points(square), np.eye(4), UP.copy())
         assert found == pytest.approx((expected, expected), abs=1e-9)
-        assert pose_gap(square, np.array([point]), np.eye(4), UP.copy())[1] == pytest.approx(expected, abs=1e-9)
+        assert pose_gap(hull_points(square), hull_points(np.array([point])), np.eye(4), UP.copy())[1] == pytest.approx(
+            expected, abs=1e-9
+        )
 
 
 def least_of_pieces(one: TriangleMesh, other: TriangleMesh, pose: Floats) -> float:
@@ -98,7 +101,7 @@ def least_of_pieces(one: TriangleMesh, other: TriangleMesh, pose: Floats) -> flo
     for a in mesh_pieces(one):
         for b in mesh_pieces(other):
             if a.exact and b.exact:
-                best = min(best, pose_gap(a.corners, b.corners, pose, UP.copy())[1])
+                best = min(best, pose_gap(a.hull, b.hull, pose, UP.copy())[1])
             else:
                 best = min(best, SurfacePair(a, b).gap(pose).distance)
     return best
@@ -131,3 +134,17 @@ def test_steps_of_a_holder_are_pieces_of_their_own() -> None:
     assert all(piece.exact for pieces in sections for piece in pieces)
     holder = [piece for pieces in sections for piece in pieces if np.abs(piece.corners[:, 0]).max() > 14.9]
     assert {round(float(np.abs(piece.corners[:, 0]).max())) for piece in holder} == {15, 25}
+
+
+@pytest.mark.parametrize("count", [1, 255, 256, 257, 1000, 4097])
+def test_the_farthest_point_is_that_of_all(count: int) -> None:
+    random = np.random.default_rng(count)
+    points = random.normal(size=(count, 3)) * [100.0, 20.0, 1.0] + [5.0, -300.0, 7.0]
+    hull = hull_points(points)
+    assert np.array_equal(np.sort(hull.points, axis=0), np.sort(points, axis=0))
+    directions = [*np.eye(3), *-np.eye(3), *random.normal(size=(50, 3))]
+    for direction in directions:
+        x, y, z = (direction / np.linalg.norm(direction)).tolist()
+        far, at = farthest(hull, x, y, z)
+        assert far == pytest.approx((points @ [x, y, z]).max(), abs=1e-9)
+        assert hull.points[at] @ [x, y, z] == pytest.approx(far, abs=1e-9)

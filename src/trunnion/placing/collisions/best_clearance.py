@@ -35,11 +35,19 @@ _HOLDS: Final = 0.05
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Guard:
-    """What is kept apart: pairs of bodies, the tool of each row (n,), and lengths of tools, mm."""
+    """What is kept apart: pairs of bodies, the tool of each row (n,), and lengths of tools, mm.
+
+    ``left_out`` names the bodies of the machine that are no pair since they overlap at home.
+    """
 
     pairs: tuple[GuardedPair, ...]
     tool: Ints
     lengths: Mapping[int, float]
+    left_out: tuple[tuple[str, str], ...] = ()
+
+    def without(self, pairs: Sequence[GuardedPair]) -> "Guard":
+        """The same without some pairs."""
+        return replace(self, pairs=tuple(pair for pair in self.pairs if pair not in pairs)) if pairs else self
 
     @property
     def is_changed(self) -> bool:
@@ -94,7 +102,7 @@ class ClearanceSearch:
         self._paths_at, self._guard = paths_at, guard
         self.results: dict[tuple[float, float], TurnResult] = {}
         self.best: tuple[TurnResult, Oriented, FarthestSearch | None] | None = None
-        self.known, self.bound = 0.0, 0.0
+        self.known, self.bound, self.weight = 0.0, 0.0, 1.0
         self._rows: dict[int, None] = {}
 
     def judge(self, turn: float, tilt: float) -> TurnResult:
@@ -141,7 +149,7 @@ class ClearanceSearch:
         """The result with its distance, if that is the largest so far."""
         if nearest is None or nearest.distance <= self.known:
             return result
-        self.known = nearest.distance
+        self.known, self.weight = nearest.distance, nearest.pair.weight
         self.bound = max(self.bound, self.known)
         result = replace(result, cost=self.known)
         self.best = result, oriented, search
@@ -170,9 +178,9 @@ class ClearanceSearch:
 
 def farthest_orientations(
     paths_at: Callable[[float], Sequence[TurnedPath]], grid: Grid, guard: Guard, advance: Callable[[int], None]
-) -> tuple[list[TurnResult], TurnResult, float]:
+) -> tuple[list[TurnResult], TurnResult, float | None]:
     """What each orientation allows, by tilt and turn, refined about the best; the best; and the distance that no place
-    at any of these is above, mm.
+    at any of these is above, mm; None where bodies of one side of the machine are what holds it.
 
     Where bodies touch everywhere, or nothing changes how far they are apart, the best is that with the largest margin.
     """
@@ -196,7 +204,7 @@ def farthest_orientations(
         zero = asked.settled()
         reached, holds = result.cuts.at(zero), _holding(result.cuts, zero, min(KEPT, result.margin))
         place = BestPlace(zero, reached.margin, reached, holds)
-    return results, replace(result, best=place), search.bound
+    return results, replace(result, best=place), search.bound if search.weight == 1.0 else None
 
 
 def min_of(one: Nearest, other: Nearest | None) -> Nearest:
@@ -224,7 +232,7 @@ def nearest_at(
     found = asked.inside(zero) or asked.nearest(zero)
     if found is None:
         return None
-    return NearestRow(found.pair.names, found.distance, int(oriented.moments.row[found.moment]))
+    return NearestRow(found.pair.names, found.distance / found.pair.weight, int(oriented.moments.row[found.moment]))
 
 
 def _holding(cuts: CutSet, zero: Floats, margin: float) -> tuple[Cut, ...]:

@@ -34,6 +34,8 @@ class Plane:
 class Witness:
     """Two bodies at one moment: as a function of the zero they are never farther apart than two hulls.
 
+    Distances are times the weight of the pair.
+
     pose   (4, 4) with the zero at the origin
     shift  (3, 3): how the first body is shifted in the frame of the second for each mm of the zero
     """
@@ -56,7 +58,7 @@ class Witness:
         gaps = np.empty(len(zeros))
         shifts = np.ascontiguousarray(zeros @ self.shift.T)
         gaps_at(self.nearest.one, self.nearest.other, self.pose, shifts, np.array([0.0, 0.0, 1.0]), gaps)
-        return np.maximum(gaps - self.nearest.inside, 0.0)
+        return np.asarray(self.nearest.pair.weight * np.maximum(gaps - self.nearest.inside, 0.0))
 
     def floor(self, zero: Floats) -> Plane:
         """A plane below their distance at any zero, which it touches at this one, (3,)."""
@@ -66,7 +68,8 @@ class Witness:
         low, _ = pose_gap(self.nearest.one, self.nearest.other, pose, direction)
         if low <= self.nearest.inside:
             return Plane(zero, 0.0, np.zeros(3))
-        return Plane(zero, low - self.nearest.inside, self.shift.T @ direction)
+        weight = self.nearest.pair.weight
+        return Plane(zero, weight * (low - self.nearest.inside), weight * (self.shift.T @ direction))
 
     def ceiling(self, zero: Floats, low: Floats, high: Floats) -> tuple[Plane, Floats]:
         """A plane above their distance in a cell, and how far the distance bends up along each side of it, (3,)."""

@@ -16,6 +16,7 @@ from trunnion.placing.collisions.nearest_moment import Course, course_pose, near
 from trunnion.placing.collisions.surfaces import SurfaceGap, SurfacePair
 from trunnion.simulation.collisions.clearance import joint_senses, motion_bounds
 from trunnion.simulation.collisions.hull_pieces import HullPiece
+from trunnion.simulation.collisions.hull_points import HullPoints, hull_points
 
 #: Bodies with pieces that are not exact are followed in steps of as much, mm.
 _STEP: Final = 0.05
@@ -30,9 +31,9 @@ _UP: Final = np.array([0.0, 0.0, 1.0])
 class Nearest:
     """Where two bodies are nearest to each other.
 
-    distance       mm; 0: they touch
+    distance       mm, times the weight of the pair; 0: they touch
     moment, share  of ``Moments``: on the way to it
-    one, other     (n, 3): points whose hulls are as far apart there, and no nearer to each other than the bodies at any
+    one, other     points whose hulls are as far apart there, and no nearer to each other than the bodies at any
                    other zero, in the frames of the bodies
     inside         how deep a point of one body is in the other there, mm, where hulls do not show that they touch
     """
@@ -41,8 +42,8 @@ class Nearest:
     distance: float
     moment: int
     share: float
-    one: Floats
-    other: Floats
+    one: HullPoints
+    other: HullPoints
     inside: float = 0.0
 
 
@@ -103,19 +104,20 @@ class Clearance:
 
     def _follow(self, pieces: _Pieces, zero: Floats, limit: float) -> Nearest | None:
         course, pair, found = self._course(pieces.pair), pieces.pair, None
+        limit /= pair.weight
         away = float(np.linalg.norm(zero - self.near))
         for ranges in self._of_tool(pair.tool):
             if pieces.surfaces is None:
                 low, moment, share = nearest_moment(
-                    self._chain, course, pieces.one.corners, pieces.other.corners, zero, away, ranges, limit, True,
+                    self._chain, course, pieces.one.hull, pieces.other.hull, zero, away, ranges, limit, True,
                     pieces.direction,
                 )  # fmt: skip
                 if moment >= 0:
                     limit = low
-                    found = Nearest(pair, low, moment, share, pieces.one.corners, pieces.other.corners)
+                    found = Nearest(pair, low * pair.weight, moment, share, pieces.one.hull, pieces.other.hull)
             else:
                 found = self._follow_surfaces(pieces, course, zero, away, ranges, limit) or found
-                limit = limit if found is None else found.distance
+                limit = limit if found is None else found.distance / pair.weight
         return found
 
     def _follow_surfaces(
@@ -128,7 +130,7 @@ class Clearance:
         way = course.way + away * course.drift
         while moment < end:
             _, at, share = nearest_moment(
-                self._chain, course, pieces.one.corners, pieces.other.corners, zero, away, np.array([moment, end]),
+                self._chain, course, pieces.one.hull, pieces.other.hull, zero, away, np.array([moment, end]),
                 limit, False, pieces.direction,
             )  # fmt: skip
             if at < 0:
@@ -145,7 +147,7 @@ class Clearance:
             moment += 1
             if moment < end and not course.begins[moment]:
                 for own in self._halve(pieces, zero, moment, float(way[moment] - way[moment - 1]), limit):
-                    limit, found = own.distance, own
+                    limit, found = own.distance / own.pair.weight, own
             if limit <= 0.0:
                 break
         return found
@@ -168,7 +170,9 @@ class Clearance:
         return pieces.surfaces.gap(self.pose(pieces.pair, zero, moment, share))
 
     def _nearest(self, pieces: _Pieces, gap: SurfaceGap, moment: int, share: float) -> Nearest:
-        return Nearest(pieces.pair, gap.distance, moment, share, gap.one, gap.other)
+        return Nearest(
+            pieces.pair, gap.distance * pieces.pair.weight, moment, share, hull_points(gap.one), hull_points(gap.other)
+        )
 
     def inside(self, zero: Floats) -> Nearest | None:
         """A body that is inside of another one, whose surfaces never meet, at the zero (3,); None: there is none.
@@ -182,7 +186,8 @@ class Clearance:
                     pose = self.pose(pair, zero, moment, 1.0)
                     deep = SurfacePair.depth_inside(pair.one.body.mesh, pair.other.body.mesh, pose)
                     if deep is not None:
-                        return Nearest(pair, 0.0, moment, 1.0, *deep)
+                        one, other, depth = deep
+                        return Nearest(pair, 0.0, moment, 1.0, hull_points(one), hull_points(other), depth)
         return None
 
     @cached_property

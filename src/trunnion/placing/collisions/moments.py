@@ -6,7 +6,7 @@ Slides are linear functions of the workpiece zero in each of them.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
@@ -108,13 +108,16 @@ def moments_of(
     breaks = rows.begins | (rows.straight & (way > _REWINDS))
     is_first = np.append(True, row[1:] != row[:-1])
     own = tool[row]
-    normals, offsets = np.empty((len(row), 3, 3)), np.empty((len(row), 3))
-    for number in np.unique(own).tolist():
-        which = np.flatnonzero(own == number)
-        length = lengths.get(number, machine.tool_length)
-        there = replace(machine, tool_length=length)
-        normals[which], offsets[which], _ = slide_forms(there, tip[which], angles[which])
+    normals, offsets, _ = slide_forms(machine, tip, angles, lengths_of(lengths, own))
     return Moments(angles, normals, offsets, row, breaks[row] & is_first, own)
+
+
+def lengths_of(lengths: Mapping[int, float], tool: Ints) -> Floats:
+    """Of tools (n,) their lengths, mm; NaN where they are not known."""
+    found = np.full(len(tool), np.nan)
+    for number, length in lengths.items():
+        found[tool == number] = length
+    return found
 
 
 def _chord_samples(rows: PathRows, angles: Floats) -> tuple[Floats, Floats, Ints]:

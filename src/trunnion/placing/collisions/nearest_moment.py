@@ -14,6 +14,7 @@ from trunnion.jit import inner, kernel
 from trunnion.machines.links import LinkChain
 from trunnion.simulation.collisions.clearance import write_relative_pose
 from trunnion.simulation.collisions.hull_gap import gap_between, plane_gap
+from trunnion.simulation.collisions.hull_points import HullPoints
 
 #: What is nearer by less is as near, mm.
 CLOSE: Final = 0.01
@@ -86,8 +87,8 @@ def course_pose(chain: LinkChain, course: Course, zero: Floats, moment: int, sha
 def nearest_moment(
     chain: LinkChain,
     course: Course,
-    one: Floats2,
-    other: Floats2,
+    one: HullPoints,
+    other: HullPoints,
     zero: Floats,
     away: float,
     ranges: Ints,

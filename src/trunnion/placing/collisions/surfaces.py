@@ -9,6 +9,7 @@ from trunnion.arrays import Floats
 from trunnion.extras import import_extra
 from trunnion.simulation.collisions.hull_gap import pose_gap
 from trunnion.simulation.collisions.hull_pieces import HullPiece
+from trunnion.simulation.collisions.hull_points import HullPoints, hull_points
 from trunnion.simulation.collisions.queries import Solid, point_depths
 from trunnion.simulation.meshes import TriangleMesh
 
@@ -34,9 +35,9 @@ class SurfacePair:
     def gap(self, pose: Floats) -> SurfaceGap:
         """How far the pieces are apart; ``pose`` (4, 4) maps the frame of the first into that of the second."""
         one, other = self._one, self._other
-        if one.exact and self._holds(one.corners, other.mesh.vertices[:1], pose):
+        if one.exact and self._holds(one.hull, hull_points(other.mesh.vertices[:1]), pose):
             return SurfaceGap(0.0, one.corners, other.mesh.vertices[:1])
-        if other.exact and self._holds(one.mesh.vertices[:1], other.corners, pose):
+        if other.exact and self._holds(hull_points(one.mesh.vertices[:1]), other.hull, pose):
             return SurfaceGap(0.0, one.mesh.vertices[:1], other.corners)
         self._moving.setTransform(self._fcl.Transform(pose[:3, :3], pose[:3, 3]))
         result = self._fcl.DistanceResult()
@@ -44,9 +45,9 @@ class SurfacePair:
         ends = one.mesh.vertices[one.mesh.faces[result.b1]], other.mesh.vertices[other.mesh.faces[result.b2]]
         return SurfaceGap(max(distance, 0.0), *map(np.ascontiguousarray, ends))
 
-    def _holds(self, one: Floats, other: Floats, pose: Floats) -> bool:
+    def _holds(self, one: HullPoints, other: HullPoints, pose: Floats) -> bool:
         """Whether a point is in a hull."""
-        return pose_gap(one, np.ascontiguousarray(other), pose, self._up.copy())[1] <= 0.0
+        return pose_gap(one, other, pose, self._up.copy())[1] <= 0.0
 
     @staticmethod
     def depth_inside(one: TriangleMesh, other: TriangleMesh, pose: Floats) -> tuple[Floats, Floats, float] | None:

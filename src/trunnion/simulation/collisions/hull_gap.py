@@ -11,6 +11,7 @@ import numpy as np
 
 from trunnion.arrays import Floats, Floats2
 from trunnion.jit import inner, kernel
+from trunnion.simulation.collisions.hull_points import HullPoints, farthest
 
 #: The search ends when the bounds are so near, mm, or share of the distance.
 _CLOSE: Final = 1e-7
@@ -23,13 +24,15 @@ _MOST_ROUNDS: Final = 60
 
 
 @kernel(writes="direction")
-def pose_gap(one: Floats2, other: Floats2, pose: Floats2, direction: Floats) -> tuple[float, float]:
+def pose_gap(one: HullPoints, other: HullPoints, pose: Floats2, direction: Floats) -> tuple[float, float]:
     """Bounds of the distance of two hulls in a pose, mm, as ``gap_between`` has them."""
     return gap_between(one, other, pose, direction, np.zeros((7, 3)))
 
 
 @kernel(writes="gaps")
-def gaps_at(one: Floats2, other: Floats2, pose: Floats2, shifts: Floats2, direction: Floats, gaps: Floats) -> None:
+def gaps_at(
+    one: HullPoints, other: HullPoints, pose: Floats2, shifts: Floats2, direction: Floats, gaps: Floats
+) -> None:
     """Write upper bounds of the distance of two hulls, (k,) mm, when the first is shifted by (k, 3)."""
     moved, guess, work = pose.copy(), direction.copy(), np.zeros((7, 3))
     for k in range(shifts.shape[0]):
@@ -39,26 +42,25 @@ def gaps_at(one: Floats2, other: Floats2, pose: Floats2, shifts: Floats2, direct
 
 
 @inner
-def plane_gap(one: Floats2, other: Floats2, pose: Floats2, direction: Floats) -> float:
+def plane_gap(one: HullPoints, other: HullPoints, pose: Floats2, direction: Floats) -> float:
     """How far two hulls are apart along a unit vector from the second to the first: a lower bound, mm."""
     a = pose[0, 0] * direction[0] + pose[1, 0] * direction[1] + pose[2, 0] * direction[2]
     b = pose[0, 1] * direction[0] + pose[1, 1] * direction[1] + pose[2, 1] * direction[2]
     c = pose[0, 2] * direction[0] + pose[1, 2] * direction[1] + pose[2, 2] * direction[2]
-    least: float = math.inf
-    most: float = -math.inf
-    for k in range(one.shape[0]):
-        least = min(least, a * one[k, 0] + b * one[k, 1] + c * one[k, 2])
-    for k in range(other.shape[0]):
-        most = max(most, direction[0] * other[k, 0] + direction[1] * other[k, 1] + direction[2] * other[k, 2])
+    behind, _ = farthest(one, -a, -b, -c)
+    most, _ = farthest(other, direction[0], direction[1], direction[2])
     shift: float = pose[0, 3] * direction[0] + pose[1, 3] * direction[1] + pose[2, 3] * direction[2]
-    return least + shift - most
+    gap: float = shift - behind - most
+    return gap
 
 
 @inner
-def gap_between(one: Floats2, other: Floats2, pose: Floats2, direction: Floats, work: Floats2) -> tuple[float, float]:
+def gap_between(
+    one: HullPoints, other: HullPoints, pose: Floats2, direction: Floats, work: Floats2
+) -> tuple[float, float]:
     """Return a lower and an upper bound of the distance of two hulls, mm; the lower is negative where they may overlap.
 
-    one, other  points (n, 3) whose hulls are meant
+    one, other  whose hulls are meant
     pose        (4, 4) maps the frame of the first into that of the second
     direction   (3,) unit vector, a guess of the way from the second to the first; the one of the lower bound is written
     work        (12, 3) room for the search
@@ -96,24 +98,17 @@ def gap_between(one: Floats2, other: Floats2, pose: Floats2, direction: Floats, 
 
 
 @inner
-def _support(one: Floats2, other: Floats2, pose: Floats2, x: float, y: float, z: float, work: Floats2) -> None:
+def _support(one: HullPoints, other: HullPoints, pose: Floats2, x: float, y: float, z: float, work: Floats2) -> None:
     """Write the corner of the difference of the hulls that lies farthest against a unit vector into ``work[6]``."""
     a = pose[0, 0] * x + pose[1, 0] * y + pose[2, 0] * z
     b = pose[0, 1] * x + pose[1, 1] * y + pose[2, 1] * z
     c = pose[0, 2] * x + pose[1, 2] * y + pose[2, 2] * z
-    least, i = math.inf, 0
-    for k in range(one.shape[0]):
-        value = a * one[k, 0] + b * one[k, 1] + c * one[k, 2]
-        if value < least:
-            least, i = value, k
-    most, j = -math.inf, 0
-    for k in range(other.shape[0]):
-        value = x * other[k, 0] + y * other[k, 1] + z * other[k, 2]
-        if value > most:
-            most, j = value, k
+    _, i = farthest(one, -a, -b, -c)
+    _, j = farthest(other, x, y, z)
+    point = one.points[i]
     for k in range(3):
-        moved = pose[k, 0] * one[i, 0] + pose[k, 1] * one[i, 1] + pose[k, 2] * one[i, 2] + pose[k, 3]
-        work[6, k] = moved - other[j, k]
+        moved = pose[k, 0] * point[0] + pose[k, 1] * point[1] + pose[k, 2] * point[2] + pose[k, 3]
+        work[6, k] = moved - other.points[j, k]
 
 
 @inner

@@ -6,7 +6,7 @@ decide.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Final
 
@@ -15,6 +15,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.extras import import_extra
 from trunnion.simulation.collisions.bodies import section_outline
+from trunnion.simulation.collisions.hull_points import HullPoints, hull_points
 from trunnion.simulation.meshes import TriangleMesh, revolved_mesh
 from trunnion.simulation.tools.profile import Section
 
@@ -34,12 +35,17 @@ class HullPiece:
     mesh     its surface
     exact    whether it fills its hull
     hollow   whether it is of the surface of a body alone
+    hull     its corners, in blocks
     """
 
     corners: Floats
     mesh: TriangleMesh
     exact: bool
     hollow: bool = False
+    hull: HullPoints = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "hull", hull_points(self.corners))
 
 
 def section_pieces(section: Section, pose: Floats) -> tuple[HullPiece, ...]:

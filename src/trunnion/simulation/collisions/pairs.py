@@ -12,6 +12,7 @@ from itertools import combinations
 
 import numpy as np
 
+from trunnion.arrays import Floats
 from trunnion.machines import Machine, Mount, link_transforms
 from trunnion.machines.links import BED, SPINDLE, axes_between, carrier
 from trunnion.simulation.collisions.bodies import Body, BodyKind
@@ -30,20 +31,24 @@ def body_pairs(machine: Machine, bodies: Sequence[Body]) -> BodyPairs:
     """Return which bodies are checked against each other."""
     checked, left_out = [], []
     solids: dict[int, Solid] = {}
-    home = {link: poses[0] for link, poses in link_transforms(machine, machine.home[None]).items()}
     for i, j in combinations(range(len(bodies)), 2):
         one, other = bodies[i], bodies[j]
         if not may_meet(machine, one, other):
             continue
-        if _on_one_side(machine, one, other):
+        if are_on_one_side(machine, one.link, other.link):
             for k in (i, j):
                 solids.setdefault(k, Solid(bodies[k].mesh))
-            seen = np.linalg.inv(home[other.link]) @ home[one.link]
-            if touches(solids[i], solids[j], seen):
+            if touches(solids[i], solids[j], seen_at_home(machine, one.link, other.link)):
                 left_out.append((i, j))
                 continue
         checked.append((i, j))
     return BodyPairs(tuple(checked), tuple(left_out))
+
+
+def seen_at_home(machine: Machine, link: str, other: str) -> Floats:
+    """Return the map (4, 4) from the frame of a link to that of another, all axes at home."""
+    home = link_transforms(machine, machine.home[None])
+    return np.asarray(np.linalg.inv(home[other][0]) @ home[link][0])
 
 
 def may_meet(machine: Machine, one: Body, other: Body) -> bool:
@@ -69,8 +74,9 @@ def _is_apart_unknown(machine: Machine, one: Body, other: Body) -> bool:
     return any(at_nose) and any(rest)
 
 
-def _on_one_side(machine: Machine, one: Body, other: Body) -> bool:
-    sides = {side_of(machine, one.link), side_of(machine, other.link)}
+def are_on_one_side(machine: Machine, link: str, other: str) -> bool:
+    """Return whether two links are on the same side; the bed is on both."""
+    sides = {side_of(machine, link), side_of(machine, other)}
     return len(sides - {None}) < 2
 
 
