@@ -225,3 +225,23 @@ def test_a_mode_that_is_left_and_taken_up_again_is_as_it_was_used(tmp_path: Path
     assert left(tmp_path, "matsuura_mx330", "G18", cut("matsuura_mx330", 10), "G17", "G18") == []
     ((_, _, text),) = left(tmp_path, "matsuura_mx330", "G18", cut("matsuura_mx330", 10), "G17", "G19")
     assert text.startswith("G19 ")
+
+
+def preset(number: int) -> str:
+    return f"CYCL DEF 247 DATUM SETTING Q339=+{number}"
+
+
+def test_another_preset_than_that_of_the_head_is_told(tmp_path: Path) -> None:
+    program = tmp_path / "part.nc"
+    for last, told in (((1,), []), ((3,), [3]), ((3, 1), []), ((1, 3), [3])):
+        home = HOMES["dmu65"][0]
+        lines = ("BEGIN PGM A MM", "TOOL CALL 1 Z S500", preset(1), "L X+0 Y+0 R0 FMAX", preset(2), cut("dmu65", 10))
+        text = "\n".join((*lines, home, *map(preset, last), "END PGM A MM"))
+        program.write_text(text + "\n", encoding="utf-8")
+        found = [each for each in trunnion.read_program(program, machine="dmu65").diagnostics if each.code == "NC351"]
+        assert [each.text.split(" behind")[0] for each in found] == [f"cycle 247 with preset {k}" for k in told]
+        assert all(each.severity is Severity.ERROR for each in found)
+
+
+def test_the_end_of_the_program_ends_the_plane_of_the_rotary_position(tmp_path: Path) -> None:
+    assert left(tmp_path, "haas_umc750", cut("haas_umc750", 10), "G53 G0 Z0.", "G254") == []

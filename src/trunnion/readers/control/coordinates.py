@@ -200,6 +200,10 @@ class CoordinateControl(RowRecorder):
         if used and not (clears and first < used):
             self._stored_offsets.append((self.row, self.line, self.modal.file.current, word, what))
 
+    def forget_stored_offsets(self) -> None:
+        """Forget what ``note_stored_offset`` has remembered: the control is again as the program began."""
+        self._stored_offsets.clear()
+
     def warn_of_unknown_zero(self, word: str) -> None:
         """Warn of the first block that writes values of a work offset, if they cannot be held against the zero."""
         if self.machine.workpiece_zero is None and not self._stored_systems:

@@ -97,9 +97,10 @@ class FanucControl(Rs274Control):
         return np.asarray(self.offset_of(self.system) - self.zero + self.preset + self.local)
 
     def left_on(self) -> str:
-        """Return the word of a rotation, or of a shift without use, that the end of the program leaves on."""
-        if self.plane_of_pose and self.in_unused_plane:
-            return "the plane of the rotary position"
+        """Return the word of a rotation, or of a shift without use, that the end of the program leaves on.
+
+        The plane of the rotary position (G254 of a Haas) ends with M2 and M30.
+        """
         shifts = {"G52": self.local.any(), "G92": self.preset.any()}
         if not self.rotation.is_identity:
             return "G68"

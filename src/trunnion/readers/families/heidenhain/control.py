@@ -46,6 +46,8 @@ class HeidenhainControl(PlaneControl):
         self._fetched_from = -1
         # The first row from which on ``columns.xyz`` has the present meaning.
         self._comparable_from = 0
+        # The preset that cycle 247 has activated before the first motion at the part; None: none.
+        self._head_preset: int | None = None
         super().__init__(machine, note, shortest=shortest)
         self.modal.feed_path.set(0, int(FeedPath.AXES))
         self._letter_tables = letter_table((self.rotary_names[0], self.rotary_names[1])), letter_table(("", ""))
@@ -71,6 +73,15 @@ class HeidenhainControl(PlaneControl):
         if self.tcp and self.modal.compensation.current:
             text = "radius compensation with M128 is by the delta values DR, and not by the radius of the tool"
             self.note(f"{text}: write M129 before it, or the path of the tool centre", Severity.ERROR, "NC340")
+
+    def note_preset(self, number: int) -> None:
+        """Remember the preset of a cycle 247; going back to that of the head leaves nothing to the next program."""
+        if not self._in_use.at_part:
+            self._head_preset = number
+        if number == self._head_preset:
+            self.forget_stored_offsets()
+        elif number != self.modal.work_offset.current:
+            self.note_stored_offset(f"cycle 247 with preset {number}", 0, clears=False)
 
     def takes_shortest_path(self, axis: Axis) -> bool:
         """With M126."""

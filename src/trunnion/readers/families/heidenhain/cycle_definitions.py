@@ -291,8 +291,7 @@ class Definitions:
         preset = q_values.get(339, 0.0)
         if preset != int(preset) or not 0 <= preset < 65535:
             raise KlartextError(f"preset {preset:g} does not exist", code="NC215")
-        if int(preset) != self._control.modal.work_offset.current:
-            self._control.note_stored_offset(f"cycle 247 with preset {preset:g}", 0, clears=False)
+        self._control.note_preset(int(preset))
         self._control.set_offset(int(preset), f"preset {preset:g}")
 
     # Calls
