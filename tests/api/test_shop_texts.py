@@ -415,7 +415,7 @@ def test_a_mode_at_places_behind_those_of_the_operation_is_refused(
         ("dmu65", "PLANE SPATIAL SPA+0 SPB+5 SPC+0 STAY"), ("dmu65", "CYCL DEF 7.0 DATUM SHIFT\nCYCL DEF 7.1 X+1"),
         ("dmu65", "CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+5"), ("dmu65", "CYCL DEF 8.0 MIRROR\nCYCL DEF 8.1 X"),
         ("dmu65", "CYCL DEF 11.0 SCALING\nCYCL DEF 11.1 SCL 0.99"), ("matsuura_mx330", "G68.2 X0 Y0 Z0 I0 J5. K0"),
-        ("dmu65", "CYCL DEF 26.0 AXIS-SPEC. SCALING\nCYCL DEF 26.1 X0.9 Y0.9"), ("haas_umc750", "G254"),
+        ("dmu65", "CYCL DEF 26.0 AXIS-SPEC. SCALING\nCYCL DEF 26.1 X0.9 Y0.9"),
         ("matsuura_mx330", "G52 X1."), ("matsuura_mx330", "G92 X1."), ("xyzbc_trt", "G52 X1."),
         ("xyzbc_trt", "G92 X1."), ("xyzbc_trt", "G10 L2 P1 R5"),
     ],

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from trunnion.controls.words import ABSENT, BlockNumbers, NumberFormat, Word, WordRangeError, round_to_counts
 from trunnion.encoding import TextForm
+from trunnion.errors import InputError
 from trunnion.output.blocks.block_writer import BlockWriter
 
 COORDINATE = NumberFormat(5, zero="0.0", least=-1e11, greatest=1e11)
@@ -164,3 +165,59 @@ def test_a_block_that_brings_its_number_gets_no_second_one(numbers: BlockNumbers
     writer.set_block_skip(False)
     writer.write_lines(["NUT"])
     assert sink.getvalue().decode() == expected
+
+
+@pytest.mark.parametrize(
+    ("numbers", "expected"),
+    [
+        (BlockNumbers(), "N10 M8\n/N20 G4 X1.\n/2 N30 G4 X2.\n/N9001 M5\nn9002 M9\nN40 M7\n/N50 M3\n"),
+        (BlockNumbers(every=2), "N10 M8\n/G4 X1.\n/2 N20 G4 X2.\n/N9001 M5\nn9002 M9\nM7\n/N30 M3\n"),
+        (BlockNumbers(numbered=False), "M8\n/G4 X1.\n/2 G4 X2.\n/N9001 M5\nn9002 M9\nM7\n/M3\n"),
+        (BlockNumbers(letter=""), "10 M8\n/20 G4 X1.\n/30 2 G4 X2.\n/40 N9001 M5\n50 n9002 M9\n60 M7\n/70 M3\n"),
+    ],
+)
+def test_the_skip_sign_of_a_line_goes_before_its_number(numbers: BlockNumbers, expected: str) -> None:
+    sink = io.BytesIO()
+    writer = BlockWriter(sink, WORDS, numbers)
+    writer.write_lines(["M8", "/G4 X1.", "/2 G4 X2.", "/N9001 M5", "n9002 M9", "M7"])
+    writer.set_block_skip(True)
+    writer.write_lines(["/M3"])
+    assert sink.getvalue().decode() == expected
+
+
+def numbered_lines(numbers: BlockNumbers, before: int, own: str, behind: int) -> None:
+    writer = BlockWriter(io.BytesIO(), WORDS, numbers)
+    writer.write_lines(["M8"] * before)
+    writer.write_lines([own])
+    writer.write_lines(["M8"] * behind)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "before", "own", "behind"),
+    [
+        (BlockNumbers(), 5, "N50 M9", 0), (BlockNumbers(), 0, "N50 M9", 5), (BlockNumbers(), 5, "/n0050 M9", 0),
+        (BlockNumbers(every=3), 4, "N20 M9", 0), (BlockNumbers(start=1, step=1), 3, "N4 M9", 1),
+        (BlockNumbers(highest=50), 0, "N50 M9", 100), (BlockNumbers(highest=50), 7, "N50 M9", 0),
+    ],
+)  # fmt: skip
+def test_a_number_that_automatic_numbering_gives_too_is_refused(
+    numbers: BlockNumbers, before: int, own: str, behind: int
+) -> None:
+    with pytest.raises(InputError, match="automatic numbering") as caught:
+        numbered_lines(numbers, before, own, behind)
+    assert [each.code for each in caught.value.problems] == ["CTL115"]
+
+
+@pytest.mark.parametrize(
+    ("numbers", "before", "own", "behind"),
+    [
+        (BlockNumbers(), 4, "N50 M9", 0), (BlockNumbers(), 0, "N50 M9", 4), (BlockNumbers(), 9, "N55 M9", 9),
+        (BlockNumbers(), 9, "N9 M9", 9), (BlockNumbers(numbered=False), 5, "N50 M9", 5),
+        (BlockNumbers(highest=50), 9, "N60 M9", 99), (BlockNumbers(at_operations=True), 9, "N10 M9", 9),
+        (BlockNumbers(every=3), 3, "N20 M9", 0),
+    ],
+)  # fmt: skip
+def test_a_number_that_no_other_block_gets_is_written(
+    numbers: BlockNumbers, before: int, own: str, behind: int
+) -> None:
+    numbered_lines(numbers, before, own, behind)

@@ -135,6 +135,7 @@ def write_blocks(
     text_bytes: Bytes,
     text_ends: Ints,
     unnumbered: Flags,
+    before_number: Ints,
     rule: Ints2,
     spelling: Bytes2,
     last: Ints,
@@ -152,6 +153,7 @@ def write_blocks(
     line_of      (l,)   int64   which text each of these lines is
     text_bytes, text_ends       the texts, end to end
     unnumbered   (t,)   bool    the text has neither skip sign nor block number
+    before_number (t,)  int64   bytes of the text that stand before the block number: a skip sign of its own
     rule         (w, 11) int64  modal, decimals, 10**decimals, point, leading zero, trailing zeros, plus, length of the
                                 letter, length of the text for zero, closing byte or 0, bare
     spelling     (w, 24) uint8  the letter in the first 12 bytes, the text for zero in the last 12
@@ -170,6 +172,14 @@ def write_blocks(
             for k in range(skip.shape[0] if headed else 0):
                 out[at] = skip[k]
                 at += ONE
+            own_sign = 0
+            if piece < line_before[row + 1]:
+                line = line_of[piece]
+                text_start = 0 if line == 0 else text_ends[line - 1]
+                own_sign = before_number[line]
+                for k in range(text_start, text_start + own_sign):
+                    out[at] = text_bytes[k]
+                    at += ONE
             if headed and number[WAIT] == 0:
                 for k in range(number_letter.shape[0]):
                     out[at] = number_letter[k]
@@ -181,7 +191,7 @@ def write_blocks(
             if piece < line_before[row + 1]:
                 has_content = True
                 line = line_of[piece]
-                for k in range(0 if line == 0 else text_ends[line - 1], text_ends[line]):
+                for k in range((0 if line == 0 else text_ends[line - 1]) + own_sign, text_ends[line]):
                     out[at] = text_bytes[k]
                     at += ONE
                 at += ONE  # in place of the blank behind every word

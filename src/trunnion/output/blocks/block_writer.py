@@ -9,7 +9,8 @@ import numpy as np
 from trunnion.arrays import Bytes, Ints
 from trunnion.controls.words import ABSENT, BlockNumbers, Word, WordRangeError
 from trunnion.encoding import TextForm
-from trunnion.output.blocks.block_kernel import BARE, DIGITS, LETTERS, MODAL, WAIT, write_blocks
+from trunnion.output.blocks.block_kernel import BARE, DIGITS, LETTERS, MODAL, NUMBER, WAIT, write_blocks
+from trunnion.output.blocks.line_heads import GivenNumbers, LineHeads
 
 #: Rows of a table at most: one chunk stays in the processor's cache.
 CHUNK: Final = 16384
@@ -56,13 +57,13 @@ class BlockWriter:
         self._numbers, self._form = numbers, form
         self._line_end = np.frombuffer(form.line_end, np.uint8)
         self._next_numbers: dict[BinaryIO, Ints] = {}
+        self._given_numbers: dict[BinaryIO, GivenNumbers] = {}
         self._line_counts: dict[BinaryIO, int] = {}
         self.operation_starts: list[tuple[BinaryIO, int, int]] = []
         self._begins = False
         self.switch_file(sink)
         self._letter = np.frombuffer(numbers.letter.encode(), np.uint8)
-        numbered = numbers.letter and numbers.numbered
-        self._own_number = re.compile(rf"[ \t]*{re.escape(numbers.letter)}[0-9]") if numbered else None
+        self._heads = LineHeads(numbers)
         self._skip = np.zeros(0, np.uint8)
         self._words: dict[str, Word] = {}
         self._keys: list[str] = []
@@ -80,6 +81,7 @@ class BlockWriter:
         first = [numbers.start, numbers.step, numbers.start, numbers.highest, *_first_wait(numbers)]
         self._sink = sink
         self._number = self._next_numbers.setdefault(sink, np.array(first, np.int64))
+        self._given = self._given_numbers.setdefault(sink, GivenNumbers(numbers))
         self.size = 0
 
     @property
@@ -169,7 +171,7 @@ class BlockWriter:
         return word.letter + word.format.text_of_count(count) + word.closing
 
     def write_lines(self, lines: Iterable[str]) -> None:
-        """Write lines of text, a block each."""
+        """Write lines of text, a block each; a block number of their own is judged as ``write_table`` does."""
         texts = list(lines)
         if not texts:
             return
@@ -203,6 +205,8 @@ class BlockWriter:
         ------
         WordRangeError
             If a number is beyond the limits of its word's format.
+        InputError
+            If a line brings a block number that automatic numbering gives to another block.
         """
         rows = len(next(iter(columns.values())))
         present = [k for k, key in enumerate(self._keys) if key in columns]
@@ -220,10 +224,13 @@ class BlockWriter:
 
     def _write(self, table: Ints, forced: Ints, words: _WordColumns, lines: _Lines) -> None:
         """Run the kernel and write its bytes; ``words.last`` is updated."""
-        own = [self._brings_number(text) for text in lines.texts]
-        bare = [brings or self._is_remark(text) for brings, text in zip(own, lines.texts, strict=True)]
+        signs, rests = self._split_skips(lines.texts)
+        own = [self._heads.own_number(text) for text in rests]
+        bare = [number is not None or self._is_remark(text) for number, text in zip(own, lines.texts, strict=True)]
         skip = self._skip.tobytes().decode()
-        texts = [skip + text if brings else text for brings, text in zip(own, lines.texts, strict=True)]
+        # A line that brings its number gets neither sign nor number from the kernel.
+        signs = [skip + sign if number is not None else sign for number, sign in zip(own, signs, strict=True)]
+        texts = [sign + text for sign, text in zip(signs, rests, strict=True)]
         encoded = [text.encode(self._form.encoding).replace(b"\n", self._form.line_end) for text in texts]
         text_bytes = np.frombuffer(b"".join(encoded) or b" ", np.uint8)
         ends = np.cumsum([len(text) for text in encoded], dtype=np.int64) if encoded else np.zeros(1, np.int64)
@@ -239,6 +246,7 @@ class BlockWriter:
             text_bytes,
             ends,
             np.array(bare or [False], np.bool_),
+            np.array([len(sign) for sign in signs] or [0], np.int64),
             words.rule,
             words.spelling,
             words.last,
@@ -249,6 +257,7 @@ class BlockWriter:
             out,
         )
         self._sink.write(out[:written].data)
+        self._given.add({n for n in own if n is not None}, int(self._number[NUMBER]), len(lines.of) + table.shape[1])
         self.size += written
         self._line_counts[self._sink] = self._line_counts.get(self._sink, 0) + int(
             np.count_nonzero(out[:written] == _LF)
@@ -260,9 +269,10 @@ class BlockWriter:
         """Whether a line is a remark where these have neither a number nor a skip sign."""
         return bool(self._numbers.unnumbered) and text.startswith(tuple(self._numbers.unnumbered))
 
-    def _brings_number(self, text: str) -> bool:
-        """Whether a line brings its own block number, for others to jump to: it gets no second one."""
-        return self._own_number is not None and self._own_number.match(text) is not None
+    def _split_skips(self, texts: Sequence[str]) -> tuple[list[str], list[str]]:
+        """Return the skip signs of lines, none where all blocks get one, and the lines without them."""
+        pairs = [("", text) if self._is_remark(text) else self._heads.split_skip(text) for text in texts]
+        return ["" if self.skips_blocks else sign for sign, _ in pairs], [rest for _, rest in pairs]
 
     def _note_number(self, data: bytes) -> None:
         """Find the number of an operation's first block; comments without numbers may stand above it."""
@@ -271,7 +281,7 @@ class BlockWriter:
         if block is None:
             return
         self._begins = False
-        match = re.match(rb"/?" + re.escape(letter) + rb"(\d+) ", block)
+        match = re.match(rb"(?:/(?:[0-9] )?)?" + re.escape(letter) + rb"(\d+) ", block)
         if match is not None and self._numbers.numbered:
             sink, line, _ = self.operation_starts[-1]
             self.operation_starts[-1] = sink, line, int(match[1])
