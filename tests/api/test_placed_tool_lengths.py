@@ -59,6 +59,23 @@ def test_each_row_keeps_the_limits_with_its_own_tool(two_tools: Path) -> None:
     assert trunnion.place(two_tools, machine=mill(0, 150), turns=[0.0], tool_length=180).fits
 
 
+def test_lengths_that_cl_files_state_count_without_bodies_too(tmp_path: Path) -> None:
+    file = tmp_path / "two.apt"
+    lines = ["PARTNO TWO", "UNITS/MM", "MULTAX/ON", "CUTTER/10,5"]
+    for number, length, height in ((1, 60, 5), (2, 180, 40)):
+        lines += [f"LOADTL/{number},LENGTH,{length}", "SPINDL/2500,RPM,CLW", "RAPID", f"GOTO/0,0,{height},0,0,1"]
+        lines += ["FEDRAT/500,MMPM", f"GOTO/10,0,{height},0,0,1"]
+    file.write_text("\n".join([*lines, "END", "FINI", ""]), "ascii")
+    found = trunnion.place(file, machine=mill(0, 300), turns=[0.0])
+    assert found.best is not None
+    assert [found.best.axes[2].least_mm, found.best.axes[2].greatest_mm] == pytest.approx([72.5, 227.5])
+    assert found.tool_length_mm == 180
+    assert not any(each.code == "PLC210" for each in found.problems)
+    assert not trunnion.place(file, machine=mill(0, 150), turns=[0.0]).fits
+    # One that is asked for counts for all.
+    assert trunnion.place(file, machine=mill(0, 150), turns=[0.0], tool_length=180).fits
+
+
 def test_a_stated_length_that_is_not_that_of_the_tools_is_told(two_tools: Path) -> None:
     found = trunnion.place(
         two_tools, machine=mill(0, 300), turns=[0.0], tools=[SHORT, LONG], zero=(0, 0, 0), tool_length=60

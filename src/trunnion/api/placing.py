@@ -13,7 +13,7 @@ import numpy as np
 from trunnion.api.arguments import check_choice, check_observer, check_paths
 from trunnion.api.observer import SILENT, Observer
 from trunnion.api.orientations import orientations
-from trunnion.api.placing_bodies import BodiesInput, read_bodies
+from trunnion.api.placing_bodies import BodiesInput, read_bodies, stated_lengths
 from trunnion.api.placing_distances import standing_at, touch_warnings, with_bodies, with_distance
 from trunnion.api.placing_inputs import PlacedInput, read_input
 from trunnion.api.placing_table import larger_than_table, limit_of_table, standing_on
@@ -94,7 +94,8 @@ def place(
     zero : (3,) float, mm
         The present place of the workpiece zero; by default that of the definition.
     tool_length
-        Of the tool, gauge point to tip, mm; by default that of the definition, or 0.
+        Of the tool, gauge point to tip, mm; by default that of the definition, or of each tool its own where the CL
+        files state all of them, or 0.
     settings
         Of CL files, as ``trunnion.post`` takes them.
     subprograms
@@ -154,6 +155,9 @@ def place(
         bodies = read_bodies(among, given, loaded, is_needed=goal == Goal.COLLISIONS)
         loaded, remarks = bodies.machine, [*remarks, *bodies.problems]
         given = replace(given, rows=replace(given.rows, length=lengths_of(bodies.guard.lengths, given.tool)))
+    elif loaded.tool_length is None and (own := stated_lengths(given)):
+        loaded = replace(loaded, tool_length=max(own.values()))
+        given = replace(given, rows=replace(given.rows, length=lengths_of(own, given.tool)))
     problems = [*given.problems, *unknown_length(loaded), *dict.fromkeys(remarks)]
     observer.problems(problems)
     near = _first_guess(loaded)

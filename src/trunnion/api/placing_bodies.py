@@ -173,6 +173,21 @@ def _lengths(
     return lengths
 
 
+def stated_lengths(placed: PlacedInput) -> dict[int, float]:
+    """Lengths of the tools in the spindle as the CL files state them, mm, by their number in ``placed.tools``.
+
+    Empty unless each tool has one, and only one.
+    """
+    of_call: dict[str, set[float]] = {}
+    for each in tools_of_toolpaths(placed.toolpaths):
+        called = each.tool.name if each.number is None else str(each.number)
+        of_call.setdefault(called, set()).add(each.tool.set_length)
+    found = {number: of_call.get(placed.tools[number], {0.0}) for number in placed.used_tools}
+    if any(len(lengths) > 1 or 0.0 in lengths for lengths in found.values()):
+        return {}
+    return {number: max(lengths) for number, lengths in found.items()}
+
+
 def _other_lengths(placed: PlacedInput, lengths: Mapping[int, float], machine: Machine) -> Iterable[Problem]:
     """A warning where tools have other lengths than the one that is stated for all, which programs are checked with."""
     stated = machine.tool_length
