@@ -31,6 +31,9 @@ from trunnion.readers.control.row_recorder import SPINDLE_SENSES
 from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.known_words import HOME, begins_with
 
+#: The error of a motion whose end is up to machine data.
+_POSITION_IN_DOUBT: Final = "NC224"
+
 #: Columns of a run that a text must leave as they are, and what each of them is.
 _COLUMNS: Final = {
     "machine_frame": "the points behind it are in machine coordinates",
@@ -253,8 +256,9 @@ def _difference(without: Run, with_text: Run, declared: Sequence[readers.KnownWo
     known = {diagnostic.text for diagnostic in without.errors}
     # What stands behind an end that the text has brought about is a consequence of it.
     end = min((event.line for event in with_text.events if event.kind == "end"), default=math.inf)
-    unknown = [each.text for each in with_text.errors if each.text not in known and each.line <= end]
-    if len(with_text) > len(without) and not unknown:
+    faults = [each for each in with_text.errors if each.text not in known and each.line <= end]
+    unknown = [each.text for each in faults]
+    if len(with_text) > len(without) and all(each.code == _POSITION_IN_DOUBT for each in faults):
         return "it moves the machine"
     effect = _first_change(without, with_text)
     if effect:

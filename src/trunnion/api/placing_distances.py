@@ -50,7 +50,7 @@ def touch_warnings(found: Placement) -> list[Problem]:
     if touching is None:
         return []
     what = f"{touching.between[0]} and {touching.between[1]} touch at the best place; the goal {found.goal} allows it"
-    cure = "place with --goal collisions, or change fixture, tool or path"
+    cure = "place with the goal collisions, or change fixture, tool or path"
     return [Problem(touching.file, touching.line, what, cure, Severity.WARNING, code="PLC300")]
 
 

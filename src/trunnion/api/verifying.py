@@ -240,7 +240,7 @@ def verify(
         columns=columns,
     )
     found = replace(found, clamping=clamped)
-    if not len(run):
+    if not len(run) and not run.errors:
         what, cure = "there is no motion in it: nothing of a path was checked", "give the program that moves the tool"
         observer.problems([Problem(run.files[0], 0, what, cure, Severity.WARNING, code="NC185")])
     return found if recording is None else verification.with_recording(found, recording, recorded_tolerance)

@@ -65,9 +65,9 @@ class Clamping:
 
         None: that is no tilt with a turn behind it.
         """
-        if are_one_angle(tilt, 0.0):
+        if tilt % 360.0 == 0.0:
             return Clamping(round(self.turn + turn, 3), self.tilt)
-        if are_one_angle(self.turn, 0.0):
+        if self.turn % 360.0 == 0.0:
             return Clamping(turn, round(self.tilt + tilt, 3))
         return None
 
