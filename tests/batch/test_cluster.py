@@ -50,6 +50,11 @@ class Disturber(Observer):
             self._act()
 
 
+def whole_files(folder: Path) -> dict[str, object]:
+    """All files of a folder but what a worker was writing when it was killed, which no result has the name of."""
+    return {name: content for name, content in tree(folder).items() if not name.endswith(".part")}
+
+
 @pytest.mark.parametrize("place", ["folder", "file"])
 def test_nothing_is_lost_or_doubled_although_a_worker_and_the_scheduler_die(
     cluster: Cluster, tmp_path: Path, place: str
@@ -67,7 +72,7 @@ def test_nothing_is_lost_or_doubled_although_a_worker_and_the_scheduler_die(
     )
     assert result.counts == {Status.PASSED: 41, Status.UNUSABLE: 1}
     run_simply(batch, FolderStore(tmp_path / "loop"))
-    assert tree(tmp_path / "out") == tree(tmp_path / "loop")
+    assert whole_files(tmp_path / "out") == tree(tmp_path / "loop")
 
 
 @pytest.mark.parametrize("place", ["folder", "file"])
@@ -86,7 +91,7 @@ def test_shares_are_neither_lost_nor_doubled_although_a_worker_and_the_scheduler
     )
     assert result.counts == {Status.PASSED: 8, Status.UNUSABLE: 1}
     run_simply(divided_batch(tmp_path / "in", 1), FolderStore(tmp_path / "loop"), AsTheyCome())
-    assert tree(tmp_path / "out") == tree(tmp_path / "loop")
+    assert whole_files(tmp_path / "out") == tree(tmp_path / "loop")
 
 
 def test_a_divided_simulation_is_that_of_one_process_although_a_worker_dies(cluster: Cluster, tmp_path: Path) -> None:
