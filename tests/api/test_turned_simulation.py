@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -140,13 +141,13 @@ def test_a_turned_program_with_its_angles_does_what_the_unturned_one_does(
     cl.write_text(_operation(steps, lean, toward), "utf-8")
     trunnion.post(cl, machine="yl569", output=plain)
     trunnion.post(cl, machine="yl569", output=turned, turn=turn, tilt=tilt)
-    bodies = {
+    bodies: dict[str, Any] = {
         "machine": "yl569", "stock": "box:30,30,8,-15,-15,-8", "tools": ["1=ball:10,length=60,flutes=4,shank=12"],
         "part": box_mesh(np.array([-15.0, -15.0, -8.0]), np.array([15.0, 15.0, -2.0]), "part"), "cl": cl,
         "fixtures": [cuboid((9, -15, -1), (15, 15, 3))], "cell": 0.5,
     }  # fmt: skip
-    one = trunnion.simulate(plain, **bodies)  # type: ignore[arg-type]
-    other = trunnion.simulate(turned, **bodies, turn=turn, tilt=tilt)  # type: ignore[arg-type]
+    one = trunnion.simulate(plain, **bodies)
+    other = trunnion.simulate(turned, **bodies, turn=turn, tilt=tilt)
     assert not [each for each in other.remarks if each.code == "PLC230"]
     assert other.removed == pytest.approx(one.removed, rel=2e-3, abs=0.5)
     assert other.simulation.stock.lattice.counts == one.simulation.stock.lattice.counts

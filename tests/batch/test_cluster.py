@@ -19,8 +19,9 @@ from trunnion.api.simulation_data import simulation_data
 from trunnion.batch import Status, run_batch
 from trunnion.batch.cluster import DaskWorkers
 from trunnion.batch.dividing import SHARES
+from trunnion.batch.jobs import Batch
 from trunnion.batch.records import Record
-from trunnion.batch.running import run_jobs
+from trunnion.batch.running import BatchResult, run_jobs
 from trunnion.batch.stores import FolderStore, open_store
 from trunnion.batch.task import Action, OtherVersionError, Task
 from trunnion.batch.workers import Assignment
@@ -55,6 +56,18 @@ def whole_files(folder: Path) -> dict[str, object]:
     return {name: content for name, content in tree(folder).items() if not name.endswith(".part")}
 
 
+def run_disturbed(cluster: Cluster, batch: Batch, folder: Path, place: str) -> BatchResult:
+    """Run a batch; the scheduler dies where results come back, and a worker where they are written by it."""
+    store = open_store(folder.as_uri() if place == "file" else folder)
+    disturb = cluster.restart_scheduler if place == "folder" else cluster.kill_worker
+    return run_jobs(
+        batch,
+        store,
+        lambda _: DaskWorkers(cluster.address, simple_work, writing=store.worker_url),
+        Disturber(9, disturb),
+    )
+
+
 @pytest.mark.parametrize("place", ["folder", "file"])
 def test_nothing_is_lost_or_doubled_although_a_worker_and_the_scheduler_die(
     cluster: Cluster, tmp_path: Path, place: str
@@ -62,14 +75,7 @@ def test_nothing_is_lost_or_doubled_although_a_worker_and_the_scheduler_die(
     texts = {f"{k}/x.cls": f"text {k}" for k in range(40)}
     write_files(tmp_path / "in", texts | {"bad.cls": "fail", "several.cls": "several parts"})
     batch = simple_batch(tmp_path / "in")
-    store = open_store((tmp_path / "out").as_uri() if place == "file" else tmp_path / "out")
-    disturb = cluster.restart_scheduler if place == "folder" else cluster.kill_worker
-    result = run_jobs(
-        batch,
-        store,
-        lambda _: DaskWorkers(cluster.address, simple_work, writing=store.worker_url),
-        Disturber(9, disturb),
-    )
+    result = run_disturbed(cluster, batch, tmp_path / "out", place)
     assert result.counts == {Status.PASSED: 41, Status.UNUSABLE: 1}
     run_simply(batch, FolderStore(tmp_path / "loop"))
     assert whole_files(tmp_path / "out") == tree(tmp_path / "loop")
@@ -81,14 +87,7 @@ def test_shares_are_neither_lost_nor_doubled_although_a_worker_and_the_scheduler
 ) -> None:
     write_files(tmp_path / "in", {f"{k}/x.cls": f"text {k}" for k in range(8)} | {"bad.cls": "fail"})
     batch = divided_batch(tmp_path / "in", 4)
-    store = open_store((tmp_path / "out").as_uri() if place == "file" else tmp_path / "out")
-    disturb = cluster.restart_scheduler if place == "folder" else cluster.kill_worker
-    result = run_jobs(
-        batch,
-        store,
-        lambda _: DaskWorkers(cluster.address, simple_work, writing=store.worker_url),
-        Disturber(9, disturb),
-    )
+    result = run_disturbed(cluster, batch, tmp_path / "out", place)
     assert result.counts == {Status.PASSED: 8, Status.UNUSABLE: 1}
     run_simply(divided_batch(tmp_path / "in", 1), FolderStore(tmp_path / "loop"), AsTheyCome())
     assert whole_files(tmp_path / "out") == tree(tmp_path / "loop")

@@ -25,13 +25,16 @@ def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> Non
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert set(done.stdout.split()) == {
         "trunnion.cli",
+        "trunnion.cli.argument_values",
         "trunnion.cli.arguments",
         "trunnion.cli.batch_arguments",
         "trunnion.cli.capability_arguments",
         "trunnion.cli.place_arguments",
         "trunnion.cli.post_arguments",
         "trunnion.cli.process",
+        "trunnion.cli.stock_arguments",
         "trunnion.cli.twin_arguments",
+        "trunnion.cli.verify_arguments",
         "trunnion.errors",
         "trunnion.twin",
         "trunnion.twin.limits",

@@ -5,21 +5,26 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from importlib import import_module
-from typing import Any, Final, NoReturn, cast
+from typing import Final, NoReturn
 
 from trunnion import __version__
+from trunnion.cli.argument_values import (
+    DIALECTS,
+    FEEDS,
+    add_angles,
+    add_settings,
+    add_subprograms,
+    cell,
+    scale,
+    tolerance,
+)
 from trunnion.cli.batch_arguments import add_batch
 from trunnion.cli.capability_arguments import add_fit, add_reach, add_sensitivity
-from trunnion.cli.place_arguments import add_place, tilt, turn
+from trunnion.cli.place_arguments import add_place
 from trunnion.cli.post_arguments import post_mistake
+from trunnion.cli.stock_arguments import add_stock
 from trunnion.cli.twin_arguments import add_machine_access, add_record, add_twin
-
-
-def _key_value(text: str) -> tuple[str, str]:
-    key, equals, value = text.partition("=")
-    if not equals or not key:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a setting; write KEY=VALUE")
-    return key, value
+from trunnion.cli.verify_arguments import add_verify
 
 
 class _Parser(argparse.ArgumentParser):
@@ -29,26 +34,6 @@ class _Parser(argparse.ArgumentParser):
         super().error(f"{message} [{_USAGE}]")
 
 
-class _Setting(argparse.Action):
-    """Collects the settings; one that is given two values is refused, for the first would be lost."""
-
-    def __call__(
-        self,
-        parser: argparse.ArgumentParser,
-        namespace: argparse.Namespace,
-        values: str | Sequence[Any] | None,
-        option_string: str | None = None,
-    ) -> None:
-        settings: list[tuple[str, str]] = list(getattr(namespace, self.dest))
-        (key, value), before = cast("tuple[str, str]", values), dict(settings)
-        if before.get(key, value) != value:
-            once = f"{key}={before[key]},OPERATION:VALUE where a setting differs by operation"
-            raise argparse.ArgumentError(
-                self, f"{key} has two values, {before[key]!r} and {value!r}; write one, or {once}"
-            )
-        setattr(namespace, self.dest, [*settings, (key, value)])
-
-
 #: The code of a command line that cannot be understood.
 _USAGE: Final = "ARG120"
 
@@ -56,50 +41,11 @@ _USAGE: Final = "ARG120"
 _OPTION: Final = re.compile(r"--[a-z][a-z-]*")
 _NEGATIVE_LIST: Final = re.compile(r"-[0-9.]+(?:,[-+0-9.eE]+)+")
 
-#: Dialects of CL files; listed here, so that a command line is taken apart before any reader is imported.
-DIALECTS = ("clsf", "ncl", "solidworks", "clt", "catia", "fusion", "apt")
-
 #: Kinds of files that there are schemas of; listed here for the same reason.
 SCHEMAS = ("machine", "control", "project", "tools", "impeller", "nodes", "batch")
 
 #: Dialects that are written.
 WRITTEN_DIALECTS = ("clsf", "catia", "ncl")
-
-#: Values of the setting ``feed``.
-FEEDS = ("programmed", "fastest")
-
-
-#: Tolerances, cells and scales are less.
-_GREATEST: Final = 1e6
-
-
-def _tolerance(text: str) -> float:
-    return _positive(text, "a tolerance", "0.001")
-
-
-def _cell(text: str) -> float:
-    return _positive(text, "a width of cells", "0.25")
-
-
-def _scale(text: str) -> float:
-    return _positive(text, "a scale", "0.75")
-
-
-def _positive(text: str, what: str, such_as: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0.0 < value < _GREATEST:
-        cure = f"write a number above 0 and below {_GREATEST:.0f}, such as {such_as}"
-        raise argparse.ArgumentTypeError(f"{text!r} is not {what}; {cure}")
-    return value
-
-
-def _edge(text: str) -> int:
-    if not text.isascii() or not text.isdigit():
-        raise argparse.ArgumentTypeError(f"{text!r} is not a cutting edge; write its D number, such as 1")
-    return int(text)
 
 
 def _not_expected(unknown: Sequence[str], command: str) -> str:
@@ -108,15 +54,6 @@ def _not_expected(unknown: Sequence[str], command: str) -> str:
         return f"{unknown[0]} is no option of this command; trunnion {command} --help lists those that it has"
     cure = "repeat an option before each of its values, and put a value with blanks in quotes"
     return f"{unknown[0]!r} is one argument too many; {cure}"
-
-
-def _add_subprograms(
-    parser: argparse.ArgumentParser, caller: str, option: str = "--with", to: str = "subprograms"
-) -> None:
-    parser.add_argument(
-        option, nargs="+", action="extend", default=[], metavar="NC", dest=to,
-        help=f"files of the subprograms that {caller} calls; no others are opened",
-    )  # fmt: skip
 
 
 def _lazy_command(module: str, name: str) -> Callable[[argparse.Namespace], int]:
@@ -225,11 +162,8 @@ def _add_post(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--output", metavar="FILE|-|FOLDER", help="program, stdout, or a folder: one program per CL file"
     )
-    parser.add_argument(
-        "--set", action=_Setting, type=_key_value, default=[], metavar="KEY=VALUE", dest="settings",
-        help="what templates print (title, part, date, method, …), or how to read, place and plan; may be repeated",
-    )  # fmt: skip
-    _add_subprograms(parser, "a template")
+    add_settings(parser, "what templates print (title, part, date, method, …), or how to read, place and plan")
+    add_subprograms(parser, "a template")
     parser.add_argument(
         "--hooks", action="append", default=[], metavar="FILE.py",
         help="Python file whose functions change what the CL files ask for; it is run; may be repeated",
@@ -251,9 +185,9 @@ def _add_post(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--simulate", action="store_true", help="cut stock with the program too, and refuse what it must not do"
     )
-    _add_angles(parser, "and its toolpath with it; the head of the program says so")
+    add_angles(parser, "and its toolpath with it; the head of the program says so")
     parser.add_argument("--project", metavar="PROJECT", help="project file (.toml) that states what --simulate takes")
-    _add_stock(parser)
+    add_stock(parser)
     parser.set_defaults(run=_lazy_command("startup", "run"))
 
 
@@ -268,78 +202,13 @@ def _add_test(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_verify(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="NC", help="NC program; or the manifest of a post (.json)")
-    parser.add_argument("--machine", metavar="NAME_OR_FILE", help="machine that runs it; not for a manifest")
-    _add_subprograms(parser, "it")
-    parser.add_argument(
-        "--cl", action="append", default=[], metavar="CL",
-        help="CL file that it was made from; may be repeated, in the order in which they are cut",
-    )  # fmt: skip
-    parser.add_argument(
-        "--hooks", action="append", default=[], metavar="FILE.py",
-        help="Python file that it was posted with, which changes the CL files again; it is run; may be repeated",
-    )  # fmt: skip
-    parser.add_argument(
-        "--tolerance", type=_tolerance, default=0.001, metavar="MM",
-        help="how far a coordinate may be off, and in degrees a rotary axis; 0.001 (in inches 0.0013 mm)",
-    )  # fmt: skip
-    parser.add_argument(
-        "--span",
-        type=_tolerance,
-        metavar="DEG",
-        help="how far the tool axis may be off between points; by default the definition's tolerance",
-    )
-    parser.add_argument(
-        "--span-tip",
-        type=_tolerance,
-        metavar="MM",
-        help="how far the tip may be off between points without TCP, and lines off the arc that they stand for",
-    )
-    parser.add_argument("--tool-length", metavar="MM", help="length of the tool, for programs without TCP")
-    parser.add_argument("--tool", default="", metavar="T", help="tool that was called in place of the CL file's")
-    parser.add_argument(
-        "--offset", metavar="G", help="work offset of the program; with --cl that of the control's definition"
-    )
-    parser.add_argument(
-        "--edge", type=_edge, metavar="D",
-        help="cutting edge under which the tool works; with --cl that of the control's definition, if it has one",
-    )  # fmt: skip
-    parser.add_argument("--units", choices=("mm", "inch"), help="length unit of the CL files, whatever they state")
-    parser.add_argument("--dialect", choices=DIALECTS, help="what the CL files are written in")
-    parser.add_argument(
-        "--frame", choices=("first", "absolute"), default="first",
-        help="whose coordinate system the program's is: the first operation's, or the CAM's absolute one",
-    )  # fmt: skip
-    parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
-    parser.add_argument("--feed", choices=FEEDS, help="fastest: it was posted so; feeds are what the axes reach")
-    parser.add_argument(
-        "--feed-limit", type=_tolerance, metavar="MM_MIN", help="the feed_limit of that post, in place of the CL file's"
-    )
-    parser.add_argument(
-        "--recorded", metavar="FILE", help="compare with what the machine did: a recording (.csv or .parquet)"
-    )
-    parser.add_argument(
-        "--recorded-tolerance", type=_tolerance, default=0.05, metavar="MM",
-        help="how far the recorded tip may be off the path, and in degrees its tool axis; 0.05",
-    )  # fmt: skip
-    _add_angles(parser, "as the head of a placed program says; the CL files are turned before they are compared")
-    parser.add_argument("--report", metavar="FILE", help="what was checked, as a page (.html) or data (.json)")
+    add_verify(parser)
     parser.set_defaults(run=_lazy_command("verify", "run"))
-
-
-def _add_angles(parser: argparse.ArgumentParser, what: str) -> None:
-    parser.add_argument(
-        "--turn", type=turn, metavar="DEG",
-        help=f"the part is turned so about Z, counter-clockwise seen from +Z, {what}",
-    )  # fmt: skip
-    parser.add_argument(
-        "--tilt", type=tilt, metavar="DEG", help="before that it is tilted about X of the program, right-handed"
-    )
 
 
 def _add_sensitivity(parser: argparse.ArgumentParser) -> None:
     add_sensitivity(parser)
-    _add_subprograms(parser, "it")
+    add_subprograms(parser, "it")
     parser.set_defaults(run=_lazy_command("sensitivity", "run"))
 
 
@@ -350,7 +219,7 @@ def _add_reach(parser: argparse.ArgumentParser) -> None:
 
 def _add_fit(parser: argparse.ArgumentParser) -> None:
     add_fit(parser)
-    _add_subprograms(parser, "the NC program")
+    add_subprograms(parser, "the NC program")
     parser.set_defaults(run=_lazy_command("fit", "run"))
 
 
@@ -358,10 +227,10 @@ def _add_diff(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("files", nargs=2, metavar="NC", help="NC program")
     parser.add_argument("--machine", required=True, metavar="NAME_OR_FILE", help="machine that runs the first program")
     parser.add_argument("--to-machine", metavar="NAME_OR_FILE", help="machine that runs the second one, if another")
-    _add_subprograms(parser, "the first program")
-    _add_subprograms(parser, "the second one", "--to-with", "to_subprograms")
+    add_subprograms(parser, "the first program")
+    add_subprograms(parser, "the second one", "--to-with", "to_subprograms")
     parser.add_argument(
-        "--tolerance", type=_tolerance, default=0.001, metavar="MM",
+        "--tolerance", type=tolerance, default=0.001, metavar="MM",
         help="how far tips may be apart, and in degrees tool axes; 0.001",
     )  # fmt: skip
     parser.add_argument(
@@ -373,7 +242,7 @@ def _add_diff(parser: argparse.ArgumentParser) -> None:
 def _add_convert(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="NC|CL", help="NC program; without --machine, a CL file")
     parser.add_argument("--machine", metavar="NAME_OR_FILE", help="machine that the program is for")
-    _add_subprograms(parser, "it")
+    add_subprograms(parser, "it")
     into = parser.add_mutually_exclusive_group(required=True)
     into.add_argument("--to-cl", action="store_true", help="write a CL file")
     into.add_argument("--to-machine", metavar="NAME_OR_FILE", help="write a program for this machine")
@@ -383,51 +252,16 @@ def _add_convert(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the program's own machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool there, gauge point to tip")
     parser.add_argument("--output", metavar="FILE|-|FOLDER", help="result; without it a file of that name here")
-    parser.add_argument(
-        "--set", action=_Setting, type=_key_value, default=[], metavar="KEY=VALUE", dest="settings",
-        help="what templates print, in place of what the program says, and zero; may be repeated",
-    )  # fmt: skip
+    add_settings(parser, "what templates print, in place of what the program says, and zero")
     parser.add_argument(
         "--force", action="store_true", help="convert what was understood, and write a program that must not run"
     )
     parser.set_defaults(run=_lazy_command("convert", "run"))
 
 
-def _add_stock(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--stock", metavar="STOCK",
-        help="box:X,Y,Z[,x0,y0,z0] (sizes, lowest corner; by default 0,0,0), cylinder:D,H[,z0] (by default 0), or a"
-        " mesh file; mm",
-    )  # fmt: skip
-    parser.add_argument("--part", metavar="MESH", help="the finished part, to compare with what is left of the stock")
-    parser.add_argument(
-        "--tool", action="append", default=[], metavar="N=KIND:SIZES", dest="tools",
-        help="a tool, such as 3=ball:10,length=60,flutes=20,shank=12,holder=40x50; may be repeated",
-    )  # fmt: skip
-    parser.add_argument(
-        "--tools", action="append", default=[], metavar="LIBRARY", dest="libraries",
-        help="tool library: TOML, .tools or .json of Autodesk, FreeCAD's .fctb, LinuxCNC's tool.tbl; may be repeated",
-    )  # fmt: skip
-    parser.add_argument("--unit", choices=("mm", "inch"), help="length unit of tool tables, which state none")
-    parser.add_argument(
-        "--fixture", action="append", default=[], metavar="MESH", dest="fixtures",
-        help="a fixture, as the program counts; may be repeated",
-    )  # fmt: skip
-    parser.add_argument("--near", type=_tolerance, metavar="MM", help="tell bodies that come as near as this, too")
-    parser.add_argument(
-        "--cell", type=_cell, metavar="MM", help="width of the cells; by default a 200th of the stock's side"
-    )
-    parser.add_argument(
-        "--accuracy", type=_tolerance, metavar="MM", help="of motions and tools; by default a tenth of a cell"
-    )
-
-
 def _add_batch(parser: argparse.ArgumentParser) -> None:
     add_batch(parser)
-    parser.add_argument(
-        "--set", action=_Setting, type=_key_value, default=[], metavar="KEY=VALUE", dest="settings",
-        help="for a folder: settings as post has them; may be repeated",
-    )  # fmt: skip
+    add_settings(parser, "for a folder: settings as post has them")
     parser.set_defaults(run=_lazy_command("batch", "run"))
 
 
@@ -445,13 +279,10 @@ def _add_view(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--against", metavar="NC|CL", help="a second program, beside it on the same tool path")
     parser.add_argument("--against-machine", metavar="NAME_OR_FILE", help="machine of that, if it is another")
     parser.add_argument("--setup", metavar="NAME", help="set-up of a project, if it has several: its name or number")
-    parser.add_argument(
-        "--set", action=_Setting, type=_key_value, default=[], metavar="KEY=VALUE", dest="settings",
-        help="for CL files, as post has it; may be repeated",
-    )  # fmt: skip
+    add_settings(parser, "for CL files, as post has it")
     parser.add_argument("--cl", action="append", default=[], metavar="CL", help="CL file that it was made from")
-    _add_subprograms(parser, "it")
-    _add_stock(parser)
+    add_subprograms(parser, "it")
+    add_stock(parser)
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
     parser.add_argument("--output", metavar="FILE.html", help="write a page that works offline, and serve nothing")
@@ -460,13 +291,13 @@ def _add_view(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_place(parser: argparse.ArgumentParser) -> None:
-    add_place(parser, _Setting, _key_value)
+    add_place(parser)
     parser.set_defaults(run=_lazy_command("place", "run"))
 
 
 def _add_twin(parser: argparse.ArgumentParser) -> None:
     add_twin(parser)
-    _add_subprograms(parser, "it")
+    add_subprograms(parser, "it")
     parser.set_defaults(run=_lazy_command("twin", "run"))
 
 
@@ -493,12 +324,12 @@ def _add_simulate(parser: argparse.ArgumentParser) -> None:
         help="NC program; several cut the same stock in their order. Or a project (.toml), which may state all options",
     )  # fmt: skip
     parser.add_argument("--machine", metavar="NAME_OR_FILE", help="machine that runs them")
-    _add_stock(parser)
+    add_stock(parser)
     parser.add_argument("--cl", action="append", default=[], metavar="CL", help="CL file whose tools these are")
-    _add_subprograms(parser, "they")
+    add_subprograms(parser, "they")
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool, gauge point to tip")
-    _add_angles(parser, "as the head of its program says; stock, part and fixtures are given as drawn")
+    add_angles(parser, "as the head of its program says; stock, part and fixtures are given as drawn")
     parser.add_argument("--stop-at", choices=("none", "first"), help="end after the block of the first finding")
     parser.add_argument("--until", metavar="BLOCK", help="N number of the block before which the last program ends")
     parser.add_argument("--json", metavar="FILE", help="all results as data; - is stdout")
@@ -531,10 +362,10 @@ def _add_curve(parser: argparse.ArgumentParser) -> None:
         help="how far apart the parameters of two points are; chord-length",
     )  # fmt: skip
     parser.add_argument(
-        "--tolerance", type=_tolerance, metavar="MM", help="pass the points within it, with few control points"
+        "--tolerance", type=tolerance, metavar="MM", help="pass the points within it, with few control points"
     )
-    parser.add_argument("--fair", type=_tolerance, metavar="MM", help="first move points by as much, for an even curve")
-    parser.add_argument("--scale", type=_scale, default=1.0, metavar="FACTOR", help="multiply the points by it")
+    parser.add_argument("--fair", type=tolerance, metavar="MM", help="first move points by as much, for an even curve")
+    parser.add_argument("--scale", type=scale, default=1.0, metavar="FACTOR", help="multiply the points by it")
     parser.add_argument("--json", action="store_true", help="data in place of text")
     parser.add_argument("--picture", metavar="FILE", help="curves with their curvature combs (.svg)")
     parser.set_defaults(run=_lazy_command("curve", "run"))
@@ -554,7 +385,7 @@ def _add_impeller(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--tolerance",
-        type=_tolerance,
+        type=tolerance,
         metavar="MM",
         help="model: how far facets may be off, 0.01; of STEP: faces, 0.005",
     )
@@ -564,13 +395,10 @@ def _add_impeller(parser: argparse.ArgumentParser) -> None:
         help="cut: make this operation of the definition only; may be repeated",
     )  # fmt: skip
     parser.add_argument(
-        "--cell", type=_cell, metavar="MM",
+        "--cell", type=cell, metavar="MM",
         help="cut: simulate the program in cells of this width, and compare the part with the model",
     )  # fmt: skip
-    parser.add_argument(
-        "--set", action=_Setting, type=_key_value, default=[], metavar="KEY=VALUE", dest="settings",
-        help="cut: settings as for post; may be repeated",
-    )  # fmt: skip
+    add_settings(parser, "cut: settings as for post")
     parser.add_argument("--json", action="store_true", help="data in place of text")
     parser.set_defaults(run=_lazy_command("impeller", "run"))
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.arrays import Floats
-from trunnion.simulation.cutting.removal import cut
+from trunnion.simulation.cutting.removal import measure
 from trunnion.simulation.simulator import Job, Setup, tool_pieces
 from trunnion.simulation.stock.lattice import BUNDLE_AXES
 from trunnion.simulation.stock.material import Stock, Tile
@@ -83,9 +83,10 @@ class Replay:
             if not go_on():
                 return False
             end = min(self._done - self._done % self._step + self._step, rows)
-            chunks = cut(self._stock, self._job.run, self._pieces, self._setup.tolerance, start=self._done, end=end)
-            for _ in chunks:
-                pass
+            chunks = measure(self._stock, self._job.run, self._pieces, self._setup.tolerance, start=self._done, end=end)
+            for chunk in chunks:
+                for _ in chunk.tiles:  # each is cut when it is taken
+                    pass
             self._done = end
             if end % self._step == 0:
                 self._keep()

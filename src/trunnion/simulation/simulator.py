@@ -15,7 +15,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
 from trunnion.simulation.cutting.measurements import Chunk, RowsCut, rows_cut
-from trunnion.simulation.cutting.removal import cut, measure
+from trunnion.simulation.cutting.removal import measure
 from trunnion.simulation.cutting.shares import JoinedShares, Share, ShareWriter, tiles_of
 from trunnion.simulation.findings import Finding, air_cuts, gouge_findings, idle_rows, row_findings, spindle_turns
 from trunnion.simulation.near_stock import near_findings, pieces_with_near
@@ -129,7 +129,7 @@ def simulate(
     stop_at_first
         End after the row of the first finding.
     threads
-        As for ``removal.cut``.
+        As for ``removal.measure``.
     shares
         What ``cut_share`` has made of each share of the same simulation: nothing is cut but what they cannot know.
     progress
@@ -269,7 +269,8 @@ def _cut_again(
     for number, job in enumerate(jobs):
         offset, pieces = _offset(jobs, number), tool_pieces(job, setup)[0]
         own = None if idle is None else idle[offset : offset + len(job.run)]
-        for rows in cut(again, job.run, pieces, setup.tolerance, idle=own, end=job.end, threads=threads):
+        chunks = measure(again, job.run, pieces, setup.tolerance, idle=own, end=job.end, threads=threads)
+        for rows in rows_cut(chunks, pieces):
             yield offset, rows
 
 

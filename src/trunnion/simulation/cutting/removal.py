@@ -21,7 +21,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.model.run import Run
 from trunnion.simulation.cutting.cut_kernel import CutterTable, Sweeps, bin_sweeps, cut_tile
-from trunnion.simulation.cutting.measurements import Chunk, RowsCut, TileMeasured, column_count, rows_cut, tile_measured
+from trunnion.simulation.cutting.measurements import Chunk, TileMeasured, column_count, tile_measured
 from trunnion.simulation.cutting.stretch_kernel import Rays
 from trunnion.simulation.cutting.sweeps import RowSweeps, SweepSizes, row_sweeps, tool_ranges
 from trunnion.simulation.cutting.tool_table import element_table, piece_list
@@ -31,7 +31,7 @@ from trunnion.simulation.stock.spans import Spans, no_spans
 from trunnion.simulation.tools.pieces import RevolvedPieces
 
 
-def cut(
+def measure(
     stock: Stock,
     run: Run,
     tools: Mapping[int, RevolvedPieces],
@@ -44,8 +44,11 @@ def cut(
     end: int | None = None,
     threads: int | None = None,
     progress: Callable[[int, int], None] | None = None,
-) -> Iterator[RowsCut]:
-    """Cut stock with the rows of a run, chunk by chunk; the stock is changed.
+) -> Iterator[Chunk]:
+    """Cut stock with the rows of a run, and yield what the tiles measure: each chunk is cut while its tiles are taken.
+
+    The stock is changed. It may have some tiles only: no tile looks at another one. ``rows_cut`` makes of the chunks
+    what each row did.
 
     Parameters
     ----------
@@ -70,33 +73,6 @@ def cut(
         How many tiles are cut at a time; by default as many as there are processors.
     progress
         Is called with rows done and rows in all.
-    """
-    return rows_cut(
-        measure(
-            stock, run, tools, tolerance, idle=idle, design=design, offset=offset, start=start, end=end,
-            threads=threads, progress=progress,
-        ),
-        tools,
-    )  # fmt: skip
-
-
-def measure(
-    stock: Stock,
-    run: Run,
-    tools: Mapping[int, RevolvedPieces],
-    tolerance: float,
-    *,
-    idle: Flags | None = None,
-    design: tuple[Spans, Spans, Spans] | None = None,
-    offset: int = 0,
-    start: int = 0,
-    end: int | None = None,
-    threads: int | None = None,
-    progress: Callable[[int, int], None] | None = None,
-) -> Iterator[Chunk]:
-    """Cut as ``cut`` does, and yield what the tiles measure: each chunk is cut while its tiles are taken.
-
-    The stock may have some tiles only: no tile looks at another one.
     """
     end = len(run) if end is None else end
     cutter = Cutter(stock, design, tolerance)
@@ -128,7 +104,7 @@ class _Task(NamedTuple):
 
 
 class Cutter:
-    """Cuts stock with sweeps; ``design`` and ``tolerance`` as for ``cut``."""
+    """Cuts stock with sweeps; ``design`` and ``tolerance`` as for ``measure``."""
 
     def __init__(self, stock: Stock, design: tuple[Spans, Spans, Spans] | None, tolerance: float) -> None:
         self._stock = stock
@@ -156,7 +132,7 @@ class Cutter:
     ) -> Iterator[TileMeasured]:
         """Cut with the sweeps of some rows, and yield what each tile that is reached has measured, in their order.
 
-        ``advance`` is called with the part that is done, others are as for ``cut``.
+        ``advance`` is called with the part that is done, others are as for ``measure``.
         """
         at_rest = np.zeros(len(sweeps.row), np.bool_) if idle is None else idle[sweeps.row]
         low, high = float(pieces.bounds[:, 0].min()), float(pieces.bounds[:, 1].max())
