@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import trunnion
-from trunnion.api.placed_heads import stated_place
-from trunnion.api.placing_project import placed_setup
 from trunnion.cli import main
+from trunnion.jobs.inputs.placed_heads import stated_place
+from trunnion.jobs.place.project import placed_setup
 from trunnion.model.clamping import Clamping, StatedPlace
 from trunnion.simulation.meshes import TriangleMesh, box_mesh, save_mesh
 

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 import trunnion
 from tests.support.placed_paths import brute_margin, limited_machines, random_rows, turned_by
-from trunnion.api.placed_heads import placed_notices, stated_place, unlike_bodies, unlike_cl_files, unlike_zero
 from trunnion.arrays import Floats
 from trunnion.errors import Problem
+from trunnion.jobs.inputs.placed_heads import placed_notices, stated_place, unlike_bodies, unlike_cl_files, unlike_zero
 from trunnion.machines import Machine, load_machine
 from trunnion.model.clamping import Clamping, StatedPlace
 from trunnion.placing.best_turn import Grid, best_of_turn, best_orientations

@@ -18,8 +18,8 @@ from trunnion.cli.cl_files import read_toolpaths
 from trunnion.cli.post_arguments import names_project
 
 if TYPE_CHECKING:  # imported while the first CL file is read
-    from trunnion.api.observer import Observer
     from trunnion.files import OutputGroup
+    from trunnion.jobs.observer import Observer
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -40,7 +40,7 @@ def post_files(
 ) -> int:
     """Post every CL file; programs appear with those of the group, if there is one."""
     if trunnion.jit.is_first_run():  # compiling takes longer than all else: the second process should begin at once
-        from trunnion.api import kernels
+        from trunnion.jobs import kernels
 
         trunnion.jit.compile_ahead(kernels.POSTING)
     executor = ThreadPoolExecutor(1)
