@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
+from trunnion.messages import LIBRARY, Wording, Words, foreign
 from trunnion.wording import one_line
 
 
@@ -24,37 +25,103 @@ class Severity(StrEnum):
     ERROR = "error"
 
 
-class ArgumentName(str):
-    """The name of an argument of the library, as the place of a problem; the command line names its option instead."""
+class SubjectKind(StrEnum):
+    """What a problem may be with, if not with its file as a whole."""
 
-    __slots__ = ()
+    ARGUMENT = "argument"
+    SETTING = "setting"
+    KEY = "key"
 
 
 @dataclass(frozen=True, slots=True)
+class Subject:
+    """What a problem is with, such as the argument ``tolerance``, which every front calls as its user knows it."""
+
+    kind: SubjectKind
+    name: str
+
+
+@dataclass(frozen=True, slots=True, init=False)
 class Problem:
     """One thing that is wrong, its location, and how to correct it.
 
-    line  counts from 1; 0 if the problem concerns the file as a whole
-    what  the fault
-    cure  how to correct it; may be empty
-    key   of a definition, from its root, such as ``axis[1].limits_deg``; empty elsewhere
-    code  of what kind it is, such as ``CL110``: stays the same while messages change
+    file      the file, or the argument of the library
+    line      counts from 1; 0 if the problem concerns the file as a whole
+    wording   what is said, as data; ``what`` and ``cure`` are its English, ``code`` its kind, such as ``CL110``
+    severity  whether it stops the work
+    subject   what it is with: an argument, a setting, or the key of a definition; None: the file
     """
 
     file: str
     line: int
-    what: str
-    cure: str = ""
-    severity: Severity = Severity.ERROR
-    key: str = ""
-    code: str = ""
+    wording: Wording
+    severity: Severity
+    subject: Subject | None
+
+    def __init__(
+        self,
+        file: str,
+        line: int,
+        wording: Wording | str,
+        cure: str = "",
+        severity: Severity = Severity.ERROR,
+        *,
+        subject: Subject | None = None,
+        code: str = "",
+    ) -> None:
+        """Make a problem of a wording; a text, with its cure and its code, is for those who have no catalogue."""
+        object.__setattr__(self, "file", file)
+        object.__setattr__(self, "line", line)
+        object.__setattr__(self, "wording", foreign(wording, cure, code) if isinstance(wording, str) else wording)
+        object.__setattr__(self, "severity", severity)
+        object.__setattr__(self, "subject", subject)
+
+    @property
+    def what(self) -> str:
+        """The fault."""
+        return self.wording.what
+
+    @property
+    def cure(self) -> str:
+        """How to correct it; may be empty."""
+        return self.wording.cure
+
+    @property
+    def code(self) -> str:
+        """Of what kind it is, such as ``CL110``: stays the same while messages change."""
+        return self.wording.code
+
+    @property
+    def key(self) -> str:
+        """The key of a definition, from its root, such as ``axis[1].limits_deg``; empty elsewhere."""
+        return self._subject_of(SubjectKind.KEY)
+
+    @property
+    def argument(self) -> str:
+        """The argument of the library that it is with; empty elsewhere."""
+        is_argument = self.subject is not None and self.subject.kind in (SubjectKind.ARGUMENT, SubjectKind.SETTING)
+        return self.file if is_argument else ""
+
+    @property
+    def setting(self) -> str:
+        """The setting that it is with; empty elsewhere."""
+        return self._subject_of(SubjectKind.SETTING)
+
+    def _subject_of(self, kind: SubjectKind) -> str:
+        return self.subject.name if self.subject is not None and self.subject.kind is kind else ""
 
     def __str__(self) -> str:
         """Return ``file:line: severity: what; cure [code]``."""
-        place = f"{self.file}:{self.line}" if self.line else self.file
-        cure = f"; {self.cure}" if self.cure else ""
+        return self.line_of_text()
+
+    def line_of_text(self, words: Words = LIBRARY, called: str = "") -> str:
+        """Return what ``str`` does in the words of a front, which may call the file otherwise."""
+        place = called or self.file
+        place = f"{place}:{self.line}" if self.line else place
+        cure = self.wording.text("cure", words)
+        cure = f"; {cure}" if cure else ""
         code = f" [{self.code}]" if self.code else ""
-        return one_line(f"{place}: {self.severity}: {self.what}{cure}{code}")
+        return one_line(f"{place}: {self.severity}: {self.wording.text('what', words)}{cure}{code}")
 
 
 def merge_repeated(problems: Iterable[Problem]) -> tuple[Problem, ...]:
@@ -63,35 +130,37 @@ def merge_repeated(problems: Iterable[Problem]) -> tuple[Problem, ...]:
     for problem in problems:
         alike.setdefault((problem.file, problem.what, problem.cure, problem.severity), []).append(problem)
     return tuple(
-        same[0] if len(same) == 1 else replace(same[0], what=f"{same[0].what} ({len(same)} times, first here)")
+        same[0]
+        if len(same) == 1
+        else replace(same[0], wording=same[0].wording.within("repeated", count=len(same)))
         for same in alike.values()
     )
 
 
 def argument_problem(
-    name: str, what: str, cure: str = "", severity: Severity = Severity.ERROR, *, code: str = ""
+    name: str, wording: Wording | str, cure: str = "", severity: Severity = Severity.ERROR, *, code: str = ""
 ) -> Problem:
     """Return a problem with an argument of a function of the library."""
-    return Problem(ArgumentName(name), 0, what, cure, severity, code=code)
+    subject = Subject(SubjectKind.ARGUMENT, name)
+    return Problem(name, 0, wording, cure, severity, subject=subject, code=code)
 
 
 def unusable_file(path: Path, what: str) -> Problem | None:
     """Return why a path is no file that can be read; None if it may be one. ``what`` is meant: ``an NC program``."""
-    cure = f"give the path of {what}"
     try:
         mode = path.stat().st_mode
     except (OSError, ValueError) as error:  # also names that no system allows
         is_missing = isinstance(error, FileNotFoundError | NotADirectoryError)
         reason = getattr(error, "strerror", None) or error
         if is_missing:
-            return Problem(str(path), 0, "file not found", cure, code="FIL110")
-        return Problem(str(path), 0, f"cannot be read: {reason}", cure, code="FIL120")
+            return Problem(str(path), 0, Wording("FIL110", "file_not_found", subject=what))
+        return Problem(str(path), 0, Wording("FIL120", "cannot_read", reason=reason, subject=what))
     if stat.S_ISDIR(mode):
-        return Problem(str(path), 0, f"is a folder, not {what}", cure, code="FIL130")
+        return Problem(str(path), 0, Wording("FIL130", "folder_not", subject=what))
     return (
         None
         if stat.S_ISREG(mode)
-        else Problem(str(path), 0, f"is not a regular file, but {what} is one", cure, code="FIL130")
+        else Problem(str(path), 0, Wording("FIL130", "not_regular_file", subject=what))
     )
 
 

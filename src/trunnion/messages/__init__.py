@@ -1,0 +1,229 @@
+"""The texts of all messages: data that a code, a variant and named parameters choose and fill in.
+
+The files of ``en`` hold for each code the variants of its message: ``VARIANT.what`` is the fault, ``VARIANT.cure`` how to
+correct it. Another language is another folder. A text is a template:
+
+    {name}, {name:.3f}           a parameter, with a format
+    {count:# line|# lines}       a number with what it counts: its forms for one and for more
+    {setting:tool=5}             what a user may set, in the words of who asks (``Words``);
+    {argument:trust=X}           so are arguments, and arguments that are switched on
+    {switch:force}
+
+A file is read when a text of it is asked for, never before.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from numbers import Integral, Real
+from string import Formatter
+from types import MappingProxyType
+from typing import Any, Final, Literal, Self, TypeAlias
+
+#: The file of each kind of code.
+CATALOGUES: Final = {
+    "ARG": "arguments",
+    "BAT": "batch",
+    "CL": "cl",
+    "CNV": "conversion",
+    "CTL": "controls",
+    "DEF": "definitions",
+    "FIL": "files",
+    "HOK": "hooks",
+    "IMP": "impeller",
+    "NC": "programs",
+    "PAG": "pages",
+    "PLC": "placing",
+    "PLN": "planning",
+    "PRJ": "projects",
+    "RCH": "capability",
+    "SIM": "simulation",
+    "TWN": "twin",
+}
+
+#: The file of sentences that stand around others.
+AROUND: Final = "around"
+
+Part: TypeAlias = Literal["what", "cure"]
+Parameters: TypeAlias = tuple[tuple[str, object], ...]
+
+_NONE: Final[Mapping[str, object]] = MappingProxyType({})
+
+
+class Words:
+    """How what a user may set is called: here in the words of the library."""
+
+    def setting(self, name: str, value: str) -> str:
+        """A setting with a value."""
+        return f"setting {name}={value}"
+
+    def argument(self, name: str, value: str) -> str:
+        """An argument with a value."""
+        return f"argument {name}={value}"
+
+    def switch(self, name: str) -> str:
+        """An argument that is switched on."""
+        return f"{name}=True"
+
+
+LIBRARY: Final = Words()
+
+
+@dataclass(frozen=True, slots=True, init=False)
+class Wording:
+    """What is said, as data: a text of the catalogues and what is filled in.
+
+    code        such as ``CL110``
+    variant     which text of the code; empty: the parameters ``what`` and ``cure`` are the text, which is another's
+    parameters  numbers, texts and other wordings by name, in alphabetical order
+    around      sentences that stand around it, the inner one first: their names and their parameters
+    """
+
+    code: str
+    variant: str
+    parameters: Parameters
+    around: tuple[tuple[str, Parameters], ...]
+
+    def __init__(self, code: str, variant: str, /, **parameters: object) -> None:
+        object.__setattr__(self, "code", code)
+        object.__setattr__(self, "variant", variant)
+        object.__setattr__(self, "parameters", _plain(parameters))
+        object.__setattr__(self, "around", ())
+
+    @property
+    def what(self) -> str:
+        """The fault, in English and in the words of the library."""
+        return self.text("what")
+
+    @property
+    def cure(self) -> str:
+        """How to correct it; empty if there is nothing to say."""
+        return self.text("cure")
+
+    def __str__(self) -> str:
+        return self.what
+
+    def text(self, part: Part, words: Words = LIBRARY, language: str = "en") -> str:
+        """The fault or its cure, in the words of who asks."""
+        return _text(self, part, words, language)
+
+    def within(self, sentence: str, /, **parameters: object) -> Self:
+        """The same within another sentence of the catalogue ``around``, which has it as ``{what}``."""
+        return self._changed(self.parameters, (*self.around, (sentence, _plain(parameters))))
+
+    def with_parameters(self, **parameters: object) -> Self:
+        """The same with other values of some parameters, or with more of them."""
+        return self._changed(_plain({**dict(self.parameters), **parameters}), self.around)
+
+    def changed(self, change: Callable[[str], str]) -> Self:
+        """The same with each text that is filled in changed by a function."""
+        return self._changed(
+            _changed(self.parameters, change), tuple((name, _changed(found, change)) for name, found in self.around)
+        )
+
+    def _changed(
+        self,
+        parameters: Parameters,
+        around: tuple[tuple[str, Parameters], ...],
+    ) -> Self:
+        other = type(self)(self.code, self.variant)
+        object.__setattr__(other, "parameters", parameters)
+        object.__setattr__(other, "around", around)
+        return other
+
+
+def foreign(what: str, cure: str = "", code: str = "") -> Wording:
+    """A text that is in no catalogue, since it is another's: of a hook, say, or of a program that has no code for it."""
+    return Wording(code, "", what=what, cure=cure)
+
+
+def filled_in(template: str, words: Words = LIBRARY, parameters: Mapping[str, object] = _NONE) -> str:
+    """A template with its parameters.
+
+    >>> filled_in("{count:# line is|# lines are} longer than {most:.1f} mm", LIBRARY, {"count": 2, "most": 0.25})
+    '2 lines are longer than 0.2 mm'
+    """
+    return "".join(
+        literal + ("" if field is None else _field(field, spec or "", words, parameters))
+        for literal, field, spec, _ in _parsed(template)
+    )
+
+
+@cache
+def catalogue(language: str, name: str) -> dict[str, Any]:
+    """A file of texts: the variants of each code, and their parts."""
+    import tomllib  # most runs have nothing to say
+    from importlib.resources import files
+
+    return tomllib.loads(files(__name__).joinpath(language, f"{name}.toml").read_text(encoding="utf-8"))
+
+
+@lru_cache(4096)
+def _text(wording: Wording, part: Part, words: Words, language: str) -> str:
+    text = _inner_text(wording, part, words, language)
+    if part == "what":
+        for sentence, parameters in wording.around:
+            try:
+                template = catalogue(language, AROUND)[sentence]
+                text = filled_in(template, words, {**dict(parameters), "what": text})
+            except (LookupError, ValueError, TypeError):
+                text = f"{text} ({_unfilled(sentence, parameters)})"
+    return text
+
+
+def _inner_text(wording: Wording, part: Part, words: Words, language: str) -> str:
+    parameters = dict(wording.parameters)
+    if not wording.variant:
+        return str(parameters[part])
+    try:
+        variant = catalogue(language, CATALOGUES[wording.code[:-3]])[wording.code][wording.variant]
+        return filled_in(variant.get(part, ""), words, parameters)
+    except (LookupError, OSError, ValueError, TypeError):
+        return _unfilled(wording.variant, wording.parameters) if part == "what" else ""
+
+
+def _unfilled(variant: str, parameters: Parameters) -> str:
+    """What is known of a message whose text is missing or does not fit: a fault of the catalogue hides no problem."""
+    return " ".join((variant.replace("_", " "), *(f"{name}={value}" for name, value in parameters)))
+
+
+@cache
+def _parsed(template: str) -> tuple[tuple[str, str | None, str | None, str | None], ...]:
+    return tuple(Formatter().parse(template))
+
+
+def _field(field: str, spec: str, words: Words, parameters: Mapping[str, object]) -> str:
+    if field in ("setting", "argument"):
+        name, _, value = filled_in(spec, words, parameters).partition("=")
+        return words.setting(name, value) if field == "setting" else words.argument(name, value)
+    if field == "switch":
+        return words.switch(filled_in(spec, words, parameters))
+    value = parameters[field]
+    if isinstance(value, Wording):
+        return value.text("what", words)
+    if "|" in spec:
+        one, more = spec.split("|")
+        return (one if value == 1 else more).replace("#", str(value))
+    return format(value, spec)
+
+
+def _plain(parameters: Mapping[str, object]) -> Parameters:
+    return tuple((name, _plain_value(value)) for name, value in sorted(parameters.items()))
+
+
+def _plain_value(value: object) -> object:
+    """A number, a text or a wording, so that messages can be compared, kept and sent to other processes."""
+    if type(value) in (str, int, float, bool, Wording):
+        return value
+    if isinstance(value, Integral):
+        return int(value)
+    if isinstance(value, Real):
+        return float(value)
+    return str(value)
+
+
+def _changed(parameters: Parameters, change: Callable[[str], str]) -> Parameters:
+    return tuple(
+        (name, change(value) if isinstance(value, str) else value.changed(change) if isinstance(value, Wording) else value)
+        for name, value in parameters
+    )
