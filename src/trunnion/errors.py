@@ -41,6 +41,11 @@ class Subject:
     name: str
 
 
+def key_subject(path: str) -> Subject:
+    """The key of a definition as what a problem is with."""
+    return Subject(SubjectKind.KEY, path)
+
+
 @dataclass(frozen=True, slots=True, init=False)
 class Problem:
     """One thing that is wrong, its location, and how to correct it.
@@ -130,9 +135,7 @@ def merge_repeated(problems: Iterable[Problem]) -> tuple[Problem, ...]:
     for problem in problems:
         alike.setdefault((problem.file, problem.what, problem.cure, problem.severity), []).append(problem)
     return tuple(
-        same[0]
-        if len(same) == 1
-        else replace(same[0], wording=same[0].wording.within("repeated", count=len(same)))
+        same[0] if len(same) == 1 else replace(same[0], wording=same[0].wording.within("repeated", count=len(same)))
         for same in alike.values()
     )
 
@@ -157,11 +160,7 @@ def unusable_file(path: Path, what: str) -> Problem | None:
         return Problem(str(path), 0, Wording("FIL120", "cannot_read", reason=reason, subject=what))
     if stat.S_ISDIR(mode):
         return Problem(str(path), 0, Wording("FIL130", "folder_not", subject=what))
-    return (
-        None
-        if stat.S_ISREG(mode)
-        else Problem(str(path), 0, Wording("FIL130", "not_regular_file", subject=what))
-    )
+    return None if stat.S_ISREG(mode) else Problem(str(path), 0, Wording("FIL130", "not_regular_file", subject=what))
 
 
 class TrunnionError(Exception):

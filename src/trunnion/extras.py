@@ -4,6 +4,7 @@ import importlib
 from typing import Any
 
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 
 
 def import_extra(module: str, extra: str) -> Any:
@@ -17,5 +18,6 @@ def import_extra(module: str, extra: str) -> Any:
     try:
         return importlib.import_module(module)
     except ImportError:
-        what, cure = f"needs {module}, which is not installed", f'pip install "trunnion[{extra}]"'
-        raise InputError(Problem("trunnion", 0, what, cure, code="ARG150")) from None
+        raise InputError(
+            Problem("trunnion", 0, Wording("ARG150", "needs_not_installed", module=module, extra=extra))
+        ) from None

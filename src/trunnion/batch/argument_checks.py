@@ -11,6 +11,7 @@ from trunnion.jobs.convert.converting import check_conversion_settings
 from trunnion.jobs.inputs.arguments import check_whole
 from trunnion.jobs.post.post_job import prepare
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.simulation.stock.solids import check_cell, is_mesh, stock_shape
 from trunnion.simulation.tools.text import parse_tool
 
@@ -32,9 +33,9 @@ def check_tiles(action: Action, tiles: object) -> int:
     """
     count = check_whole("tiles", tiles, 1)
     if count > MOST_TILES:
-        raise InputError(argument_problem("tiles", f"is {count}", f"give at most {MOST_TILES}", code="ARG140"))
+        raise InputError(argument_problem("tiles", Wording("ARG140", "is", count=count, most_tiles=MOST_TILES)))
     if count > 1 and action is not Action.SIMULATE:
-        raise InputError(argument_problem("tiles", "is for simulations", "leave it out", code="ARG130"))
+        raise InputError(argument_problem("tiles", Wording("ARG130", "simulations")))
     return count
 
 
@@ -82,7 +83,7 @@ def check_simulation(said: Mapping[str, Any]) -> None:
             if (cell := said.get("cell")) is not None:
                 check_cell(shape, cell)
         elif not Path(stock).is_file():
-            problems.append(argument_problem("stock", f"names {stock}, and there is no such file", code="FIL110"))
+            problems.append(argument_problem("stock", Wording("FIL110", "names_no_such", stock=stock)))
     except InputError as error:
         problems += error.problems
     if problems:

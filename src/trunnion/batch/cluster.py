@@ -25,6 +25,7 @@ from trunnion.batch.workers import Assignment, died
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.extras import import_extra
 from trunnion.jobs.observer import SILENT, Observer
+from trunnion.messages import Wording
 from trunnion.wording import format_duration
 
 #: Where Dask's client logs.
@@ -167,9 +168,9 @@ class DaskWorkers:
             # Dask asserts where a client that takes its time is not there in time.
             except (OSError, ValueError, TypeError, ImportError, AssertionError) as error:
                 if time.monotonic() >= deadline or not isinstance(error, OSError):
-                    cure = "look for the scheduler, and run the batch again: what is done stays done"
-                    what = f"no scheduler of Dask answers: {str(error)[:200]}"
-                    raise InputError(Problem(self._address, 0, what, cure, code="BAT220")) from None
+                    raise InputError(
+                        Problem(self._address, 0, Wording("BAT220", "no_scheduler_dask", error=str(error)[:200]))
+                    ) from None
                 time.sleep(_LOOK)
 
     def _security(self) -> Any:
@@ -277,9 +278,16 @@ class DaskWorkers:
             self._count_threads()
             return
         if not is_running:
-            what = "the scheduler is gone, and awaited"
-            cure = f"start it again within {self._patience:.0f} s; nothing that is done is lost"
-            self._observer.problems([Problem(self._address, 0, what, cure, Severity.WARNING, code="BAT230")])
+            self._observer.problems(
+                [
+                    Problem(
+                        self._address,
+                        0,
+                        Wording("BAT230", "scheduler_gone_awaited", patience=self._patience),
+                        severity=Severity.WARNING,
+                    )
+                ]
+            )
         self._leave()
         self._connect(self._patience)
         for each in asked.values():
@@ -292,14 +300,33 @@ class DaskWorkers:
             self._alone_since, self._silent_for = now, SILENCE
             return
         alone = now - self._alone_since
-        cure = f"start some: dask worker {self._address}"
         if self._wait is not None and alone >= self._wait:
-            what = f"the scheduler has had no worker for {format_duration(alone)}"
-            raise InputError(Problem(self._address, 0, what, cure, code="BAT240"))
+            raise InputError(
+                Problem(
+                    self._address,
+                    0,
+                    Wording(
+                        "BAT240", "scheduler_had_no", format_duration=format_duration(alone), address=self._address
+                    ),
+                )
+            )
         if alone >= self._silent_for:
             self._silent_for = alone + _REMIND
-            what = f"the scheduler has no worker yet, and the batch waits ({format_duration(alone)} so far)"
-            self._observer.problems([Problem(self._address, 0, what, cure, Severity.WARNING, code="BAT240")])
+            self._observer.problems(
+                [
+                    Problem(
+                        self._address,
+                        0,
+                        Wording(
+                            "BAT240",
+                            "scheduler_no_worker",
+                            format_duration=format_duration(alone),
+                            address=self._address,
+                        ),
+                        severity=Severity.WARNING,
+                    )
+                ]
+            )
 
 
 def _is_done(each: _Asked) -> bool:

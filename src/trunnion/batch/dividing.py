@@ -15,9 +15,10 @@ from trunnion.batch.records import FOLDER, Record
 from trunnion.batch.sealing import BrokenSealError, Seal, sealed, unsealed
 from trunnion.batch.stores import Kept, Store, TakenError
 from trunnion.batch.task import NO_COSTS, SHARE_FILE, Costs, Outcome, Status, Task
-from trunnion.batch.workers import DAMAGED, Assignment, damaged
+from trunnion.batch.workers import DAMAGED, Assignment
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.jobs.observer import Observer
+from trunnion.messages import Wording
 
 #: The folder of shares within that of records.
 SHARES: Final = f"{FOLDER}/shares"
@@ -84,12 +85,10 @@ class Divisions:
             if content is not None:
                 unsealed(content, seal)
         except TakenError:
-            what = f"one of its shares would be {name}, where something stands that is no file of this folder"
-            cure = "remove what stands there, or choose another folder for results"
-            raise InputError(Problem(seal.file, 0, what, cure, code="BAT320")) from None
+            raise InputError(Problem(seal.file, 0, Wording("BAT320", "one_shares_would", name=name))) from None
         except BrokenSealError as error:
-            problem = damaged(seal.file, str(error))
-            self._observer.problems([replace(problem, severity=Severity.WARNING, cure="it is made again")])
+            wording = Wording("BAT395", "share_is_made_again", reason=str(error))
+            self._observer.problems([Problem(seal.file, 0, wording, severity=Severity.WARNING)])
             return False
         return content is not None
 

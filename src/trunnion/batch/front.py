@@ -19,6 +19,7 @@ from trunnion.jobs.inputs.arguments import check_choice, check_observer, check_p
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.inputs.settings import Settings
 from trunnion.jobs.observer import SILENT, Observer
+from trunnion.messages import Wording
 
 #: Workers of one computer.
 _MOST_WORKERS: Final = 1024
@@ -126,7 +127,7 @@ def run_batch(
     batch = _batch(path, given, results)
     place = results if results is not None else batch.results
     if place is None:
-        raise InputError(argument_problem("results", "is missing", "name a folder for the results", code="ARG130"))
+        raise InputError(argument_problem("results", Wording("ARG130", "missing")))
     store = open_store(place if isinstance(place, str) else Path(place))
     result = run_jobs(batch, store, team(store), observer)
     if summary is not None:
@@ -139,15 +140,12 @@ def _batch(path: Path, given: Mapping[str, Any], results: FilePath | None) -> Ba
     stated = {name: value for name, value in given.items() if value or (name == "tiles" and value is not None)}
     if not path.is_dir():
         if stated and path.suffix != ".toml" and not path.exists():
-            what, cure = "there is no such folder", "check its name, and from where it counts"
-            raise InputError(Problem(str(path), 0, what, cure, code="FIL110"))
+            raise InputError(Problem(str(path), 0, Wording("FIL110", "no_such_folder")))
         if stated:
-            what, cure = f"{path} is a file of jobs, which states it itself", "leave it out, or give a folder"
-            raise InputError(argument_problem(next(iter(stated)), what, cure, code="ARG130"))
+            raise InputError(argument_problem(next(iter(stated)), Wording("ARG130", "file_jobs_states", path=path)))
         return load_batch(path)
     if "action" not in stated:
-        cure = "say what is done with the files of a folder: post, convert, verify or simulate"
-        raise InputError(argument_problem("action", "is missing", cure, code="ARG130"))
+        raise InputError(argument_problem("action", Wording("ARG130", "missing_or_say")))
     check_choice("action", stated["action"], tuple(Action))
     action, patterns = Action(stated.pop("action")), stated.pop("files", ())
     inside = results if results is not None and "://" not in str(results) else None
@@ -166,19 +164,21 @@ def _team(
     if scheduler is None:
         for name, given in (("tls", tls), ("wait", wait)):
             if given is not None:
-                raise InputError(argument_problem(name, "is for a scheduler", "leave it out", code="ARG130"))
+                raise InputError(argument_problem(name, Wording("ARG130", "scheduler")))
         if workers is not None and not 1 <= workers <= _MOST_WORKERS:
-            cure = f"give a number from 1 to {_MOST_WORKERS}"
-            raise InputError(argument_problem("workers", f"is {workers}", cure, code="ARG140"))
+            raise InputError(
+                argument_problem(
+                    "workers", Wording("ARG140", "is_or_give_number", workers=workers, most_workers=_MOST_WORKERS)
+                )
+            )
         if timeout is not None and not timeout > 0.0:
-            raise InputError(argument_problem("timeout", f"is {timeout}", "give seconds above 0", code="ARG140"))
+            raise InputError(argument_problem("timeout", Wording("ARG140", "is_or_give_seconds", timeout=timeout)))
         return lambda _: local_workers(workers, timeout)
     for name, value in (("workers", workers), ("timeout", timeout)):
         if value is not None:
-            what = "is for processes of this computer, and the workers of a scheduler are its own"
-            raise InputError(argument_problem(name, what, "leave it out", code="ARG130"))
+            raise InputError(argument_problem(name, Wording("ARG130", "processes_computer_workers")))
     if wait is not None and not wait > 0.0:
-        raise InputError(argument_problem("wait", f"is {wait}", "give seconds above 0", code="ARG140"))
+        raise InputError(argument_problem("wait", Wording("ARG140", "is_or_give", wait=wait)))
     return lambda store: (
         lambda _: DaskWorkers(scheduler, work, tls=tls, writing=store.worker_url, wait=wait, observer=observer)
     )

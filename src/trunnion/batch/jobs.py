@@ -26,6 +26,7 @@ from trunnion.jobs.inputs.reading import as_machine
 from trunnion.jobs.post.post_job import prepare
 from trunnion.jobs.project.paths import is_file
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 
 #: Files that a folder may have, all and those of a batch: a record of each is held while it runs.
 MOST_FILES: Final = 1_000_000
@@ -110,7 +111,7 @@ def folder_files(folder: Path, without: Path | None = None) -> list[str]:
         If there is no such folder, or it has too many files.
     """
     if not folder.is_dir():
-        raise InputError(Problem(str(folder), 0, "there is no such folder", "give the path of a folder", code="FIL110"))
+        raise InputError(Problem(str(folder), 0, Wording("FIL110", "no_such")))
     found: list[str] = []
     for at, folders, names in os.walk(folder):
         here = Path(at)
@@ -122,8 +123,7 @@ def folder_files(folder: Path, without: Path | None = None) -> list[str]:
         inner = PurePosixPath(here.relative_to(folder).as_posix())
         found += [(inner / name).as_posix() for name in names if _is_input(here / name, folder)]
         if len(found) > MOST_FILES:
-            what = f"has more than {MOST_FILES} files"
-            raise InputError(Problem(str(folder), 0, what, "divide it among several batches", code="BAT120"))
+            raise InputError(Problem(str(folder), 0, Wording("BAT120", "more_files", most_files=MOST_FILES)))
     return sorted(found)
 
 
@@ -219,11 +219,10 @@ def judged(
             machines[name] = _loaded(str(value), name)
             said[name] = _add_machine(str(value), machines[name], folder, shared)
     if action is not Action.CONVERT and "machine" not in machines:
-        raise InputError(argument_problem("machine", "is missing", "name the machine of the programs", code="ARG130"))
+        raise InputError(argument_problem("machine", Wording("ARG130", "missing_or_name")))
     if action is Action.SIMULATE:
         if not said.get("stock"):
-            cure = "state a box, a cylinder or a mesh"
-            raise InputError(argument_problem("stock", "is missing", cure, code="ARG130"))
+            raise InputError(argument_problem("stock", Wording("ARG130", "missing_or_state")))
         check_simulation(said)
     for name in ("stock", "part", "fixtures", "libraries"):
         if value := said.get(name):
@@ -251,14 +250,12 @@ def _extensions(action: Action, said: Mapping[str, Any], machines: Mapping[str, 
     if action in NOTED:
         return Extensions(read, "")
     if bool(said.get("to_machine")) is bool(said.get("to_cl")):
-        cure = "give either a machine, or say that a CL file is wanted"
-        raise InputError(argument_problem("to_machine", "and to_cl say where a conversion leads", cure, code="CNV110"))
+        raise InputError(argument_problem("to_machine", Wording("CNV110", "cl_say_where")))
     if said.get("to_cl"):
         check_to_cl(said, machine)
         return Extensions(read, _WRITTEN[said.get("dialect", "clsf")])
     if machine is None:
-        cure = "name the machine of the programs; post makes programs of CL files"
-        raise InputError(argument_problem("machine", "is missing", cure, code="CNV110"))
+        raise InputError(argument_problem("machine", Wording("CNV110", "missing")))
     job = prepare(machines["to_machine"], said.get("settings"))
     check_conversion_settings(job, to_cl=False)
     return Extensions(read, job.control.extension)

@@ -19,11 +19,12 @@ from trunnion.cl import DIALECTS
 from trunnion.cl.writers import WRITERS
 from trunnion.definitions import Table, load_table
 from trunnion.definitions.extends import is_within
-from trunnion.errors import ArgumentName, InputError, unusable_file
+from trunnion.errors import InputError, unusable_file
 from trunnion.files import name_fault
 from trunnion.jobs.inputs.settings import as_texts
 from trunnion.jobs.project.paths import ProjectPaths
 from trunnion.machines import shipped_machines
+from trunnion.messages import Wording
 from trunnion.simulation.stock.solids import is_mesh
 
 #: Jobs that a file may have, patterns of one, and settings.
@@ -66,7 +67,7 @@ class _Tables:
         own, found = table.table(key), dict[str, Any]()
         stated = own.to_dict()
         if len(stated) > _MOST_SETTINGS:
-            table.add_problem(key, f"has {len(stated)} keys", f"no control has more than {_MOST_SETTINGS}")
+            table.add_problem(key, Wording("DEF330", "keys", count=len(stated), most_settings=_MOST_SETTINGS))
             stated = {}
         for name, value in stated.items():
             try:
@@ -74,7 +75,7 @@ class _Tables:
                 found[name] = value
             except InputError as error:
                 file, line = own.location(name)
-                own.problems.extend(replace(each, file=file, line=line) for each in error.problems)
+                own.problems.extend(replace(each, file=file, line=line, subject=None) for each in error.problems)
         own.mark_read(*own.names())
         return found
 
@@ -185,7 +186,7 @@ def read_batch_table(root: Table, path: Path) -> Batch:
     default_values = _values(tables, defaults)
     own = root.tables("job", required=True)
     if len(own) > _MOST_JOBS:
-        root.add_problem("job", f"has {len(own)} tables", f"write at most {_MOST_JOBS}")
+        root.add_problem("job", Wording("DEF330", "tables", count=len(own), most_jobs=_MOST_JOBS))
         own = []
     found = folder_files(path.parent, results) if path.parent.is_dir() else []
     found = [name for name in found if name != path.name]
@@ -196,7 +197,7 @@ def read_batch_table(root: Table, path: Path) -> Batch:
         output = _output(table) or default_output
         name = table.text("name", f"job {number}")
         if name in [job.name for job in jobs]:
-            table.add_problem("name", f'is "{name[:100]}" twice', "tell jobs apart")
+            table.add_problem("name", Wording("DEF330", "twice", name=name[:100]))
         _refuse_keys(table, action, stated)
         of_defaults = {key: value for key, value in default_values.items() if action in _OPTIONS[key].actions}
         if action is Action.POST:
@@ -221,7 +222,7 @@ def _with_place_settings(table: Table, values: Mapping[str, Any]) -> dict[str, A
     own = found.get("settings", {})
     for key, name in _PLACE_SETTINGS.items():
         if name in place and name in own:
-            table.add_problem(key, f"is stated besides settings.{name}", "state one of them", code="BAT110")
+            table.add_problem(key, Wording("BAT110", "stated_besides_settings", name=name))
     return {**found, "settings": {**place, **own}} if place else found
 
 
@@ -234,12 +235,10 @@ def _judged(
     beside = {key: values.pop(key) for key in ("cl", "subprograms") if values.get(key)}
     report, tiles = values.pop("report", ""), values.pop("tiles", 1)
     if tiles > 1 and values.get("stop_at") == "first":
-        what = 'has no meaning with stop_at = "first": no single task knows the first finding'
-        table.add_problem("tiles", what, "leave out one of them", code="SIM116")
+        table.add_problem("tiles", Wording("SIM116", "no_meaning_stop"))
     for key in ("turn_deg", "tilt_deg") if action is Action.VERIFY and "cl" not in beside else ():
         if values.get(key):
-            what, cure = "turns CL files before they are compared, and the job has none", "name them with cl"
-            table.add_problem(key, what, cure, code="BAT110")
+            table.add_problem(key, Wording("BAT110", "turns_cl_files"))
     if table.problems:
         return []
     arguments = {_OPTIONS[key].argument: value for key, value in values.items() if value}
@@ -248,8 +247,8 @@ def _judged(
         said, shared, extensions = judged(action, arguments, folder)
     except InputError as error:
         for each in error.problems:
-            if isinstance(each.file, ArgumentName):
-                table.add_problem(keys.get(each.file, str(each.file)), each.what, each.cure, code=each.code)
+            if each.argument:
+                table.add_problem(keys.get(each.argument, each.argument), each.wording)
             else:
                 table.problems.append(each)
         return []
@@ -264,7 +263,7 @@ def _action(table: Table, default: Action) -> Action:
 def _results(root: Table, folder: Path) -> Path:
     name = _folder_name(root, "results") or RESULTS
     if not is_within(folder / name, folder):
-        root.add_problem("results", f'"{name[:100]}" leads out of the folder', "name a folder below that of the jobs")
+        root.add_problem("results", Wording("DEF330", "leads_out_folder", name=name[:100]))
     return folder / name
 
 
@@ -296,18 +295,25 @@ def _values(tables: _Tables, table: Table) -> dict[str, Any]:
 def _refuse_keys(table: Table, action: Action, stated: Collection[str]) -> None:
     for key in stated:
         if action not in _OPTIONS[key].actions:
-            words = " or ".join(f'"{each}"' for each in Action if each in _OPTIONS[key].actions)
-            table.add_problem(key, f'has no meaning with action = "{action}"', f"it is for {words}", code="BAT110")
+            table.add_problem(
+                key,
+                Wording(
+                    "BAT110",
+                    "no_meaning_action",
+                    action=action,
+                    action_2=tuple(f'"{each}"' for each in Action if each in _OPTIONS[key].actions),
+                ),
+            )
 
 
 def _inputs(table: Table, names: Collection[str], path: Path, results: Path) -> list[str]:
     """The files of a job."""
     patterns = table.texts("files")
     if len(patterns) > _MOST_PATTERNS:
-        table.add_problem("files", f"has {len(patterns)} patterns", f"write at most {_MOST_PATTERNS}")
+        table.add_problem("files", Wording("DEF330", "patterns", count=len(patterns), most_patterns=_MOST_PATTERNS))
         return []
     if table.to_dict().get("files") == []:
-        table.add_problem("files", "is []", 'write ["**/*.cls"]')
+        table.add_problem("files", Wording("DEF330", "is_or_write_cls"))
     found = set[str]()
     for pattern in patterns:
         if fault := pattern_fault(pattern):
@@ -318,7 +324,17 @@ def _inputs(table: Table, names: Collection[str], path: Path, results: Path) -> 
             why = left_out(path.parent, pattern, results)
             if not why and matches(path.name, pattern):
                 why = f"{path.name} is the file of jobs itself"
-            what = f'"{pattern[:100]}" matches no file' + (f"; {why}" if why else "")
-            table.add_problem("files", what, "look for its name, or put it elsewhere", code="BAT120")
+            table.add_problem(
+                "files",
+                (
+                    Wording("BAT120", "matches_no_file", pattern=pattern[:100], path=path.name)
+                    if not why and matches(path.name, pattern)
+                    else Wording(
+                        "BAT120", "matches_no", pattern=pattern[:100], left_out=left_out(path.parent, pattern, results)
+                    )
+                )
+                if why
+                else Wording("BAT120", "matches_no_file_or_look", pattern=pattern[:100]),
+            )
         found.update(matched)
     return sorted(found)

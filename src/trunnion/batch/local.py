@@ -21,6 +21,7 @@ from trunnion.batch.task import Costs, Outcome, Status, Task
 from trunnion.batch.workers import Assignment, died, timed_out
 from trunnion.errors import InputError, Problem
 from trunnion.files.interrupts import children_without_interrupts
+from trunnion.messages import Wording
 
 #: How often a file is tried whose worker dies: the first time another one may have taken the memory.
 TRIES: Final = 2
@@ -83,8 +84,9 @@ class LocalWorkers:
         try:
             self._folder = TemporaryDirectory(prefix="trunnion-", ignore_cleanup_errors=True)
         except OSError as error:
-            what = f"the folder for temporary files does not take any: {error.strerror or error}"
-            raise InputError(Problem("batch", 0, what, "make space there, or set TMPDIR", code="BAT390")) from None
+            raise InputError(
+                Problem("batch", 0, Wording("BAT390", "folder_temporary_files", strerror=error.strerror or error))
+            ) from None
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -150,7 +152,7 @@ class LocalWorkers:
             yield from self._bury(worker, again)
             return
         if isinstance(told, Exception):
-            raise InputError(Problem("batch", 0, f"a worker cannot work: {told}", code="BAT210"))
+            raise InputError(Problem("batch", 0, Wording("BAT210", "worker_cannot_work", told=told)))
         worker.is_ready = True
         if worker.given is not None and isinstance(told, Outcome):
             was_warm, worker.is_warm = worker.is_warm, True
@@ -173,9 +175,9 @@ class LocalWorkers:
         if not worker.is_ready:
             self._stillborn += 1
             if self._stillborn >= _MOST_STILLBORN:
-                what = f"worker processes end before they begin (exit code {worker.process.exitcode})"
-                cure = "look for a limit of memory or processes, or let fewer work"
-                raise InputError(Problem("batch", 0, what, cure, code="BAT210"))
+                raise InputError(
+                    Problem("batch", 0, Wording("BAT210", "worker_processes_end", exitcode=worker.process.exitcode))
+                )
             return
         self._stillborn = 0
         given = worker.given

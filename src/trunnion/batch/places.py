@@ -16,6 +16,7 @@ from trunnion.batch.keys import digest
 from trunnion.batch.task import Action
 from trunnion.errors import InputError, Problem
 from trunnion.files import name_fault
+from trunnion.messages import Wording
 
 #: What names on some system do not have.
 _ODD: Final = re.compile(r"[^\w.,+=@ ()-]")
@@ -47,7 +48,7 @@ def units_of(jobs: Sequence[Job]) -> list[Unit]:
         places[k] = _with_checksum(jobs[number], file)
     if twice := _alike(places):
         file = files[twice[0]][1]
-        raise InputError(Problem(file, 0, "has no place of its own for its result", "rename it", code="BAT120"))
+        raise InputError(Problem(file, 0, Wording("BAT120", "no_place_own")))
     return sorted(Unit(places[k], number, file, clashes[k]) for k, (number, file) in enumerate(files))
 
 

@@ -17,6 +17,7 @@ from trunnion.batch.keys import digest
 from trunnion.batch.stores import Store, TakenError
 from trunnion.batch.task import NO_COSTS, Costs, Outcome, Status
 from trunnion.errors import InputError, Problem, Severity
+from trunnion.messages import Wording
 
 #: The folder of records within the results; no output has a name that begins with a point.
 FOLDER: Final = ".trunnion-batch"
@@ -238,5 +239,4 @@ def check_store(store: Store) -> None:
     if store.read(name) != text:
         store.write(name, text)
     if store.read(name) != text:
-        what = "does not give back what was written"
-        raise InputError(Problem(store.label, 0, what, "choose another place for results", code="BAT130"))
+        raise InputError(Problem(store.label, 0, Wording("BAT130", "does_not_give")))

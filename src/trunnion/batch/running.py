@@ -32,6 +32,7 @@ from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.project.paths import is_file
+from trunnion.messages import Wording
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -222,9 +223,7 @@ def task_of(folder: Path, job: Job, unit: Unit, shared: Mapping[str, bytes]) -> 
         If a file cannot be read, leads out of the folder, or its result has no place.
     """
     if unit.clash:
-        what = f"its result would be {unit.clash}, as that of another file of this batch, or a folder of its result"
-        cure = "rename one of them, name only one by its pattern, or give jobs an output of their own"
-        raise InputError(Problem(unit.file, 0, what, cure, code="BAT380"))
+        raise InputError(Problem(unit.file, 0, Wording("BAT380", "result_would_another", clash=unit.clash)))
     arguments: dict[str, Any] = dict(job.arguments)
     name = FILES + unit.file
     own = {name: _read(folder, unit.file, unit.file)}
@@ -244,14 +243,27 @@ def _read(folder: Path, name: str, file: str) -> bytes:
     """The content of a file that the work on ``file`` reads; links are followed within the folder."""
     path = folder / name
     if not is_within(path, folder):
-        what = f"{'' if name == file else f'goes with {name}, which '}leads out of the folder by a link"
-        cure = "put the file itself there, or give the folder that has both"
-        raise InputError(Problem(file, 0, what, cure, code="FIL120"))
+        raise InputError(
+            Problem(
+                file,
+                0,
+                Wording("FIL120", "leads_out_folder")
+                if name == file
+                else Wording("FIL120", "goes_leads_out", name=name),
+            )
+        )
     try:
         return path.read_bytes()
     except OSError as error:
-        what = f"{'' if name == file else f'goes with {name}, which '}cannot be read: {error.strerror or error}"
-        raise InputError(Problem(file, 0, what, code="FIL120")) from None
+        raise InputError(
+            Problem(
+                file,
+                0,
+                Wording("FIL120", "cannot_read_2", strerror=error.strerror or error)
+                if name == file
+                else Wording("FIL120", "goes_cannot_read", name=name, strerror=error.strerror or error),
+            )
+        ) from None
 
 
 def _beside(pattern: str, file: str) -> str:

@@ -14,7 +14,7 @@ from trunnion.batch.stores import Store, TakenError
 from trunnion.errors import Problem, Severity
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.project.paths import is_file
-from trunnion.wording import counted
+from trunnion.messages import Wording
 
 #: Files that are told one by one.
 _MOST_TOLD = 100
@@ -45,11 +45,14 @@ def remove_stale(batch: Batch, units: Sequence[Unit], store: Store, observer: Ob
                 store.remove(name)
     told.sort(key=lambda problem: problem.file)
     if len(told) > _MOST_TOLD:
-        more = Problem(store.label, 0, f"and {len(told) - _MOST_TOLD} more", "", Severity.WARNING, code="BAT360")
+        more = Problem(
+            store.label, 0, Wording("BAT360", "more", count=len(told) - _MOST_TOLD), severity=Severity.WARNING
+        )
         told[_MOST_TOLD:] = [more]
     if others:
-        what = f"has results of {counted(others, 'file')} of another batch, which stay"
-        told.append(Problem(store.label, 0, what, "give each batch its own folder", Severity.WARNING, code="BAT370"))
+        told.append(
+            Problem(store.label, 0, Wording("BAT370", "results_file_another", others=others), severity=Severity.WARNING)
+        )
     if told:
         observer.problems(told)
 
@@ -65,10 +68,21 @@ def remove_stale_shares(batch: Batch, units: Sequence[Unit], store: Store, obser
         elif not name.startswith(owned) and (batch.is_whole or _is_gone(batch, name, store)):
             store.remove(name)
     if others:
-        what = f"has shares of {counted(len(others), 'simulation')} of another batch, which stay"
-        homes = ", ".join(sorted({f"{SHARES}/{each.partition('-')[0]}-*" for each in others})[:_MOST_HOMES])
-        cure = f"give each batch its own folder; if that batch is gone, or has another name now, remove {homes}"
-        observer.problems([Problem(store.label, 0, what, cure, Severity.WARNING, code="BAT370")])
+        observer.problems(
+            [
+                Problem(
+                    store.label,
+                    0,
+                    Wording(
+                        "BAT370",
+                        "shares_simulation_another",
+                        count=len(others),
+                        others=tuple(sorted({f"{SHARES}/{each.partition('-')[0]}-*" for each in others})[:_MOST_HOMES]),
+                    ),
+                    severity=Severity.WARNING,
+                )
+            ]
+        )
 
 
 def _is_gone(batch: Batch, name: str, store: Store) -> bool:
@@ -93,8 +107,9 @@ def _removed(record: Record, store: Store) -> Iterator[Problem]:
             store.remove(name)
             store.remove_empty(name)
             yield Problem(
-                name, 0, f"is removed: {record.file} has no such result any more", "", Severity.WARNING, code="BAT360"
+                name, 0, Wording("BAT360", "removed_no_such", record_file=record.file), severity=Severity.WARNING
             )
         else:
-            what = f"stays, although {record.file} has no such result any more: somebody has changed it"
-            yield Problem(name, 0, what, "remove it yourself", Severity.WARNING, code="BAT370")
+            yield Problem(
+                name, 0, Wording("BAT370", "stays_although_no", record_file=record.file), severity=Severity.WARNING
+            )

@@ -17,6 +17,7 @@ from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
 from trunnion.files import atomic_file
+from trunnion.messages import Wording
 
 #: The cure where a disk is full.
 _SPACE: Final = "make space there, and run the batch again: it goes on where it was"
@@ -88,13 +89,13 @@ _TAKEN: Final = (errno.EEXIST, errno.ENOTDIR, errno.EISDIR, errno.ENAMETOOLONG)
 
 
 def _taken(name: str, error: OSError) -> TakenError:
-    what = f"its result would be {name[:200]}, which cannot be a file there: {error.strerror or error}"
-    return TakenError(Problem(name, 0, what, "rename what stands there, or choose another folder", code="BAT320"))
+    return TakenError(
+        Problem(name, 0, Wording("BAT320", "result_would_cannot", name=name[:200], strerror=error.strerror or error))
+    )
 
 
 def _leads_out(name: str) -> TakenError:
-    what = f"its result would be {name}, which leads out of the folder of results by a link"
-    return TakenError(Problem(name, 0, what, "remove the link, or choose another folder", code="BAT320"))
+    return TakenError(Problem(name, 0, Wording("BAT320", "result_would_leads", name=name)))
 
 
 def _refuse_odd(path: Path, folder: Path, name: str) -> None:
@@ -220,8 +221,7 @@ class UrlStore:
         try:
             self._files, self._root = fsspec.core.url_to_fs(url.rstrip("/"))
         except (ValueError, ImportError, OSError) as error:
-            cure = "write FOLDER, or a place of fsspec such as s3://bucket/folder, whose package is installed"
-            raise InputError(Problem(url, 0, f"is no place for results: {error}", cure, code="BAT130")) from None
+            raise InputError(Problem(url, 0, Wording("BAT130", "no_place_results", error=error))) from None
         protocol = self._files.protocol
         self._protocol = protocol if isinstance(protocol, str) else protocol[0]
         self.address = self.worker_url = "" if self._protocol == "memory" else url
@@ -312,8 +312,15 @@ class UrlStore:
 
     def _unusable(self, error: Exception) -> InputError:
         is_full = isinstance(error, OSError) and error.errno in _FULL
-        cure = _SPACE if is_full else "look at its address and rights, and run the batch again"
-        return InputError(Problem(self.label, 0, f"does not take results: {error}", cure, code="BAT130"))
+        return InputError(
+            Problem(
+                self.label,
+                0,
+                Wording("BAT130", "does_not_take", error=error)
+                if is_full
+                else Wording("BAT130", "does_not_take_results", error=error),
+            )
+        )
 
 
 def open_store(place: str | os.PathLike[str]) -> Store:
@@ -328,5 +335,5 @@ def open_store(place: str | os.PathLike[str]) -> Store:
         return UrlStore(place)
     folder = Path(place)
     if folder.exists() and not folder.is_dir():
-        raise InputError(Problem(str(place), 0, "is a file", "name a folder for the results", code="FIL230"))
+        raise InputError(Problem(str(place), 0, Wording("FIL230", "file")))
     return FolderStore(folder)

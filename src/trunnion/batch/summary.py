@@ -18,6 +18,7 @@ from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
 from trunnion.files import OutputPlace, output_group
 from trunnion.jobs.targets import check_output_name
+from trunnion.messages import Wording
 
 #: Column -> type in SQLite. Of a file one row each; values are NULL where there is none.
 COLUMNS: Final = {
@@ -66,8 +67,7 @@ def check_summary(file: object) -> OutputPlace:
 def _refuse_other(path: Path, is_own: Callable[[Path], bool]) -> None:
     """Refuse to replace what is no summary; an empty file is nobody's loss."""
     if path.exists() and path.stat().st_size and not is_own(path):
-        what = "is there already, and is no summary of a batch as Trunnion writes it"
-        raise InputError(Problem(str(path), 0, what, "name another file, or remove it", code="FIL250"))
+        raise InputError(Problem(str(path), 0, Wording("FIL250", "already_no_summary")))
 
 
 def _is_database(path: Path) -> bool:

@@ -42,6 +42,7 @@ from trunnion.jobs.simulate.shares import join_shares, simulate_share
 from trunnion.jobs.simulate.simulating import simulate
 from trunnion.jobs.verify.verifying import verify
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.simulation.cutting.shares import DamagedShareError, Share
 from trunnion.verification import Check, Verification
 
@@ -128,8 +129,7 @@ def _work_in(folder: Path, task: Task) -> Outcome:
 
 
 def _broken(file: str, error: Exception) -> Problem:
-    what = f"Trunnion has an error here: {type(error).__name__}: {error}"
-    return Problem(shown(file), 0, what, "report it with the file", code="BAT330")
+    return Problem(shown(file), 0, Wording("BAT330", "trunnion_error_here", name=type(error).__name__, error=error))
 
 
 def _lay_out(folder: Path, files: Mapping[str, bytes | Path]) -> dict[str, Path]:
@@ -159,8 +159,8 @@ def _with_paths(arguments: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 
 def _without_folder(problem: Problem, folder: Path) -> Problem:
     """A problem with the names of files as they stand beside the jobs."""
-    file, what, cure = (_told(text, folder) for text in (problem.file, problem.what, problem.cure))
-    return replace(problem, file=file.replace("\\", "/"), what=what, cure=cure)
+    file, wording = _told(problem.file, folder), problem.wording.changed(lambda text: _told(text, folder))
+    return replace(problem, file=file.replace("\\", "/"), wording=wording)
 
 
 def _told(text: str, folder: Path) -> str:
@@ -262,13 +262,12 @@ def _findings(file: str, found: SimulationResult) -> list[Problem]:
         Problem(
             shown(file),
             each.line,
-            f"{each.kind}: {' and '.join(each.between)}, {each.depth:.3f} mm deep",
-            code="BAT340",
+            Wording("BAT340", "mm_deep", kind=each.kind, between=tuple(each.between), depth=each.depth),
         )
         for each in found.findings[:MOST_PROBLEMS]
     ]
     if found.gouge is not None and found.gouge.largest > found.limit:
-        told.append(Problem(shown(file), 0, f"missing from the part: {found.gouge.largest:.3f} mm", code="BAT340"))
+        told.append(Problem(shown(file), 0, Wording("BAT340", "missing_from_part", largest=found.gouge.largest)))
     return told
 
 

@@ -8,6 +8,7 @@ from typing import Final, Protocol
 from trunnion.batch.records import Record
 from trunnion.batch.task import DEFINITIONS, FILES, Outcome, Task
 from trunnion.errors import Problem
+from trunnion.messages import Wording
 from trunnion.wording import format_duration
 
 
@@ -81,11 +82,9 @@ def hindrance(error: BaseException | None) -> str | None:
 
 def hindered(file: str, why: str) -> Problem:
     """The problem of a file on which the computer did not let work be done."""
-    what = f"the work could not be done on this computer: {why}"
-    return Problem(shown(file), 0, what, "run the batch again once that is mended", code="BAT390")
+    return Problem(shown(file), 0, Wording("BAT390", "work_could_not", why=why))
 
 
 def timed_out(file: str, seconds: float) -> Problem:
     """The problem of a file that took too long."""
-    what = f"was not done within the {format_duration(seconds)} that each file has"
-    return Problem(shown(file), 0, what, "give each file more time, or work on it alone", code="BAT350")
+    return Problem(shown(file), 0, Wording("BAT350", "was_not_done", format_duration=format_duration(seconds)))

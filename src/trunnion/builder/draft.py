@@ -23,6 +23,7 @@ from trunnion.jobs.describe.definition_checks import machine_problems
 from trunnion.machines import Machine
 from trunnion.machines.jog_table import jog_table
 from trunnion.machines.loading import machine_library, read_machine
+from trunnion.messages import Wording
 from trunnion.simulation.collisions.bodies import machine_bodies
 from trunnion.viewer.content import body_scene, machine_scene
 
@@ -65,8 +66,13 @@ def judge(text: str, path: Path) -> Draft:
         Where it would be saved. What it extends lies beside or below it.
     """
     if len(text) > MOST_LETTERS:
-        what = f"has {len(text)} letters; more than {MOST_LETTERS} are not edited here"
-        return Draft(text, path, None, None, (Problem(str(path), 0, what, "edit the file itself", code="PAG213"),))
+        return Draft(
+            text,
+            path,
+            None,
+            None,
+            (Problem(str(path), 0, Wording("PAG213", "letters_more_not", count=len(text), most_letters=MOST_LETTERS)),),
+        )
     try:
         table = load_draft(text, path, machine_library())
     except InputError as error:

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from importlib.resources import files
 from typing import Any, Final
 
-from trunnion.errors import ArgumentName, Problem, Severity, TrunnionError
+from trunnion.errors import Problem, Severity, TrunnionError
 from trunnion.jobs.post.posting import post
 from trunnion.jobs.post.result import ProofFailedError
 from trunnion.machines import Machine
@@ -108,7 +108,7 @@ def _changes(before: Sequence[str], now: Sequence[str]) -> tuple[list[int], int]
 
 
 def _problem(problem: Problem) -> dict[str, Any]:
-    subject = f"{problem.file} " if isinstance(problem.file, ArgumentName) else ""
+    subject = f"{problem.file} " if problem.argument else ""
     return {
         "what": subject + problem.what, "cure": problem.cure, "line": problem.line,
         "error": problem.severity is Severity.ERROR, "code": problem.code,

@@ -12,6 +12,7 @@ from trunnion.builder.draft import MOST_LETTERS
 from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.files import name_fault
+from trunnion.messages import Wording
 
 #: Letters that the name of a definition may have.
 _LONGEST: Final = 120
@@ -37,8 +38,7 @@ def check_place(file: Path) -> None:
         If not.
     """
     if not is_within(file, file.parent):
-        cure = f"open {file.resolve()} itself, or choose another name"
-        raise InputError(Problem(str(file), 0, "is a link that leads out of its folder", cure, code="PAG211"))
+        raise InputError(Problem(str(file), 0, Wording("PAG211", "link_leads_out", resolve=file.resolve())))
     if file.exists() and (unusable := unusable_file(file, "the TOML file of a machine")):
         raise InputError(unusable)
 
@@ -57,12 +57,17 @@ def read_raw(file: Path) -> str:
         with file.open(encoding="utf-8", newline="") as stream:
             text = stream.read(MOST_LETTERS + 2)
     except (OSError, UnicodeDecodeError) as error:
-        why = "is not UTF-8 text" if isinstance(error, UnicodeDecodeError) else f"cannot be read: {error.strerror}"
-        raise InputError(Problem(str(file), 0, why, "choose the TOML file of a machine", code="PAG212")) from None
-    if len(text) > MOST_LETTERS:
         raise InputError(
-            Problem(str(file), 0, f"has more than {MOST_LETTERS} letters", "edit the file itself", code="PAG213")
-        )
+            Problem(
+                str(file),
+                0,
+                Wording("PAG212", "not_utf_8")
+                if isinstance(error, UnicodeDecodeError)
+                else Wording("PAG212", "cannot_read", strerror=error.strerror),
+            )
+        ) from None
+    if len(text) > MOST_LETTERS:
+        raise InputError(Problem(str(file), 0, Wording("PAG213", "more_letters", most_letters=MOST_LETTERS)))
     return text
 
 

@@ -78,7 +78,7 @@ class Diagnostics:
     def _with_count(self, problem: Problem) -> Problem:
         times = self._repeated.get((problem.what, problem.cure), 1)
         repeated = problem.severity is Severity.WARNING and times > 1
-        return replace(problem, what=f"{problem.what} ({times} times, first here)") if repeated else problem
+        return replace(problem, wording=problem.wording.within("repeated", count=times)) if repeated else problem
 
     def _listed(self, severity: Severity) -> tuple[Problem, ...]:
         problems = sorted(map(self._with_count, self._lists[severity]), key=lambda problem: problem.line)

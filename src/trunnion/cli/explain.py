@@ -38,7 +38,7 @@ def _asked(codes: Sequence[str]) -> tuple[list[Explanation], list[Problem]]:
         try:
             found.append(explain_code(code))
         except InputError as error:
-            faults += [replace(problem, file=code) for problem in error.problems]
+            faults += [replace(problem, file=code, subject=None) for problem in error.problems]
     return found, faults
 
 

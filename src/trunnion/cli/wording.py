@@ -3,7 +3,7 @@
 import re
 from typing import Final
 
-from trunnion.errors import ArgumentName, Problem, TrunnionError
+from trunnion.errors import Problem, TrunnionError
 
 #: Options that are not called after their arguments.
 _OPTIONS: Final = {
@@ -39,9 +39,7 @@ def in_command_words(text: str) -> str:
 def problem_line(problem: Problem) -> str:
     """A problem as the command line prints it."""
     text = in_command_words(str(problem))
-    if not isinstance(problem.file, ArgumentName):
-        return text
-    return _option(problem.file) + text.removeprefix(problem.file)
+    return _option(problem.argument) + text.removeprefix(problem.file) if problem.argument else text
 
 
 def error_lines(error: TrunnionError) -> str:

@@ -23,7 +23,8 @@ from trunnion.controls.vocabulary import (
 )
 from trunnion.definitions import Table
 from trunnion.definitions.messages import did_you_mean
-from trunnion.errors import Problem
+from trunnion.errors import Problem, key_subject
+from trunnion.messages import Wording
 
 
 def check_templates(table: Table, control: Control) -> None:
@@ -31,9 +32,7 @@ def check_templates(table: Table, control: Control) -> None:
     known = COMMON_TEMPLATE_FIELDS | control.family.TEMPLATE_FIELDS | control.settings.keys()
     call = control.templates.get(SUBPROGRAM_TEMPLATES[0])
     if call is not None and "subprogram" not in {name for name, _ in call.fields()}:
-        table.add_problem(
-            call.name, "does not say which subprogram it calls", "write {subprogram} in it", code="DEF590"
-        )
+        table.add_problem(call.name, Wording("DEF590", "does_not_say"))
     for template in control.templates.values():
         for text in template.unread_fields():
             _report_brace(table, template, text)
@@ -74,7 +73,7 @@ def _report_line(table: Table, template: Template, line: int, what: str, cure: s
     """Report a mistake in a line of a template, counted from 0."""
     file, at = template.place_of(line)
     key = table.key_path(template.name)
-    table.problems.append(Problem(file, at, f"{key} {what}", cure, key=key, code="DEF510"))
+    table.problems.append(Problem(file, at, f"{key} {what}", cure, subject=key_subject(key), code="DEF510"))
 
 
 def _check_names(
@@ -114,8 +113,8 @@ def check_setting_names(table: Table, control: Control) -> None:
     fields = (COMMON_TEMPLATE_FIELDS | control.family.TEMPLATE_FIELDS) - FIELD_SETTINGS
     for name in list(table.keys()):
         if name in RUN_ONLY_SETTINGS:
-            cure = f"leave it out, and give it to each run: setting {name}={table.to_dict()[name]}"
-            table.add_problem(name, "is a setting of a run, which a definition cannot set", cure, code="DEF520")
+            table.add_problem(
+                name, Wording("DEF520", "setting_run_definition", name=name, to_dict=table.to_dict()[name])
+            )
         elif name in fields:
-            what = "is a template field, whose value comes from the job, and no setting"
-            table.add_problem(name, what, "give the setting another name", code="DEF520")
+            table.add_problem(name, Wording("DEF520", "template_field_whose"))

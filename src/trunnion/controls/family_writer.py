@@ -13,6 +13,7 @@ from typing import Final, Protocol
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.template import Value
 from trunnion.controls.words import NumberFormat
+from trunnion.messages import Wording
 from trunnion.model.motion import Motion
 from trunnion.model.splines import Spline
 from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, SpindleOff, SpindleOn, Stop
@@ -35,11 +36,11 @@ MAX_CENTRE_ERROR_DIGITS: Final = 2.0
 
 
 class UnsupportedFeatureError(Exception):
-    """The family cannot express something: ``what`` it is, the ``cure``, and the ``code`` of the message."""
+    """The family cannot express something."""
 
-    def __init__(self, what: str, cure: str, *, code: str) -> None:
-        super().__init__(what)
-        self.what, self.cure, self.code = what, cure, code
+    def __init__(self, wording: Wording) -> None:
+        super().__init__(wording)
+        self.wording = wording
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -13,6 +13,7 @@ from trunnion.controls.definition import Control
 from trunnion.controls.template import Template
 from trunnion.controls.vocabulary import INCH, LENGTH_WORDS, MM, PROGRAM_START_TEMPLATES
 from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Message
 
 _NUMBER: Final = r"[-+]?(?:\d+\.?\d*|\.\d+)"
@@ -57,9 +58,7 @@ def in_units(control: Control, units: str) -> Control:
     if units != INCH:
         return control
     if INCH not in control.unit_words:
-        what = f"units is inch, and {control.name} has no words for programs in inches here"
-        cure = "leave it out, or write the words under [control.units] and the formats for inches (inch = {…})"
-        raise InputError(argument_problem("settings", what, cure, code="ARG250"))
+        raise InputError(argument_problem("settings", Wording("ARG250", "units_inch_no", control=control.name)))
     problems = [*_format_problems(control), *_template_problems(control)]
     if problems:
         raise InputError(problems)
@@ -105,15 +104,20 @@ def _format_problems(control: Control) -> Iterator[Problem]:
             continue
         if pair.inch is None and word.name == "feed_per_rev":
             continue  # refused where an operation has one
-        if pair.inch is None:
-            what = f"word {word.name} has no format for inches: {word.format} is in mm"
-            cure = (
-                f"write inch = {{ decimals = {min(9, pair.five_axis.decimals + 2)} }} into the format {word.format!r}"
+        yield Problem(
+            control.name,
+            0,
+            Wording(
+                "DEF540",
+                "word_no_format",
+                word=word.name,
+                format=word.format,
+                value=min(9, pair.five_axis.decimals + 2),
+                format_2=repr(word.format),
             )
-        else:
-            what = f"word {word.name} is no length, and its format {word.format!r} would print it in inches"
-            cure = "give it a format of its own"
-        yield Problem(control.name, 0, what, cure, code="DEF540")
+            if pair.inch is None
+            else Wording("DEF540", "word_no_length", word=word.name, format=repr(word.format)),
+        )
 
 
 def _template_problems(control: Control) -> Iterator[Problem]:

@@ -37,8 +37,9 @@ from trunnion.controls.vocabulary import (
 from trunnion.controls.words import BlockNumbers, NumberFormat
 from trunnion.definitions import LocatedValue, Table, definition_names, resolve_extends
 from trunnion.definitions.twin_keys import report_twins, statement_form
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, Problem, key_subject
 from trunnion.families import FAMILIES, load_writer
+from trunnion.messages import Wording
 from trunnion.model.axis_tolerance import AxisTolerance
 
 #: What only a template with statements or expressions has in it.
@@ -122,9 +123,7 @@ def load_control(own: Table) -> Control:
     )
     defined = {word.name for word in control.words}
     for missing in dict.fromkeys(name for name in words if name not in defined):
-        table.add_problem(
-            "word", f"has no entry {missing!r}, which programs of this family need", "write it", code="DEF530"
-        )
+        table.add_problem("word", Wording("DEF530", "no_entry_programs", missing=repr(missing)))
     check_templates(templates, control)
     check_formats(table.tables("format"), control)
     check_setting_names(settings, control)
@@ -189,7 +188,7 @@ def _read_word(entry: Table, formats: Mapping[str, FormatPair], words: Sequence[
     closing = entry.text("closing", "", pattern="[ -~]?", form="one character")
     most = 4 if rotary else 8
     if len(letter.encode()) > most:
-        entry.add_problem("letter", f"is {letter!r}", f"write at most {most} characters", code="DEF530")
+        entry.add_problem("letter", Wording("DEF530", "is", letter=repr(letter), most=most))
         letter = letter[:1]
     bare = entry.flag("bare", False)
     number_format = "" if bare else entry.text("format", one_of=tuple(formats))
@@ -201,9 +200,7 @@ def _read_word(entry: Table, formats: Mapping[str, FormatPair], words: Sequence[
 def _read_extension(table: Table) -> str:
     extension = table.text("extension")
     if not re.fullmatch(r"\.[\w.+-]*\w", extension):
-        table.add_problem(
-            "extension", f"is {extension!r}", 'write a point and what follows it, such as ".mpf"', code="DEF330"
-        )
+        table.add_problem("extension", Wording("DEF330", "is_or_write_point", extension=repr(extension)))
     return extension
 
 
@@ -221,12 +218,13 @@ def _read_block_numbers(table: Table, family: FamilyWriter) -> BlockNumbers:
     )
     for key in ("every", "at"):
         if not letter and key in table:
-            table.add_problem(key, "is given, and numbers without a letter stand before every block", "leave it out")
+            table.add_problem(key, Wording("DEF330", "given_numbers_without"))
     if numbers.numbered and not letter and len(family.BLOCK_NUMBER_LETTERS) > 1:
-        table.add_problem("numbered", "is true, and numbers without a letter are no block numbers here", "write letter")
+        table.add_problem("numbered", Wording("DEF330", "true_numbers_without"))
     if numbers.highest < numbers.start:
-        what = f"is {numbers.highest}, but the numbers start at {numbers.start}"
-        table.add_problem("highest", what, "write a greater one", code="DEF330")
+        table.add_problem(
+            "highest", Wording("DEF330", "but_numbers_start", highest=numbers.highest, start=numbers.start)
+        )
     if numbers.numbered:
         _check_numbers(table, numbers, family)
     table.report_unread_keys()
@@ -236,15 +234,19 @@ def _read_block_numbers(table: Table, family: FamilyWriter) -> BlockNumbers:
 def _check_numbers(table: Table, numbers: BlockNumbers, family: FamilyWriter) -> None:
     """Report numbers that the control does not take, or not in that place."""
     if numbers.highest > family.HIGHEST_BLOCK_NUMBER:
-        what = f"is {numbers.highest}, and the control takes no block number above {family.HIGHEST_BLOCK_NUMBER}"
-        table.add_problem("highest", what, f"write {family.HIGHEST_BLOCK_NUMBER} or less", code="DEF330")
+        table.add_problem(
+            "highest",
+            Wording(
+                "DEF330", "control_takes_no", highest=numbers.highest, highest_block_number=family.HIGHEST_BLOCK_NUMBER
+            ),
+        )
     for key, found, only in (("start", numbers.start, 0), ("step", numbers.step, 1)):
         if family.BLOCK_NUMBER_LETTERS == ("",) and found != only:
-            what = f"is {found}, and the control counts all blocks from 0 by 1"
-            table.add_problem(key, what, f"write {only}", code="DEF330")
+            table.add_problem(key, Wording("DEF330", "control_counts_all", found=found, only=only))
     if missing := "".join(sign for sign in family.NEVER_NUMBERED if sign not in numbers.unnumbered):
-        what = f"lacks {missing}: lines that begin so can have no block number"
-        table.add_problem("unnumbered", what, f'write "{family.NEVER_NUMBERED}" with what else has none', code="DEF330")
+        table.add_problem(
+            "unnumbered", Wording("DEF330", "lacks_lines_begin", missing=missing, never_numbered=family.NEVER_NUMBERED)
+        )
 
 
 def _read_integers(table: Table, names: tuple[str, ...], complete: bool = True) -> dict[str, int]:
@@ -281,9 +283,7 @@ def _read_statements(table: Table) -> dict[str, str]:
     found = {statement: table.text(statement) for statement in table.names()}
     for statement, line in found.items():
         if any(ord(character) < 32 for character in line):
-            table.add_problem(
-                statement, "has a line break or a control character in it", "write one line of a program", code="DEF550"
-            )
+            table.add_problem(statement, Wording("DEF550", "line_break_control"))
     report_twins(table, statement_form)
     table.report_unread_keys()
     return found
@@ -302,7 +302,7 @@ def _read_setting_meanings(table: Table, settings: Table, family: FamilyWriter) 
     own = {name: table.text(name) for name in table.names()}
     for name in own:
         if name not in settings and name not in family.SETTING_CHOICES:
-            table.add_problem(name, "explains no setting", "add the setting to [control.settings]", code="DEF520")
+            table.add_problem(name, Wording("DEF520", "explains_no_setting"))
     table.report_unread_keys()
     return {**family.SETTING_MEANINGS, **own}
 
@@ -311,9 +311,7 @@ def _check_settings(table: Table, by_method: Sequence[Table], control: Control) 
     """Report defaults that their own rules do not allow."""
     for name, value in control.settings.items():
         if name == "preselect" and value == "on" and not control.family.tool_preselection("1"):
-            table.add_problem(
-                name, "is 'on', and it is not known how this control selects tools", "leave it out", code="DEF520"
-            )
+            table.add_problem(name, Wording("DEF520", "not_known_how"))
         cure = control.setting_cure(name, value)
         if cure and name in table:
             table.add_problem(name, f"is {value!r}", cure, code="DEF520")
@@ -344,9 +342,7 @@ def _read_arc_rules(table: Table, words: Sequence[str]) -> ArcRules:
         multi_turn=table.flag("turns", True),
     )
     if rules.by_radius and not set(RADIUS_ARC_WORDS) <= set(words):
-        table.add_problem(
-            "by", "is 'radius', and the control's family has no words for that", "leave it out", code="DEF530"
-        )
+        table.add_problem("by", Wording("DEF530", "radius_control_s"))
     table.report_unread_keys()
     return rules
 
@@ -421,7 +417,9 @@ def _read_text_template(table: Table, name: str, text: str) -> Template:
     if fault is not None:
         file, line = template.place_of(max(fault.line, 1) - 1)
         key = table.key_path(name)
-        table.problems.append(Problem(file, line, f"{key} {fault.what}", fault.cure, key=key, code="DEF570"))
+        table.problems.append(
+            Problem(file, line, f"{key} {fault.what}", fault.cure, subject=key_subject(key), code="DEF570")
+        )
     return template
 
 

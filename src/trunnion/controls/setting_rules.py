@@ -12,6 +12,7 @@ from enum import StrEnum
 from typing import Final
 
 from trunnion.definitions import Table
+from trunnion.messages import Wording
 
 #: Controls read numbers without an exponent.
 _NUMBER: Final = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)")
@@ -176,7 +177,7 @@ def read_setting_rules(table: Table, settings: Table) -> dict[str, SettingRule]:
     for name in table.names():
         entry = table.table(name)
         if name not in settings:
-            entry.add_problem("", "is the rule of no setting", "add the setting to [control.settings]", code="DEF520")
+            entry.add_problem("", Wording("DEF520", "rule_no_setting"))
         words = entry.texts("one_of", ())
         kinds = tuple(kind for kind in SettingKind if kind is not SettingKind.CHOICE)
         kind = SettingKind.CHOICE if words else SettingKind(entry.text("kind", "text", one_of=kinds) or "text")

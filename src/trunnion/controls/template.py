@@ -16,6 +16,7 @@ from typing import Final
 
 from trunnion.controls.words import NumberFormat, WordRangeError
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 
 Value = str | float | None
 
@@ -154,13 +155,7 @@ class Template:
             return float(value)
         except ValueError:
             raise InputError(
-                Problem(
-                    self.file,
-                    self.line,
-                    f"setting {name} is {value!r}",
-                    f"write a number: setting {name}=0.5",
-                    code="ARG220",
-                )
+                Problem(self.file, self.line, Wording("ARG220", "setting", name=name, value=repr(value)))
             ) from None
 
 

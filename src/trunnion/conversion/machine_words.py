@@ -9,6 +9,7 @@ from dataclasses import replace
 
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Event, Insert, Toolpath
 from trunnion.readers import KnownWord, known_words
 
@@ -34,11 +35,17 @@ def carry_machine_words(
     if not inserts:
         return toolpath, ()
     if target is None:
-        texts = ", ".join(dict.fromkeys(event.text for event in inserts))
-        what = f"{texts}: words of the builder of {source.key}, kept as INSERT"
         return toolpath, (
             Problem(
-                toolpath.file, inserts[0].line, what, "post them for no other machine", Severity.WARNING, code="CNV152"
+                toolpath.file,
+                inserts[0].line,
+                Wording(
+                    "CNV152",
+                    "words_builder_kept",
+                    fromkeys=tuple(dict.fromkeys(event.text for event in inserts)),
+                    source=source.key,
+                ),
+                severity=Severity.WARNING,
             ),
         )
     if source.key == target.key and source.control.to_dict() == target.control.to_dict():
@@ -83,14 +90,21 @@ class _Words:
             return
         self._named.add(event.text)
         if word is None:
-            what = f"{event.text} is a word of the machine's builder; what it moves or clamps is not known"
-            cure = f"declare it in [control.known] of both machines; force=True leaves it out for {self._target}"
-            self.problems.append(Problem(self._file, event.line, what, cure, code="CNV151"))
+            self.problems.append(
+                Problem(
+                    self._file, event.line, Wording("CNV151", "word_machine_s", event=event.text, target=self._target)
+                )
+            )
             return
-        means = f" ({word.means})" if word.means else ""
-        what = f"{event.text}{means} is not carried over: {self._target} has no word with this meaning"
         self.problems.append(
-            Problem(self._file, event.line, what, "declare one in its [control.known]", Severity.WARNING, code="CNV150")
+            Problem(
+                self._file,
+                event.line,
+                Wording("CNV150", "not_carried_over", event=event.text, means=word.means, target=self._target)
+                if word.means
+                else Wording("CNV150", "not_carried_over_no", event=event.text, target=self._target),
+                severity=Severity.WARNING,
+            )
         )
 
 

@@ -17,6 +17,7 @@ from trunnion.definitions.source_lines import KeyPath, LocatedValue, layout, loc
 from trunnion.definitions.table import Table
 from trunnion.definitions.toml_faults import toml_fault
 from trunnion.errors import InputError, Problem, unusable_file
+from trunnion.messages import Wording
 
 #: Larger files are refused unread; real definitions have a few kilobytes.
 MAX_FILE_BYTES: Final = 1_000_000
@@ -80,11 +81,11 @@ def _read(source: _DefinitionFile, kind: str = "machine") -> LocatedValue:
         with source.location.open("rb") as stream:
             data = stream.read(MAX_FILE_BYTES + 1)
     except OSError as error:
-        raise InputError(Problem(label, 0, f"cannot be read: {error.strerror or error}", code="DEF120")) from None
-    if len(data) > MAX_FILE_BYTES:
         raise InputError(
-            Problem(label, 0, f"has more than {MAX_FILE_BYTES} bytes", "a definition is a small file", code="DEF120")
-        )
+            Problem(label, 0, Wording("DEF120", "cannot_read", strerror=error.strerror or error))
+        ) from None
+    if len(data) > MAX_FILE_BYTES:
+        raise InputError(Problem(label, 0, Wording("DEF120", "more_bytes", max_file_bytes=MAX_FILE_BYTES)))
     root = _parse(label, data)
     assert isinstance(root.value, dict)
     return LocatedValue(dict(root.value), root.file, root.line)  # its ``extends`` will be taken out
@@ -97,16 +98,14 @@ def _parse(label: str, data: bytes) -> LocatedValue:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        raise InputError(Problem(label, line, "is not UTF-8 text", "save the file as UTF-8", code="DEF120")) from None
+        raise InputError(Problem(label, line, Wording("DEF120", "not_utf_8"))) from None
     try:
         found = layout(text)
         raw = tomllib.loads(text)
         _check_whole_numbers(raw, label, found.lines)
         return locate_values(raw, label, found.lines, (), 1, texts_below(text, found))
     except RecursionError:
-        raise InputError(
-            Problem(label, 0, "nests too deeply", "a definition needs three levels", code="DEF120")
-        ) from None
+        raise InputError(Problem(label, 0, Wording("DEF120", "nests_too_deeply"))) from None
     except ValueError as error:  # TOMLDecodeError is one; so is a number with thousands of digits
         raise InputError(_syntax_problem(label, text, str(error))) from None
 
@@ -117,10 +116,7 @@ def _check_whole_numbers(value: object, label: str, lines: Mapping[KeyPath, int]
     for key, item in inner:
         _check_whole_numbers(item, label, lines, (*path, key))
     if isinstance(value, int) and value.bit_length() > _MAX_BITS:
-        what = f"has a whole number of more than {_MAX_BITS} bits"
-        raise InputError(
-            Problem(label, lines.get(path, 0), what, "write a number that a machine can have", code="DEF120")
-        )
+        raise InputError(Problem(label, lines.get(path, 0), Wording("DEF120", "whole_number_more", max_bits=_MAX_BITS)))
 
 
 def _syntax_problem(label: str, text: str, message: str) -> Problem:
@@ -130,9 +126,7 @@ def _syntax_problem(label: str, text: str, message: str) -> Problem:
     line = int(number.group(1)) if number else at_end
     if number and what.startswith(_TWICE):
         key = text.split("\n")[line - 1].partition("=")[0].strip()
-        return Problem(
-            label, line, f"is not TOML: {key} is there already", "write each key and each [table] once", code="DEF130"
-        )
+        return Problem(label, line, Wording("DEF130", "not_toml_already", key=key))
     fault = toml_fault(text, line, what)
     return Problem(label, fault.line, f"is not TOML: {fault.what}", fault.cure, code="DEF130")
 
@@ -142,11 +136,9 @@ def _parent(extends: LocatedValue, child: _DefinitionFile, library: Library) -> 
     file, line, name = extends.file, extends.line, extends.value
     if not isinstance(name, str):
         cure = 'write one name, such as extends = "generic_head_table_bc"'
-        raise InputError(Problem(file, line, f"extends is {as_written(name)}", cure, code="DEF210"))
+        raise InputError(Problem(file, line, Wording("DEF210", "extends", name=as_written(name))))
     if len(name) > _MAX_NAME:
-        raise InputError(
-            Problem(file, line, f"extends is a text of {len(name)} letters", "write one name or path", code="DEF210")
-        )
+        raise InputError(Problem(file, line, Wording("DEF210", "extends_text_letters", count=len(name))))
     if _NAME.fullmatch(name):
         found = _shipped(name, library)
         if not _is_file(found.location):
@@ -223,8 +215,9 @@ def _merge_ancestors(
         source = _parent(extends, source, library)
         labels.append(_file_name(source.label))
         if _identity(source) in seen:
-            what = "extends goes in a circle: " + " extends ".join(labels)
-            raise InputError(Problem(extends.file, extends.line, what, "remove one extends", code="DEF220"))
+            raise InputError(
+                Problem(extends.file, extends.line, Wording("DEF220", "extends_goes_circle", labels=tuple(labels)))
+            )
         seen.append(_identity(source))
         tables.append(_read(source))
         files.append(source.label)
@@ -276,7 +269,9 @@ def load_table(
             _check_is_name(text, kind, has_shipped=bool(names))
             if not names:
                 cure = f"give the path of {_with_article(kind)}, whose name ends in .toml"
-                raise InputError(Problem(text, 0, "file not found", cure, code="DEF110"))
+                raise InputError(
+                    Problem(text, 0, Wording("DEF110", "file_not_found", with_article=_with_article(kind)))
+                )
             near = did_you_mean(text, names)
             cure = f"{near} " if near else ""
             cure += f"write the path of a .toml file, or one of {', '.join(names)}"
@@ -332,7 +327,15 @@ def _check_is_name(text: str, kind: str, *, has_shipped: bool) -> None:
         return
     cure = f"give the path of {_with_article(kind)}" + (f", or the name of a shipped {kind}" if has_shipped else "")
     if is_folder:
-        raise InputError(Problem(text, 0, f"is a folder, not {_with_article(kind)}", cure, code="DEF140"))
+        raise InputError(
+            Problem(
+                text,
+                0,
+                Wording("DEF140", "folder_not", with_article=_with_article(kind), kind=kind)
+                if has_shipped
+                else Wording("DEF140", "folder_not_or_give", with_article=_with_article(kind)),
+            )
+        )
     if is_file:
         what = f"is not {_with_article(kind)}, whose name ends in .toml"
         what += ", in small letters" if text.casefold().endswith(".toml") else ""

@@ -7,6 +7,7 @@ Tables merge key by key. Arrays of tables with names merge by name: those that b
 from trunnion.definitions.messages import as_written, did_you_mean
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.errors import Problem
+from trunnion.messages import Wording
 
 
 def merge(
@@ -49,14 +50,20 @@ def _merge_by_name(
         item_path = f"{path}[{i}]"
         if name is None:
             cure = "write the name of the one to change, or a new name"
-            problems.append(Problem(item.file, item.line, f"{item_path}.name is missing", cure, code="DEF230"))
+            problems.append(Problem(item.file, item.line, Wording("DEF230", "name_missing", path=path, i=i)))
             continue
         remove = item.value.get("remove")
         item = item if keep_removals else _without_remove(item)
         at = next((k for k, old in enumerate(result) if _name_of(old) == name), None)
         if remove is not None and not isinstance(remove.value, bool):
             what = f"{item_path}.remove is {as_written(remove.value)}"
-            problems.append(Problem(remove.file, remove.line, what, "write true", code="DEF230"))
+            problems.append(
+                Problem(
+                    remove.file,
+                    remove.line,
+                    Wording("DEF230", "remove", path=path, i=i, remove=as_written(remove.value)),
+                )
+            )
         elif remove is not None and remove.value:
             if keep_removals:
                 result = [old for old in result if _name_of(old) != name] + [item]
@@ -68,7 +75,13 @@ def _merge_by_name(
                 del result[at]
         elif name in merged:
             what = f'{item_path}.name is "{name}" a second time (first in line {merged[name].line})'
-            problems.append(Problem(item.file, item.line, what, "write all its keys in one table", code="DEF430"))
+            problems.append(
+                Problem(
+                    item.file,
+                    item.line,
+                    Wording("DEF430", "name_second_time", path=path, i=i, name=name, merged_line=merged[name].line),
+                )
+            )
         elif at is None:
             result.append(item)
         else:

@@ -13,7 +13,8 @@ from trunnion.definitions.messages import a_number, as_written, bounds, did_you_
 from trunnion.definitions.numbers import decimals, finite, finite_numbers, magnitude, within
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.definitions.units import unit_of, without_unit
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, Problem, key_subject
+from trunnion.messages import Wording, foreign
 
 
 class Required:
@@ -146,7 +147,7 @@ class Table:
 
     # Problems
 
-    def add_problem(self, key: str, what: str, cure: str = "", *, code: str = "DEF330") -> None:
+    def add_problem(self, key: str, wording: Wording | str, cure: str = "", *, code: str = "DEF330") -> None:
         """Note a mistake in the value of a key; an empty key means the table itself.
 
         Where the value comes from a shipped file, what another file says of this table is what does not fit it: that is
@@ -154,10 +155,12 @@ class Table:
         """
         file, line = self.location(key)
         path = self.key_path(key) if key else self.path
+        if isinstance(wording, str):
+            wording = foreign(wording, cure, code)
         if file != self.file and file.startswith(_SHIPPED):
-            what += f" (inherited from {file}:{line})"
+            wording = wording.within("inherited", file=file, line=line)
             file, line = self.file, self._own_line()
-        self.problems.append(Problem(file, line, f"{path or 'definition'} {what}", cure, key=path, code=code))
+        self.problems.append(Problem(file, line, wording.of_key(path), subject=key_subject(path)))
 
     def _own_line(self) -> int:
         """The line of the one key that the last file to change the table states besides its name, or of its header."""
@@ -179,20 +182,18 @@ class Table:
         """Note each key that has not been read; call it when the table has been read."""
         unread = [key for key in self._values if key not in self.read_keys]
         if len(unread) > _MOST_UNREAD:
-            self.add_problem("", f"has {len(unread)} keys that are not known here; the first are told")
+            self.add_problem("", Wording("DEF330", "keys_not_known", count=len(unread)))
         for key in unread[:_MOST_UNREAD]:
             if self.path and key in _OF_WHOLE_FILE:
-                self.add_problem(key, "belongs to the whole file", f"write {key} above the first table", code="DEF320")
+                self.add_problem(key, Wording("DEF320", "belongs_whole_file", key=key))
                 continue
             if not self.path and key in _OF_CONTROL and "control" in self.read_keys:
-                self.add_problem(key, "belongs to the control", f"write [control.{key}]", code="DEF320")
+                self.add_problem(key, Wording("DEF320", "belongs_control", key=key))
                 continue
             same_stem = (known for known in self.read_keys if without_unit(known) == without_unit(key))
             similar = next((known for known in same_stem if unit_of(known)), "")
             if similar and unit_of(key) != unit_of(similar):
-                self.add_problem(
-                    key, "has a unit that does not fit here", f"write {similar}, in {unit_of(similar)}", code="DEF325"
-                )
+                self.add_problem(key, Wording("DEF325", "unit_does_not", similar=similar, unit_of=unit_of(similar)))
             else:
                 cure = did_you_mean(key, self.read_keys) or "known here: " + ", ".join(sorted(self.read_keys))
                 self.add_problem(key, "is not a key that is known here", cure, code="DEF320")
@@ -291,7 +292,16 @@ class Table:
             self.add_problem(key, f"is {as_written(value)}", cure + unquoted(key, value) + magnitude(value))
             return fallback
         if not within(number, above, at_least, at_most):
-            self.add_problem(key, f"is {as_written(value)}", cure)
+            self.add_problem(
+                key,
+                Wording(
+                    "DEF330",
+                    "is",
+                    value=as_written(value),
+                    a_number=a_number(key),
+                    bounds=bounds(above, at_least, at_most),
+                ),
+            )
             return fallback
         return number
 
@@ -313,7 +323,20 @@ class Table:
         if value is None or (nothing and value == nothing):
             return fallback
         if not isinstance(value, int) or isinstance(value, bool) or not within(value, None, at_least, at_most):
-            self.add_problem(key, f"is {as_written(value)}", cure)
+            self.add_problem(
+                key,
+                Wording(
+                    "DEF330",
+                    "is_or_write",
+                    value=as_written(value),
+                    bounds=bounds(None, at_least, at_most),
+                    nothing=nothing,
+                )
+                if nothing
+                else Wording(
+                    "DEF330", "is_or_write_whole", value=as_written(value), bounds=bounds(None, at_least, at_most)
+                ),
+            )
             return fallback
         return value
 
@@ -329,7 +352,7 @@ class Table:
         if value is None:
             return fallback
         if not isinstance(value, bool):
-            self.add_problem(key, f"is {as_written(value)}", "write true or false, without quotes")
+            self.add_problem(key, Wording("DEF330", "is_or_write_true", value=as_written(value)))
             return fallback
         return value
 
@@ -389,7 +412,10 @@ class Table:
             return fallback
         if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
             self.add_problem(
-                key, f"is {as_written(value)}", f"write [{as_written(value)}]" if isinstance(value, str) else cure
+                key,
+                Wording("DEF330", "is_2", value=as_written(value))
+                if isinstance(value, str)
+                else Wording("DEF330", "is_or_write_one", value=as_written(value)),
             )
             return fallback
         return tuple(str(item) for item in value)
@@ -402,7 +428,9 @@ class Table:
             child = self.other(self._values[key], self.problems, self.key_path(key))
         else:
             if value is not None:
-                self.add_problem(key, f"is {as_written(value)}", cure)
+                self.add_problem(
+                    key, Wording("DEF330", "is_or_write_table", value=as_written(value), key_path=self.key_path(key))
+                )
             child = self.other(LocatedValue({}, self.file, self.line), self.problems, self.key_path(key))
         self.children.append(child)
         return child
@@ -414,7 +442,9 @@ class Table:
         if value is None or value == []:
             return []
         if not isinstance(value, list) or not all(isinstance(item, LocatedValue) for item in value):
-            self.add_problem(key, f"is {as_written(value)}", cure)
+            self.add_problem(
+                key, Wording("DEF330", "is_or_write_tables", value=as_written(value), key_path=self.key_path(key))
+            )
             return []
         children = [self.other(item, self.problems, f"{self.key_path(key)}[{i}]") for i, item in enumerate(value)]
         self.children.extend(children)

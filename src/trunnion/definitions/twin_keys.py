@@ -3,6 +3,7 @@
 from collections.abc import Callable, Hashable
 
 from trunnion.definitions.table import Table
+from trunnion.messages import Wording
 
 
 def report_twins(table: Table, form: Callable[[str], Hashable]) -> None:
@@ -11,9 +12,7 @@ def report_twins(table: Table, form: Callable[[str], Hashable]) -> None:
     for key in list(table.keys()):
         first = seen.setdefault(form(key), key)
         if first != key:
-            table.add_problem(
-                key, f"says the same as {first!r}, and only one of them can count", "write one of them", code="DEF340"
-            )
+            table.add_problem(key, Wording("DEF340", "says_same_only", first=repr(first)))
 
 
 def statement_form(key: str) -> Hashable:

@@ -10,6 +10,7 @@ from pathlib import Path
 from trunnion.errors import InputError, Problem
 from trunnion.files.interrupts import held_interrupts
 from trunnion.files.places import OutputPlace, cannot_write
+from trunnion.messages import Wording
 
 #: Characters of a file's name that the name of its hidden folder repeats: both have room in 255 bytes.
 _NAME_LENGTH = 32
@@ -33,9 +34,8 @@ class HiddenFolders:
         try:
             return self._make(Path(tempfile.gettempdir()), "trunnion-")
         except OSError as error:
-            what = f"no temporary file can be written: {error.strerror or error}"
             raise InputError(
-                Problem("output", 0, what, "let TMPDIR name a folder that can be written to", code="FIL230")
+                Problem("output", 0, Wording("FIL230", "no_temporary_file", strerror=error.strerror or error))
             ) from None
 
     def _make(self, parent: Path, prefix: str) -> Path:

@@ -14,6 +14,7 @@ from trunnion.files.hidden_folders import HiddenFolders, move_all
 from trunnion.files.interrupts import held_interrupts
 from trunnion.files.places import Claims, OutputPlace, cannot_write, resolve_output
 from trunnion.files.streams import open_stream, send, stream_name
+from trunnion.messages import Wording
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
@@ -88,14 +89,21 @@ class OutputFiles:
         assert self._place is not None, "a stream is one file"
         place = resolve_output(Path(self._place.name).with_name(name))
         if place.is_stream:
-            raise InputError(
-                Problem(place.name, 0, "a subprogram cannot be written to a device", "remove it", code="FIL210")
-            )
+            raise InputError(Problem(place.name, 0, Wording("FIL210", "subprogram_cannot_written")))
         self._claims.check(place)
         if self._earlier is not None and place.path.exists() and not self._earlier.wrote(place.path):
-            what = f"would be replaced, although {Path(self._place.name).name} has not written it as it is"
-            cure = f"choose a folder for this program alone{other_name and f', or {other_name}'}, or remove the file"
-            raise InputError(Problem(place.name, 0, what, cure, code="FIL250"))
+            raise InputError(
+                Problem(
+                    place.name,
+                    0,
+                    Wording(
+                        "FIL250",
+                        "would_replaced_although",
+                        path=Path(self._place.name).name,
+                        other_name=other_name and f", or {other_name}",
+                    ),
+                )
+            )
         return place
 
     def add_paper(self, place: OutputPlace) -> BinaryIO:

@@ -10,6 +10,7 @@ from trunnion.files.earlier_job import EarlierJob
 from trunnion.files.hidden_folders import HiddenFolders, move_all
 from trunnion.files.output import OutputFiles
 from trunnion.files.places import Claims, OutputPlace
+from trunnion.messages import Wording
 
 
 class OutputGroup:
@@ -41,11 +42,7 @@ class OutputGroup:
         places = [place, *papers]
         for each in places:
             if each.is_stream:
-                raise InputError(
-                    Problem(
-                        each.name, 0, "is a device, and several files appear together", "name a file", code="FIL210"
-                    )
-                )
+                raise InputError(Problem(each.name, 0, Wording("FIL210", "device_several_files")))
         self._claims.read(inputs)
         for each in places:
             self._claims.write(each)

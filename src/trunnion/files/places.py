@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,15 +56,13 @@ def resolve_output(file: object) -> OutputPlace:
     except OSError as error:
         raise cannot_write(name, error) from None
     if stat.S_ISDIR(mode):
-        raise InputError(Problem(name, 0, "cannot be written: it is a folder", "name a file in it", code="FIL210"))
+        raise InputError(Problem(name, 0, Wording("FIL210", "cannot_written_folder")))
     if not os.access(path, os.W_OK):
         raise cannot_write(name, PermissionError(13, "Permission denied"))
     if stat.S_ISCHR(mode) or stat.S_ISFIFO(mode):
         return OutputPlace(name, path, is_stream=True)
     if not stat.S_ISREG(mode):
-        raise InputError(
-            Problem(name, 0, "cannot be written: it is no file, and no device or pipe", _OTHER, code="FIL210")
-        )
+        raise InputError(Problem(name, 0, Wording("FIL210", "cannot_written_no")))
     real = Path(os.path.realpath(path))
     # The descriptor of a file that has been removed has no name that could be replaced.
     if not real.exists():
@@ -71,19 +70,15 @@ def resolve_output(file: object) -> OutputPlace:
     return OutputPlace(name, _in_writable_folder(name, real))
 
 
-_OTHER = "name another file"
-
-
 def _file_name(file: object) -> str:
     """The name as text."""
     name = os.fspath(file) if isinstance(file, str | os.PathLike) else None
     if not isinstance(name, str):
-        cure = "give a path, as text or as a Path"
-        raise InputError(Problem(f"{file!r:.60}", 0, "is no name of a file", cure, code="FIL210"))
+        raise InputError(Problem(f"{file!r:.60}", 0, Wording("FIL210", "no_name_file")))
     if not name or "\0" in name or not _is_encodable(name):
-        raise InputError(Problem(repr(name), 0, "cannot be the name of a file", _OTHER, code="FIL210"))
+        raise InputError(Problem(repr(name), 0, Wording("FIL210", "cannot_name_file")))
     if name.endswith((os.sep, os.altsep or os.sep)):
-        raise InputError(Problem(name, 0, "cannot be written: it names a folder", "name a file in it", code="FIL210"))
+        raise InputError(Problem(name, 0, Wording("FIL210", "cannot_written_names")))
     return name
 
 
@@ -102,8 +97,7 @@ def _new_file(name: str) -> Path:
         if not stat.S_ISDIR(real.parent.stat().st_mode):
             raise NotADirectoryError(20, f"{real.parent} is no folder")
     except FileNotFoundError:
-        what = f"cannot be written: there is no folder {real.parent}"
-        raise InputError(Problem(name, 0, what, "make it first, or name another file", code="FIL220")) from None
+        raise InputError(Problem(name, 0, Wording("FIL220", "cannot_written_no", parent=real.parent))) from None
     except OSError as error:
         raise cannot_write(name, error) from None
     return _in_writable_folder(name, real)
@@ -118,7 +112,7 @@ def _in_writable_folder(name: str, path: Path) -> Path:
 
 def cannot_write(name: str, error: OSError) -> InputError:
     """The error for a file that the system does not let us write."""
-    return InputError(Problem(name, 0, f"cannot be written: {error.strerror or error}", _OTHER, code="FIL230"))
+    return InputError(Problem(name, 0, Wording("FIL230", "cannot_written", strerror=error.strerror or error)))
 
 
 def file_on_disk(name: str | os.PathLike[str]) -> str:
@@ -185,8 +179,11 @@ class Claims:
         """Raise ``InputError`` as ``write`` does, without keeping the file."""
         self._check_input(place)
         if place.entry in self._written:
-            what = f"would be written twice: {self._written[place.entry].name} is the same file"
-            raise InputError(Problem(place.name, 0, what, _OTHER, code="FIL240"))
+            raise InputError(
+                Problem(
+                    place.name, 0, Wording("FIL240", "would_written_twice", written=self._written[place.entry].name)
+                )
+            )
 
     def release(self, place: OutputPlace) -> None:
         """A file that is not going to be written after all."""
@@ -194,8 +191,7 @@ class Claims:
 
     def _check_input(self, place: OutputPlace) -> None:
         if not self._read.isdisjoint((file_identity(place.path), place.entry)):
-            what = "would be written over, although it is read or has just been written"
-            raise InputError(Problem(place.name, 0, what, _OTHER, code="FIL240"))
+            raise InputError(Problem(place.name, 0, Wording("FIL240", "would_written_over")))
 
 
 def check_outputs(outputs: Iterable[object], inputs: Iterable[str | os.PathLike[str]]) -> list[OutputPlace]:

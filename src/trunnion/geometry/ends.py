@@ -5,10 +5,9 @@ from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 from trunnion.errors import InputError, argument_problem
+from trunnion.messages import Wording
 
 Vector: TypeAlias = tuple[float, float, float]
-
-_CURE = "write natural, tangent:X,Y,Z (a direction) or derivative:X,Y,Z (by the parameter, which goes from 0 to 1)"
 
 
 #: Shorter vectors have no direction, and longer ones no curve.
@@ -73,8 +72,8 @@ def parse_end(argument: str, text: object) -> End:
     try:
         x, y, z = (float(number) for number in numbers.split(","))
     except ValueError:
-        raise InputError(argument_problem(argument, f"is {text!r}", _CURE, code="IMP131")) from None
+        raise InputError(argument_problem(argument, Wording("IMP131", "is", text=repr(text)))) from None
     length = math.hypot(x, y, z)
     if kind not in ("tangent", "derivative") or not _LEAST < length < 1.0 / _LEAST:
-        raise InputError(argument_problem(argument, f"is {text!r}", _CURE, code="IMP131"))
+        raise InputError(argument_problem(argument, Wording("IMP131", "is", text=repr(text))))
     return Tangent((x, y, z), is_derivative=kind == "derivative")

@@ -17,6 +17,7 @@ from trunnion.geometry.parameters import parameters_of
 from trunnion.geometry.point_faults import point_faults
 from trunnion.geometry.point_tables import PointTable
 from trunnion.geometry.spans import Span, spans_between
+from trunnion.messages import Wording
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,29 +93,24 @@ def fit(table: PointTable, wanted: Wanted, weights: Floats | None = None) -> Cur
 
 def _contradictions(wanted: Wanted, weights: Floats | None, count: int) -> Iterator[Problem]:
     if wanted.tolerance is not None and not wanted.ends.is_natural:
-        what = "is for a curve through points, and a tolerance asks for one near them"
         yield argument_problem(
-            "start" if wanted.ends.start != Ends().start else "end", what, "leave one of them out", code="IMP130"
+            "start" if wanted.ends.start != Ends().start else "end", Wording("IMP130", "curve_through_points")
         )
     if wanted.tolerance is not None and weights is not None:
-        yield argument_problem("weights", "are for a curve through points", "leave the tolerance out", code="IMP130")
+        yield argument_problem("weights", Wording("IMP130", "curve_through"))
     if wanted.fair is not None and count < LEAST_POINTS:
-        yield argument_problem(
-            "fair", f"needs {LEAST_POINTS} points, and there are {count}", "leave it out", code="IMP132"
-        )
+        yield argument_problem("fair", Wording("IMP132", "needs_points", least_points=LEAST_POINTS, count=count))
     if weights is not None and not (weights.shape == (count,) and np.isfinite(weights).all() and (weights > 0.0).all()):
-        yield argument_problem(
-            "weights", "are not a number above 0 for each point", f"give {count} of them", code="IMP132"
-        )
+        yield argument_problem("weights", Wording("IMP132", "not_number_above", count=count))
 
 
 def _runs_back(table: PointTable, spans: tuple[Span, ...]) -> Iterator[Problem]:
     """Spans in which the curve goes against its points: an end whose tangent does not belong to them, mostly."""
     for k, span in enumerate(spans):
         if span.runs_back:
-            what = (
-                f"{table.called} runs back before this point: its direction is up to {span.turn:.0f} degrees off the"
-                f" straight line, its smallest radius {span.radius:.3g} mm"
+            yield Problem(
+                table.file,
+                table.lines[k + 1],
+                Wording("IMP123", "runs_back_before", table_called=table.called, turn=span.turn, radius=span.radius),
+                severity=Severity.WARNING,
             )
-            cure = "let its ends be natural, or give tangents along the path"
-            yield Problem(table.file, table.lines[k + 1], what, cure, Severity.WARNING, code="IMP123")

@@ -9,6 +9,7 @@ from trunnion.errors import InputError, argument_problem
 from trunnion.extras import import_extra
 from trunnion.geometry.curves import DEGREE, BSplineCurve
 from trunnion.geometry.ends import End, Ends, Natural
+from trunnion.messages import Wording
 
 
 def interpolate(
@@ -56,8 +57,7 @@ def interpolate(
     spline = _spline(parameters, homogeneous, *conditions)
     found = spline.c[:, 3]
     if not (found > 0.0).all():
-        what = "vary so much from point to point that the curve would have none between them"
-        raise InputError(argument_problem("weights", what, "let them vary less", code="IMP132"))
+        raise InputError(argument_problem("weights", Wording("IMP132", "vary_so_much")))
     return BSplineCurve(spline.t, spline.c[:, :3] / found[:, None], found)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from trunnion.errors import Problem, Severity
 from trunnion.geometry.point_tables import MOST_POINTS, PointTable, too_many
+from trunnion.messages import Wording
 
 #: Points that are nearer than this are the same, mm.
 SAME: Final = 1e-6
@@ -24,8 +25,11 @@ def point_faults(table: PointTable) -> Iterator[Problem]:
     """Errors, and warnings of what is probably wrong, of the points of a curve."""
     file, points, lines = table.file, table.points, table.lines
     if len(points) < _LEAST_POINTS:
-        what = f"{table.called} has {len(points)} points"
-        yield Problem(file, lines[0] if len(lines) else 0, what, f"give at least {_LEAST_POINTS}", code="IMP120")
+        yield Problem(
+            file,
+            lines[0] if len(lines) else 0,
+            Wording("IMP120", "points", table_called=table.called, count=len(points), least_points=_LEAST_POINTS),
+        )
         return
     if len(points) > MOST_POINTS:
         yield Problem(file, lines[MOST_POINTS], *too_many(len(points)), code="IMP120")
@@ -34,15 +38,24 @@ def point_faults(table: PointTable) -> Iterator[Problem]:
     lengths = np.linalg.norm(steps, axis=1)
     same = np.flatnonzero(lengths <= SAME)
     for k in same.tolist():
-        what = f"{table.called} has the same point here as in line {lines[k]}"
-        yield Problem(file, lines[k + 1], what, "leave one of them out", code="IMP121")
+        yield Problem(
+            file, lines[k + 1], Wording("IMP121", "same_point_here", table_called=table.called, lines=lines[k])
+        )
     if len(same):
         return
     cosine = np.einsum("ij,ij->i", steps[:-1], steps[1:]) / (lengths[:-1] * lengths[1:])
     for k in np.flatnonzero(cosine < np.cos(np.radians(_BACK))).tolist():
         angle = np.degrees(np.arccos(max(cosine[k], -1.0)))
-        what = f"{table.called} turns back here by {angle:.0f} degrees"
-        yield Problem(file, lines[k + 1], what, "are its points in their order?", Severity.WARNING, code="IMP122")
+        yield Problem(
+            file,
+            lines[k + 1],
+            Wording("IMP122", "turns_back_here", table_called=table.called, angle=angle),
+            severity=Severity.WARNING,
+        )
     for k in np.flatnonzero(lengths > _JUMP * np.median(lengths)).tolist():
-        what = f"{table.called} has a gap of {lengths[k]:.3f} mm before this point"
-        yield Problem(file, lines[k + 1], what, "are points missing?", Severity.WARNING, code="IMP122")
+        yield Problem(
+            file,
+            lines[k + 1],
+            Wording("IMP122", "gap_mm_before", table_called=table.called, lengths=lengths[k]),
+            severity=Severity.WARNING,
+        )

@@ -21,7 +21,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.encoding import EncodingDetector
 from trunnion.errors import InputError, Problem, unusable_file
-from trunnion.wording import counted
+from trunnion.messages import Wording
 
 #: So many bytes tell whether a file is text.
 _HEAD: Final = 1000
@@ -48,8 +48,6 @@ _UNNAMED: Final = {3: (0, 1, 2), 4: (1, 2, 3)}
 
 #: No machine cuts what is larger, mm.
 _GREATEST: Final = 1e6
-
-_CURE: Final = "name the columns x, y and z, or tip_x, tip_y, tip_z, hub_x and so on"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,11 +99,9 @@ def read_point_table(file: Path) -> list[PointTable]:
     with file.open("rb") as stream:
         data = stream.read(_MOST_BYTES + 1)
     if len(data) > _MOST_BYTES:
-        what = f"is larger than {_MOST_BYTES // 1_000_000} MB"
-        raise InputError(Problem(str(file), 0, what, "is it a table of points?", code="IMP110"))
+        raise InputError(Problem(str(file), 0, Wording("IMP110", "larger_mb", most_bytes=_MOST_BYTES // 1000000)))
     if b"\0" in data[:_HEAD]:
-        what = "is no text in UTF-8 or Latin-1: it holds zero bytes, as UTF-16 does"
-        raise InputError(Problem(str(file), 0, what, "save it as UTF-8", code="IMP110"))
+        raise InputError(Problem(str(file), 0, Wording("IMP110", "no_text_utf")))
     detector = EncodingDetector()
     detector.add(data.removeprefix(b"\xef\xbb\xbf"))
     text = data.decode("utf-8-sig" if detector.encoding() == "utf-8" else detector.encoding(), "replace")
@@ -116,7 +112,7 @@ def parse_point_table(file: str, text: str) -> list[PointTable]:
     """The curves of a table's text; ``file`` is for messages. Errors as ``read_point_table`` raises them."""
     rows = list(_rows(text))
     if not rows:
-        raise InputError(Problem(file, 0, "holds no points", _CURE, code="IMP111"))
+        raise InputError(Problem(file, 0, Wording("IMP111", "holds_no_points")))
     first_line, first = rows[0]
     if _has_number(first):
         columns = _unnamed(file, first_line, first)
@@ -129,7 +125,7 @@ def parse_point_table(file: str, text: str) -> list[PointTable]:
     tables = [_table(file, each, rows, len(first), problems) for each in columns]
     problems += _torn(file, rows, len(first))
     empty = [one for one in tables if not len(one.points)]
-    problems += [Problem(file, first_line, f"has no points of {one.called}", _CURE, code="IMP111") for one in empty]
+    problems += [Problem(file, first_line, Wording("IMP111", "no_points", called=one.called)) for one in empty]
     if problems:
         raise InputError(sorted(problems, key=lambda one: one.line))
     return tables
@@ -171,7 +167,7 @@ def _has_number(cells: Sequence[str]) -> bool:
 def _unnamed(file: str, line: int, cells: Sequence[str]) -> list[_Columns]:
     count = len(cells)
     if count not in _UNNAMED:
-        raise InputError(Problem(file, line, f"has {counted(count, 'column')} without names", _CURE, code="IMP111"))
+        raise InputError(Problem(file, line, Wording("IMP111", "column_without_names", count=count)))
     return [_Columns("", _UNNAMED[count], 1.0)]
 
 
@@ -184,32 +180,32 @@ def _named(file: str, line: int, cells: Sequence[str]) -> list[_Columns]:
         if match is None:
             other = _OTHER_UNIT.fullmatch(cell)
             if other is not None:
-                what = f"the column {cell} is in {other['unit']}"
-                problems.append(
-                    Problem(file, line, what, "write mm or inches, and call the column so: x_mm or x_in", code="IMP113")
-                )
+                problems.append(Problem(file, line, Wording("IMP113", "column", cell=cell, other=other["unit"])))
             continue
         axes = found.setdefault(match["curve"] or "", {})
         axis, unit = match["axis"].lower(), (match["unit"] or "mm").lower()
         if axis in axes:
-            raise InputError(Problem(file, line, f"has two columns for {cell}", "leave one of them out", code="IMP111"))
+            raise InputError(Problem(file, line, Wording("IMP111", "two_columns", cell=cell)))
         axes[axis] = place, 1.0 if unit == "mm" else _INCH
     for name, axes in found.items():
         missing = [axis for axis in "xyz" if axis not in axes]
         units = {unit for _, unit in axes.values()}
         if missing:
-            what = f"the curve {name or 'without a name'} has no column for {' and '.join(missing)}"
-            problems.append(Problem(file, line, what, _CURE, code="IMP111"))
-        elif len(units) > 1:
             problems.append(
-                Problem(file, line, f"the curve {name} is in mm and in inches", "give it one unit", code="IMP113")
+                Problem(
+                    file,
+                    line,
+                    Wording("IMP111", "curve_no_column", name=name or "without a name", missing=tuple(missing)),
+                )
             )
+        elif len(units) > 1:
+            problems.append(Problem(file, line, Wording("IMP113", "curve_mm_inches", name=name)))
         else:
             curves.append(_Columns(name, tuple(axes[axis][0] for axis in "xyz"), units.pop()))
     if problems:
         raise InputError(problems)
     if not curves:
-        raise InputError(Problem(file, line, "names no columns of points", _CURE, code="IMP111"))
+        raise InputError(Problem(file, line, Wording("IMP111", "names_no_columns")))
     return curves
 
 
@@ -232,14 +228,13 @@ def _table(
             problems.append(Problem(file, line, f"{bad[0]!r} is not a number", _number_cure(bad[0]), code="IMP112"))
             continue
         if ended:
-            what = f"the curve {columns.name} goes on after it ended in line {ended}"
-            problems.append(Problem(file, line, what, "fill or delete the empty cells", code="IMP112"))
+            problems.append(
+                Problem(file, line, Wording("IMP112", "curve_goes_after", columns=columns.name, ended=ended))
+            )
             break
         point = [columns.unit * value for value in values if value is not None]
         if max(map(abs, point)) > _GREATEST:
-            problems.append(
-                Problem(file, line, f"is {max(map(abs, point)):g} mm away", "write lengths in mm", code="IMP113")
-            )
+            problems.append(Problem(file, line, Wording("IMP113", "mm_away", abs=max(map(abs, point)))))
         points.append(point)
         lines.append(line)
     return PointTable(file, columns.name, np.array(points, float).reshape(-1, 3), lines)
@@ -257,5 +252,4 @@ def _torn(file: str, rows: Sequence[tuple[int, list[str]]], width: int) -> Itera
     """Lines with more or fewer cells than the first."""
     for line, cells in rows:
         if len(cells) != width:
-            what = f"has {counted(len(cells), 'column')} where the first line has {width}"
-            yield Problem(file, line, what, "let every line have the same columns", code="IMP112")
+            yield Problem(file, line, Wording("IMP112", "column_where_first", count=len(cells), width=width))

@@ -21,6 +21,7 @@ from trunnion.hooks import Block, Context
 from trunnion.hooks.checks import fingerprint, operation_fault, value_fault
 from trunnion.hooks.copies import detached
 from trunnion.hooks.files import HookFile, failure
+from trunnion.messages import Wording
 from trunnion.model.motion import Decision, DecisionTopic
 from trunnion.model.splines import Splines
 from trunnion.model.toolpath import (
@@ -82,9 +83,9 @@ class Hooks:
         found = [self._changed(toolpath) for toolpath in given]
         if _moves(given) and not _moves(found):
             path, function = self._files[-1].path, next(iter(self._files[-1].functions))
-            what = "the hooks leave out every operation that moves the tool"
-            cure = "return None for those that are to stay as they are"
-            raise InputError(Problem(str(path), self._files[-1].line_of(function), what, cure, code="HOK160"))
+            raise InputError(
+                Problem(str(path), self._files[-1].line_of(function), Wording("HOK160", "hooks_leave_out"))
+            )
         return found
 
     def _changed(self, toolpath: Toolpath) -> Toolpath:
@@ -138,7 +139,14 @@ class Hooks:
             Decision(before.file, before.name, before.line, -1, DecisionTopic.HOOKS, f"{file.path.name}: {text}")
         )
         name = next(iter(file.functions))
-        return [Problem(str(file.path), file.line_of(name), text, severity=Severity.WARNING, code="HOK140")]
+        return [
+            Problem(
+                str(file.path),
+                file.line_of(name),
+                Wording("HOK140", "operation_hooks_program", before=before.name, subject=tuple(what)),
+                severity=Severity.WARNING,
+            )
+        ]
 
 
 def _moves(toolpaths: Iterable[Toolpath]) -> bool:
@@ -180,9 +188,13 @@ class _Caller:
     def refuse_changes(self, name: str) -> None:
         """Refuse what a function has changed without returning it: nobody would be told, and nothing would check it."""
         if any(fingerprint(operation) != before for operation, before in self._watched):
-            what = f"{name} changes an operation in place"
-            cure = "return a changed copy: replace(operation, moves=replace(operation.moves, feed=…))"
-            raise InputError(Problem(str(self._file.path), self._file.line_of(name), what, cure, code="HOK135"))
+            raise InputError(
+                Problem(
+                    str(self._file.path),
+                    self._file.line_of(name),
+                    Wording("HOK135", "changes_operation_place", name=name),
+                )
+            )
 
     def __call__(self, name: str, given: object, operation: Operation) -> object:
         """Call a function with an operation, an event or a block."""

@@ -15,6 +15,7 @@ from typing import Final
 
 from trunnion.definitions.messages import did_you_mean
 from trunnion.errors import InputError, Problem, unusable_file
+from trunnion.messages import Wording
 
 #: The functions that a file of hooks may have, and what each is called with.
 _FUNCTIONS: Final = {
@@ -53,9 +54,7 @@ def load_hooks(paths: Iterable[Path]) -> tuple[HookFile, ...]:
 def _load(path: Path) -> HookFile:
     problem = unusable_file(path, "a file of hooks")
     if problem is None and path.suffix != ".py":
-        problem = Problem(
-            str(path), 0, "is no Python file", "give the path of a file of hooks, such as shop.py", code="HOK110"
-        )
+        problem = Problem(str(path), 0, Wording("HOK110", "no_python_file"))
     if problem is not None:
         raise InputError(problem)
     module = types.ModuleType(_MODULE)
@@ -74,7 +73,7 @@ def _load(path: Path) -> HookFile:
         _check_signature(path, name, function)
     if not named:
         cure = f"write a function {' or '.join(_FUNCTIONS)}"
-        raise InputError(Problem(str(path), 0, "the file has no hooks", cure, code="HOK110"))
+        raise InputError(Problem(str(path), 0, Wording("HOK110", "file_no_hooks", functions=tuple(_FUNCTIONS))))
     return HookFile(path, {name: named[name] for name in _FUNCTIONS if name in named})
 
 
@@ -83,8 +82,13 @@ def _check_signature(path: Path, name: str, function: Callable[..., object]) -> 
         inspect.signature(function).bind(*_FUNCTIONS[name])
     except (TypeError, ValueError):
         line = getattr(getattr(function, "__code__", None), "co_firstlineno", 0)
-        cure = f"write def {name}({', '.join(_FUNCTIONS[name])}):"
-        raise InputError(Problem(str(path), line, f"{name} takes other arguments", cure, code="HOK110")) from None
+        raise InputError(
+            Problem(
+                str(path),
+                line,
+                Wording("HOK110", "takes_other_arguments", name=name, functions=tuple(_FUNCTIONS[name])),
+            )
+        ) from None
 
 
 def failure(path: Path, error: BaseException, what: str) -> Problem:

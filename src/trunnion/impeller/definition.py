@@ -12,10 +12,11 @@ from typing import Final
 
 from trunnion.definitions import Table, load_table
 from trunnion.definitions.extends import is_within
-from trunnion.errors import InputError, Problem
+from trunnion.errors import InputError, Problem, key_subject
 from trunnion.geometry.parameters import PARAMETERIZATIONS
 from trunnion.geometry.point_tables import PointTable, read_point_table, scaled
 from trunnion.impeller.steps import MachiningStep, StepKind, read_name, read_steps
+from trunnion.messages import Wording
 from trunnion.simulation.tools.library.library import LibraryTool
 from trunnion.simulation.tools.library.toml_library import read_tool_tables
 
@@ -82,7 +83,7 @@ class ImpellerDefinition:
         """A mistake that a key makes; it is told at the line of its table where the key is not written."""
         table = key.rpartition(".")[0]
         file, line = self.places.get(key) or self.places.get(table) or (self.file, 0)
-        return Problem(file, line, what, cure, key=key, code=code)
+        return Problem(file, line, what, cure, subject=key_subject(key), code=code)
 
 
 def read_impeller(path: Path) -> ImpellerDefinition:
@@ -150,7 +151,7 @@ def _stock(table: Table) -> StockSize:
     height = table.number("height_mm", above=0.0, at_most=_GREATEST)
     bore = table.number("bore_mm", 0.0, at_least=0.0, at_most=_GREATEST)
     if diameter and bore >= diameter:
-        table.add_problem("bore_mm", f"is {bore:g}, not less than the diameter", "make it smaller", code="IMP216")
+        table.add_problem("bore_mm", Wording("IMP216", "not_less_diameter", bore=bore))
     return StockSize(diameter, height, table.number("bottom_mm", 0.0, at_least=-_GREATEST, at_most=_GREATEST), bore)
 
 
@@ -160,8 +161,7 @@ def _premachined(stock: Table) -> tuple[StepKind, ...]:
     kinds = list(StepKind)
     for word in words:
         if word not in kinds:
-            what = f"names {word!r}, which is no kind of operation"
-            stock.add_problem("premachined", what, f"name {', '.join(kinds)}", code="IMP216")
+            stock.add_problem("premachined", Wording("IMP216", "names_no_kind", word=repr(word), kinds=tuple(kinds)))
     return tuple(StepKind(word) for word in words if word in kinds)
 
 
@@ -172,17 +172,14 @@ def _sections(blade: Table, path: Path) -> tuple[PointTable, ...]:
     names = blade.texts("curves")
     if not file:
         if "points" in blade and not blade.problems:
-            blade.add_problem("points", "is empty", "name a table of points", code="IMP216")
+            blade.add_problem("points", Wording("IMP216", "empty"))
         return ()
     place = Path(file)
-    cure = "name a file in the folder of the definition or below it"
     if place.is_absolute() or ".." in place.parts:
-        blade.add_problem("points", f"is {file!r}", cure, code="IMP216")
+        blade.add_problem("points", Wording("IMP216", "is", file=repr(file)))
         return ()
     if not is_within(path.parent / place, path.parent):
-        blade.add_problem(
-            "points", f"is {file!r}, which leads out of the folder of the definition", cure, code="IMP216"
-        )
+        blade.add_problem("points", Wording("IMP216", "leads_out_folder", file=repr(file)))
         return ()
     try:
         tables = {table.name: table for table in read_point_table(path.parent / place)}
@@ -191,10 +188,9 @@ def _sections(blade: Table, path: Path) -> tuple[PointTable, ...]:
         return ()
     for name in names:
         if name not in tables:
-            known = ", ".join(map(repr, tables))
-            blade.add_problem("curves", f"names {name!r}, which {file} has not", f"it has {known}", code="IMP216")
+            blade.add_problem(
+                "curves", Wording("IMP216", "names_not", name=repr(name), file=file, tables=tuple(map(repr, tables)))
+            )
     if len(names) < 2 or len(set(names)) < len(names):
-        blade.add_problem(
-            "curves", "are not at least two different curves", "name them from hub to shroud", code="IMP216"
-        )
+        blade.add_problem("curves", Wording("IMP216", "not_least_two"))
     return tuple(scaled(tables[name], scale) for name in names if name in tables)

@@ -14,6 +14,7 @@ from trunnion.impeller.blade import Blade
 from trunnion.impeller.definition import ImpellerDefinition
 from trunnion.impeller.fillet import FilletError
 from trunnion.impeller.profiles import Profile
+from trunnion.messages import Wording
 
 _SAMPLES: Final = 400
 
@@ -23,7 +24,6 @@ _WAY: Final = 5.0
 #: Sections that are nearer to each other are the same there, mm.
 _APART: Final = 1e-3
 
-_ORDER: Final = "from the inlet, which is on top, to the outlet; the axis is Z"
 
 #: A blade is farther out than its points where it goes straight on to the stock, mm.
 _BEYOND: Final = 0.1
@@ -37,8 +37,9 @@ def direction_faults(definition: ImpellerDefinition) -> Iterator[Problem]:
             way = "from radius {:.4g} and height {:.4g} to {:.4g} and {:.4g}".format(
                 *np.column_stack((across, up)).flat
             )
-            what = f"{table.called} goes upward or inward: {way}"
-            yield Problem(table.file, table.lines[0], what, f"let its rows go {_ORDER}", code="IMP210")
+            yield Problem(
+                table.file, table.lines[0], Wording("IMP210", "goes_upward_inward", table_called=table.called, way=way)
+            )
 
 
 def section_faults(definition: ImpellerDefinition, curves: Sequence[BSplineCurve]) -> Iterator[Problem]:
@@ -49,10 +50,15 @@ def section_faults(definition: ImpellerDefinition, curves: Sequence[BSplineCurve
     for below, curve, above in zip(definition.sections, curves, definition.sections[1:], strict=False):
         height = Profile.of_curve(curve).distances(above.points)[0]
         for k in np.flatnonzero(height <= _APART)[:1].tolist():
-            where = f"{-height[k]:.3f} mm below" if height[k] < -_APART else "the same here as"
-            what = f"{above.called} is {where} {below.called}, which is named before it"
-            cure = f"name the curves from hub to shroud, and let their rows go {_ORDER}"
-            yield Problem(above.file, above.lines[k], what, cure, code="IMP210")
+            yield Problem(
+                above.file,
+                above.lines[k],
+                Wording(
+                    "IMP210", "mm_below_named", above_called=above.called, height=-height[k], below_called=below.called
+                )
+                if height[k] < -_APART
+                else Wording("IMP210", "same_here_named", above_called=above.called, below_called=below.called),
+            )
 
 
 def _crossings(table: PointTable, curve: BSplineCurve, thickness: float) -> Iterator[Problem]:
@@ -66,8 +72,9 @@ def _crossings(table: PointTable, curve: BSplineCurve, thickness: float) -> Iter
     found = near[(way > _WAY * straight) & (way > _WAY * thickness)]
     if len(found):
         one, other = (_line(table, points[k]) for k in found[0])
-        what = f"{table.called} crosses itself, or nearly: here and near line {other}"
-        yield Problem(table.file, one, what, "are its points in their order?", code="IMP211")
+        yield Problem(
+            table.file, one, Wording("IMP211", "crosses_itself_nearly", table_called=table.called, other=other)
+        )
 
 
 def _line(table: PointTable, place: Floats) -> int:
@@ -91,7 +98,7 @@ def blade_faults(
         if gap[k] <= 0.0:
             table = definition.sections[0 if v[k] < 0.5 else -1]
             what = f"blades overlap by {-gap[k]:.3f} mm near this point"
-            yield Problem(table.file, _line(table, centre[k]), what, "let them be thinner, or fewer", code="IMP212")
+            yield Problem(table.file, _line(table, centre[k]), Wording("IMP212", "blades_overlap_mm", gap=-gap[k]))
     edge = min(radius, max(float(np.hypot(*table.points[:, :2].T).max()) for table in definition.sections) + _BEYOND)
     w = np.linspace(0.0, 1.0, 201)
     foot, top = (first.frames(w, np.full(len(w), at))[0] for at in (first.low, first.high))
@@ -110,7 +117,7 @@ def blade_faults(
         else:
             what = f"the blade does not reach {body} near this point"
             cure = "does it lean too much here, or is it too thick? check the curves and the thicknesses"
-            yield Problem(table.file, _line(table, place[k]), what, cure, code="IMP213")
+            yield Problem(table.file, _line(table, place[k]), Wording("IMP213", "blade_does_not", body=body))
 
 
 def fillet_faults(
@@ -124,8 +131,9 @@ def fillet_faults(
         k = int(gap.argmin())
         if gap[k] < radius:
             table = definition.sections[0]
-            what = f"a fillet of {radius:g} mm has no room between two blades near this point; {gap[k]:.3f} mm has"
-            yield Problem(table.file, _line(table, inside[k]), what, "make it smaller", code="IMP214")
+            yield Problem(
+                table.file, _line(table, inside[k]), Wording("IMP214", "fillet_mm_no", radius=radius, gap=gap[k])
+            )
             return
 
 

@@ -33,6 +33,7 @@ from trunnion.impeller.paths.stock_clearance import is_roughed, stock_before, st
 from trunnion.impeller.paths.tool_axes import SHARES, ToolAxes, Wanted, choose_axes
 from trunnion.impeller.progress import Progress, silent
 from trunnion.impeller.steps import ROUND_STEPS, MachiningStep, StepKind
+from trunnion.messages import Wording
 from trunnion.simulation.tools.library.library import LibraryTool
 from trunnion.simulation.tools.profile import Role, ToolShape
 
@@ -109,9 +110,7 @@ def step_paths(
     """
     definition = impeller.definition
     if not definition.steps:
-        raise InputError(
-            Problem(definition.file, 0, "has no [[operation]]", "describe the machining steps", code="IMP310")
-        )
+        raise InputError(Problem(definition.file, 0, Wording("IMP310", "no_operation")))
     makers = _StepMaker(impeller, reachable, progress)
     for step in definition.steps:
         if names and step.name not in names:

@@ -20,6 +20,7 @@ from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.paths.least_clearances import PartClearance
 from trunnion.impeller.paths.shroud import shroud_form
 from trunnion.impeller.steps import ROUND_STEPS, MachiningStep, StepKind
+from trunnion.messages import Wording
 from trunnion.simulation.tools.profile import Role
 
 #: Points of the shroud at which the depth of the channels is looked at.
@@ -98,11 +99,12 @@ def _one_turn(impeller: Impeller, step: MachiningStep, radius: float) -> Iterato
     stands = form < stock.diameter / 2.0
     height = stock.top - float(heights[stands].min(initial=stock.top))
     if step.step_down >= height > radius:
-        what = (
-            f"{step.name}: step_down_mm = {step.step_down:g} cuts the whole {height:.1f} mm beside the form in one turn"
+        yield Problem(
+            definition.file,
+            step.line,
+            Wording("IMP331", "step_down_mm", step=step.name, step_down=step.step_down, height=height),
+            severity=Severity.WARNING,
         )
-        cure = "give a step_down_mm that the tool can cut"
-        yield Problem(definition.file, step.line, what, cure, Severity.WARNING, code="IMP331")
 
 
 def side_problems(
@@ -114,12 +116,20 @@ def side_problems(
     for one in clearance:
         left = before.hub if one.body == "the hub" else before.blades
         if one.part is not Role.CUTTER and one.distance < left:
-            what = (
-                f"{step.name}: its {one.part} comes as near as {one.distance:.3f} mm to {one.body}, on which the steps "
-                f"before it leave up to {left:.2f} mm"
+            yield Problem(
+                file,
+                step.line,
+                Wording(
+                    "IMP333",
+                    "comes_near_mm",
+                    step=step.name,
+                    part=one.part,
+                    distance=one.distance,
+                    body=one.body,
+                    left=left,
+                ),
+                severity=Severity.WARNING,
             )
-            cure = f"let them leave less, or ask for more {one.part}_clearance_mm"
-            yield Problem(file, step.line, what, cure, Severity.WARNING, code="IMP333")
 
 
 def _too_much(
@@ -129,18 +139,42 @@ def _too_much(
     stands, radius = sizes
     is_form = step.kind in (StepKind.STOCK_FINISHING, StepKind.CHANNEL_ROUGHING)
     clears = _CLEARS[is_form]
-    where = "outside of the form of the shroud" if is_form else "on the hub and between the blades"
-    most = f"its ball has a radius of {radius:g} mm"
-    what = f"{step.name}: up to {stands:.1f} mm of metal stand {where} before it, and {most}"
     before = [one for one in steps[:place] if one.kind is clears]
     behind = [one for one in steps[place + 1 :] if one.kind is clears]
     if before:
-        return Problem(file, step.line, what, f"let {before[-1].name} leave less", Severity.WARNING, code="IMP332")
-    if behind:
-        what, cure = f"{what}; {behind[0].name} comes after it", f"put {behind[0].name} before it"
-    else:
-        cure = f'make a "{clears}" before it, or, if that was done elsewhere, say stock.premachined = ["{clears}"]'
-    return Problem(file, step.line, what, cure, Severity.WARNING, code="IMP332")
+        return Problem(
+            file,
+            step.line,
+            Wording("IMP332", "up_mm", step=step.name, stands=stands, radius=radius, before=before[-1].name)
+            if is_form
+            else Wording(
+                "IMP332",
+                "up_mm_metal_stand_hub_between",
+                step=step.name,
+                stands=stands,
+                radius=radius,
+                before=before[-1].name,
+            ),
+            severity=Severity.WARNING,
+        )
+    return Problem(
+        file,
+        step.line,
+        (
+            Wording("IMP332", "up_mm_metal", step=step.name, stands=stands, radius=radius, behind=behind[0].name)
+            if is_form
+            else Wording(
+                "IMP332", "up_mm_metal_stand", step=step.name, stands=stands, radius=radius, behind=behind[0].name
+            )
+        )
+        if behind
+        else (
+            Wording("IMP332", "up_mm_metal_stand_outside", step=step.name, stands=stands, radius=radius, clears=clears)
+            if is_form
+            else Wording("IMP332", "up_mm_metal_stand_hub", step=step.name, stands=stands, radius=radius, clears=clears)
+        ),
+        severity=Severity.WARNING,
+    )
 
 
 def _radius(impeller: Impeller, step: MachiningStep) -> float:

@@ -21,6 +21,7 @@ from trunnion.impeller.faults import fillet_faults, no_place
 from trunnion.impeller.fillet import Fillet, FilletError, root_fillet, root_stations
 from trunnion.impeller.impeller import Impeller, rotated
 from trunnion.impeller.meshing import blade_mesh, fillet_mesh, solid, turned_mesh, union
+from trunnion.messages import Wording
 from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
 
 #: Part of the tolerance that each kind of facet takes: along and across, and what simplifying adds, make one together.
@@ -84,18 +85,12 @@ def impeller_model(impeller: Impeller, tolerance: float) -> ImpellerModel:
     faces = faces if found.status() == import_extra("manifold3d", "impeller").Error.NoError else faces[:0]
     mesh = TriangleMesh(*_joined(vertices, faces), definition.name)
     if not is_closed(mesh.faces):
-        what = "its bodies make no closed solid"
-        raise InputError(
-            Problem(definition.file, 0, what, "check curves, thicknesses, fillet and stock", code="IMP220")
-        )
+        raise InputError(Problem(definition.file, 0, Wording("IMP220", "bodies_make_no")))
     points = np.vstack((mesh.vertices, mesh.vertices[mesh.faces].mean(axis=1)))
     deviation = float(off_surfaces(impeller, points[:: max(1, len(points) // _SAMPLES)], fillets).max())
     if deviation > tolerance:
-        what = f"its facets would be {deviation:.4f} mm off the exact surfaces, and {tolerance:g} mm are asked for"
         raise InputError(
-            Problem(
-                definition.file, 0, what, "check curves and thicknesses: does the blade meet itself?", code="IMP220"
-            )
+            Problem(definition.file, 0, Wording("IMP220", "facets_would_mm", deviation=deviation, tolerance=tolerance))
         )
     return ImpellerModel(mesh, mesh.volume, deviation)
 

@@ -12,6 +12,7 @@ from typing import Final
 from trunnion.definitions import Table
 from trunnion.definitions.messages import as_written
 from trunnion.impeller.paths.passes import Stepover, Way
+from trunnion.messages import Wording
 from trunnion.output.subprograms import DEVICE_NAME
 from trunnion.simulation.tools.library.library import LibraryTool
 from trunnion.simulation.tools.sizes import ToolKind, ToolSizes
@@ -119,8 +120,10 @@ def read_steps(root: Table, tools: Sequence[LibraryTool]) -> tuple[MachiningStep
         other = taken.setdefault(file_stem(step.name).casefold(), table.path)
         if other != table.path:
             alike = step.name in {each.name for each in found}
-            what = f"is that of {other} too" if alike else f"makes the same file name as that of {other}"
-            table.add_problem("name", what, "tell operations apart", code="IMP312")
+            table.add_problem(
+                "name",
+                Wording("IMP312", "too", other=other) if alike else Wording("IMP312", "makes_same_file", other=other),
+            )
         found.append(step)
     return tuple(found)
 
@@ -129,9 +132,7 @@ def read_name(table: Table, default: str) -> str:
     """The name of a table: one line that can be printed."""
     name = table.text("name", default)
     if not (name.strip() and name.isprintable() and len(name) <= _LONGEST_NAME):
-        table.add_problem(
-            "name", f"is {as_written(name)}", f"write one line of {_LONGEST_NAME} letters at most", code="IMP312"
-        )
+        table.add_problem("name", Wording("IMP312", "is", name=as_written(name), longest_name=_LONGEST_NAME))
         return default
     return name
 
@@ -161,15 +162,19 @@ def _read_step(table: Table, tools: Mapping[int | None, LibraryTool], stated: Se
     kind = StepKind(word)
     tool = table.integer("tool", at_least=0)
     if tool in tools and tools[tool].sizes.kind not in _TOOLS[kind]:
-        names = " or ".join(_TOOLS[kind])
-        table.add_problem("tool", f"{tool} is a {tools[tool].sizes.kind} mill", f"{kind} wants {names}", code="IMP312")
-    elif tool not in tools and tool not in stated:
-        known = ", ".join(str(number) for number in tools if number is not None)
         table.add_problem(
             "tool",
-            f"{tool} is not among the tools",
-            f"give a [[tool]] of that number; there are {known}",
-            code="IMP312",
+            Wording("IMP312", "mill", tool=tool, kind=tools[tool].sizes.kind, kind_2=kind, tools=tuple(_TOOLS[kind])),
+        )
+    elif tool not in tools and tool not in stated:
+        table.add_problem(
+            "tool",
+            Wording(
+                "IMP312",
+                "not_among_tools",
+                tool=tool,
+                tools=tuple(str(number) for number in tools if number is not None),
+            ),
         )
     feed = table.number("feed_mm_min", above=0.0, at_most=100_000.0)
     ways = _WAYS[kind]
@@ -204,16 +209,19 @@ def _check_reach(table: Table, step: MachiningStep, sizes: ToolSizes) -> None:
     """Add what a tool cannot take at once: deeper than its flutes are long, or wider than the mill is."""
     flutes = sizes.flute_length or sizes.length
     if 0.0 < flutes < step.step_down:
-        what = f"is {step.step_down:g}, and the flutes of tool {step.tool} are {flutes:g} mm long"
-        table.add_problem("step_down_mm", what, "let it be less, or take longer flutes", code="IMP312")
+        table.add_problem(
+            "step_down_mm", Wording("IMP312", "flutes_tool_mm", step_down=step.step_down, tool=step.tool, flutes=flutes)
+        )
     if step.kind is StepKind.STOCK_ROUGHING and step.stepover.distance > sizes.diameter:
-        what = f"is {step.stepover.distance:g}, and tool {step.tool} is {sizes.diameter:g} mm wide: a wall would stay"
-        table.add_problem("stepover_mm", what, "let it be the diameter at most", code="IMP312")
+        table.add_problem(
+            "stepover_mm",
+            Wording("IMP312", "tool_mm_wide", distance=step.stepover.distance, tool=step.tool, diameter=sizes.diameter),
+        )
 
 
 def _read_stepover(table: Table) -> Stepover:
     if ("stepover_mm" in table) == ("scallop_mm" in table):
-        table.add_problem("", "needs either stepover_mm or scallop_mm", "give one of them", code="IMP312")
+        table.add_problem("", Wording("IMP312", "needs_either_stepover"))
         table.mark_read("stepover_mm", "scallop_mm")
         return Stepover(distance=1.0)
     if "stepover_mm" in table:

@@ -9,6 +9,7 @@ from typing import Final
 from trunnion.definitions import Table
 from trunnion.machines.bodies import PLAIN_COLOUR, BodyBox, BodyCylinder, BodyFile, MachineBody, Vector
 from trunnion.machines.links import FIXED_LINKS
+from trunnion.messages import Wording
 
 #: More bodies make no machine clearer, and the pairs of them grow with their square.
 MAX_BODIES: Final = 64
@@ -33,15 +34,14 @@ def read_bodies(table: Table, axis_names: Sequence[str]) -> tuple[MachineBody, .
     """Return the bodies of a definition; mistakes become problems of the table."""
     entries = table.tables("body")
     if len(entries) > MAX_BODIES:
-        table.add_problem("body", f"has {len(entries)} tables", f"write at most {MAX_BODIES}", code="DEF450")
+        table.add_problem("body", Wording("DEF450", "tables", count=len(entries), max_bodies=MAX_BODIES))
         return ()
     bodies = [_body(entry, axis_names) for entry in entries]
     seen: dict[str, int] = {}
     for k, body in enumerate(bodies):
         if body.name and body.name.casefold() in seen:
             file, line = entries[seen[body.name.casefold()]].location("name")
-            what = f'is "{body.name}", the name of another body too ({file}:{line})'
-            entries[k].add_problem("name", what, "give every body its own name", code="DEF430")
+            entries[k].add_problem("name", Wording("DEF430", "name_another_body", body=body.name, file=file, line=line))
         seen.setdefault(body.name.casefold(), k)
     return tuple(bodies)
 
@@ -49,12 +49,7 @@ def read_bodies(table: Table, axis_names: Sequence[str]) -> tuple[MachineBody, .
 def _body(entry: Table, axis_names: Sequence[str]) -> MachineBody:
     name = entry.text("name")
     if name != name.strip() or any(not letter.isprintable() for letter in name):
-        entry.add_problem(
-            "name",
-            "begins or ends with blanks, or has letters that cannot be printed",
-            "write it plainly",
-            code="DEF430",
-        )
+        entry.add_problem("name", Wording("DEF430", "begins_ends_blanks"))
     link = entry.text("link", one_of=(*axis_names, *FIXED_LINKS))
     colour = entry.text("colour", PLAIN_COLOUR, pattern=_COLOUR, form='"#rrggbb", such as "#9aa0a6"')
     shape = entry.text("shape", one_of=SHAPES)
@@ -71,8 +66,7 @@ def _solid(entry: Table, shape: str) -> BodyBox | BodyCylinder | BodyFile:
     foreign = _ALL_SHAPES - _OF_SHAPE[shape]
     for key in entry.keys():  # noqa: SIM118 -- a table is no dict
         if key in foreign:
-            cure = "remove it; a body of another shape needs a name of its own"
-            entry.add_problem(key, f'is given for shape = "{shape}"', cure, code="DEF450")
+            entry.add_problem(key, Wording("DEF450", "given_shape", shape=shape))
             entry.mark_read(key)
     if shape == "cylinder":
         diameter, length = entry.number("diameter_mm", above=0), entry.number("length_mm", above=0)
@@ -87,9 +81,7 @@ def _solid(entry: Table, shape: str) -> BodyBox | BodyCylinder | BodyFile:
     before = len(entry.problems)
     size, centre = entry.vector("size_mm", 3), entry.vector("centre_mm", 3)
     if min(size) <= 0.0 and len(entry.problems) == before:
-        entry.add_problem(
-            "size_mm", "has a side that is not above 0", "write [x, y, z], all above 0, in millimetres", code="DEF450"
-        )
+        entry.add_problem("size_mm", Wording("DEF450", "side_not_above"))
     return BodyBox(_vector(size), _vector(centre), _vector(entry.vector("turn_deg", 3, None)))
 
 
@@ -97,11 +89,10 @@ def _check_file(entry: Table, file: str) -> None:
     if not file:
         return
     pure = PurePosixPath(file)
-    cure = f"write the path of a mesh ({', '.join(MESH_ENDINGS)}) in the folder of the definition or below it"
     if pure.is_absolute() or ".." in pure.parts or re.search(r"[\\:\x00-\x1f]", file) or len(file) > 1000:
-        entry.add_problem("file", "leads out of the folder of the definition", cure, code="DEF455")
+        entry.add_problem("file", Wording("DEF455", "leads_out_folder", mesh_endings=tuple(MESH_ENDINGS)))
     elif pure.suffix.lower() not in MESH_ENDINGS:
-        entry.add_problem("file", f'is "{file}"', cure, code="DEF455")
+        entry.add_problem("file", Wording("DEF455", "is", file=file, mesh_endings=tuple(MESH_ENDINGS)))
 
 
 def _unit_vector(entry: Table, numbers: Sequence[float] | None) -> Vector:
@@ -110,7 +101,7 @@ def _unit_vector(entry: Table, numbers: Sequence[float] | None) -> Vector:
         return 0.0, 0.0, 1.0
     largest = max(map(abs, numbers))
     if largest == 0.0:
-        entry.add_problem("direction", "is [0, 0, 0]", "write a vector that has a direction", code="DEF420")
+        entry.add_problem("direction", Wording("DEF420", "of_0_0"))
         return 0.0, 0.0, 1.0
     x, y, z = (number / largest for number in numbers)
     length = math.sqrt(x * x + y * y + z * z)

@@ -7,6 +7,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.definitions import Table
 from trunnion.machines.machine import Axis, AxisKind, Mount, Vector
+from trunnion.messages import Wording
 
 #: Two directions closer than this count as parallel, rad (0.06 degrees): such a machine could not orient a tool.
 PARALLEL_TOLERANCE: Final = 1e-3
@@ -44,7 +45,7 @@ def check_chain(
         if stated and axes[k].mount is Mount.PART and axes[k - 1].mount is Mount.TOOL:
             what = f'is "part", but {axes[k - 1].name} before it carries the tool'
             cure = "order the axes from the workpiece to the tool: all that carry the part come first"
-            axis_tables[k].add_problem("carries", what, cure, code="DEF410")
+            axis_tables[k].add_problem("carries", Wording("DEF410", "part_but_before", axes=axes[k - 1].name))
     if sound:
         _check_rotary_directions(axis_tables, axes, rotary, spindle)
         _check_slide_directions(axis_tables, axes, slides)
@@ -56,8 +57,12 @@ def _check_names(axis_tables: list[Table], axes: tuple[Axis, ...]) -> None:
         letter = axis.name.casefold()
         if letter and letter in seen:
             file, line = axis_tables[seen[letter]].location("name")
-            what = f'is "{axis.name}", the name of {axis_tables[seen[letter]].path} too ({file}:{line})'
-            axis_tables[k].add_problem("name", what, "give every axis its own name", code="DEF430")
+            axis_tables[k].add_problem(
+                "name",
+                Wording(
+                    "DEF430", "name_too", axis=axis.name, path=axis_tables[seen[letter]].path, file=file, line=line
+                ),
+            )
         seen.setdefault(letter, k)
 
 
@@ -67,22 +72,18 @@ def _check_rotary_directions(
     first, second = (np.array(axes[k].direction) for k in rotary)
     names = [axes[k].name for k in rotary]
     if _sine(first, second) < PARALLEL_TOLERANCE:
-        what = f"is parallel to that of {names[0]}: the machine could not orient a tool"
-        cure = "write the directions of the two rotary axes as they are built"
-        axis_tables[rotary[1]].add_problem("direction", what, cure, code="DEF420")
+        axis_tables[rotary[1]].add_problem("direction", Wording("DEF420", "parallel_machine_could", names=names[0]))
     elif _sine(second, np.array(spindle)) < PARALLEL_TOLERANCE:
-        what = f"is parallel to the spindle: {names[1]} turns the tool about itself, and {names[0]} alone tilts it"
-        cure = "the rotary axis further from the workpiece must tilt the tool: check the order of the axes"
-        axis_tables[rotary[1]].add_problem("direction", what, cure, code="DEF420")
+        axis_tables[rotary[1]].add_problem(
+            "direction", Wording("DEF420", "parallel_spindle_turns", names=names[1], names_2=names[0])
+        )
 
 
 def _check_slide_directions(axis_tables: list[Table], axes: tuple[Axis, ...], slides: list[int]) -> None:
     directions = np.array([axes[k].direction for k in slides])
     if abs(float(np.linalg.det(directions))) < PARALLEL_TOLERANCE:
-        names = ", ".join(axes[k].name for k in slides)
-        what = f"and those of the other linear axes ({names}) do not reach every point: the directions lie in one plane"
         axis_tables[slides[2]].add_problem(
-            "direction", what, "write three directions that do not lie in one plane", code="DEF420"
+            "direction", Wording("DEF420", "those_other_linear", slides=tuple(axes[k].name for k in slides))
         )
     else:
         _check_slide_senses(axis_tables, axes, slides)
@@ -95,18 +96,13 @@ def _check_slide_senses(axis_tables: list[Table], axes: tuple[Axis, ...], slides
         if letter < 0 or axes[k].direction[letter] * axes[k].sense > PARALLEL_TOLERANCE:
             continue
         name = axes[k].name
-        if axes[k].direction[letter] > PARALLEL_TOLERANCE:
-            wrong, cure = (
-                "positive",
-                (
-                    'write "standard": by ISO 841 growing values move the tool, as seen from the workpiece, to '
-                    f"+{name}, so that a table goes the other way"
-                ),
-            )
-        else:
-            wrong, cure = "direction", f"lay the frame of the whole file so that {name} grows to its +{name}"
-        what = f"makes {name} count another way than the {name} of programs, whose holes and arcs would be mirrored"
-        axis_tables[k].add_problem(wrong, what, cure, code="DEF420")
+        wrong = "positive" if axes[k].direction[letter] > PARALLEL_TOLERANCE else "direction"
+        axis_tables[k].add_problem(
+            wrong,
+            Wording("DEF420", "makes_count_another", name=name)
+            if axes[k].direction[letter] > PARALLEL_TOLERANCE
+            else Wording("DEF420", "makes_count_another_way", name=name),
+        )
 
 
 def _sine(a: Floats, b: Floats) -> float:

@@ -30,6 +30,7 @@ from trunnion.machines.machine import (
     PreferredSign,
     Vector,
 )
+from trunnion.messages import Wording
 
 #: Version of the schema of machine definitions; a new one makes changes to old files necessary.
 SCHEMA: Final = 1
@@ -71,14 +72,13 @@ def check_is_shipped(name: str) -> None:
     names = shipped_machines()
     if name not in names:
         near = did_you_mean(name, names)
-        cure = f"{near} " if near else ""
         raise InputError(
             Problem(
                 name,
                 0,
-                "there is no shipped machine of this name",
-                f"{cure}write one of {', '.join(names)}",
-                code="DEF110",
+                Wording("DEF110", "no_shipped_machine", near=near, names=tuple(names))
+                if near
+                else Wording("DEF110", "no_shipped_machine_name", names=tuple(names)),
             )
         )
 
@@ -211,9 +211,11 @@ def _rotary_keys(entry: Table) -> _RotaryKeys:
 def _home(entry: Table, key: str, low: float, high: float) -> float:
     home = entry.number(key, 0.0)
     if not low <= home <= high:
-        what = f"is {home:g}, outside of the limits {low:g} to {high:g}"
         entry.add_problem(
-            key, what if key in entry else f"{what} (it is 0 unless stated)", "write a home inside them", code="DEF440"
+            key,
+            Wording("DEF440", "outside_limits", home=home, low=low, high=high)
+            if key in entry
+            else Wording("DEF440", "outside_limits_0", home=home, low=low, high=high),
         )
     return home
 
@@ -224,30 +226,32 @@ def _check_displayed(entry: Table, home: float, rotary: _RotaryKeys) -> None:
         rotary.output, (-math.inf, math.inf)
     )
     if rotary.endless and not low <= home <= high:
-        what = f'is {home:g}, and an axis with output = "{rotary.output}" never shows it'
-        entry.add_problem("home_deg", what, f"write {home % 360.0 if low == 0.0 else (home + 180.0) % 360.0 - 180.0:g}")
+        entry.add_problem(
+            "home_deg",
+            Wording(
+                "DEF330",
+                "axis_output_never",
+                home=home,
+                output=rotary.output,
+                home_2=home % 360.0 if low == 0.0 else (home + 180.0) % 360.0 - 180.0,
+            ),
+        )
 
 
 def _check_winding(entry: Table, endless: bool, output: AngleOutput) -> None:
     if endless and "limits_deg" in entry:
-        entry.add_problem(
-            "limits_deg", "is given for an endless axis", "remove limits_deg, or write endless = false", code="DEF440"
-        )
+        entry.add_problem("limits_deg", Wording("DEF440", "given_endless_axis"))
     if not endless and "limits_deg" not in entry:
-        cure = "write [low, high] with low < high, in degrees, or endless = true"
-        entry.add_problem("limits_deg", "is missing", cure, code="DEF440")
+        entry.add_problem("limits_deg", Wording("DEF440", "missing"))
     if not endless and output is not AngleOutput.NONE:
-        cure = "remove output, or write endless = true: values of a limited axis are written as they are"
-        entry.add_problem("output", f'is "{output}" for an axis with limits', cure, code="DEF440")
+        entry.add_problem("output", Wording("DEF440", "axis_limits", output=output))
 
 
 def _gear(table: Table) -> tuple[float, float]:
     """The least and the greatest speed of a gear, rev/min."""
     least, greatest = table.number("min_rpm", at_least=0), table.number("max_rpm", above=0)
     if least > greatest:
-        table.add_problem(
-            "min_rpm", f"is {least:g}, above max_rpm {greatest:g}", "write the lower speed here", code="DEF440"
-        )
+        table.add_problem("min_rpm", Wording("DEF440", "above_max_rpm", least=least, greatest=greatest))
     table.report_unread_keys()
     return least, greatest
 
@@ -255,7 +259,7 @@ def _gear(table: Table) -> tuple[float, float]:
 def _facts(spindle: Table, facts: Table) -> MachineFacts:
     size, centre = facts.vector("table_size_mm", 2, None), facts.vector("table_centre_mm", 2, None)
     if size is not None and min(size) <= 0.0:
-        facts.add_problem("table_size_mm", f"is [{size[0]:g}, {size[1]:g}]", "write two lengths above 0")
+        facts.add_problem("table_size_mm", Wording("DEF330", "is_or_write_two", size=size[0], size_2=size[1]))
     result = MachineFacts(
         spindle_min_rpm=spindle.number("min_rpm", None, at_least=0),
         spindle_gears_rpm=tuple(_gear(gear) for gear in spindle.tables("gear")),
@@ -286,7 +290,7 @@ def _direction(table: Table, key: str, default: Vector | None) -> Vector:
     largest = max(map(abs, numbers))
     if largest == 0.0:
         if len(table.problems) == before:
-            table.add_problem(key, "is [0, 0, 0]", "write a vector that has a direction", code="DEF420")
+            table.add_problem(key, Wording("DEF420", "of_0_0"))
         return _VECTOR_FALLBACK
     # Scaled first, so that squares neither vanish nor overflow.
     x, y, z = (number / largest for number in numbers)

@@ -1,7 +1,7 @@
 """The texts of all messages: data that a code, a variant and named parameters choose and fill in.
 
-The files of ``en`` hold for each code the variants of its message: ``VARIANT.what`` is the fault, ``VARIANT.cure`` how to
-correct it. Another language is another folder. A text is a template:
+The files of ``en`` hold for each code the variants of its message: ``VARIANT.what`` is the fault, ``VARIANT.cure`` how
+to correct it. Another language is another folder. A text is a template:
 
     {name}, {name:.3f}           a parameter, with a format
     {count:# line|# lines}       a number with what it counts: its forms for one and for more
@@ -111,6 +111,10 @@ class Wording:
         """The same within another sentence of the catalogue ``around``, which has it as ``{what}``."""
         return self._changed(self.parameters, (*self.around, (sentence, _plain(parameters))))
 
+    def of_key(self, path: str) -> Self:
+        """The same of a key of a definition; of the whole definition if the path is empty."""
+        return self.within("of_key", key=path) if path else self.within("of_definition")
+
     def with_parameters(self, **parameters: object) -> Self:
         """The same with other values of some parameters, or with more of them."""
         return self._changed(_plain({**dict(self.parameters), **parameters}), self.around)
@@ -133,7 +137,7 @@ class Wording:
 
 
 def foreign(what: str, cure: str = "", code: str = "") -> Wording:
-    """A text that is in no catalogue, since it is another's: of a hook, say, or of a program that has no code for it."""
+    """A text that is in no catalogue, since it is that of others: of a hook, or of a program without a code for it."""
     return Wording(code, "", what=what, cure=cure)
 
 
@@ -194,13 +198,15 @@ def _parsed(template: str) -> tuple[tuple[str, str | None, str | None, str | Non
 
 def _field(field: str, spec: str, words: Words, parameters: Mapping[str, object]) -> str:
     if field in ("setting", "argument"):
-        name, _, value = filled_in(spec, words, parameters).partition("=")
-        return words.setting(name, value) if field == "setting" else words.argument(name, value)
+        name, _, given = filled_in(spec, words, parameters).partition("=")
+        return words.setting(name, given) if field == "setting" else words.argument(name, given)
     if field == "switch":
         return words.switch(filled_in(spec, words, parameters))
     value = parameters[field]
     if isinstance(value, Wording):
         return value.text("what", words)
+    if isinstance(value, tuple):
+        return spec.join(value)
     if "|" in spec:
         one, more = spec.split("|")
         return (one if value == 1 else more).replace("#", str(value))
@@ -215,6 +221,8 @@ def _plain_value(value: object) -> object:
     """A number, a text or a wording, so that messages can be compared, kept and sent to other processes."""
     if type(value) in (str, int, float, bool, Wording):
         return value
+    if isinstance(value, tuple):
+        return tuple(map(_plain_value, value))
     if isinstance(value, Integral):
         return int(value)
     if isinstance(value, Real):
@@ -223,7 +231,11 @@ def _plain_value(value: object) -> object:
 
 
 def _changed(parameters: Parameters, change: Callable[[str], str]) -> Parameters:
-    return tuple(
-        (name, change(value) if isinstance(value, str) else value.changed(change) if isinstance(value, Wording) else value)
-        for name, value in parameters
-    )
+    def changed(value: object) -> object:
+        if isinstance(value, tuple):
+            return tuple(map(changed, value))
+        return (
+            change(value) if isinstance(value, str) else value.changed(change) if isinstance(value, Wording) else value
+        )
+
+    return tuple((name, changed(value)) for name, value in parameters)

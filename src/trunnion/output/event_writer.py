@@ -14,6 +14,7 @@ from trunnion.controls.inches import without_comments
 from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import NEW_SPEED_WITH_TCP, SPINDLE_ON, STOP_PLACE
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import (
     BlockSkip,
@@ -245,9 +246,12 @@ class EventWriter:
         word = re.compile(rf"(?<![A-Za-z0-9.])M0*{code}(?![0-9.])")
         if not any(word.search(without_comments(self._control, line)) for line in lines):
             file, at = self._control.templates[STOP_PLACE].place_of(0)
-            what = f"template {STOP_PLACE} does not stop the program: it has no M{code} at line {event.line}"
             raise InputError(
-                Problem(file, at, what, "write M{number} on a line of it, without a condition", code="DEF560")
+                Problem(
+                    file,
+                    at,
+                    Wording("DEF560", "template_does_not", stop_place=STOP_PLACE, code=code, event_line=event.line),
+                )
             )
         return lines
 

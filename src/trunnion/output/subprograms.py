@@ -7,6 +7,7 @@ from typing import BinaryIO, Final
 
 from trunnion.controls.definition import SubprogramNaming
 from trunnion.errors import InputError, argument_problem
+from trunnion.messages import Wording
 from trunnion.transliteration import spelled
 
 #: Bytes of a file that are reserved for the end of an operation.
@@ -75,11 +76,7 @@ class SubprogramNames:
         free = (name for name in numbers if not self._taken & {name, (self._naming.prefix + name).upper()})
         name = next(free, "")
         if not name:
-            raise InputError(
-                argument_problem(
-                    "settings", f"no program numbers are left from {first:04d} on", "write programs=one", code="ARG240"
-                )
-            )
+            raise InputError(argument_problem("settings", Wording("ARG240", "no_program_numbers", first=first)))
         self._taken.add(name)
         return name
 

@@ -19,6 +19,7 @@ from trunnion.controls.template import PrintedText, Value
 from trunnion.controls.vocabulary import OFFSETS_DIFFER, PLANES_USED, TCP_USED
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Axis, inverse
+from trunnion.messages import Wording
 from trunnion.model.apt_cutter import apt_cutter
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import LoadTool, Operation, Sense, SpindleOn, Tool
@@ -285,9 +286,12 @@ class TemplateValues:
             return self._tool_setting(number, operation)
         if loads:
             return self._family_call(loads[-1].number, "", operation)
-        what = f"operation {operation.name} has no LOAD/TOOL, and its tool has no name"
         raise InputError(
-            Problem(self._program.file_of(operation), operation.line, what, "write setting tool=NUMBER", code="CTL145")
+            Problem(
+                self._program.file_of(operation),
+                operation.line,
+                Wording("CTL145", "operation_no_load", operation=operation.name),
+            )
         )
 
     @cached_property
@@ -322,9 +326,8 @@ class TemplateValues:
         try:
             return self._family.tool_call(number, name, by_name=bool(name))
         except UnsupportedFeatureError as why:
-            what = f"{self._program.control.name}: {why.what}"
-            place = self._program.file_of(operation), operation.line
-            raise InputError(Problem(*place, what, why.cure, code=why.code)) from None
+            wording = why.wording.within("of", name=self._program.control.name)
+            raise InputError(Problem(self._program.file_of(operation), operation.line, wording)) from None
 
 
 def plain_text(program: Program, text: str) -> str:

@@ -17,6 +17,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine, forward
+from trunnion.messages import Wording
 from trunnion.model.frames import frame_from_vectors
 from trunnion.model.motion import MachiningMode
 from trunnion.model.toolpath import Frame, Operation
@@ -66,9 +67,16 @@ def supported_mode(
     """The mode in which the control can make an operation, with a warning if it is not ``mode``."""
     replaceable = options.mode_for(operation.name) is None and options.simultaneous_mode in capabilities.modes
     if mode is MachiningMode.TILTED and mode not in capabilities.modes and replaceable:
-        what = f"operation {operation.name} is in a {mode}, which the control does not support"
-        how = f"it is made {'with TCP' if options.tcp else 'without TCP'}"
-        return options.simultaneous_mode, [Problem(file, operation.line, what, how, Severity.WARNING, code="PLN320")]
+        return options.simultaneous_mode, [
+            Problem(
+                file,
+                operation.line,
+                Wording("PLN320", "operation_control_does", operation=operation.name, mode=mode)
+                if options.tcp
+                else Wording("PLN320", "operation_control_does_not", operation=operation.name, mode=mode),
+                severity=Severity.WARNING,
+            )
+        ]
     return options.simultaneous_mode if mode is MachiningMode.TCP else mode, []
 
 
@@ -91,7 +99,7 @@ def mode_conflicts(
     wrong = np.flatnonzero(np.abs(axis - expected).max(axis=1) > tolerance)
     cure = "leave the setting mode out, or split the operation"
     return (
-        [Problem(file, int(line[wrong[0]]), f"operation {operation.name}: {what}", cure, code="PLN330")]
+        [Problem(file, int(line[wrong[0]]), Wording("PLN330", "operation", operation=operation.name, subject=what))]
         if len(wrong)
         else []
     )

@@ -8,6 +8,7 @@ import numpy as np
 
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine, inverse, spindle_speed_fault
+from trunnion.messages import Wording
 from trunnion.model.motion import PoleStrategy
 from trunnion.model.toolpath import Kind, Moves, Operation, SpindleOn
 from trunnion.planning.axis_limits import exceeds_travel, limit_remedy, limit_violation_text, limits_of, outside_limits
@@ -30,8 +31,12 @@ def unknown_speed_problems(file: str, request: PlanRequest) -> Iterable[Problem]
     machine, options = request.machine, request.options
     names = [machine.axes[column].name for column in machine.rotary if machine.axes[column].rapid is None]
     if names and (options.pole_strategy is not PoleStrategy.OFF or options.lower_feed):
-        what = f"the definition of {machine.key} has no rapid speed of {' and '.join(names)}: its speed is not limited"
-        yield Problem(file, 0, what, "write rapid_deg_min into the definition", Severity.WARNING, code="PLN420")
+        yield Problem(
+            file,
+            0,
+            Wording("PLN420", "definition_no_rapid", machine=machine.key, names=tuple(names)),
+            severity=Severity.WARNING,
+        )
 
 
 def spindle_speed_problems(file: str, operation: Operation, machine: Machine) -> Iterable[Problem]:
@@ -51,23 +56,22 @@ def rewind_problems(chosen: ChosenPoses, rewinds: Sequence[Rewind], request: Pla
             yield _forbidden_rewind(chosen, rewind)
             continue
         if not math.isfinite(rewind.retract_distance):
-            what = f"the tool must rewind here, and its axis does not lead to the clearance {options.clearance}"
-            yield Problem(chosen.file, line, what, "setting clearance=MM draws back by a distance", code="PLN230")
+            yield Problem(chosen.file, line, Wording("PLN230", "tool_must_rewind", clearance=options.clearance))
             continue
         made.append(rewind)
         if is_radius_compensated(chosen.operation, rewind.row):
-            what = "a rewind within cutter radius compensation"
-            yield Problem(
-                chosen.file, line, what, "output the path without CUTCOM, or split the operation", code="PLN230"
-            )
+            yield Problem(chosen.file, line, Wording("PLN230", "rewind_within_cutter"))
         joints = retract_positions(machine, moves, rewind)
         column = slide_beyond_limits(machine, joints) if chosen.keep_slide_limits else None
         if column is not None:
             values = joints[:, column]
             value = values.max() if values.max() > machine.axes[column].high else values.min()
-            what = f"on the retract for a rewind {limit_violation_text(machine, column, float(value))}"
             yield Problem(
-                chosen.file, line, what, "setting clearance=MM draws back less; or move the workpiece", code="PLN230"
+                chosen.file,
+                line,
+                Wording(
+                    "PLN230", "retract_rewind", limit_violation_text=limit_violation_text(machine, column, float(value))
+                ),
             )
     if made:
         yield _made_rewinds(chosen, made, options.reengage_feed_share)
@@ -106,12 +110,16 @@ def winding_problems(chosen: ChosenPoses, request: PlanRequest) -> Iterable[Prob
 
 
 def _forbidden_rewind(chosen: ChosenPoses, rewind: Rewind) -> Problem:
-    row, what = rewind.row, "the rotary axes would have to rewind in the cut"
+    row = rewind.row
     if rewind.limit_hit is not None:
         row, hit = rewind.limit_hit.row, rewind.limit_hit
-        what = f"{limit_violation_text(chosen.machine, hit.column, hit.value)} in the cut"
-    cure = "allow rewinds (setting rewind=insert), split the operation, or turn the workpiece"
-    return Problem(chosen.file, int(chosen.operation.moves.line[row]), what, cure, code="PLN210")
+    return Problem(
+        chosen.file,
+        int(chosen.operation.moves.line[row]),
+        Wording("PLN210", "cut", limit_violation_text=limit_violation_text(chosen.machine, hit.column, hit.value))
+        if rewind.limit_hit is not None
+        else Wording("PLN210", "rotary_axes_would"),
+    )
 
 
 def pose_problems(file: str, operation: Operation, poses: PlannedPoses, request: PlanRequest) -> Iterable[Problem]:
@@ -124,8 +132,11 @@ def pose_problems(file: str, operation: Operation, poses: PlannedPoses, request:
         for row in rows[:_NAMED].tolist():
             yield _pose_problem(file, operation, poses, request, row)
         if len(rows) > _NAMED:
-            more = f"the same at {len(rows) - _NAMED} further points, the last in line {moves.line[rows[-1]]}"
-            yield Problem(file, int(moves.line[rows[_NAMED]]), more, code="PLN160")
+            yield Problem(
+                file,
+                int(moves.line[rows[_NAMED]]),
+                Wording("PLN160", "same_further_points", count=len(rows) - _NAMED, moves_line=moves.line[rows[-1]]),
+            )
 
 
 def _pose_problem(file: str, operation: Operation, poses: PlannedPoses, request: PlanRequest, row: int) -> Problem:
@@ -136,16 +147,32 @@ def _pose_problem(file: str, operation: Operation, poses: PlannedPoses, request:
         what = f"no rotary position of {machine.key} gives the tool axis {i:.6f}, {j:.6f}, {k:.6f}"
         lacking = f"{degrees_out_of_reach(machine, moves.axis[row]):.3f} degrees"
         cure = f"tilt the workpiece by {lacking}, or post for a machine that reaches it{remedy}"
-        return Problem(file, line, what, cure, code="PLN110")
+        return Problem(
+            file,
+            line,
+            Wording(
+                "PLN110",
+                "no_rotary_position",
+                machine=machine.key,
+                i=i,
+                j=j,
+                k=k,
+                degrees_out_of_reach=degrees_out_of_reach(machine, moves.axis[row]),
+                remedy=remedy,
+            ),
+        )
     if code == BLOCKED:
         turn = f"{describe_pose(machine, poses.rotary[row - 1])} to {describe_pose(machine, poses.rotary[row])}"
         what = f"the rotary axes flip between these two points, {turn}; no solution is valid at both"
         return Problem(
             file,
             line,
-            what,
-            "output the toolpath with points nearer to each other, or tilt the workpiece",
-            code="PLN130",
+            Wording(
+                "PLN130",
+                "rotary_axes_flip",
+                describe_pose=describe_pose(machine, poses.rotary[row - 1]),
+                describe_pose_2=describe_pose(machine, poses.rotary[row]),
+            ),
         )
     column, value = code - 1, float(poses.beyond_value[row])
     cure = limit_remedy(machine, column, value, _other_pose_remark(machine, moves, poses, row))
@@ -180,9 +207,18 @@ def travel_problems(operations: Sequence[tuple[str, Moves, PlannedPoses]], machi
         low, high = extremes[column].tolist()
         end = 1 if abs(high) >= abs(low) else 0
         file, moves, poses = next(one for one in operations if one[2].extremes[column, end] == extremes[column, end])
-        what = (
-            f"axis {axis.name} would go from {low:.3f} to {high:.3f}, {high - low:.3f} mm;"
-            f" its travel from {axis.low:g} to {axis.high:g} has room for {axis.high - axis.low:g} mm"
+        yield Problem(
+            file,
+            int(moves.line[poses.extreme_rows[column, end]]),
+            Wording(
+                "PLN125",
+                "axis_would_go",
+                axis=axis.name,
+                low=low,
+                high=high,
+                high_2=high - low,
+                low_2=axis.low,
+                high_3=axis.high,
+                high_4=axis.high - axis.low,
+            ),
         )
-        cure = "move or turn the workpiece, or post for another machine"
-        yield Problem(file, int(moves.line[poses.extreme_rows[column, end]]), what, cure, code="PLN125")

@@ -6,6 +6,7 @@ from typing import Final
 
 from trunnion.errors import InputError, Problem, RefusedError, argument_problem
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.motion import MachiningMode, Plan
 from trunnion.model.toolpath import Frame, Operation, Toolpath
 from trunnion.planning.linearization.point_insertion import LinearizedMotion, linearize
@@ -55,9 +56,7 @@ def plan(
     options, capabilities = options or PlanOptions(), capabilities or ControlCapabilities()
     sources = [(path.file, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
     if not sources:
-        raise InputError(
-            Problem(toolpaths[0].file, 0, "there is no motion in it", "output the toolpath again", code="CL140")
-        )
+        raise InputError(Problem(toolpaths[0].file, 0, Wording("CL140", "no_motion")))
     _check_names(options, sources)
     remedy = _frame_remedy(sources[0][1].frame, options)
     request = PlanRequest(machine, chord_tolerance, options, capabilities, remedy)

@@ -68,7 +68,7 @@ def prepare_operations(sources: Sequence[tuple[str, Operation]], request: PlanRe
             errors += conflicts
             prepared.append(_with_holes(_with_lines_for_arcs(_with_lines_for_splines(operation)), spindle))
         except HoleCycleError as error:
-            errors.append(Problem(file, error.line, error.what, error.cure, code=error.code))
+            errors.append(Problem(file, error.line, error.wording))
         lines += max(len(prepared[-1].operation.moves) - len(original.moves), 0) if prepared else 0
         if lines > MOST_LINES:
             what = f"the arcs of the operations up to {original.name} become {lines} lines"

@@ -10,6 +10,7 @@ from pathlib import Path
 from trunnion.errors import InputError, Problem
 from trunnion.files import atomic_file
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.motion import Decision
 from trunnion.reporting.content import ReportContent, collect_content, refused_content
 from trunnion.reporting.html_page import render_page
@@ -91,9 +92,7 @@ def _renderer(path: Path) -> Callable[[ReportContent, PlotSeries], Iterator[byte
     """What makes a report of the form that a name asks for."""
     render = RENDERERS.get(path.suffix.lower())
     if render is None:
-        raise InputError(
-            Problem(str(path), 0, "a report is HTML or JSON", "let the name end in .html or .json", code="PAG310")
-        )
+        raise InputError(Problem(str(path), 0, Wording("PAG310", "report_html_json")))
     return render
 
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.errors import Problem
+from trunnion.messages import Wording
 from trunnion.model.columns import StepColumn
 from trunnion.model.run import Run, RunEvent
 
@@ -85,11 +86,9 @@ def _refused(run: Run, deltas: list[_Delta]) -> Iterator[Problem]:
     for each in deltas:
         file = run.files[each.event.file]
         if each.name not in _LENGTHS | _RADII:
-            what = f"{each.name} moves the tool by {each.value:g} mm, and where to is not simulated"
-            yield Problem(file, each.event.line, what, "put it into the tool table", code="SIM162")
+            yield Problem(file, each.event.line, Wording("SIM162", "moves_tool_mm", name=each.name, name_2=each.value))
         elif each.name in _RADII and _radius_counts(run, each):
-            what = f"{each.name} adds {each.value:g} mm to the radius, and the control compensates it: not simulated"
-            yield Problem(file, each.event.line, what, "put it into the tool table", code="SIM162")
+            yield Problem(file, each.event.line, Wording("SIM162", "adds_mm_radius", name=each.name, name_2=each.value))
 
 
 def _radius_counts(run: Run, each: _Delta) -> bool:

@@ -18,6 +18,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.errors import InputError, Problem
 from trunnion.machines.links import link_chain
+from trunnion.messages import Wording
 from trunnion.model.run import CHUNK_ROWS, ProgrammedWord, Run
 from trunnion.model.stated_tips import StatedTips, turns_without_tcp
 from trunnion.timing.row_interpolation import RowInterpolation
@@ -122,9 +123,9 @@ class _Motion:
         if self._most is not None and self._made > self._most:
             row = first + int(np.searchsorted(made, self._most, "right"))
             file = self.run.files[int(self.run.state.file[row])]
-            what = f"is where the program makes more than {self._most} pieces of motion, which are too many to keep"
-            cure = "take a part of the program, or fewer turns of circles and rotary axes"
-            raise InputError(Problem(file, int(self.run.lines[row]), what, cure, code="TWN112"))
+            raise InputError(
+                Problem(file, int(self.run.lines[row]), Wording("TWN112", "where_program_makes", most=self._most))
+            )
 
     def _row_joints(self, first: int, end: int, xyz_is_tip: Flags, length: Floats, machine: Flags) -> Floats:
         """Axis values at the end of rows, with the real lengths of tools."""

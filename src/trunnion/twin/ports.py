@@ -3,6 +3,7 @@
 import socket
 
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 
 
 def listen(what: str, host: str, port: int, argument: str) -> socket.socket:
@@ -23,12 +24,21 @@ def listen(what: str, host: str, port: int, argument: str) -> socket.socket:
         If it is taken, or the address is none of this computer's.
     """
     if not 0 <= port <= 65535:
-        raise InputError(
-            Problem(what, 0, f"there is no port {port}", f"give {argument} a number up to 65535", code="TWN150")
-        )
+        raise InputError(Problem(what, 0, Wording("TWN150", "no_port", port=port, argument_text=argument)))
     try:
         return socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET)
     except (OSError, OverflowError) as error:
-        fault = f"cannot be served on {host}, port {port}: {getattr(error, 'strerror', None) or error}"
-        cure = f"choose another one with argument {argument}=NUMBER; 0 takes a free one"
-        raise InputError(Problem(what, 0, fault, cure, code="TWN150")) from None
+        raise InputError(
+            Problem(
+                what,
+                0,
+                Wording(
+                    "TWN150",
+                    "cannot_served_port",
+                    host=host,
+                    port=port,
+                    getattr=getattr(error, "strerror", None) or error,
+                    argument_text=argument,
+                ),
+            )
+        ) from None

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, argument_problem
+from trunnion.messages import Wording
 from trunnion.reporting.column_encoding import COMPRESSION_LEVEL
 from trunnion.simulation.replay import Replay, changed_box
 from trunnion.simulation.simulator import Simulation
@@ -196,9 +197,8 @@ def _picture_cell(shape: StockShape, narrowest: float) -> float:
     x, y, z = shape.high - shape.low
     finest = math.sqrt(2.0 * float(x * y + y * z + z * x) / _MOST_CUBES)
     if 0.5 * narrowest < finest:
-        what = f"is too large to be shown as it is cut with a tool of {narrowest:g} mm: cells of {finest:.2g} mm are"
         raise InputError(
-            argument_problem("stock", f"{what} the finest", "leave it out, or show a smaller one", code="PAG121")
+            argument_problem("stock", Wording("PAG121", "too_large_shown", narrowest=narrowest, finest=finest))
         )
     return finest
 

@@ -23,6 +23,7 @@ from trunnion.impeller.flank.milling import FlankCut, mill_flank
 from trunnion.impeller.impeller import Impeller, rotated
 from trunnion.impeller.paths.passes import Pass
 from trunnion.impeller.progress import Progress, silent
+from trunnion.messages import Wording
 
 #: A flank ends where the fillet takes up more than this part of the blade's height.
 _LOW: Final = 0.75
@@ -67,9 +68,8 @@ class BladeFlank:
             If the cutter would cut into another blade.
         """
         if self.neighbour < 0.0:
-            what = f"the cutter does not pass between two blades: it cuts {-self.neighbour:.3f} mm into the other one"
             raise InputError(
-                Problem("flank milling", 0, what, "take a thinner or shorter cutter, or point milling", code="IMP326")
+                Problem("flank milling", 0, Wording("IMP326", "cutter_does_not", neighbour=-self.neighbour))
             )
         at = np.linspace(0.0, 1.0, count)
         centre, axis = self.cut.path.poses(at)
@@ -140,10 +140,7 @@ def _until(impeller: Impeller, blade: Blade, side: float, ball: float) -> float:
     w = np.linspace(0.0, 1.0, 401)
     low = _begins(impeller, blade, side, ball, w) > _LOW
     if low[:40].any():
-        what = f"a ball of radius {ball:g} mm finds no place between hub and tip at the leading edge"
-        raise InputError(
-            Problem(impeller.definition.file, 0, what, "take a thinner cutter or a smaller fillet", code="IMP326")
-        )
+        raise InputError(Problem(impeller.definition.file, 0, Wording("IMP326", "ball_radius_mm", ball=ball)))
     return float(w[low.argmax() - 1]) if low.any() else 1.0
 
 

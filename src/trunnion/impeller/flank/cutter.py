@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass
 
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,9 +34,12 @@ class FlankCutter:
     def __post_init__(self) -> None:
         ends = self.radius, self.radius + self.slope * self.length
         if not (self.length > 0.0 and min(ends) > 0.0 and abs(self.slope) < 1.0):
-            what = f"a cutter of radius {ends[0]:g} to {ends[1]:g} over a length of {self.length:g} mm is none"
             raise InputError(
-                Problem("flank milling", 0, what, "give radius and length above 0, and a flatter cone", code="IMP326")
+                Problem(
+                    "flank milling",
+                    0,
+                    Wording("IMP326", "cutter_radius_over", ends=ends[0], ends_2=ends[1], length=self.length),
+                )
             )
 
     @property

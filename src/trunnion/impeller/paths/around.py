@@ -22,6 +22,7 @@ from trunnion.impeller.blade import Blade
 from trunnion.impeller.fillet import Stations
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.paths.passes import Pass, PassFamily, Stepover, Way
+from trunnion.messages import Wording
 
 #: Stations on each part of the way round before any are added.
 _FIRST: Final = 33
@@ -77,8 +78,7 @@ def side_end(impeller: Impeller, blade: Blade, reach: float) -> float:
         if min(np.hypot(one[:, 0], one[:, 1]).min() for one in ends) >= radius:
             return end
         end += 0.01
-    what = "the ball does not come out of the stock at the trailing edge"
-    raise InputError(Problem(impeller.definition.file, 0, what, 'write trailing_edge = "round"', code="IMP327"))
+    raise InputError(Problem(impeller.definition.file, 0, Wording("IMP327", "ball_does_not")))
 
 
 def dense_stations(build: Callable[[Floats], Sheet], last: float, tolerance: float) -> Floats:
@@ -142,8 +142,11 @@ def lay_passes(sheet: Sheet, s: Floats, rows: Floats, radius: float, way: Way) -
         If a spiral is wanted and the stations do not go all the way round.
     """
     if way is Way.SPIRAL and s[-1] < 4.0:
-        what = "is a spiral, and the trailing edge is cut, so that there is no way round it"
-        raise InputError(argument_problem("way", what, f"choose {Way.ONE_WAY} or {Way.BOTH_WAYS}", code="IMP327"))
+        raise InputError(
+            argument_problem(
+                "way", Wording("IMP327", "spiral_trailing_edge", one_way=Way.ONE_WAY, both_ways=Way.BOTH_WAYS)
+            )
+        )
     centres = np.stack([sheet.balls(np.full(len(s), depth))[0] for depth in rows])
     lengths = np.linalg.norm(np.diff(centres, axis=1), axis=2).mean(axis=0)
     along = _shares(lengths)

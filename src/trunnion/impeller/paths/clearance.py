@@ -23,6 +23,7 @@ from trunnion.impeller.blade import Blade
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.paths.cells import STEPS, Cells, cell_tree, joined
 from trunnion.impeller.paths.clearance_kernel import BodyData, ToolData, least_margins, part_distances
+from trunnion.messages import Wording
 from trunnion.simulation.tools.pieces import revolved_pieces
 from trunnion.simulation.tools.profile import Role, ToolShape
 
@@ -219,11 +220,7 @@ def tool_body(shape: ToolShape, radius: float, margins: Margins) -> ToolBody:
     element = shape.sections[0].outline[0]
     centre = getattr(element, "centre", (math.nan, math.nan))
     if not (abs(centre[0]) < 1e-6 and abs(centre[1] - radius) < 1e-6 and element.start[1] < 1e-6):
-        raise InputError(
-            argument_problem(
-                "tool", f"has no ball of radius {radius:g} mm at its end", "choose a ball mill", code="IMP321"
-            )
-        )
+        raise InputError(argument_problem("tool", Wording("IMP321", "no_ball_radius", radius=radius)))
     pieces, _ = revolved_pieces(shape, _TOOL)
     real, wide, roles, wide_roles, wanted = [], [], [], [], []
     slope = math.tan(math.radians(margins.lean))

@@ -22,6 +22,7 @@ from trunnion.impeller.impeller import rotated
 from trunnion.impeller.paths.passes import Pass
 from trunnion.impeller.paths.thinning import thinned
 from trunnion.impeller.progress import Progress, silent
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Kind, Phase
 
 #: Whether the ball and the rest of the tool are clear at poses: centres (n, 3), axes (n, 3) -> (n,).
@@ -262,10 +263,7 @@ def _clear_way(centre: Floats, axis: Floats, space: FreeSpace, is_clear: IsClear
         if all(is_clear(*poses).all() for poses in (out, up)):
             return way
     x, y, z = centre
-    fault = f"the tool cannot {what} the pass at ({x:.2f}, {y:.2f}, {z:.2f}) along its axis without touching something"
-    raise InputError(
-        Problem(name, 0, fault, "let the tool be thinner above its ball, or lead in and out by an arc", code="IMP325")
-    )
+    raise InputError(Problem(name, 0, Wording("IMP325", "tool_cannot_pass", subject=what, x=x, y=y, z=z)))
 
 
 def _between(first: Floats, first_axis: Floats, last: Floats, last_axis: Floats) -> tuple[Floats, Floats]:

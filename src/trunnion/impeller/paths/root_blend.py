@@ -19,6 +19,7 @@ from trunnion.impeller.paths.around import dense_stations, lay_passes, row_depth
 from trunnion.impeller.paths.blade_finish import root_heights, tip_heights
 from trunnion.impeller.paths.passes import PassFamily, Stepover, Way
 from trunnion.impeller.paths.room import Surroundings, prove_room, surroundings_of
+from trunnion.messages import Wording
 
 #: Strips go on beyond what was not reached, as a part of the ball's radius.
 _OVERLAP: Final = 0.25
@@ -116,9 +117,9 @@ def root_blend(impeller: Impeller, blade: Blade, step: RootBlend) -> PassFamily:
     """
     fillet = impeller.definition.fillet
     if step.radius > fillet + _SAME:
-        what = f"a ball of radius {step.radius:g} mm is larger than the fillet of {fillet:g} mm"
-        cure = f"the largest that fits has a radius of {fillet:g} mm"
-        raise InputError(Problem(impeller.definition.file, 0, what, cure, code="IMP320"))
+        raise InputError(
+            Problem(impeller.definition.file, 0, Wording("IMP320", "ball_radius_mm", radius=step.radius, fillet=fillet))
+        )
     around = surroundings_of(impeller, blade)
     end = side_end(impeller, blade, fillet)
 

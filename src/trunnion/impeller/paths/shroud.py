@@ -17,6 +17,7 @@ from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.paths.passes import Pass, Stepover
+from trunnion.messages import Wording
 
 #: Heights at which the form is looked at, per mm of it.
 _PER_MM: Final = 20.0
@@ -69,9 +70,7 @@ def stock_roughing(
     outside = stock.diameter / 2.0
     stands = limit < outside
     if not stands.any():
-        raise InputError(
-            Problem(impeller.definition.file, 0, "no stock stands outside of the shroud", "leave it out", code="IMP327")
-        )
+        raise InputError(Problem(impeller.definition.file, 0, Wording("IMP327", "no_stock_stands")))
     lowest, top = float(heights[stands].min()), stock.top
     count = max(1, math.ceil((outside - float(limit[stands].min())) / widest - 1e-9))
     _check_count(count * ((top - lowest) / step_down + 2.0), outside + radius, tolerance)
@@ -88,9 +87,7 @@ def stock_roughing(
         passes.append(_helix(around, z, angle, np.zeros(len(z)), np.ones(len(z)), layer=k))
     axes = tuple(np.tile([0.0, 0.0, 1.0], (len(one), 1)) for one in passes)
     if lowest > stock.top - 1e-9 or not passes:
-        raise InputError(
-            Problem(impeller.definition.file, 0, "no stock stands outside of the shroud", "leave it out", code="IMP327")
-        )
+        raise InputError(Problem(impeller.definition.file, 0, Wording("IMP327", "no_stock_stands")))
     return TurnedPasses(tuple(passes), axes)
 
 
@@ -148,10 +145,7 @@ def shroud_form(impeller: Impeller, allowance: float = 0.0) -> tuple[Floats, Flo
     falls = np.diff(outline[:, 1])
     if (falls > 1e-9).any():
         z = float(outline[int(np.argmax(falls > 1e-9)), 1])
-        what = f"the shroud rises towards the outlet at height {z:.2f} mm: a helix round Z does not reach below it"
-        raise InputError(
-            Problem(definition.file, 0, what, "leave this step out, or turn the stock's form", code="IMP327")
-        )
+        raise InputError(Problem(definition.file, 0, Wording("IMP327", "shroud_rises_towards", z=z)))
     along = np.gradient(outline, axis=0)
     along /= np.linalg.norm(along, axis=1)[:, None]
     outline = outline + allowance * np.column_stack((-along[:, 1], along[:, 0]))
@@ -184,9 +178,8 @@ def _check_count(turns: float, radius: float, tolerance: float) -> None:
     count = turns * len(_angles(radius, 1.0, tolerance))
     if count > _MOST_POINTS:
         most = _MOST_POINTS / 1e6
-        what = f"{turns:.0f} turns have {count / 1e6:.0f} million points, and {most:.0f} million are the most"
         raise InputError(
-            Problem("", 0, what, "let stepover_mm, step_down_mm or tolerance_mm be greater", code="IMP328")
+            Problem("", 0, Wording("IMP328", "turns_have_million", turns=turns, count=count / 1000000.0, most=most))
         )
 
 

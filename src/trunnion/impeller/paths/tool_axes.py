@@ -24,6 +24,7 @@ from trunnion.impeller.paths.clearance_kernel import ToolData
 from trunnion.impeller.paths.least_clearances import FAR, PartClearance, least_clearances
 from trunnion.impeller.paths.passes import PassFamily, Way
 from trunnion.impeller.progress import Advance, Progress, silent
+from trunnion.messages import Wording
 from trunnion.simulation.tools.profile import Role, ToolShape
 
 #: Places from which the search begins.
@@ -270,7 +271,7 @@ class _Search:
             place = _place_words(self.places[asked[k]], self.centres[asked[k]])
             if value[k] == -np.inf:
                 what = f"no tool axis within {self._tilt:g} degrees of Z is in the machine's reach {place}"
-                return Problem(name, 0, what, "let it tilt more, or choose another machine", code="IMP322")
+                return Problem(name, 0, Wording("IMP322", "no_tool_axis", tilt=self._tilt, place=place))
             if value[k] < 0.0:
                 start = directions[[int(margins[k].argmax())]]
                 missing, other = self._missing(pieces, asked[[k]], start)
@@ -280,9 +281,9 @@ class _Search:
             clear[~clear.any(axis=1)] = True
         if not self._has_end:
             what = "no smooth field of tool axes was found within the limit of iterations"
-            return Problem(name, 0, what, "want other clearances or another tilt, or divide the step", code="IMP324")
+            return Problem(name, 0, Wording("IMP324", "no_smooth_field"))
         what = f"tool axes that are clear {place} do not join with those beside it"
-        return Problem(name, 0, what, "choose a longer or thinner tool, or divide the step", code="IMP324")
+        return Problem(name, 0, Wording("IMP324", "tool_axes_clear", place=place))
 
     def _missing(self, pieces: ToolData, point: Ints, axis: Floats) -> tuple[float, str]:
         """How much pieces of a tool miss at a point with an axis, and the body that is in their way."""

@@ -34,6 +34,7 @@ from trunnion.impeller.solid.shapes import (
 )
 from trunnion.impeller.solid.splines import spline_through
 from trunnion.impeller.solid.turned import Meridian, ends_of, profile_parameters
+from trunnion.messages import Wording
 
 #: How far the body reaches beyond the stock, mm.
 _BEYOND: Final = 2.0
@@ -164,9 +165,7 @@ def _above(shroud: Profile, points: Floats) -> Flags:
 
 
 def _refused(impeller: Impeller, what: str) -> InputError:
-    return InputError(
-        Problem(impeller.definition.file, 0, f"{what}, so that no solid of it is made", "write a mesh", code="IMP420")
-    )
+    return InputError(Problem(impeller.definition.file, 0, Wording("IMP420", "so_no_solid", subject=what)))
 
 
 def _add_blade(body: Body, loop: RootLoop, angle: float, shroud: Meridian) -> _Foot:
@@ -256,8 +255,7 @@ def _add_channel(
     start = min(float(one.hub(part, 0.0)[:, 0].min()) for part in range(PARTS)) - _BEFORE
     end = max(float(other.hub(part, more)[:, 0].max()) for part in range(PARTS))
     if end - start > 2.0 * np.pi - _BEFORE:
-        what = "a channel goes round the axis, so that no solid of it is made"
-        raise InputError(Problem("blade", 0, what, "write a mesh", code="IMP420"))
+        raise InputError(Problem("blade", 0, Wording("IMP420", "channel_goes_round")))
 
     def passed(foot: _Foot, parts: tuple[int, ...], turned: float) -> list[EdgeUse]:
         return [

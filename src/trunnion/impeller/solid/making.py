@@ -28,6 +28,7 @@ from trunnion.impeller.model import impeller_model
 from trunnion.impeller.solid.impeller_body import impeller_body
 from trunnion.impeller.solid.order import Made, Order, Refusal
 from trunnion.impeller.solid.root_loop import Density, carried_on
+from trunnion.messages import Wording
 from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
 
 #: Points of patches; the next of them where patches are too far off, or the kernel makes no solid.
@@ -112,8 +113,7 @@ def impeller_solid(impeller: Impeller, tolerance: float) -> ImpellerSolid:
             raise
         mesh = waiting.result().mesh
     if abs(made.volume - mesh.volume) > _VOLUME * mesh.volume:
-        what = f"its solid has {made.volume:.1f} mm³, its mesh {mesh.volume:.1f} mm³"
-        raise InputError(Problem(file, 0, what, "write a mesh", code="IMP420"))
+        raise InputError(Problem(file, 0, Wording("IMP420", "solid_mm_mesh", volume=made.volume, volume_2=mesh.volume)))
     return ImpellerSolid(made.step, made.volume, made.faces, deviation, mesh)
 
 
@@ -131,10 +131,7 @@ def _within(impeller: Impeller, tolerance: float) -> tuple[Made, float]:
         if deviation <= tolerance:
             return made, deviation
         why = f"its faces are {deviation:.4f} mm off the exact surfaces, more than {tolerance:g} mm"
-    what = f"makes no solid of exact surfaces: {why}"
-    raise InputError(
-        Problem(impeller.definition.file, 0, what, "write a mesh, or let the tolerance be wider", code="IMP420")
-    )
+    raise InputError(Problem(impeller.definition.file, 0, Wording("IMP420", "makes_no_solid", why=why)))
 
 
 def _fine_fillets(impeller: Impeller) -> Iterator[tuple[Blade, Fillet]]:
@@ -165,13 +162,21 @@ def _asked(order: Order) -> Made | Refusal:
     try:
         done = subprocess.run(command, input=pickle.dumps(order), capture_output=True, check=False, timeout=_LONGEST)
     except subprocess.TimeoutExpired:
-        what = f"Open CASCADE makes no solid of {order.name} within {_LONGEST:g} s"
-        raise InputError(Problem("trunnion", 0, what, "write a mesh", code="IMP421")) from None
+        raise InputError(
+            Problem("trunnion", 0, Wording("IMP421", "open_cascade_makes", order=order.name, longest=_LONGEST))
+        ) from None
     said = done.stderr.decode("utf-8", "replace").strip().splitlines()
     last = said[-1][:200] if said else f"it ends with {done.returncode}"
     if done.returncode == _NOT_LOADED:
-        cure = 'pip install "trunnion[cad]"; on Linux, Open CASCADE also needs libGL and libX11'
-        raise InputError(Problem("trunnion", 0, f"cannot load Open CASCADE: {last}", cure, code="IMP421"))
+        raise InputError(
+            Problem(
+                "trunnion",
+                0,
+                Wording("IMP421", "cannot_load_open", said=said[-1][:200])
+                if said
+                else Wording("IMP421", "cannot_load_open_cascade", returncode=done.returncode),
+            )
+        )
     if done.returncode or not done.stdout:
         return Refusal(f"Open CASCADE fails: {last}")
     answer = pickle.loads(done.stdout)

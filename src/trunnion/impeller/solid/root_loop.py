@@ -24,6 +24,7 @@ from trunnion.impeller.profiles import Profile
 from trunnion.impeller.solid.shapes import SplineSurface
 from trunnion.impeller.solid.splines import surface_through
 from trunnion.impeller.solid.turned import profile_parameters
+from trunnion.messages import Wording
 
 #: Parts of a loop.
 PARTS: Final = 6
@@ -181,9 +182,8 @@ def _heights(impeller: Impeller, blade: Blade, stations: Stations, fillet: Fille
     k = int(over.argmax())
     if over[k] >= 0.0:
         x, y, z = fillet.centre[k] + impeller.definition.fillet * fillet.to_blade[k]
-        what = f"the fillet reaches the shroud near X{x:.3f} Y{y:.3f} Z{z:.3f}, so that no solid of it is made"
         raise InputError(
-            Problem(impeller.definition.file, 0, what, "make the fillet smaller, or write a mesh", code="IMP420")
+            Problem(impeller.definition.file, 0, Wording("IMP420", "fillet_reaches_shroud", x=x, y=y, z=z))
         )
     return crossings(gap, fillet.v, np.full(len(over), blade.high))
 

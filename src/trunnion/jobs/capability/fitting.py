@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.definitions import load_table
-from trunnion.errors import ArgumentName, InputError, Problem, Severity, TrunnionError, argument_problem
+from trunnion.errors import InputError, Problem, Severity, TrunnionError, argument_problem
 from trunnion.jobs.convert.converting import convert
 from trunnion.jobs.describe.assumptions import assumed_places
 from trunnion.jobs.inputs.arguments import check_paths, wrong_argument
@@ -261,7 +261,7 @@ def _fit(
             return _without_limits(machine, toolpaths)
         found = place(toolpaths, machine=machine, turns=turns)
     except TrunnionError as error:
-        if any(problem.file in _OF_ALL and isinstance(problem.file, ArgumentName) for problem in error.problems):
+        if any(problem.argument in _OF_ALL for problem in error.problems):
             raise
         return MachineFit(key, FitStatus.NOT, _reasons(error))
     if not found.fits:

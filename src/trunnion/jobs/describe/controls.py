@@ -308,7 +308,7 @@ def _outcome(control: Control, method: HoleMethod) -> tuple[str, str]:
     try:
         control.family.cycle_call(hole, 0.0, spindle, control.settings, formats)
     except UnsupportedCycleError as error:
-        return "no cycle, so that motion makes the hole if it can", f" ({error.what})"
+        return "no cycle, so that motion makes the hole if it can", f" ({error.wording.what})"
     except HoleCycleError as error:
-        return "refused without the settings or words that it needs", f" ({error.what}; {error.cure})"
+        return "refused without the settings or words that it needs", f" ({error.wording.what}; {error.wording.cure})"
     return "cycles", ""

@@ -17,7 +17,7 @@ from trunnion.controls import Control
 from trunnion.controls.setting_rules import is_one_line
 from trunnion.controls.vocabulary import TCP_SETTINGS
 from trunnion.definitions.messages import did_you_mean
-from trunnion.errors import ArgumentName, InputError, Problem, argument_problem
+from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
 from trunnion.machines import Machine
 
@@ -282,7 +282,7 @@ def set_up_machine(machine: Machine, zero: str | Iterable[float] | None, tool_le
 def _of_argument(problem: Problem, name: str) -> Problem:
     """A problem with a setting as one with the argument of its name."""
     what, cure = problem.what.removeprefix(f"{name} "), problem.cure.replace(f"write {name}=", "write ", 1)
-    return replace(problem, file=ArgumentName(name), what=what, cure=cure)
+    return argument_problem(name, what, cure, problem.severity, code=problem.code)
 
 
 def check_tolerance(argument: str, value: object, *, optional: bool = False) -> None:

@@ -46,7 +46,7 @@ class ProgramPlaces:
 
     def _by_template(self, problem: Problem, file: str, control: Control) -> Problem:
         written = self._written_by(file, problem.line, control)
-        return replace(problem, what=f"{problem.what} ({written})") if written else problem
+        return replace(problem, wording=problem.wording.within("with_note", note=written)) if written else problem
 
     def explained(self, verification: Verification, control: Control) -> Verification:
         """Findings of checks that failed, with the template that has written their blocks."""

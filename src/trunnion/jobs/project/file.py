@@ -20,7 +20,7 @@ from typing import Any, Final, TypeGuard
 
 from trunnion.definitions import Table, load_table
 from trunnion.definitions.extends import MAX_FILE_BYTES
-from trunnion.errors import ArgumentName, InputError, Problem, unusable_file
+from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import FilePath, as_machine
 from trunnion.jobs.inputs.settings import work_offset_setting
@@ -399,9 +399,10 @@ def told_by_keys(path: Path) -> Iterator[None]:
 
 
 def _by_key(problem: Problem, path: Path) -> Problem:
-    if not isinstance(problem.file, ArgumentName):
+    if not problem.argument:
         return problem
-    return replace(problem, file=str(path), what=f"{_KEYS.get(problem.file, problem.file)}: {problem.what}")
+    wording = problem.wording.within("of", name=_KEYS.get(problem.argument, problem.argument))
+    return replace(problem, file=str(path), wording=wording, subject=None)
 
 
 def _try(table: Table, check: Callable[..., object], *values: object) -> None:

@@ -289,7 +289,7 @@ def _left_over(posted: Sequence[tuple[PostedSetup, tuple[PostResult, ...]]], use
 
 def _of_setup(problem: Problem, setup: PostedSetup) -> Problem:
     """A problem that says in which set-up it is."""
-    return replace(problem, what=f"{problem.what} (set-up {setup.name})")
+    return replace(problem, wording=problem.wording.within("in_setup", setup=setup.name))
 
 
 def _joined(errors: Sequence[TrunnionError]) -> TrunnionError:

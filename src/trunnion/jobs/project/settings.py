@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any, Final
 
 from trunnion.definitions import Table
-from trunnion.errors import ArgumentName, InputError, Problem
+from trunnion.errors import InputError, Problem
 from trunnion.jobs.inputs.settings import Settings, SettingValue, as_texts
 from trunnion.jobs.project.project import PostedSetup
 
@@ -35,7 +35,8 @@ def read_settings(table: Table) -> tuple[dict[str, SettingValue], dict[str, tupl
             as_texts({name: value})  # type: ignore[dict-item]  # of any type: that is what is judged
         except InputError as error:
             own.problems.extend(
-                replace(each, file=own.location(name)[0], line=own.location(name)[1]) for each in error.problems
+                replace(each, file=own.location(name)[0], line=own.location(name)[1], subject=None)
+                for each in error.problems
             )
             continue
         found[name], places[name] = value, (*own.location(name), own.key_path(name))
@@ -61,16 +62,17 @@ def told_in_project(setup: PostedSetup, given: Settings) -> Iterator[None]:
 
 
 def _in_project(problem: Problem, setup: PostedSetup, given: Settings) -> Problem:
-    if not isinstance(problem.file, ArgumentName) or problem.file != "settings":
+    if problem.argument != "settings":
         return problem
     name = problem.what.partition(" ")[0]
     if name in given:
         return problem
     what = problem.what.replace("programs is operations", 'programs is "subprograms"')  # the words of divide
     cure = problem.cure.replace("programs=operations", 'divide = "subprograms"')
-    problem = replace(problem, what=what, cure=cure)
     if name in setup.places:
         file, line, key = setup.places[name]
-        return replace(problem, file=file, line=line, what=f"{key}{problem.what.removeprefix(name)}")
-    file, line, key = setup.places["settings"]
-    return replace(problem, file=file, line=line, what=f"{key}: {problem.what}")
+        said = f"{key}{what.removeprefix(name)}"
+    else:
+        file, line, key = setup.places["settings"]
+        said = f"{key}: {what}"
+    return Problem(file, line, said, cure, problem.severity, code=problem.code)

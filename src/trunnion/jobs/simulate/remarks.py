@@ -235,4 +235,4 @@ def part_remarks(setup: Setup, lacking: Excess | None, slack: float, *, is_later
 
 def of_setup(remarks: Iterable[Problem], name: str) -> list[Problem]:
     """Remarks that name the set-up they are of; an empty name is that of the only one."""
-    return [replace(each, what=f"{name}: {each.what}") if name else each for each in remarks]
+    return [replace(each, wording=each.wording.within("of", name=name)) if name else each for each in remarks]

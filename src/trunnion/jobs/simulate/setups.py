@@ -16,7 +16,7 @@ import numpy as np
 
 from trunnion import readers
 from trunnion.arrays import Floats
-from trunnion.errors import ArgumentName, InputError, Problem, Severity, argument_problem
+from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.jobs.inputs.arguments import check_choice, check_path, check_paths, wrong_argument
 from trunnion.jobs.inputs.placed_heads import unlike_bodies
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
@@ -165,11 +165,12 @@ def told_with_places(places: Places, setup: str = "") -> Iterator[None]:
 
 def with_place(problem: Problem, places: Places, setup: str = "") -> Problem:
     """A problem with an argument where a project states it; any other as it is."""
-    if not isinstance(problem.file, ArgumentName) or problem.file not in places:
+    if problem.argument not in places:
         return problem
     file, line, key = places[problem.file]
-    of_setup = f"{setup}: " if setup else ""
-    return replace(problem, file=file, line=line, what=f"{of_setup}{key}: {problem.what}")
+    wording = problem.wording.within("of", name=key)
+    wording = wording.within("of", name=setup) if setup else wording
+    return replace(problem, file=file, line=line, wording=wording, subject=None)
 
 
 def listed(name: str, values: Any, record: type) -> list[Any]:

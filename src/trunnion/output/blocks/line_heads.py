@@ -5,6 +5,7 @@ from typing import Final
 
 from trunnion.controls.words import BlockNumbers
 from trunnion.errors import InputError, argument_problem
+from trunnion.messages import Wording
 
 #: The sign of block skip with its level, which is one figure.
 _SKIP: Final = re.compile(r"[ \t]*(/(?:[1-9](?![0-9.]))?)[ \t]*")
@@ -82,7 +83,11 @@ class GivenNumbers:
     def _repeated(self, number: int) -> InputError:
         letter = self._numbers.letter
         free = next((each for each in (number + 1, self._numbers.start - 1) if not self._is_automatic(each)), 0)
-        example = f" (such as {letter}{free})" if free > 0 else ""
-        what = f"a line brings the block number {letter}{number}, which automatic numbering gives to another block, too"
-        cure = f"write a number in it that automatic numbering does not give{example}, or post with numbers=off"
-        return InputError(argument_problem("templates", what, cure, code="CTL115"))
+        return InputError(
+            argument_problem(
+                "templates",
+                Wording("CTL115", "line_brings_block", letter=letter, number=number, free=free)
+                if free > 0
+                else Wording("CTL115", "line_brings_block_number", letter=letter, number=number),
+            )
+        )

@@ -16,6 +16,7 @@ from trunnion.controls.family_writer import FamilyWriter, WordEvent
 from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD, TOOL_VECTOR_WORDS, VECTOR_LINE_WORD
 from trunnion.controls.words import ABSENT, WordRangeError
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Kind, LoadTool, Phase, SpindleOn
 from trunnion.output.blocks.block_table import BlockTable
@@ -51,10 +52,6 @@ _CYCLE_LINES_BYTES: Final = 1024
 
 #: Machining modes in which the tool lies along Z of the program.
 _Z_ALONG_TOOL: Final = (MachiningMode.THREE_AXIS, MachiningMode.TILTED)
-
-_SHORTEN: Final = (
-    "shorten it: a text of the CL file, of a template, or of a setting that one prints, such as setting title=…"
-)
 
 
 class MotionBlockWriter:
@@ -190,8 +187,19 @@ class MotionBlockWriter:
         lines = [self._ended(line) for line in lines]
         for line in lines:
             if len(line.encode()) > room:
-                what = f"a line has more than the {self.control.longest_line} bytes that {self.control.name} reads"
-                raise InputError(Problem(self._file, 0, f"{what}: {line[:60]}…", _SHORTEN, code="CTL120"))
+                raise InputError(
+                    Problem(
+                        self._file,
+                        0,
+                        Wording(
+                            "CTL120",
+                            "line_more_bytes",
+                            longest_line=self.control.longest_line,
+                            control=self.control.name,
+                            line=line[:60],
+                        ),
+                    )
+                )
         sign, blocks, continues = self.control.continued, list[str](), False
         for line in lines:
             blocks[len(blocks) - continues :] = [f"{blocks[-1]}\n{line}" if continues else line]
@@ -211,9 +219,19 @@ class MotionBlockWriter:
         """Lines of a definition, with values that are spelled already, as the program has them."""
         for line in lines:
             if letter := lacking(line, self._encoding):
-                what = f"the definition of {self.control.name} writes {line!r}: {self._encoding} has no {letter!r}"
                 raise InputError(
-                    Problem(self._file, 0, what, "change it there, or write setting encoding=utf-8", code="CTL810")
+                    Problem(
+                        self._file,
+                        0,
+                        Wording(
+                            "CTL810",
+                            "definition_writes_no",
+                            control=self.control.name,
+                            line=repr(line),
+                            encoding=self._encoding,
+                            letter=repr(letter),
+                        ),
+                    )
                 )
         return [self.family.COMMENTS.sub(self._in_capitals, line) for line in lines] if self._capitals else list(lines)
 

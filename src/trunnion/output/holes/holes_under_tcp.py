@@ -15,6 +15,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.controls.family_writer import EACH_HOLE, WordEvent
+from trunnion.messages import Wording
 from trunnion.model.frames import without_turning_noise
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation
@@ -114,9 +115,7 @@ def check_holes_under_tcp(operation: Operation) -> Iterator[HoleCycleError]:
     for row, cycle in cycles.items():
         line = int(moves.line[row])
         if moves.kind[row] != Kind.RAPID:
-            yield HoleCycleError(
-                "a rewind of the rotary axes among holes", "leave the setting holes out", line, code="CTL380"
-            )
+            yield HoleCycleError(Wording("CTL380", "rewind_rotary_axes"), line)
         if row == 0:
             continue
         before = cycles.get(row - 1)
@@ -131,8 +130,7 @@ def check_holes_under_tcp(operation: Operation) -> Iterator[HoleCycleError]:
         else:
             continue
         if lowest < -_SAME_HEIGHT:
-            what = f"on the straight way to this hole the tool would be {-lowest:.3f} mm below the height of RAPTO"
-            yield HoleCycleError(what, "put RAPID points between the holes, or raise RTRCTO", line, code="CTL380")
+            yield HoleCycleError(Wording("CTL380", "straight_way_hole", lowest=-lowest), line)
 
 
 def _cycle_by_row(operation: Operation) -> dict[int, Cycle]:

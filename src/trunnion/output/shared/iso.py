@@ -5,6 +5,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.family_writer import ArcWords, Codes, Formats, UnsupportedFeatureError, WordEvent
 from trunnion.controls.words import ABSENT
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Arcs, Coolant, Kind, Operation, Sense, SpindleOff, SpindleOn
 
 WORDS: tuple[str, ...] = (
@@ -50,9 +51,7 @@ def feed_per_rev_before_spindle(operation: Operation, spindle_known: bool) -> li
     early = np.flatnonzero(moves.per_rev[:first] & (moves.kind[:first] != Kind.RAPID))
     if not len(early):
         return []
-    why = UnsupportedFeatureError(
-        "a feed per revolution before the spindle has a speed", "put SPINDL before it", code="CTL330"
-    )
+    why = UnsupportedFeatureError(Wording("CTL330", "feed_per_revolution_before"))
     return [(int(moves.line[early[0]]), why)]
 
 

@@ -4,6 +4,7 @@ import math
 
 from trunnion.controls.family_writer import UnsupportedFeatureError
 from trunnion.controls.words import NumberFormat
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Dwell
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, SpindleState
 
@@ -19,9 +20,7 @@ def dwell_seconds(event: Dwell, rpm: float | None) -> float:
     if not event.revolutions:
         return event.amount
     if rpm is None or not rpm > 0.0:
-        raise UnsupportedFeatureError(
-            "a dwell in spindle revolutions while the spindle stands", "put SPINDL before it", code="CTL420"
-        )
+        raise UnsupportedFeatureError(Wording("CTL420", "dwell_spindle_revolutions"))
     return 60.0 * event.amount / rpm
 
 
@@ -35,8 +34,9 @@ def dwell_text(amount: float, number_format: NumberFormat, factor: float = 1.0, 
     """
     least, greatest = number_format.least / factor, number_format.greatest / factor
     if not least <= amount <= greatest:
-        what = f"a dwell of {amount:g} {unit}, and the control waits {least:g} to {greatest:g} {unit}"
-        raise UnsupportedFeatureError(what, "write a dwell within that", code="CTL420")
+        raise UnsupportedFeatureError(
+            Wording("CTL420", "dwell_control_waits", amount=amount, unit=unit, least=least, greatest=greatest)
+        )
     return number_format.text(factor * amount)
 
 
@@ -62,7 +62,7 @@ def running_spindle(spindle: SpindleState | None, what: str) -> SpindleState:
         If it does not: ``what`` needs it.
     """
     if spindle is None or not (spindle.rpm > 0.0 and math.isfinite(spindle.rpm)):
-        raise HoleCycleError(f"{what} while the spindle stands still", "put SPINDL before the cycle", code="PLN660")
+        raise HoleCycleError(Wording("PLN660", "while_spindle_stands", subject=what))
     return spindle
 
 
@@ -76,5 +76,5 @@ def thread(cycle: Cycle, spindle: SpindleState | None) -> tuple[float, SpindleSt
     """
     running = running_spindle(spindle, "CYCLE/TAP")
     if cycle.feed is None or not cycle.feed > 0.0:
-        raise HoleCycleError("CYCLE/TAP without a feed", "write MMPR,pitch", code="PLN610")
+        raise HoleCycleError(Wording("PLN610", "cycle_tap_without"))
     return cycle.feed if cycle.per_rev else cycle.feed / running.rpm, running

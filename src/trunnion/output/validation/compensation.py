@@ -5,6 +5,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.errors import Problem
+from trunnion.messages import Wording
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import CutterComp
 from trunnion.output.program import Program
@@ -31,14 +32,11 @@ def compensation_problems(program: Program, motion: Motion) -> list[Problem]:
         if event.side == "OFF" or not len(axes):
             continue
         if holes := [cycle for cycle, stop in cycle_row_ranges(operation) if cycle.row < end and event.row < stop]:
-            what = f"CUTCOM/{event.side} where the cycle of line {holes[0].line} makes holes: they have no side"
             problems.append(
                 Problem(
                     program.file,
                     event.line,
-                    what,
-                    "write CUTCOM/OFF before the cycle, and LEFT behind it",
-                    code="CTL220",
+                    Wording("CTL220", "cutcom_where_cycle", side=event.side, holes_line=holes[0].line),
                 )
             )
             continue
@@ -46,15 +44,22 @@ def compensation_problems(program: Program, motion: Motion) -> list[Problem]:
         if float(np.abs(in_plane).max()) <= _ASKEW and not by_deltas:
             continue
         plane = event.plane or "XYPLAN"
-        what = f"CUTCOM in {plane} with {motion.mode}, where the tool is not perpendicular to that plane"
-        why = "it would offset along the tool"
-        if by_deltas:
-            what = (
-                f"CUTCOM with {motion.mode}, where this control takes the delta values of the tool and not its radius"
-            )
-            why = "the tool would cut into the part by its radius"
-        in_tilted_plane = "setting mode=tilted makes the operation in a tilted plane, or "
         has_planes = MachiningMode.TILTED in program.control.modes({})
-        cure = (in_tilted_plane if has_planes else "") + "output the path without CUTCOM"
-        problems.append(Problem(program.file_of(operation), event.line, f"{what}: {why}", cure, code="CTL220"))
+        problems.append(
+            Problem(
+                program.file_of(operation),
+                event.line,
+                (
+                    Wording("CTL220", "cutcom_where_control", mode=motion.mode)
+                    if has_planes
+                    else Wording("CTL220", "cutcom_where_control_takes", mode=motion.mode)
+                )
+                if by_deltas
+                else (
+                    Wording("CTL220", "cutcom_where_tool", plane=plane, mode=motion.mode)
+                    if has_planes
+                    else Wording("CTL220", "cutcom_where_tool_not", plane=plane, mode=motion.mode)
+                ),
+            )
+        )
     return problems

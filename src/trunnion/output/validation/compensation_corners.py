@@ -6,6 +6,7 @@ import numpy as np
 
 from trunnion.arrays import Ints
 from trunnion.errors import Problem
+from trunnion.messages import Wording
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import (
     Coolant,
@@ -28,8 +29,6 @@ _STILL: Final = 1e-6
 
 #: A line that begins so is a comment.
 _COMMENT_SIGNS: Final = ("(", ";")
-
-_CURE: Final = "write it before CUTCOM/LEFT or RIGHT, or after CUTCOM/OFF, with the tool away from the wall"
 
 
 def corner_problems(program: Program, motion: Motion) -> list[Problem]:
@@ -77,8 +76,11 @@ def corner_problems(program: Program, motion: Motion) -> list[Problem]:
 
 
 def _problem(program: Program, motion: Motion, line: int, what: str) -> Problem:
-    why = f"{program.control.name} would not see the next corner, and cut into an inside one"
-    return Problem(program.file_of(motion.operation), line, f"{what}: {why}", _CURE, code="CTL240")
+    return Problem(
+        program.file_of(motion.operation),
+        line,
+        Wording("CTL240", "would_not_see", subject=what, control=program.control.name),
+    )
 
 
 def _moves_across(operation: Operation) -> Ints:

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from trunnion.controls.definition import Control
 from trunnion.controls.vocabulary import CYCLE_CALL_WORD, HOLES_IN_PLANES, HOLES_SETTING
 from trunnion.errors import Problem
+from trunnion.messages import Wording
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import CycleOff, CycleOn, Kind, Operation
 from trunnion.output.holes.holes_under_tcp import check_holes_under_tcp
@@ -37,7 +38,7 @@ def unsupported_cycle_reasons(
         try:
             control.family.cycle_call(cycle, 0.0, spindle, known, formats)
         except UnsupportedCycleError as error:
-            return error.what
+            return error.wording.what
         except HoleCycleError:
             pass
         return ""
@@ -63,12 +64,9 @@ def cycle_problems(program: Program, motion: Motion, spindle: SpindleState) -> l
             warning = _check_cycle(program, motion, operation, event, states, along_tool)
             warnings += [warning] if warning else []
         except HoleCycleError as error:
-            problems.append(Problem(program.file_of(operation), event.line, error.what, error.cure, code=error.code))
+            problems.append(Problem(program.file_of(operation), event.line, error.wording))
     if along_tool and not problems:
-        problems = [
-            Problem(program.file_of(operation), e.line, e.what, e.cure, code=e.code)
-            for e in check_holes_under_tcp(operation)
-        ]
+        problems = [Problem(program.file_of(operation), e.line, e.wording) for e in check_holes_under_tcp(operation)]
     return [*problems, *warnings]
 
 
@@ -101,19 +99,15 @@ def _check_cycle(
         program.control.family.cycle_call(cycle, 0.0, state, settings, formats)
     feed, per_rev = cycle_feed(cycle, spindle_here, float(moves.feed[row]), bool(moves.per_rev[row]))
     if not feed > 0.0:
-        raise HoleCycleError("CYCLE without a feed", "write MMPM,feed, or FEDRAT before it", code="CTL310")
+        raise HoleCycleError(Wording("CTL310", "cycle_without_feed"))
     below = row > 0 and moves.tip[row - 1, 2] < moves.tip[row, 2] + cycle.rapid_height - 1e-6
     if below and not along_tool and moves.kind[row - 1] != Kind.RAPID:
-        raise HoleCycleError(
-            "CYCLE while the tool is below the height of RAPTO", "retract the tool before the cycle", code="PLN650"
-        )
+        raise HoleCycleError(Wording("PLN650", "cycle_while_tool_below"))
     if cycle.method.startswith("TAP"):
         return None
     words = program.control.family.WORDS
     if per_rev and "feed_per_rev" not in words:
-        raise HoleCycleError(
-            "a feed per revolution, which this control does not have", "output it in mm/min (MMPM)", code="CTL330"
-        )
+        raise HoleCycleError(Wording("CTL330", "feed_per_revolution_control"))
     if per_rev and spindle_here is not None and CYCLE_CALL_WORD in words:
         feed, per_rev = feed * spindle_here.rpm, False  # a cycle that is called hole by hole has mm/min
     return rounding_problem(program.file_of(operation), event.line, formats, feed, per_rev)
@@ -123,16 +117,15 @@ def _no_tilted_cycle(program: Program, motion: Motion, cycle: Cycle) -> HoleCycl
     """The error for a cycle along a tilted tool axis without a tilted plane."""
     settings, under_tcp = program.effective_settings(), motion.mode is MachiningMode.TCP
     has_planes = MachiningMode.TILTED in program.control.modes(settings)
-    where = (
-        f"and the operation is made {'with' if under_tcp else 'without'} TCP"
-        if has_planes
-        else "which this control lacks"
-    )
-    what = f"CYCLE/{cycle.method} along a tilted tool axis needs a tilted plane, {where}"
-    if has_planes:
-        cure = "leave the setting mode out, or end the cut before the tool axis changes"
+    turns = HOLES_SETTING in settings
+    if not has_planes and turns and under_tcp:
+        wording = Wording("CTL370", "no_planes_or_turn", method=cycle.method, name=HOLES_SETTING)
+    elif not has_planes:
+        wording = Wording("CTL370", "no_planes", method=cycle.method)
+    elif not under_tcp:
+        wording = Wording("CTL370", "without_tcp", method=cycle.method)
+    elif turns:
+        wording = Wording("CTL370", "with_tcp_or_turn", method=cycle.method, name=HOLES_SETTING)
     else:
-        cure = "clamp the part so that these holes stand along +Z, or post for a control with tilted planes"
-    if HOLES_SETTING in settings and under_tcp:
-        cure += f", or turn the tool from hole to hole (setting {HOLES_SETTING}=…)"
-    return HoleCycleError(what, cure, code="CTL370")
+        wording = Wording("CTL370", "with_tcp", method=cycle.method)
+    return HoleCycleError(wording)

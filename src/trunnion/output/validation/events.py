@@ -7,6 +7,7 @@ from trunnion.controls.family_writer import UnsupportedFeatureError
 from trunnion.controls.inches import literal_length
 from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD
 from trunnion.errors import Problem, Severity
+from trunnion.messages import Wording
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import BlockSkip, Coolant, CutterComp, Dwell, Event, GoHome, Insert, LoadTool, SelectTool
 from trunnion.output.program import Program
@@ -27,48 +28,45 @@ def event_problems(
     control, location = program.control, (program.file_of(motion.operation), event.line)
     if isinstance(event, Dwell):
         if event.revolutions and not rpm:
-            what = "a dwell in spindle revolutions while the spindle stands: it would never end"
-            return [Problem(*location, what, "put SPINDL before it, or write DELAY in seconds", code="CTL420")]
+            return [Problem(*location, Wording("CTL420", "dwell_spindle_revolutions_while"))]
         try:
             control.family.dwell(event, rpm, control.number_formats(motion.three_axis))
         except UnsupportedFeatureError as why:
-            return [Problem(*location, why.what, why.cure, code=why.code)]
+            return [Problem(*location, why.wording)]
     if isinstance(event, LoadTool) and (event.row > 0 or not motion.starts_operation):
-        return [
-            Problem(
-                *location, "tool change within an operation", "begin a new operation with the new tool", code="CTL430"
-            )
-        ]
+        return [Problem(*location, Wording("CTL430", "tool_change_within"))]
     if isinstance(event, CutterComp) and event.side == "ON":
-        return [
-            Problem(
-                *location, "CUTCOM/ON does not say on which side", "write CUTCOM/LEFT or CUTCOM/RIGHT", code="CTL230"
-            )
-        ]
+        return [Problem(*location, Wording("CTL230", "cutcom_does_not"))]
     takes_tool_radius = RADIUS_NUMBER_WORD not in control.family.WORDS
     if takes_tool_radius and _compensates_by_register(event) and event.register not in registers:
-        what = f"CUTCOM names the register {event.register}, and {control.name} takes the radius of the tool"
         return [
-            Problem(*location, what, "write CUTCOM without a register, or with the number of the tool", code="CTL230")
+            Problem(
+                *location, Wording("CTL230", "cutcom_names_register", register=event.register, control=control.name)
+            )
         ]
     if isinstance(event, GoHome) and event.row < len(motion.operation.moves):
-        return [
-            Problem(*location, "GOHOME before the operation's end", "begin a new operation after it", code="CTL430")
-        ]
+        return [Problem(*location, Wording("CTL430", "gohome_before_operation"))]
     if isinstance(event, SelectTool) and not control.family.tool_preselection("1"):
-        what = f"SELECT/TOOL,{event.number} is not written: how {control.name} preselects a tool is not known"
-        return [Problem(*location, what, "preselect the tool by INSERT/", Severity.WARNING, code="CTL440")]
+        return [
+            Problem(
+                *location,
+                Wording("CTL440", "select_tool_not", number=event.number, control=control.name),
+                severity=Severity.WARNING,
+            )
+        ]
     if isinstance(event, Insert) and control.unit != 1.0 and not event.template:
         literal = literal_length(control, event.text)
         if literal:
-            what = f"INSERT/{event.text.strip()}: {literal} may be a length, and nobody says whether in mm or inches"
-            return [Problem(*location, what, "leave it out, or write setting units=mm", code="CTL450")]
+            return [
+                Problem(*location, Wording("CTL450", "insert_may_length", event=event.text.strip(), literal=literal))
+            ]
     if isinstance(event, Coolant) and event.kind not in control.coolant:
-        cure = (
-            f"use one of {', '.join(control.coolant)}, or write its M code into the machine's definition:"
-            f" {event.kind} = … under [control.coolant]"
-        )
-        return [Problem(*location, f"{control.name} has no coolant {event.kind}", cure, code="CTL410")]
+        return [
+            Problem(
+                *location,
+                Wording("CTL410", "no_coolant", control=control.name, kind=event.kind, coolant=tuple(control.coolant)),
+            )
+        ]
     return []
 
 
@@ -93,28 +91,16 @@ def block_skip_problems(program: Program) -> list[Problem]:
         if skip is None:
             continue
         if k + 1 == len(motions) or motions[k + 1].starts_operation:
-            what = f"OPSKIP/ON ends with operation {motion.operation.name}: the way home cannot be skipped"
             problems.append(
                 Problem(
                     program.file_of(motion.operation),
                     skip.line,
-                    what,
-                    "write OPSKIP/OFF",
-                    Severity.WARNING,
-                    code="CTL460",
+                    Wording("CTL460", "opskip_ends_operation", operation=motion.operation.name),
+                    severity=Severity.WARNING,
                 )
             )
             skip = None
         else:
             line = int(motions[k + 1].operation.moves.line[0])
-            what = "the tool axis turns to another plane between blocks that may be skipped"
-            problems.append(
-                Problem(
-                    program.file_of(motion.operation),
-                    line,
-                    what,
-                    "write OPSKIP/OFF before it, and OPSKIP/ON after it",
-                    code="CTL460",
-                )
-            )
+            problems.append(Problem(program.file_of(motion.operation), line, Wording("CTL460", "tool_axis_turns")))
     return problems

@@ -9,6 +9,7 @@ import numpy as np
 from trunnion.arrays import Ints
 from trunnion.controls.words import NumberFormat
 from trunnion.errors import Problem, Severity
+from trunnion.messages import Wording
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Kind, Moves
 from trunnion.output.program import Program
@@ -42,10 +43,15 @@ def rapid_feed_problems(program: Program, motion: Motion) -> list[Problem]:
     if not len(rows):
         return []
     lower = float(rapid_feed) - number_format.digit
-    what = f"lines at {float(rapid_feed):g} mm/min are rapids on this machine: cuts at that feed get {lower:g}"
-    cure = "give the cuts another feed, or rapids another one by the setting rapid_feed"
     file, line = program.file_of(motion.operation), int(moves.line[rows[0]])
-    return [Problem(file, line, what, cure, Severity.WARNING, code="CTL315")]
+    return [
+        Problem(
+            file,
+            line,
+            Wording("CTL315", "lines_mm_min", rapid_feed=float(rapid_feed), lower=lower),
+            severity=Severity.WARNING,
+        )
+    ]
 
 
 def rounded_feed_problems(program: Program, motion: Motion) -> list[Problem]:
@@ -88,15 +94,25 @@ def rounding_problem(
     """Return what the digits of a control make of a feed: zero, or another feed; None if they print it well."""
     number_format = feed_format(formats, per_rev)
     if per_rev and number_format.unit == 1.0 and formats["feed"].unit != 1.0:
-        what = "a feed per revolution in a program in inches: what the control counts there is not known"
-        return Problem(file, line, what, "write it in mm/min (MMPM), or setting units=mm", code="CTL330")
+        return Problem(file, line, Wording("CTL330", "feed_per_revolution_program"))
     printed = number_format.rounded(feed)
-    cure = "write it in mm/min (MMPM)" if per_rev else "write a feed that the control can print"
     if printed < number_format.least:
-        return Problem(file, line, f"a feed of {feed:g} is below the least that the control reads", cure, code="CTL320")
+        return Problem(
+            file,
+            line,
+            Wording("CTL320", "feed_below_least", feed=feed)
+            if per_rev
+            else Wording("CTL320", "feed_below_least_control", feed=feed),
+        )
     error = abs(printed - feed) / feed
     if error <= TOLD_ERROR:
         return None
-    what = f"a feed of {feed:g} prints as {printed:g}, which is {100.0 * error:.2g} % off"
     refused = per_rev or error > REFUSED_ERROR
-    return Problem(file, line, what, cure, Severity.ERROR if refused else Severity.WARNING, code="CTL320")
+    return Problem(
+        file,
+        line,
+        Wording("CTL320", "feed_prints_off", feed=feed, printed=printed, error=100.0 * error)
+        if per_rev
+        else Wording("CTL320", "feed_prints", feed=feed, printed=printed, error=100.0 * error),
+        severity=Severity.ERROR if refused else Severity.WARNING,
+    )

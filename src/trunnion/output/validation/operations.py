@@ -6,6 +6,7 @@ import numpy as np
 
 from trunnion.controls.family_writer import UnsupportedFeatureError
 from trunnion.errors import Problem, Severity
+from trunnion.messages import Wording
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import CycleOn, Kind, LoadTool, Operation, SpindleOff, SpindleOn
 from trunnion.output.program import Program
@@ -26,22 +27,24 @@ def spindle_problems(program: Program, operation: Operation, turns: bool | None)
         if on or not cuts.any():
             continue
         if program.effective_setting("standing_spindle") != "allowed":
-            why = "no SPINDL comes before" if event is None and turns is None else "SPINDL/OFF comes before"
-            what = f"operation {operation.name} cuts while the spindle stands: {why}"
-            cure = "put SPINDL before it, or write setting standing_spindle=allowed for a tool that does not turn"
             line = int(operation.moves.line[start + int(np.argmax(cuts))])
-            return [Problem(program.file_of(operation), line, what, cure, code="CTL510")]
+            return [
+                Problem(
+                    program.file_of(operation),
+                    line,
+                    Wording("CTL510", "operation_cuts_while", operation=operation.name)
+                    if event is None and turns is None
+                    else Wording("CTL510", "operation_cuts_while_spindle", operation=operation.name),
+                )
+            ]
         break
     if turns is None and not any(isinstance(event, SpindleOn) for event in switches):
-        what = f"operation {operation.name} has no spindle speed"
         return [
             Problem(
                 program.file_of(operation),
                 operation.line,
-                what,
-                "put SPINDL before it",
-                Severity.WARNING,
-                code="CTL520",
+                Wording("CTL520", "operation_no_spindle", operation=operation.name),
+                severity=Severity.WARNING,
             )
         ]
     return []
@@ -57,15 +60,12 @@ def other_speed_problems(program: Program, operation: Operation, before: str, nu
     cuts = np.flatnonzero(operation.moves.kind != Kind.RAPID)
     if not (before and loads and number not in (0, loads[0].number) and len(cuts)) or (speeds and speeds[0] <= cuts[0]):
         return []
-    what = f"operation {operation.name} loads tool {loads[0].number}, and cuts with the spindle speed of {before}"
     return [
         Problem(
             program.file_of(operation),
             loads[0].line,
-            what,
-            "put SPINDL behind the tool",
-            Severity.WARNING,
-            code="CTL520",
+            Wording("CTL520", "operation_loads_tool", operation=operation.name, number=loads[0].number, before=before),
+            severity=Severity.WARNING,
         )
     ]
 
@@ -79,17 +79,20 @@ def tool_problems(program: Program, operation: Operation, in_spindle: str) -> li
     loaded = any(isinstance(e, LoadTool) for e in operation.events) or program.effective_setting("tool", operation)
     stays = not loaded and name == in_spindle
     if not loaded and name and not stays:
-        what = f"operation {operation.name} has no LOAD/TOOL; its tool is called by its name"
-        cure = "setting tool=NUMBER calls it by number"
         problems.append(
-            Problem(program.file_of(operation), operation.line, what, cure, Severity.WARNING, code="CTL140")
+            Problem(
+                program.file_of(operation),
+                operation.line,
+                Wording("CTL140", "operation_no_load", operation=operation.name),
+                severity=Severity.WARNING,
+            )
         )
     if name and (not (loaded or stays) or program.effective_setting("tool_call", operation) == "name"):
         try:
             program.control.family.tool_call(0, name, by_name=True)
         except UnsupportedFeatureError as why:
-            what = f"{program.control.name}: {why.what}"
-            problems.append(Problem(program.file_of(operation), operation.line, what, why.cure, code=why.code))
+            wording = why.wording.within("of", name=program.control.name)
+            problems.append(Problem(program.file_of(operation), operation.line, wording))
     return problems
 
 
@@ -98,9 +101,14 @@ def machining_mode_problems(program: Program, motion: Motion) -> list[Problem]:
     if program.template_suffix(motion):
         return []
     operation = motion.operation
-    what = f"operation {operation.name}: {program.control.name} has no words for {motion.mode}"
     return [
-        Problem(program.file_of(operation), operation.line, what, "setting mode=… sets another mode", code="CTL210")
+        Problem(
+            program.file_of(operation),
+            operation.line,
+            Wording(
+                "CTL210", "operation_no_words", operation=operation.name, control=program.control.name, mode=motion.mode
+            ),
+        )
     ]
 
 
@@ -111,15 +119,12 @@ def tolerance_problems(program: Program, motion: Motion) -> list[Problem]:
     if given or not _prints_tolerance(program, motion) or program.effective_setting("tolerance", operation):
         return []
     fallback = program.effective_setting("fallback_tolerance", operation)
-    what = f"operation {operation.name} has no INTOL and OUTTOL; the tolerance becomes {fallback}"
     return [
         Problem(
             program.file_of(operation),
             operation.line,
-            what,
-            "write setting fallback_tolerance=VALUE",
-            Severity.WARNING,
-            code="CTL530",
+            Wording("CTL530", "operation_no_intol", operation=operation.name, fallback=fallback),
+            severity=Severity.WARNING,
         )
     ]
 
@@ -139,9 +144,13 @@ def plane_entry_problems(program: Program, motion: Motion) -> list[Problem]:
         return []
     if any(isinstance(event, CycleOn) and event.row == 0 for event in events):
         return []
-    what = f"a cut is the first motion in a tilted plane, and {program.control.name} wants X, Y and Z at rapid there"
-    cure = "put RAPID before the first GOTO with this tool axis, clear of the part"
-    return [Problem(program.file_of(motion.operation), int(moves.line[0]), what, cure, code="CTL540")]
+    return [
+        Problem(
+            program.file_of(motion.operation),
+            int(moves.line[0]),
+            Wording("CTL540", "cut_first_motion", control=program.control.name),
+        )
+    ]
 
 
 def next_axis_problems(program: Program, motion: Motion) -> list[Problem]:
@@ -150,6 +159,10 @@ def next_axis_problems(program: Program, motion: Motion) -> list[Problem]:
     if motion.plane is not None or not suffix or f"next_axis_{suffix}" in program.control.templates:
         return []
     moves, name = motion.operation.moves, program.control.name
-    what = f"holes along another tool axis than those before, {motion.mode}: {name} has no template to go on from home"
-    cure = f"write the template next_axis_{suffix} into the control's definition, or split the operation"
-    return [Problem(program.file_of(motion.operation), int(moves.line[0]), what, cure, code="CTL550")]
+    return [
+        Problem(
+            program.file_of(motion.operation),
+            int(moves.line[0]),
+            Wording("CTL550", "holes_along_another", mode=motion.mode, name=name, suffix=suffix),
+        )
+    ]

@@ -3,11 +3,11 @@
 import numpy as np
 
 from trunnion.errors import Problem, Severity
+from trunnion.messages import Wording
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Kind
 from trunnion.output.coordinates.tool_vectors import first_row_at_other_pose
 from trunnion.output.program import Program
-from trunnion.wording import counted
 
 
 def tool_vector_problems(program: Program, motion: Motion) -> list[Problem]:
@@ -19,15 +19,12 @@ def tool_vector_problems(program: Program, motion: Motion) -> list[Problem]:
         return []
     what = "for the tool's vector here the control could choose another rotary position than the planned one: operation"
     what = f"{what} {motion.operation.name} is written with rotary positions"
-    cure = "no change is needed; orientation=angles writes all operations so"
     return [
         Problem(
             program.file_of(motion.operation),
             int(motion.operation.moves.line[row]),
-            what,
-            cure,
-            Severity.WARNING,
-            code="CTL560",
+            Wording("CTL560", "tool_s_vector", operation=motion.operation.name),
+            severity=Severity.WARNING,
         )
     ]
 
@@ -40,34 +37,26 @@ def normal_problems(program: Program, motion: Motion) -> list[Problem]:
         return []
     location, name = (program.file_of(operation), operation.line), operation.name
     if motion.mode is MachiningMode.WITHOUT_TCP:
-        what = f"operation {name}: surface normals without TCP, where X, Y and Z are axis positions"
-        problems.append(Problem(*location, what, "leave the setting normals out", code="CTL610"))
+        problems.append(Problem(*location, Wording("CTL610", "operation_surface_normals", name=name)))
     if motion.mode is MachiningMode.TCP and program.effective_setting("orientation") != "vector":
-        what = f"operation {name}: with TCP the control would align the tool with the surface normal"
-        problems.append(
-            Problem(*location, what, "setting orientation=vector writes the tool axis as well", code="CTL610")
-        )
+        problems.append(Problem(*location, Wording("CTL610", "operation_tcp_control", name=name)))
     if len(operation.arcs.row):
-        what = "a circle, which can have no surface normal: the control would not compensate the tool there"
         problems.append(
             Problem(
-                program.file_of(operation),
-                int(moves.line[operation.arcs.row[0]]),
-                what,
-                "output lines only",
-                code="CTL610",
+                program.file_of(operation), int(moves.line[operation.arcs.row[0]]), Wording("CTL610", "circle_can_have")
             )
         )
     missing = (moves.kind == Kind.LINEAR) & ~np.isfinite(moves.normal[:, 0])
     inserted = missing[:-1] & (moves.line[:-1] == moves.line[1:]) & np.isfinite(moves.normal[1:, 0])
     if inserted.any():
-        what = "a point between CL points, where the surface normal is not known"
         line = int(moves.line[int(np.argmax(inserted))])
-        problems.append(
-            Problem(program.file_of(operation), line, what, "leave the setting axis_tolerance out", code="CTL610")
-        )
+        problems.append(Problem(program.file_of(operation), line, Wording("CTL610", "point_between_cl")))
     elif missing.any():
-        what = f"operation {name}: no contact point at {int(missing.sum())} of {counted(len(moves), 'point')}"
-        effect = "the control does not compensate the tool there"
-        problems.append(Problem(*location, what, effect, Severity.WARNING, code="CTL620"))
+        problems.append(
+            Problem(
+                *location,
+                Wording("CTL620", "operation_no_contact", name=name, sum=int(missing.sum()), count=len(moves)),
+                severity=Severity.WARNING,
+            )
+        )
     return problems

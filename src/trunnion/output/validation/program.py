@@ -50,9 +50,7 @@ def check_program(program: Program) -> list[Problem]:
             problems += event_problems(program, motion, event, turning, registers)
         problems += _motion_problems(program, motion)
         rejected = program.control.family.validate_operation(operation, turns is not None)
-        problems += [
-            Problem(program.file_of(operation), line, why.what, why.cure, code=why.code) for line, why in rejected
-        ]
+        problems += [Problem(program.file_of(operation), line, why.wording) for line, why in rejected]
         problems += spindle_problems(program, operation, turns)
         problems += other_speed_problems(program, operation, before if turns else "", number)
         before, number = operation.name, loads[-1].number if loads else number

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 
 from trunnion.errors import InputError, Problem, Severity
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Insert, Message, Operation, Stop
 from trunnion.output.program import Program
 from trunnion.output.template_values import TemplateValues
@@ -75,9 +76,11 @@ def _called(program: Program) -> Iterator[Problem]:
         calls = {call: operation for call, _, operation in reversed(TemplateValues(program).tool_calls)}
     for call, operation in calls.items():
         if program.spelled(call) != call:
-            what = f"the tool {call} is called by a name that the program cannot have: {_missing(program, call)}"
-            cure = "write setting tool_call=number or tool=NUMBER, or rename the tool"
-            yield Problem(program.file_of(operation), operation.line, what, cure, code="CTL820")
+            yield Problem(
+                program.file_of(operation),
+                operation.line,
+                Wording("CTL820", "tool_called_name", call=call, missing=_missing(program, call)),
+            )
 
 
 def _inserted(program: Program) -> Iterator[Problem]:
@@ -86,7 +89,10 @@ def _inserted(program: Program) -> Iterator[Problem]:
     for motion in program.motions:
         for event in motion.operation.events:
             if isinstance(event, Insert) and (letter := lacking(event.text, encoding)):
-                what = f"INSERT/{event.text.strip()} goes into the program as it is, and {encoding} has no {letter!r}"
                 yield Problem(
-                    program.file_of(motion.operation), event.line, what, "write it in other letters", code="CTL820"
+                    program.file_of(motion.operation),
+                    event.line,
+                    Wording(
+                        "CTL820", "insert_goes_into", event=event.text.strip(), encoding=encoding, letter=repr(letter)
+                    ),
                 )

@@ -6,6 +6,7 @@ from typing import Final
 
 from trunnion.controls.setting_rules import tool_number
 from trunnion.errors import Problem, Severity
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Operation, Tool
 from trunnion.output.program import Program
 from trunnion.output.template_values import TemplateValues
@@ -22,11 +23,6 @@ _SIZES: Final[Mapping[str, float]] = {
 
 #: Sizes of which 0 says that the file does not know them.
 _UNKNOWN_AT_ZERO: Final = frozenset({"diameter", "length"})
-
-_OWN_REGISTER: Final = (
-    "give it a register of its own in the CAM, or write setting tool=OPERATION:NUMBER, which takes that of NUMBER"
-)
-_CURE: Final = "number the tools apart in the CAM, or write setting tool=OPERATION:NUMBER for one of them"
 
 
 def tool_conflicts(program: Program, *, uses_length_numbers: bool) -> list[Problem]:
@@ -53,10 +49,20 @@ def tool_conflicts(program: Program, *, uses_length_numbers: bool) -> list[Probl
         file = program.file_of(operation)
         other = registers.setdefault(register or tool_number(call) or 0, call)
         if uses_length_numbers and other != call:
-            what = (
-                f"tool {call} of operation {operation.name} has length register {register or call}, as tool {other} has"
+            problems.append(
+                Problem(
+                    file,
+                    operation.line,
+                    Wording(
+                        "CTL710",
+                        "tool_operation_length",
+                        call=call,
+                        operation=operation.name,
+                        register=register or call,
+                        other=other,
+                    ),
+                )
             )
-            problems.append(Problem(file, operation.line, what, _OWN_REGISTER, code="CTL710"))
         before = known.setdefault(call, [])
         if operation.tool in (other.tool for other in before):
             continue
@@ -70,14 +76,36 @@ def _conflict(call: str, before: Sequence[Operation], operation: Operation, file
     for other in before:
         differing = list(_differences(other.tool, operation.tool))
         if differing:
-            what = f"operations {other.name} and {operation.name} both call tool {call}, and their CL data differ"
-            yield Problem(file, operation.line, f"{what}: {', '.join(differing)}", _CURE, code="CTL710")
+            yield Problem(
+                file,
+                operation.line,
+                Wording(
+                    "CTL710",
+                    "operations_both_call",
+                    other=other.name,
+                    operation=operation.name,
+                    call=call,
+                    differing=tuple(differing),
+                ),
+            )
             return
     name = operation.tool.name
     named = next((other for other in before if other.tool.name and other.tool.name != name), None)
     if name and named is not None and all(other.tool.name != name for other in before):
-        what = f"tool {call} is {named.tool.name} in operation {named.name}, and {name} in {operation.name}"
-        yield Problem(file, operation.line, what, _CURE, Severity.WARNING, code="CTL710")
+        yield Problem(
+            file,
+            operation.line,
+            Wording(
+                "CTL710",
+                "tool_operation",
+                call=call,
+                tool=named.tool.name,
+                named=named.name,
+                name=name,
+                operation=operation.name,
+            ),
+            severity=Severity.WARNING,
+        )
 
 
 def _differences(one: Tool, two: Tool) -> Iterator[str]:

@@ -8,6 +8,7 @@ from trunnion.arrays import Floats, Ints
 from trunnion.controls.words import NumberFormat
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Mount
+from trunnion.messages import Wording
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import CutterComp, Kind
 from trunnion.output.coordinates.axis_coordinates import (
@@ -20,7 +21,6 @@ from trunnion.output.coordinates.axis_coordinates import (
 )
 from trunnion.output.program import Program
 from trunnion.output.validation.feeds import REFUSED_ERROR, TOLD_ERROR
-from trunnion.wording import counted
 
 #: Of computing, as a share.
 _NOISE: Final = 1e-6
@@ -31,9 +31,8 @@ def problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
     operation, problems = motion.operation, list[Problem]()
     moves, control = operation.moves, program.control
     if any(isinstance(event, CutterComp) and event.side != "OFF" for event in operation.events):
-        what = "cutter radius compensation without TCP would be that of the axes"
         problems.append(
-            Problem(program.file_of(operation), operation.line, what, "output the path without CUTCOM", code="CTL220")
+            Problem(program.file_of(operation), operation.line, Wording("CTL220", "cutter_radius_compensation_without"))
         )
     decimals = control.number_formats(motion.three_axis)["angle"].decimals
     coordinates = to_axis_coordinates(program.machine, motion, decimals)
@@ -41,9 +40,9 @@ def problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
     problems += _feed_problems(program, motion, coordinates, cuts)
     wraps = np.flatnonzero(coordinates.wraps.any(axis=1))
     if len(wraps) and "primary_shortest" not in control.family.WORDS and not control.shorter_way:
-        what = "a rotary axis goes past the end of the turn that it displays, and would go the longer way"
-        cure = 'write output = "none" for the axis in the machine\'s definition'
-        problems.append(Problem(program.file_of(operation), int(moves.line[wraps[0]]), what, cure, code="CTL630"))
+        problems.append(
+            Problem(program.file_of(operation), int(moves.line[wraps[0]]), Wording("CTL630", "rotary_axis_goes"))
+        )
     return problems
 
 
@@ -53,46 +52,48 @@ def _feed_problems(program: Program, motion: Motion, coordinates: AxisCoordinate
     moves, settings = operation.moves, program.effective_settings()
     per_rev = cuts[moves.per_rev[cuts]]
     if len(per_rev):
-        what = "a feed per revolution without TCP while rotary axes turn"
         problems.append(
             Problem(
                 program.file_of(operation),
                 int(moves.line[per_rev[0]]),
-                what,
-                "output it in mm/min (FEDRAT/MMPM)",
-                code="CTL330",
+                Wording("CTL330", "feed_per_revolution_without"),
             )
         )
     rule = feed_rule(program.control, settings)
     if len(cuts) and program.control.unit != 1.0 and rule in ("all_axes", "slides"):
-        what = "rotary axes turn in a cut without TCP, and how F counts degrees beside inches is not known"
         problems.append(
-            Problem(program.file_of(operation), int(moves.line[cuts[0]]), what, "write setting units=mm", code="CTL340")
+            Problem(program.file_of(operation), int(moves.line[cuts[0]]), Wording("CTL340", "rotary_axes_turn"))
         )
     number_format = program.control.number_formats(motion.three_axis)[feed_format(rule)]
     value, below, above = feed_words(coordinates.select(cuts), moves.feed[cuts], rule, number_format)
     if below.any():
         row = int(cuts[np.argmax(below)])
-        what, cure = f"F of a block would be below its least value, {number_format.least:g}", "program a higher feed"
         if rule == "inverse_time":
             minutes, most = coordinates.tip_length[row] / moves.feed[row], 1.0 / number_format.least
-            what = f"a block takes {minutes:.0f} minutes; with inverse time it can take {most:g} at most"
-            cure = "output the toolpath with points nearer to each other, or a higher feed"
-        problems.append(Problem(program.file_of(operation), int(moves.line[row]), what, cure, code="CTL340"))
+        problems.append(
+            Problem(
+                program.file_of(operation),
+                int(moves.line[row]),
+                Wording("CTL340", "block_takes_minutes", minutes=minutes, most=most)
+                if rule == "inverse_time"
+                else Wording("CTL340", "f_block_would", least=number_format.least),
+            )
+        )
     if above.any():
-        blocks = counted(int(above.sum()), "block")
-        what = f"{blocks} so short that F would be above {number_format.greatest:g}: slower than programmed"
         location = program.file_of(operation), int(moves.line[cuts[np.argmax(above)]])
         problems.append(
-            Problem(*location, what, "a wider tolerance inserts fewer points", Severity.WARNING, code="CTL340")
+            Problem(
+                *location,
+                Wording("CTL340", "block_so_short", sum=int(above.sum()), greatest=number_format.greatest),
+                severity=Severity.WARNING,
+            )
         )
     problems += _rounding_problems(program, motion, cuts, value, rule, number_format)
     heads = [axis.name for axis in program.machine.axes if axis.is_rotary and axis.mount is Mount.TOOL]
     if rule == FEED_AT_TIP and heads:
-        what = f"rotary_feed is tip, and {' and '.join(heads)} turns in the head, which the control leaves out"
         problems.append(
             Problem(
-                program.file_of(operation), operation.line, what, "leave the setting rotary_feed out", code="CTL340"
+                program.file_of(operation), operation.line, Wording("CTL340", "rotary_feed_tip", heads=tuple(heads))
             )
         )
     return problems
@@ -109,16 +110,12 @@ def _rounding_problems(
     if not len(wrong):
         return []
     worst = int(np.argmax(error))
-    what = f"F of {counted(len(wrong), 'block')} is up to {100.0 * error[worst]:.2g} % off, as its digits are too few"
-    cure = "output the toolpath with points nearer to each other, or a higher feed"
     severity = Severity.ERROR if inverse_time else Severity.WARNING
     return [
         Problem(
             program.file_of(motion.operation),
             int(motion.operation.moves.line[cuts[worst]]),
-            what,
-            cure,
-            severity,
-            code="CTL340",
+            Wording("CTL340", "f_block_up", count=len(wrong), error=100.0 * error[worst]),
+            severity=severity,
         )
     ]

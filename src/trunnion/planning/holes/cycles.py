@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Final
 
+from trunnion.messages import Wording
 from trunnion.model.toolpath import CycleOn, Event, Sense, SpindleOff, SpindleOn
 
 
@@ -70,11 +71,11 @@ _SAME_DEPTH: Final = 0.01
 
 
 class HoleCycleError(Exception):
-    """A cycle cannot be made: ``what`` is wrong, its ``cure``, its ``code``, and the CL ``line`` if known (else 0)."""
+    """A cycle cannot be made: what is said of it, and the CL ``line`` if known (else 0)."""
 
-    def __init__(self, what: str, cure: str, line: int = 0, *, code: str) -> None:
-        super().__init__(what)
-        self.what, self.cure, self.line, self.code = what, cure, line, code
+    def __init__(self, wording: Wording, line: int = 0) -> None:
+        super().__init__(wording)
+        self.wording, self.line = wording, line
 
 
 class UnsupportedCycleError(HoleCycleError):
@@ -146,22 +147,16 @@ def cycle_from_event(event: CycleOn) -> Cycle:
     """
     values, words = dict(event.values), dict(event.words)
     if any(not abs(number) < _FARTHEST for given in values.values() for number in given):
-        raise HoleCycleError(
-            "CYCLE with a number that no machine has", "write lengths in mm or inches, feeds per minute", code="PLN620"
-        )
+        raise HoleCycleError(Wording("PLN620", "cycle_number_no"))
     method = _method(event.mode, words)
     rapid_height = _first(values, "RAPTO", _first(values, "CLEAR", math.nan))
     if not rapid_height >= 0.0:
-        raise HoleCycleError(
-            "CYCLE without RAPTO, or with one below the hole", "write RAPTO,distance above the point", code="PLN610"
-        )
+        raise HoleCycleError(Wording("PLN610", "cycle_without_rapto"))
     pecks = (*values.get("STEP", ()), 0.0, 0.0, 0.0)[:3]
     if method in _IN_PECKS and not pecks[0] > 0.0:
-        raise HoleCycleError(f"CYCLE/{method} without STEP", "write STEP,first peck", code="PLN610")
+        raise HoleCycleError(Wording("PLN610", "cycle_without_step", method=method))
     if words.get("RTRCTO") == "MANUAL":
-        raise HoleCycleError(
-            "RTRCTO,MANUAL does not say how far", "write RTRCTO,distance or RTRCTO,AUTO", code="PLN610"
-        )
+        raise HoleCycleError(Wording("PLN610", "rtrcto_manual_does"))
     is_auto = words.get("RTRCTO") == "AUTO"
     per_rev = "MMPR" in values
     return Cycle(
@@ -193,17 +188,13 @@ def cycle_feed(cycle: Cycle, spindle: SpindleState | None, modal: float, modal_p
 def _method(mode: tuple[str, ...], words: Mapping[str, str]) -> HoleMethod:
     method = _METHODS.get(mode)
     if mode == ("BORE", "BACK"):
-        what = "CYCLE/BORE,BACK does not say how far the tool must move off its axis to pass the hole, nor where to"
-        raise HoleCycleError(what, "output the holes as motion", code="PLN630")
+        raise HoleCycleError(Wording("PLN630", "cycle_bore_back"))
     if method is None:
-        raise HoleCycleError(
-            f"CYCLE/{','.join(mode)} is a cycle that cannot be written", "output the holes as motion", code="PLN630"
-        )
+        raise HoleCycleError(Wording("PLN630", "cycle_cycle_cannot", mode=tuple(mode)))
     if "OPTION" not in words:
         return method
     if method in (HoleMethod.DEEP_TAP, HoleMethod.CHIP_BREAKING_TAP):
-        what = f"CYCLE/{method} with OPTION, a compensating chuck"
-        raise HoleCycleError(what, "leave OPTION out, or tap in one pass", code="PLN630")
+        raise HoleCycleError(Wording("PLN630", "cycle_option_compensating", method=method))
     return HoleMethod.FLOATING_TAP if method is HoleMethod.TAP else method
 
 
@@ -219,17 +210,15 @@ def _depth(mode: Sequence[str], values: Mapping[str, tuple[float, ...]]) -> floa
     if "CSINK" in mode and "CSKDIA" in values:
         angle = _first(values, "TLANGL", 0.0)
         if not 0.0 < angle < 180.0:
-            raise HoleCycleError("CYCLE/DRILL,CSINK without the angle of the tool", "write TLANGL,angle", code="PLN610")
+            raise HoleCycleError(Wording("PLN610", "cycle_drill_csink"))
         countersunk = 0.5 * values["CSKDIA"][0] / math.tan(math.radians(0.5 * angle))
         if depth and abs(depth - countersunk) > _SAME_DEPTH:
-            what = f"CYCLE/DRILL,CSINK asks for {depth:g} mm by FEDTO and for {countersunk:.4f} mm by CSKDIA and TLANGL"
-            raise HoleCycleError(what, "leave one of them out", code="PLN620")
+            raise HoleCycleError(Wording("PLN620", "cycle_drill_csink", depth=depth, countersunk=countersunk))
         depth = countersunk
     if depth > 0.0:
         return depth
     if "FEDTO" not in values:
-        raise HoleCycleError("CYCLE without a depth", "write FEDTO,depth", code="PLN610")
+        raise HoleCycleError(Wording("PLN610", "cycle_without_depth"))
     if not _first(values, "RAPTO", _first(values, "CLEAR", 0.0)) > 0.0 or not _NO_DEPTH.issuperset(mode):
-        what = f"CYCLE/{','.join(mode)} with FEDTO,0, which leaves nothing to make"
-        raise HoleCycleError(what, "write FEDTO,depth", code="PLN620")
+        raise HoleCycleError(Wording("PLN620", "cycle_fedto_0", mode=tuple(mode)))
     return 0.0  # from RAPTO down to the point itself

@@ -16,6 +16,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
+from trunnion.messages import Wording
 from trunnion.model.toolpath import CycleOff, CycleOn, Dwell, Event, Kind, Operation, SpindleOff, SpindleOn
 from trunnion.planning.holes.cycles import (
     Cycle,
@@ -147,9 +148,7 @@ def convert_holes_to_motion(operation: Operation, conditions: HoleConditions) ->
     for holes, new in zip(converted, rows, strict=True):
         copies[holes.rows] = new.keep.sum(axis=1)
     if copies.sum() > _MOST_ROWS:
-        raise HoleCycleError(
-            f"holes of {copies.sum()} motions", "output longer pecks", converted[0].event.line, code="PLN620"
-        )
+        raise HoleCycleError(Wording("PLN620", "holes_motions", sum=copies.sum()), converted[0].event.line)
     first_rows = np.concatenate(([0], np.cumsum(copies)))
     return HolesAsMotion(
         _with_rows(operation, converted, rows, copies, first_rows), first_rows, tuple(_summary(converted))
@@ -212,8 +211,7 @@ def _rows_of(operation: Operation, holes: _Holes, before: Floats, from_home: Fla
     height = np.where(from_home[rows], holes.retract_height, np.einsum("ij,ij->i", before[rows] - point, axis))
     is_low = height < cycle.rapid_height - SAME_HEIGHT
     if is_low[0] and moves.kind[holes.first - 1] != Kind.RAPID:
-        what, cure = "CYCLE while the tool is below the height of RAPTO", "draw the tool back before the cycle"
-        raise HoleCycleError(what, cure, holes.event.line, code="PLN650")
+        raise HoleCycleError(Wording("PLN650", "cycle_while_tool"), holes.event.line)
     travel_height = np.maximum(height, cycle.rapid_height)
     above = point + travel_height[:, None] * axis
     up = before[rows] + (cycle.rapid_height - height)[:, None] * axis
@@ -234,17 +232,13 @@ def _checked_motions(holes: _Holes, feed: float) -> HoleMotions:
     try:
         motions = hole_motions(holes.cycle)
         if not feed > 0.0:
-            raise HoleCycleError("CYCLE without a feed", "write MMPM,feed, or FEDRAT before it", code="CTL310")
+            raise HoleCycleError(Wording("CTL310", "cycle_without_feed"))
         if holes.cycle.dwell_in_revolutions and holes.spindle is None:
-            raise HoleCycleError(
-                "DWELL,REV while the spindle stands still", "put SPINDL before the cycle", code="PLN660"
-            )
+            raise HoleCycleError(Wording("PLN660", "dwell_rev_while"))
         if holes.cycle.method is HoleMethod.BORE and holes.spindle is None:
-            raise HoleCycleError(
-                "CYCLE/BORE,DRAG while the spindle stands still", "put SPINDL before the cycle", code="PLN660"
-            )
+            raise HoleCycleError(Wording("PLN660", "cycle_bore_drag"))
     except HoleCycleError as error:
-        raise HoleCycleError(error.what, error.cure, holes.event.line, code=error.code) from None
+        raise HoleCycleError(error.wording, holes.event.line) from None
     return motions
 
 

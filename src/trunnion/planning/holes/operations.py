@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Ints
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Arcs, CycleOff, CycleOn, Event, Kind, Operation
 from trunnion.planning.holes.cycles import HoleCycleError
 
@@ -84,8 +85,7 @@ def _with_retract_distance(operation: Operation, event: CycleOn) -> CycleOn:
         return event
     moves = operation.moves
     if event.row == 0:
-        cure = "put a point before the cycle, or write RTRCTO,distance"
-        raise HoleCycleError("RTRCTO,AUTO before any point", cure, event.line, code="PLN650")
+        raise HoleCycleError(Wording("PLN650", "rtrcto_auto_before"), event.line)
     height = float((moves.tip[event.row - 1] - moves.tip[event.row]) @ moves.axis[event.row])
     words.pop("RTRCTO")
     return replace(event, values=(*event.values, ("RTRCTO", (height,))), words=tuple(words.items()))

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Final
 
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Kind
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod
 
@@ -69,13 +70,13 @@ def peck_depths(cycle: Cycle) -> list[float]:
         return [cycle.depth]
     peck, decrement, shortest = cycle.pecks
     if decrement < 0.0 or shortest < 0.0:
-        raise HoleCycleError("STEP with a number below 0", "write STEP,first,less,shortest", code="PLN620")
+        raise HoleCycleError(Wording("PLN620", "step_number_below"))
     depths = [min(peck, cycle.depth)]
     while cycle.depth - depths[-1] > SAME_HEIGHT:
         peck = max(peck - decrement, min(shortest, peck))
         if not peck > 0.0:
-            raise HoleCycleError("STEP without a shortest peck", "write STEP,first,less,shortest", code="PLN610")
+            raise HoleCycleError(Wording("PLN610", "step_without_shortest"))
         if len(depths) >= _MOST_PECKS:
-            raise HoleCycleError(f"a hole in more than {_MOST_PECKS} pecks", "write longer ones", code="PLN620")
+            raise HoleCycleError(Wording("PLN620", "hole_more_pecks", most_pecks=_MOST_PECKS))
         depths.append(min(depths[-1] + peck, cycle.depth))
     return [*depths[:-1], cycle.depth]

@@ -11,6 +11,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 from trunnion.model.arcs import CLOSED_ARC, FLAT_ARC, arc_gaps
 from trunnion.model.toolpath import Arcs, Kind, Operation
 from trunnion.planning.linearization.row_insertion import insert_rows
@@ -179,8 +180,19 @@ def lines_for_arcs(operation: Operation, keep: Flags, chord_tolerance: float) ->
     copies = arc_piece_counts(operation, keep, chord_tolerance)
     if int(copies.sum()) - len(moves) > MOST_LINES:
         longest = int(np.argmax(copies))
-        what = f"the arcs of operation {operation.name} become {int(copies.sum())} lines, {int(copies[longest])} here"
-        raise InputError(Problem(operation.file, int(moves.line[longest]), what, FEWER_LINES, code="PLN550"))
+        raise InputError(
+            Problem(
+                operation.file,
+                int(moves.line[longest]),
+                Wording(
+                    "PLN550",
+                    "arcs_operation_become",
+                    operation=operation.name,
+                    sum=int(copies.sum()),
+                    copies=int(copies[longest]),
+                ),
+            )
+        )
     source = np.repeat(np.arange(len(moves)), copies)
     new_row = np.cumsum(copies) - 1  # the last copy of each row is the row itself
     tip, axis = moves.tip[source], moves.axis[source]

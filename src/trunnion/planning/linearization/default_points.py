@@ -15,6 +15,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.errors import Problem
 from trunnion.machines import Machine, inverse
+from trunnion.messages import Wording
 from trunnion.model.axis_tolerance import allowed_deviation
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Kind, Moves
@@ -191,6 +192,4 @@ def _divided(
 
 def _problems(file: str, lines: list[int], tolerance: float) -> Iterable[Problem]:
     for line in lines[:_NAMED]:
-        what = f"in this step of the cut the tool axis leaves its path by more than {tolerance:g} degrees"
-        cure = "setting axis_tolerance=DEGREES allows more; or output the toolpath with points nearer to each other"
-        yield Problem(file, line, f"{what}: the rotary axes change their side", cure, code="PLN140")
+        yield Problem(file, line, Wording("PLN140", "step_cut_tool", tolerance=tolerance))

@@ -21,6 +21,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import Problem
 from trunnion.machines import Machine, forward, slide_positions
+from trunnion.messages import Wording
 from trunnion.model.motion import Decision, DecisionTopic, MachiningMode, Motion
 from trunnion.model.toolpath import Kind, Operation
 from trunnion.planning.axis_limits import limit_remedy, limit_violation_text, limits_of, outside_limits
@@ -174,11 +175,12 @@ def _decisions(file: str, operation: Operation, copies: Ints) -> Iterable[Decisi
 def _bend_problems(file: str, operation: Operation, rows: Ints, options: PlanOptions) -> Iterable[Problem]:
     """Steps of a cut through the pole in which no point keeps the tool axis within its tolerance."""
     for row in rows[:_NAMED].tolist():
-        tolerance = f"{options.axis_tolerance_between_points:g} degrees"
-        what = f"in this step of the cut the tool axis leaves its path by more than {tolerance}"
-        cure = "setting axis_tolerance=DEGREES allows more; or output the toolpath with points nearer to each other"
         yield Problem(
-            file, int(operation.moves.line[row]), f"{what}: the rotary axes change their side", cure, code="PLN140"
+            file,
+            int(operation.moves.line[row]),
+            Wording(
+                "PLN140", "step_cut_tool_axis", axis_tolerance_between_points=options.axis_tolerance_between_points
+            ),
         )
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.toolpath import LoadTool, Operation
 
 #: Directions are parallel within this sine.
@@ -24,15 +25,9 @@ def check_slides_are_known(file: str, operations: Sequence[Operation], machine: 
     problems = []
     line = operations[0].line
     if machine.workpiece_zero is None:
-        what = (
-            "without TCP the program holds positions of the slides, and the workpiece zero on the machine is not known"
-        )
-        problems.append(
-            Problem(file, line, what, "write setting zero=X,Y,Z, or zero_mm under [workpiece]", code="PLN510")
-        )
+        problems.append(Problem(file, line, Wording("PLN510", "without_tcp_program")))
     if {machine.axes[column].name for column in machine.linear} != set("XYZ"):
-        what = f"without TCP the words X, Y and Z are slides, and those of {machine.key} have other names"
-        problems.append(Problem(file, line, what, "name the slides X, Y and Z in the definition", code="PLN540"))
+        problems.append(Problem(file, line, Wording("PLN540", "without_tcp_words", machine=machine.key)))
     elif machine.has_rotary_head:
         problems += _tool_length_problems(file, operations, machine)
     if problems:
@@ -43,11 +38,9 @@ def _tool_length_problems(file: str, operations: Sequence[Operation], machine: M
     """Where a head turns the tool, slide positions depend on the tool's length."""
     line, z = operations[0].line, machine.axis("Z")
     if machine.tool_length is None:
-        what = "without TCP the slides follow the tool's length where the head turns it, and it is not known"
-        yield Problem(file, line, what, "write setting tool_length=MM, as in the control's tool offset", code="PLN520")
+        yield Problem(file, line, Wording("PLN520", "without_tcp_slides"))
     if z.sense * float(np.dot(z.direction, machine.spindle_direction)) < 1.0 - _PARALLEL_SINE:
-        what = "without TCP the control adds the tool's length along Z, and the spindle does not point there at zero"
-        yield Problem(file, line, what, "post with TCP (setting tcp=on)", code="PLN540")
+        yield Problem(file, line, Wording("PLN540", "without_tcp_control"))
     tools: dict[tuple[int | None, str], int] = {}
     number = None
     for operation in operations:
@@ -55,5 +48,4 @@ def _tool_length_problems(file: str, operations: Sequence[Operation], machine: M
         number = loads[-1] if loads else number
         tools.setdefault((number, operation.tool.name), operation.line)
     if len(tools) > 1:
-        what = f"{len(tools)} tools in a program without TCP, and one tool length for all"
-        yield Problem(file, list(tools.values())[1], what, "post one program for each tool", code="PLN530")
+        yield Problem(file, list(tools.values())[1], Wording("PLN530", "tools_program_without", count=len(tools)))

@@ -17,6 +17,7 @@ from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem, Severity, unusable_file
 from trunnion.machines import BodyBox, BodyCylinder, BodyFile, Machine, MachineBody
 from trunnion.machines.links import SPINDLE, WORKPIECE
+from trunnion.messages import Wording
 from trunnion.simulation.meshes import TriangleMesh, box_mesh, cylinder_mesh, load_mesh, revolved_mesh
 from trunnion.simulation.tools.profile import Element, ProfileArc, Section, ToolShape
 
@@ -99,10 +100,13 @@ def machine_bodies(machine: Machine, warn: Callable[[Problem], None] | None = No
     if problems:
         raise InputError(problems)
     if found and warn is not None and not machine.spindle_point_is_stated:
-        what = "has no spindle.gauge_point_mm: spindle and tools are not checked against the rest of the machine"
-        cure = "enter where the spindle nose stands with the slides at zero"
         warn(
-            Problem(machine.files[0] if machine.files else machine.key, 0, what, cure, Severity.WARNING, code="SIM310")
+            Problem(
+                machine.files[0] if machine.files else machine.key,
+                0,
+                Wording("SIM310", "no_spindle_gauge"),
+                severity=Severity.WARNING,
+            )
         )
     return tuple(found)
 
@@ -175,11 +179,9 @@ def _file_beside(shape: BodyFile) -> Path:
     definition = Path(shape.of)
     path = definition.parent / shape.file
     if not definition.is_file():
-        cure = "name a file in the definition of a machine that is a file itself"
-        raise InputError(Problem(shape.file, 0, "belongs to no definition file", cure, code="SIM312"))
+        raise InputError(Problem(shape.file, 0, Wording("SIM312", "belongs_no_definition")))
     if not is_within(path, definition.parent):
-        cure = "put the mesh into the folder of the definition or below it"
-        raise InputError(Problem(shape.file, 0, "leads out of the folder of the definition", cure, code="SIM312"))
+        raise InputError(Problem(shape.file, 0, Wording("SIM312", "leads_out_folder")))
     if path.exists() and (unusable := unusable_file(path, "a mesh")):
         raise InputError(replace(unusable, file=shape.file))
     return path

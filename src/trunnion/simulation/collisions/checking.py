@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Final
 
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.simulation.collisions.bodies import Body, BodyKind, tool_bodies
 from trunnion.simulation.collisions.findings import Collision
@@ -90,25 +91,19 @@ def _tool_lengths(run: Run, bodies: Sequence[Body], tools: Mapping[str, ToolShap
     machine, file = run.machine, run.files[0] if run.files else ""
     used = [int(k) for k in run.state.tool.distinct() if run.tools[int(k)] not in ("", "0")]
     problems = [
-        Problem(file, 0, f"tool {run.tools[k]} is not known: only its number is", "say which tool it is", code="SIM150")
+        Problem(file, 0, Wording("SIM150", "tool_not_known", tools=run.tools[k]))
         for k in used
         if run.tools[k] not in tools
     ]
     iron = any(body.kind is BodyKind.MACHINE for body in bodies)
     if iron and machine.workpiece_zero is None:
-        what = "needs the workpiece zero: without it nobody knows where the part is on the table"
-        problems.append(
-            Problem(
-                file, 0, f"the collision check with the machine {what}", "give the zero of the set-up", code="SIM310"
-            )
-        )
+        problems.append(Problem(file, 0, Wording("SIM310", "collision_check_machine")))
     lengths = {}
     for k in used:
         if run.tools[k] in tools:
             lengths[k] = tools[run.tools[k]].length or machine.tool_length or 0.0
             if iron and not lengths[k]:
-                what = f"the length of tool {run.tools[k]} is not known, from its tip to the gauge point"
-                problems.append(Problem(file, 0, what, "give it: the head stands so far above the part", code="SIM310"))
+                problems.append(Problem(file, 0, Wording("SIM310", "length_tool_not", tools=run.tools[k])))
     if problems:
         raise InputError(problems)
     return lengths

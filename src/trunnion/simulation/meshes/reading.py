@@ -16,6 +16,7 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem, Severity, unusable_file
+from trunnion.messages import Wording
 from trunnion.simulation.meshes.findings import LARGEST_EXTENT, SMALLEST_EXTENT, MeshFindings, judge_mesh
 from trunnion.simulation.meshes.step import STEP_ENDINGS, read_step
 from trunnion.simulation.meshes.stl import read_stl
@@ -106,7 +107,7 @@ def load_mesh(
     if len(faces) > MAX_FACETS:
         raise InputError(too_many_facets(label, len(faces)))
     if stated is not None and ending in STEP_ENDINGS:
-        raise InputError(Problem(label, 0, "is a STEP file, which states its unit", "state none", code="SIM215"))
+        raise InputError(Problem(label, 0, Wording("SIM215", "step_file_states")))
     scale = own_unit if stated is None else stated.in_mm
     mesh = _shared_vertices(vertices * scale, faces, name or file.name, label)
     findings = judge_mesh(mesh)
@@ -123,14 +124,16 @@ def load_mesh(
 
 def _check_file(file: Path, label: str, ending: str) -> None:
     if ending in _CAD_FORMATS:
-        what = "is a CAD file of a format that is not read"
-        raise InputError(
-            Problem(label, 0, what, "export it as STEP, or as a mesh: STL, 3MF, PLY, OBJ or GLB", code="SIM211")
-        )
+        raise InputError(Problem(label, 0, Wording("SIM211", "cad_file_format")))
     if ending not in MESH_FORMATS:
-        what = f'ends in "{file.suffix}"' if ending else "has no ending that names its format"
         raise InputError(
-            Problem(label, 0, what, f"give a mesh that ends in one of {', '.join(MESH_FORMATS)}", code="SIM211")
+            Problem(
+                label,
+                0,
+                Wording("SIM211", "ends", suffix=file.suffix, mesh_formats=tuple(MESH_FORMATS))
+                if ending
+                else Wording("SIM211", "no_ending_names", mesh_formats=tuple(MESH_FORMATS)),
+            )
         )
     unusable = unusable_file(file, "a mesh")
     if unusable:
@@ -142,10 +145,11 @@ def _bytes(file: Path, label: str) -> bytes:
         with file.open("rb") as stream:
             data = stream.read(MAX_BYTES + 1)
     except OSError as error:
-        raise InputError(Problem(label, 0, f"cannot be read: {error.strerror or error}", code="SIM210")) from None
+        raise InputError(
+            Problem(label, 0, Wording("SIM210", "cannot_read", strerror=error.strerror or error))
+        ) from None
     if len(data) > MAX_BYTES:
-        what = f"has more than {MAX_BYTES // 1_000_000} MB"
-        raise InputError(Problem(label, 0, what, "export it with fewer facets, or as binary STL", code="SIM212"))
+        raise InputError(Problem(label, 0, Wording("SIM212", "more_mb", max_bytes=MAX_BYTES // 1000000)))
     return data
 
 
@@ -179,9 +183,7 @@ def _read_glb(data: bytes, label: str) -> tuple[Floats, Ints, float]:
 
 def too_many_facets(label: str, facets: int) -> Problem:
     """Return the problem of a mesh of too many facets."""
-    return Problem(
-        label, 0, f"has {facets} facets, more than {MAX_FACETS}", "export it with a coarser tolerance", code="SIM212"
-    )
+    return Problem(label, 0, Wording("SIM212", "facets_more", facets=facets, max_facets=MAX_FACETS))
 
 
 _READERS: Final[dict[str, Callable[[bytes, str], tuple[Floats, Ints, float]]]] = {
@@ -198,13 +200,17 @@ def _shared_vertices(vertices: Floats, faces: Ints, name: str, label: str) -> Tr
     if not np.isfinite(vertices).all():
         where = int(np.flatnonzero(~np.isfinite(vertices).all(axis=1))[0])
         facet = np.flatnonzero((faces == where).any(axis=1))
-        at = f"facet {facet[0] + 1}" if len(facet) else f"vertex {where + 1}"
         raise InputError(
-            Problem(label, 0, f"holds a coordinate that is no number, at {at}", "export it again", code="SIM210")
+            Problem(
+                label,
+                0,
+                Wording("SIM210", "holds_coordinate_no", facet=facet[0] + 1)
+                if len(facet)
+                else Wording("SIM210", "holds_coordinate_no_number", where=where + 1),
+            )
         )
     if len(vertices) and float(np.abs(vertices).max()) > MAX_COORDINATE:
-        what = f"holds a coordinate of {float(np.abs(vertices).max()):g} mm"
-        raise InputError(Problem(label, 0, what, "give the unit of its numbers, or export it again", code="SIM213"))
+        raise InputError(Problem(label, 0, Wording("SIM213", "holds_coordinate_mm", max=float(np.abs(vertices).max()))))
     # -0.0 and 0.0 are one coordinate.
     whole = np.ascontiguousarray(vertices + 0.0)
     order = np.lexsort(whole.T)
@@ -217,7 +223,7 @@ def _shared_vertices(vertices: Floats, faces: Ints, name: str, label: str) -> Tr
     flat = (found == np.roll(found, -1, axis=1)).any(axis=1)
     found = found[~flat]
     if not len(found):
-        raise InputError(Problem(label, 0, "is empty: it holds no facet", "export the body itself", code="SIM216"))
+        raise InputError(Problem(label, 0, Wording("SIM216", "empty_holds_no")))
     used = np.zeros(int(new.sum()), np.bool_)
     used[found] = True
     return TriangleMesh(ordered[new][used], (np.cumsum(used) - 1)[found], name)
@@ -227,25 +233,41 @@ def _problems(mesh: TriangleMesh, findings: MeshFindings, label: str, guessed: b
     problems = []
     severity = Severity.ERROR if refused else Severity.WARNING
     if findings.open_edges:
-        near = "; ".join(f"X{x:.3f} Y{y:.3f} Z{z:.3f}" for x, y, z in findings.places)
-        what = f"leaks: {findings.open_edges} edges of its surface are open, at {near}"
         problems.append(
-            Problem(label, 0, what, "close the surface in CAD and export it as one solid", severity, code="SIM214")
+            Problem(
+                label,
+                0,
+                Wording(
+                    "SIM214",
+                    "leaks_edges_surface",
+                    open_edges=findings.open_edges,
+                    places=tuple(f"X{x:.3f} Y{y:.3f} Z{z:.3f}" for x, y, z in findings.places),
+                ),
+                severity=severity,
+            )
         )
     if findings.turned:
-        what = f"is not of one piece: at {findings.turned} edges, facets are seen from different sides"
-        problems.append(Problem(label, 0, what, "export it as one solid", severity, code="SIM214"))
+        problems.append(
+            Problem(label, 0, Wording("SIM214", "not_one_piece", turned=findings.turned), severity=severity)
+        )
     if findings.inside_out:
-        what = "is inside out: its facets are seen from inside, and are turned"
-        problems.append(Problem(label, 0, what, "turn its normals in CAD", Severity.WARNING, code="SIM214"))
+        problems.append(Problem(label, 0, Wording("SIM214", "inside_out_facets"), severity=Severity.WARNING))
     low, high = mesh.bounds
     extent = float((high - low).max())
     if extent < SMALLEST_EXTENT:
         # Stock of 0.1 mm is missed by every tool, and a part of 0.1 mm passes whatever is left.
-        what = f"is {extent:.3g} mm large" + (": its numbers look like metres" if guessed else "")
-        cure = "export it in mm, or as 3MF or STEP, which state their unit" if guessed else "check its unit"
-        problems.append(Problem(label, 0, what, cure, severity if guessed else Severity.WARNING, code="SIM213"))
+        problems.append(
+            Problem(
+                label,
+                0,
+                Wording("SIM213", "mm_large_numbers", extent=extent)
+                if guessed
+                else Wording("SIM213", "mm_large", extent=extent),
+                severity=severity if guessed else Severity.WARNING,
+            )
+        )
     elif extent > LARGEST_EXTENT:
-        what = f"is {extent / 1000.0:.3g} m large"
-        problems.append(Problem(label, 0, what, "give the unit of its numbers", Severity.WARNING, code="SIM213"))
+        problems.append(
+            Problem(label, 0, Wording("SIM213", "m_large", extent=extent / 1000.0), severity=Severity.WARNING)
+        )
     return problems

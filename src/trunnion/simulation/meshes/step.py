@@ -15,6 +15,7 @@ from typing import Final
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
+from trunnion.messages import Wording
 from trunnion.simulation.meshes.trimesh_formats import read_by_trimesh
 
 #: Endings of STEP files.
@@ -39,8 +40,6 @@ result.write(made)
 result.close()
 """
 
-_CURE: Final = "export it again, as AP214 or AP242, or as STL or 3MF"
-
 
 def read_step(data: bytes, label: str, deviation: float) -> tuple[Floats, Ints]:
     """Read a STEP file.
@@ -62,21 +61,18 @@ def read_step(data: bytes, label: str, deviation: float) -> tuple[Floats, Ints]:
     if importlib.util.find_spec("cascadio") is None:
         import_extra("cascadio", "cad")
     if re.search(rb"=\s*DOCUMENT_FILE\s*\(", data):
-        what = "has parts in other files, which are not opened"
-        raise InputError(Problem(label, 0, what, "export the assembly as one file", code="SIM217"))
+        raise InputError(Problem(label, 0, Wording("SIM217", "parts_other_files")))
     # -P: no module of the current folder is run.
     command = [sys.executable, "-P", "-c", _CHILD, repr(deviation), repr(_TURN)]
     try:
         done = subprocess.run(command, input=data, capture_output=True, check=False, timeout=_LONGEST)
     except subprocess.TimeoutExpired:
-        what = f"is not made facets within {_LONGEST:g} s"
-        raise InputError(Problem(label, 0, what, "export it as STL or 3MF", code="SIM212")) from None
+        raise InputError(Problem(label, 0, Wording("SIM212", "not_made_facets", longest=_LONGEST))) from None
     said = re.sub(r"\x1b\[[0-9;]*m", "", done.stderr.decode("utf-8", "replace"))
     if done.returncode or not done.stdout:
-        raise InputError(Problem(label, 0, f"is damaged: {_reason(said)}", _CURE, code="SIM210"))
+        raise InputError(Problem(label, 0, Wording("SIM210", "damaged", reason=_reason(said))))
     if "without geometry" in said:
-        what = "has a body whose surface is not there or cannot be made facets"
-        raise InputError(Problem(label, 0, what, _CURE, code="SIM210"))
+        raise InputError(Problem(label, 0, Wording("SIM210", "body_whose_surface")))
     vertices, faces = read_by_trimesh(done.stdout, "glb", label, "cad")
     return 1000.0 * vertices, faces
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
 
 _FACET: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -29,18 +30,23 @@ def read_stl(data: bytes, label: str, max_facets: int) -> Floats:
     # Binary files may begin with "solid" too: only text holds facets in words.
     if data[:512].lstrip()[:5].lower() == b"solid" and b"\0" not in data[:512]:
         return _read_text(data, label, max_facets)
-    if count < 0:
-        what = f"is damaged: it has {len(data)} bytes, fewer than the head of an STL file"
-    else:
-        there = (len(data) - _HEADER) / _FACET.itemsize
-        what = f"is damaged: its head promises {count} facets, and it holds {there:g}"
-    raise InputError(Problem(label, 0, what, "export or copy it again", code="SIM210"))
+    there = (len(data) - _HEADER) / _FACET.itemsize
+    raise InputError(
+        Problem(
+            label,
+            0,
+            Wording("SIM210", "damaged_bytes_fewer", count=len(data))
+            if count < 0
+            else Wording("SIM210", "damaged_head_promises", count=count, there=there),
+        )
+    )
 
 
 def _check_count(count: int, label: str, max_facets: int) -> None:
     if count > max_facets:
-        what = f"has {count} facets, more than {max_facets}"
-        raise InputError(Problem(label, 0, what, "export it with a coarser tolerance", code="SIM212"))
+        raise InputError(
+            Problem(label, 0, Wording("SIM212", "facets_more_or_export", count=count, max_facets=max_facets))
+        )
 
 
 def _read_text(data: bytes, label: str, max_facets: int) -> Floats:
@@ -57,9 +63,7 @@ def _read_text(data: bytes, label: str, max_facets: int) -> Floats:
             try:
                 x, y, z = map(float, words[1:])
             except ValueError:
-                raise InputError(
-                    Problem(label, line, "is no vertex of three numbers", "export it again", code="SIM210")
-                ) from None
+                raise InputError(Problem(label, line, Wording("SIM210", "no_vertex_three"))) from None
             numbers.extend((x, y, z))
         elif last == b"facet":
             facets += 1
@@ -67,17 +71,11 @@ def _read_text(data: bytes, label: str, max_facets: int) -> Floats:
         elif last == b"endfacet":
             ends += 1
             if len(numbers) != 9 * ends or ends != facets:
-                raise InputError(
-                    Problem(label, line, "ends a facet that has not three corners", "export it again", code="SIM210")
-                )
+                raise InputError(Problem(label, line, Wording("SIM210", "ends_facet_not")))
         elif last not in (b"solid", b"outer", b"endloop", b"endsolid"):
-            raise InputError(Problem(label, line, "is no line of an STL file", "export it again", code="SIM210"))
+            raise InputError(Problem(label, line, Wording("SIM210", "no_line_stl")))
     if last != b"endsolid" or facets != ends:
-        raise InputError(
-            Problem(
-                label, line, "is cut short: the end of the solid is missing", "export or copy it again", code="SIM210"
-            )
-        )
+        raise InputError(Problem(label, line, Wording("SIM210", "cut_short_end")))
     return np.frombuffer(numbers, np.float64).reshape(-1, 3).copy() if numbers else np.zeros((0, 3))
 
 

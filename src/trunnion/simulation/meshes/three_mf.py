@@ -12,6 +12,7 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
 
 _CORE: Final = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
@@ -51,9 +52,9 @@ def read_three_mf(data: bytes, label: str, max_bytes: int, max_facets: int) -> t
     except (
         KeyError, ValueError, ET.ParseError, zipfile.BadZipFile, zlib.error, NotImplementedError, EOFError, OSError,
     ) as error:  # fmt: skip
-        raise InputError(Problem(label, 0, f"is damaged: {error}", "export or copy it again", code="SIM210")) from None
+        raise InputError(Problem(label, 0, Wording("SIM210", "damaged_or_export", error=error))) from None
     except RuntimeError as error:  # a packed file with a password
-        raise InputError(Problem(label, 0, f"cannot be unpacked: {error}", "export it again", code="SIM210")) from None
+        raise InputError(Problem(label, 0, Wording("SIM210", "cannot_unpacked", error=error))) from None
     vertices = np.concatenate([np.zeros((0, 3)), *collected.vertices])
     return vertices, np.concatenate([np.zeros((0, 3), np.int64), *collected.faces]), unit
 
@@ -91,15 +92,13 @@ def _unpacked(data: bytes, label: str, max_bytes: int) -> bytes:
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
         names = [name for name in archive.namelist() if name.lstrip("/").lower().endswith(".model")]
         if len(names) != 1:
-            what = f"holds {len(names)} models where one is expected"
-            raise InputError(Problem(label, 0, what, "export one part into one file", code="SIM217"))
+            raise InputError(Problem(label, 0, Wording("SIM217", "holds_models_where", count=len(names))))
         with archive.open(names[0]) as stream:
             model = stream.read(max_bytes + 1)
     if len(model) > max_bytes:
-        what = f"unpacks to more than {max_bytes // 1_000_000} MB"
-        raise InputError(Problem(label, 0, what, "export it with fewer facets", code="SIM212"))
+        raise InputError(Problem(label, 0, Wording("SIM212", "unpacks_more_mb", max_bytes=max_bytes // 1000000)))
     if b"<!" in model[:4096].replace(b"<!--", b""):
-        raise InputError(Problem(label, 0, "declares entities, which no model needs", "export it again", code="SIM210"))
+        raise InputError(Problem(label, 0, Wording("SIM210", "declares_entities_no")))
     return model
 
 
@@ -151,8 +150,7 @@ class _Collected:
         found = self.objects[name]
         self.facets += len(found.faces) + 1  # an object without facets counts too, so that none multiply without end
         if self.facets > self.max_facets:
-            what = f"has more than {self.max_facets} facets"
-            raise InputError(Problem(self.label, 0, what, "export it with a coarser tolerance", code="SIM212"))
+            raise InputError(Problem(self.label, 0, Wording("SIM212", "more_facets", max_facets=self.max_facets)))
         if found.faces:
             points = np.array(found.vertices, np.float64).reshape(-1, 3)
             faces = np.array(found.faces, np.int64)

@@ -12,6 +12,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
+from trunnion.messages import Wording
 
 #: Packages that trimesh asks, where they are installed, in what code a text is that is not UTF-8.
 _GUESSERS: Final = frozenset({"charset_normalizer", "chardet"})
@@ -36,15 +37,11 @@ def read_by_trimesh(data: bytes, ending: str, label: str, extra: str = "simulate
         raise
     except ImportError as error:
         if error.name in _GUESSERS:
-            raise InputError(
-                Problem(label, 0, "is damaged: its text is not UTF-8", "export it again", code="SIM210")
-            ) from None
+            raise InputError(Problem(label, 0, Wording("SIM210", "damaged_text_not"))) from None
         raise
     except Exception as error:  # whatever a parser raises for a damaged file
         reason = str(error).strip().split("\n")[0][:100] or type(error).__name__
-        raise InputError(Problem(label, 0, f"is damaged: {reason}", "export it again", code="SIM210")) from None
+        raise InputError(Problem(label, 0, Wording("SIM210", "damaged_or_export_again", reason=reason))) from None
     if len(faces) and not (faces.min() >= 0 and faces.max() < len(vertices)):
-        raise InputError(
-            Problem(label, 0, "is damaged: a facet names a vertex that is not there", "export it again", code="SIM210")
-        )
+        raise InputError(Problem(label, 0, Wording("SIM210", "damaged_facet_names")))
     return vertices, faces

@@ -11,6 +11,7 @@ import numpy as np
 
 from trunnion.errors import InputError, Problem
 from trunnion.files import atomic_file
+from trunnion.messages import Wording
 from trunnion.simulation.meshes.picture import picture
 from trunnion.simulation.meshes.stl import write_stl
 from trunnion.simulation.meshes.three_mf import write_three_mf
@@ -24,10 +25,14 @@ def check_mesh_name(path: str | Path, others: Sequence[str] = ()) -> None:
     """Raise ``InputError`` if the ending of a name says no format that is written; ``others`` are written elsewhere."""
     ending = Path(path).suffix.lower()
     if ending not in (*_WRITERS, *others):
-        unknown = f'ends in "{Path(path).suffix}", a format that is not written'
-        what = unknown if ending else "has no ending that names a format"
         raise InputError(
-            Problem(str(path), 0, what, f"end it in one of {', '.join((*_WRITERS, *others))}", code="SIM218")
+            Problem(
+                str(path),
+                0,
+                Wording("SIM218", "ends_format_not", suffix=Path(path).suffix, writers=(*_WRITERS, *others))
+                if ending
+                else Wording("SIM218", "no_ending_names", writers=(*_WRITERS, *others)),
+            )
         )
 
 
@@ -53,7 +58,7 @@ def save_mesh(mesh: TriangleMesh, path: str | Path, *, inputs: Iterable[str | os
     check_mesh_name(path)
     ending = Path(path).suffix.lower()
     if not len(mesh.faces):
-        raise InputError(Problem(str(path), 0, "would be empty: nothing is left of the body", code="SIM219"))
+        raise InputError(Problem(str(path), 0, Wording("SIM219", "would_empty_nothing")))
     data = _WRITERS[ending](mesh)
     with atomic_file(path, inputs=inputs) as stream:
         stream.write(data)

@@ -17,6 +17,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.messages import Wording
 from trunnion.simulation.meshes import DEVIATION, TriangleMesh, load_mesh
 from trunnion.simulation.stock.lattice import Lattice
 from trunnion.simulation.stock.material import Stock, rays_of_tiles
@@ -131,10 +132,20 @@ def check_narrow_tools(tools: Mapping[str, float], cell: float) -> None:
     narrow = {name: wide for name, wide in tools.items() if wide < math.sqrt(2.0) * cell}
     if narrow:
         name, wide = min(narrow.items(), key=lambda each: each[1])
-        what = f"is {cell:g} mm, and tool {name}, {wide:g} mm wide, may pass between the rays unseen"
         digit = 10.0 ** (math.floor(math.log10(wide)) - 1)
-        cure = f"take cells of {math.floor(0.5 * wide / digit) * digit:g} mm"
-        raise InputError(argument_problem("cell", what, cure, code="SIM120"))
+        raise InputError(
+            argument_problem(
+                "cell",
+                Wording(
+                    "SIM120",
+                    "mm_tool_mm",
+                    cell=cell,
+                    name=name,
+                    wide=wide,
+                    wide_2=math.floor(0.5 * wide / digit) * digit,
+                ),
+            )
+        )
 
 
 def check_cell(shape: StockShape, cell: float) -> None:
@@ -149,10 +160,17 @@ def check_cell(shape: StockShape, cell: float) -> None:
         fits = cell * math.sqrt(needed(cell) / MOST_BYTES)
         digit = 10.0 ** (math.floor(math.log10(fits)) - 1)
         fits = math.ceil(fits / digit) * digit
-        what = f"cells of {cell:g} mm take {needed(cell) / 1e9:.0f} GB of memory for this stock"
         raise InputError(
             argument_problem(
-                "cell", what, f"cells of {fits:g} mm take less than {MOST_BYTES / 1e9:g} GB", code="SIM120"
+                "cell",
+                Wording(
+                    "SIM120",
+                    "cells_mm_take",
+                    cell=cell,
+                    needed=needed(cell) / 1000000000.0,
+                    fits=fits,
+                    most_bytes=MOST_BYTES / 1000000000.0,
+                ),
             )
         )
 

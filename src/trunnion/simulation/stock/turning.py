@@ -16,6 +16,7 @@ import numpy as np
 
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 from trunnion.simulation.stock.lattice import BUNDLE_AXES, Lattice
 from trunnion.simulation.stock.material import Stock
 from trunnion.simulation.stock.spans import Spans, mesh_spans
@@ -84,9 +85,7 @@ def turned_stock(stock: Stock, pose: Pose, cell: float) -> tuple[Lattice, tuple[
         If nothing is left of the stock.
     """
     if stock.volume <= 0.0:
-        raise InputError(
-            Problem("stock", 0, "nothing is left of it for the next set-up", "check its place and pose", code="SIM135")
-        )
+        raise InputError(Problem("stock", 0, Wording("SIM135", "nothing_left_next")))
     if pose.keeps_rays:
         return _turned_rays(stock, pose)
     mesh = stock_surface(stock).moved(pose.matrix)

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.messages import Wording
 from trunnion.model.toolpath import LoadTool, Tool, Toolpath
 from trunnion.simulation.tools.cl_tools import cl_tool_shape
 from trunnion.simulation.tools.library import ToolLibrary
@@ -95,19 +96,19 @@ def _nothing_describes(word: str, number: int | None, libraries: Sequence[ToolLi
         if number is not None and number in library.diameters
     }
     for file, diameter in diameters.items():
-        what = f"tool {word} has a diameter of {diameter:g} mm, and nothing says its form"
-        return Problem(file, 0, what, f"state its kind: {word}=ball takes the diameter from the table", code="SIM150")
-    cure = f"state it, such as {word}=ball:10,length=60,flutes=20, or give a tool library that has it"
-    return argument_problem(
-        "tools", f"nothing says the form of tool {word}, which the program calls", cure, code="SIM150"
-    )
+        return Problem(file, 0, Wording("SIM150", "tool_diameter_mm", word=word, diameter=diameter))
+    return argument_problem("tools", Wording("SIM150", "nothing_says_form", word=word))
 
 
 def _stated(stated: Sequence[ToolShape], number: int | None, name: str) -> ToolShape | None:
     same = [shape for shape in stated if (shape.number == number if number is not None else shape.name == name)]
     if len(same) > 1:
-        what = f"tool {name if number is None else number} is stated {len(same)} times"
-        raise InputError(argument_problem("tools", what, "state it once", code="SIM151"))
+        raise InputError(
+            argument_problem(
+                "tools",
+                Wording("SIM151", "tool_stated_times", name=name if number is None else number, count=len(same)),
+            )
+        )
     return same[0] if same else None
 
 
@@ -117,10 +118,17 @@ def _of_cl_files(cl_tools: Sequence[ClTool], number: int | None, name: str) -> T
     shapes = [cl_tool_shape(each.tool, number, file=each.file, line=each.line, dialect=each.dialect) for each in same]
     for each, shape in zip(same, shapes, strict=True):
         if shape.sections != shapes[0].sections:
-            what = f"tool {name if number is None else number} is another one in line {same[0].line} of {same[0].file}"
             raise InputError(
                 Problem(
-                    each.file, each.line, what, "number and name tools apart, or state the tool itself", code="SIM151"
+                    each.file,
+                    each.line,
+                    Wording(
+                        "SIM151",
+                        "tool_another_one",
+                        name=name if number is None else number,
+                        same_line=same[0].line,
+                        same_file=same[0].file,
+                    ),
                 )
             )
     return shapes[0] if shapes else None

@@ -4,6 +4,7 @@ import math
 from typing import Final
 
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 from trunnion.model.apt_cutter import apt_cutter
 from trunnion.model.toolpath import Tool
 from trunnion.simulation.tools.outlines import rounded_corner
@@ -34,7 +35,19 @@ def cl_tool_shape(tool: Tool, number: int | None, *, file: str, line: int, diale
     """
     called = f"tool {number}" if number is not None else f"tool {tool.name}" if tool.name else "its tool"
     if unsettled := _unsettled(tool, dialect):
-        raise InputError(Problem(file, line, f"{called} {unsettled}", _SAY_IT, code="SIM154"))
+        raise InputError(
+            Problem(
+                file,
+                line,
+                Wording("SIM154", "tool", number=number, unsettled=unsettled)
+                if number is not None
+                else (
+                    Wording("SIM154", "tool_or_state", tool=tool.name, unsettled=unsettled)
+                    if tool.name
+                    else Wording("SIM154", "tool_or_state_tool", unsettled=unsettled)
+                ),
+            )
+        )
     sizes = _sizes(tool)
     if faults := shape_faults(sizes):
         whats = ((f"{called}: its {size.replace('_', ' ')} {what}", cure) for size, what, cure in faults)

@@ -15,6 +15,7 @@ from cryptography.hazmat.primitives.asymmetric import rsa
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 
 _DAYS: Final = 3650
 
@@ -53,8 +54,9 @@ def server_certificate(folder: Path, application: str, host: str) -> ServerCerti
             _make(certificate, key, application, host)
         data = certificate.read_bytes()
     except OSError as error:
-        what = f"the certificate of the server cannot be written: {error.strerror}"
-        raise InputError(Problem(str(folder), 0, what, "make the folder writable", code="TWN140")) from None
+        raise InputError(
+            Problem(str(folder), 0, Wording("TWN140", "certificate_server_cannot", strerror=error.strerror))
+        ) from None
     return ServerCertificate(certificate, key, hashlib.sha1(data, usedforsecurity=False).hexdigest().upper())
 
 
@@ -82,8 +84,9 @@ def client_certificate(folder: Path) -> ClientCertificate:
         if not (key.is_file() and _is_good(certificate, application)):
             _make(certificate, key, application, socket.gethostname())
     except OSError as error:
-        what = f"the certificate of the client cannot be written: {error.strerror}"
-        raise InputError(Problem(str(folder), 0, what, "make the folder writable", code="TWN140")) from None
+        raise InputError(
+            Problem(str(folder), 0, Wording("TWN140", "certificate_client_cannot", strerror=error.strerror))
+        ) from None
     return ClientCertificate(certificate, key, application)
 
 

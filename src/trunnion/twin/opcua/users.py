@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import Final
 
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 
 #: Cost of a hash: some 50 ms and 16 MB.
 _COST: Final = {"n": 2**14, "r": 8, "p": 1}
@@ -98,16 +99,13 @@ def write_user(path: Path, name: str, role: Role, password: str) -> None:
         If the name or the password cannot be taken, or the file cannot be written.
     """
     if not _NAME.fullmatch(name):
-        cure = "take 1 to 64 letters, digits or _ . @ -"
-        raise InputError(Problem(str(path), 0, f"{name!r} is no name of a user", cure, code="TWN130"))
+        raise InputError(Problem(str(path), 0, Wording("TWN130", "no_name_user", name=repr(name))))
     try:
         password.encode()
     except UnicodeEncodeError:
-        raise InputError(
-            Problem(str(path), 0, "the password is no text in UTF-8", "write it in UTF-8", code="TWN130")
-        ) from None
+        raise InputError(Problem(str(path), 0, Wording("TWN130", "password_no_text"))) from None
     if len(password.strip()) < 8:
-        raise InputError(Problem(str(path), 0, "the password is too short", "take 8 characters or more", code="TWN130"))
+        raise InputError(Problem(str(path), 0, Wording("TWN130", "password_too_short")))
     others = [user for user in _read(path) if user.name != name] if path.exists() else []
     lines = [_line(user) for user in (*others, _hashed(name, role, password))]
     try:
@@ -119,25 +117,20 @@ def write_user(path: Path, name: str, role: Role, password: str) -> None:
             sink.write("# Users of a Trunnion twin: name:role:scrypt:N:r:p:salt:hash\n" + "".join(lines))
         beside.replace(path)
     except OSError as error:
-        raise InputError(
-            Problem(str(path), 0, f"cannot be written: {error.strerror}", "name another file", code="TWN131")
-        ) from None
+        raise InputError(Problem(str(path), 0, Wording("TWN131", "cannot_written", strerror=error.strerror))) from None
 
 
 def _read(path: Path) -> list[StoredUser]:
     if path.exists() and not path.is_file():
-        raise InputError(Problem(str(path), 0, "is no file of users", "name a file", code="TWN131"))
+        raise InputError(Problem(str(path), 0, Wording("TWN131", "no_file_users")))
     if os.name == "posix" and path.exists() and path.stat().st_mode & _WRITE_OF_OTHERS:
-        what, cure = "everybody can write it, and so make himself a user", "take that right away: chmod 600"
-        raise InputError(Problem(str(path), 0, what, cure, code="TWN131"))
+        what = "everybody can write it, and so make himself a user"
+        raise InputError(Problem(str(path), 0, Wording("TWN131", "everybody_can_write")))
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         what = getattr(error, "strerror", None) or "it is no text in UTF-8"
-        cure = "add a user with argument add_user=NAME"
-        raise InputError(
-            Problem(str(path), 0, f"the file of users cannot be read: {what}", cure, code="TWN131")
-        ) from None
+        raise InputError(Problem(str(path), 0, Wording("TWN131", "file_users_cannot", subject=what))) from None
     users, problems = [], []
     for number, line in enumerate(text.splitlines(), 1):
         if not line.strip() or line.startswith("#"):
@@ -145,9 +138,7 @@ def _read(path: Path) -> list[StoredUser]:
         user = _parsed(line)
         if user is None:
             what = "is no user; a line is name:role:scrypt:N:r:p:salt:hash"
-            problems.append(
-                Problem(str(path), number, what, "remove it, and add the user again with add_user=True", code="TWN131")
-            )
+            problems.append(Problem(str(path), number, Wording("TWN131", "no_user_line")))
         else:
             users.append(user)
     if problems:

@@ -21,6 +21,7 @@ from asyncua.crypto import security_policies
 from asyncua.crypto.uacrypto import CertProperties
 
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 from trunnion.twin.opcua.certificates import client_certificate
 from trunnion.twin.recording.nodes import Column, NodeList, Place
 from trunnion.twin.recording.rows import Reading, Value
@@ -119,13 +120,7 @@ class Connection:
         answers = await session.create_monitored_items(request)
         places = [column.place for column, node in zip(self._columns, found, strict=True) if node is not None]
         refused = [
-            Problem(
-                str(place),
-                0,
-                f"cannot be subscribed to: {answer.StatusCode.name}",
-                "ask for the right to read it",
-                code="TWN230",
-            )
+            Problem(str(place), 0, Wording("TWN230", "cannot_subscribed", statuscode=answer.StatusCode.name))
             for place, answer in zip(places, answers, strict=True)
             if not answer.StatusCode.is_good()
         ]
@@ -271,16 +266,13 @@ async def _secure(client: Any, access: Access) -> None:
     }
     policy = next((each for each in _POLICIES if each.URI in offered), None)
     if policy is None:
-        cure = "switch on one of Basic256Sha256, Aes128_Sha256_RsaOaep and Aes256_Sha256_RsaPss at the server"
-        raise InputError(
-            Problem(access.address, 0, "offers no channel that is signed and encrypted", cure, code="TWN221")
-        )
+        raise InputError(Problem(access.address, 0, Wording("TWN221", "offers_no_channel")))
     certificate: bytes = offered[policy.URI]
     fingerprint = hashlib.sha1(certificate, usedforsecurity=False).hexdigest().upper()
     if fingerprint != access.fingerprint.replace(":", "").replace(" ", "").upper():
-        what = f"has a certificate with the fingerprint {fingerprint}, which is not trusted"
-        cure = f"compare it with what the machine shows, and give argument trust={fingerprint}"
-        raise InputError(Problem(access.address, 0, what, cure, code="TWN222"))
+        raise InputError(
+            Problem(access.address, 0, Wording("TWN222", "certificate_fingerprint_not", fingerprint=fingerprint))
+        )
     own = client_certificate(access.folder)
     client.application_uri = own.application
     await client.set_security(

@@ -10,6 +10,7 @@ from collections.abc import AsyncGenerator, Callable
 from typing import Final
 
 from trunnion.errors import InputError, Problem, Severity
+from trunnion.messages import Wording
 from trunnion.twin.recording.client import FAILURES, Access, Connection, connect
 from trunnion.twin.recording.nodes import NodeList
 from trunnion.twin.recording.rows import Row, RowMaker
@@ -71,9 +72,9 @@ class MachineFeed:
         try:
             self._connection = await connect(self._access, self._nodes, self._sampling)
         except FAILURES as error:
-            what = f"cannot be connected to: {_reason(error)}"
-            cure = "compare address, user and security with those of the server"
-            raise InputError(Problem(self._access.address, 0, what, cure, code="TWN220")) from None
+            raise InputError(
+                Problem(self._access.address, 0, Wording("TWN220", "cannot_connected", reason=_reason(error)))
+            ) from None
         columns = zip(self._connection.names, self._nodes.columns, strict=True)
         there = [(name, column) for name, column in columns if name]
         self.names = tuple(name for name, _ in there)
@@ -81,9 +82,14 @@ class MachineFeed:
         twice = sorted({name for name in self.names if self.names.count(name) > 1})
         if twice or not there:
             await self.close()
-            what = f"has two columns of the name {twice[0]}" if twice else "has none of the variables"
             raise InputError(
-                Problem(self._access.address, 0, what, "write a list of nodes for this server", code="TWN231")
+                Problem(
+                    self._access.address,
+                    0,
+                    Wording("TWN231", "two_columns_name", twice=twice[0])
+                    if twice
+                    else Wording("TWN231", "none_variables"),
+                )
             )
         self._kept = [k for k, name in enumerate(self._connection.names) if name]
 

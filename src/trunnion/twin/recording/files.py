@@ -17,6 +17,7 @@ from typing import Any, Final
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
 from trunnion.files import OutputPlace, atomic_file
+from trunnion.messages import Wording
 from trunnion.twin.recording.nodes import TIMES
 from trunnion.twin.recording.rows import Row, Value
 from trunnion.wording import one_line
@@ -47,11 +48,18 @@ def check_is_new(place: OutputPlace) -> None:
         If something is there.
     """
     if place.is_stream:
-        raise InputError(Problem(place.name, 0, "is no file, and a recording is one", "name a file", code="TWN310"))
+        raise InputError(Problem(place.name, 0, Wording("TWN310", "no_file_recording")))
     for path in dict.fromkeys((place.path, journal_of(place.path))):
         if path.exists():
-            what = f"exists, and a recording is never written over{'' if path == place.path else ' (it was not ended)'}"
-            raise InputError(Problem(str(path), 0, what, "name another file, or move this one away", code="TWN310"))
+            raise InputError(
+                Problem(
+                    str(path),
+                    0,
+                    Wording("TWN310", "exists_recording_never")
+                    if path == place.path
+                    else Wording("TWN310", "exists_recording_never_written"),
+                )
+            )
 
 
 class RecordingWriter:
@@ -142,8 +150,9 @@ class RecordingWriter:
                 writer.write_table(arrow.table(made, schema=schema))
 
     def _failed(self, error: OSError) -> InputError:
-        what = f"cannot be written: {error.strerror or error}"
-        return InputError(Problem(str(self._journal), 0, what, "what was recorded so far stays", code="TWN311"))
+        return InputError(
+            Problem(str(self._journal), 0, Wording("TWN311", "cannot_written", strerror=error.strerror or error))
+        )
 
 
 def _groups(lines: Iterator[list[str]]) -> Iterator[list[list[str]]]:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Final
 
 from trunnion.definitions import Table, definition_names, load_table
+from trunnion.messages import Wording
 from trunnion.model.recording import PROGRAM
 
 _LIBRARY: Final = files("trunnion.twin.recording").joinpath("library")
@@ -96,13 +97,11 @@ def read_nodes(root: Table) -> NodeList:
     found = [_column(name, columns.table(name), namespace) for name in columns.names()]
     for name in columns.names():
         if not _NAME.fullmatch(name) or name in TIMES:
-            columns.add_problem(
-                name, "cannot be the name of a column", "write letters, digits and _, such as X", code="TWN232"
-            )
+            columns.add_problem(name, Wording("TWN232", "cannot_name_column"))
     if not found and "columns" in root:
-        root.add_problem("columns", "is empty", "name what is recorded, such as [columns.X]", code="TWN232")
+        root.add_problem("columns", Wording("TWN232", "empty"))
     if len(found) > _MOST_COLUMNS:
-        root.add_problem("columns", f"has {len(found)} columns", f"write at most {_MOST_COLUMNS}", code="TWN232")
+        root.add_problem("columns", Wording("TWN232", "columns", count=len(found), most_columns=_MOST_COLUMNS))
     root.report_unread_keys()
     root.raise_problems()
     return NodeList(tuple(found))
@@ -127,16 +126,13 @@ def _place(table: Table, identifier: str, path: str, namespace: str, *, required
     """The place that one of two keys states."""
     by_id, by_path = table.text(identifier, ""), table.text(path, "")
     if by_id and by_path:
-        table.add_problem(path, f"is given beside {identifier}", "write one of them", code="TWN232")
+        table.add_problem(path, Wording("TWN232", "given_beside", identifier=identifier))
     if by_path:
         return Place(path=tuple(filter(None, by_path.split("/"))))
     if by_id:
         if not namespace:
-            table.add_problem(
-                identifier, "has no namespace", 'write namespace = "…", the URI in which the id counts', code="TWN232"
-            )
+            table.add_problem(identifier, Wording("TWN232", "no_namespace"))
         return Place(namespace, by_id if re.match(r"[isgb]=", by_id) else f"s={by_id}")
     if required:
-        cure = f"write {identifier} = of a NodeId, or {path} = of names from the objects on"
-        table.add_problem("", "does not say which variable it is", cure, code="TWN232")
+        table.add_problem("", Wording("TWN232", "does_not_say", identifier=identifier, path=path))
     return None

@@ -16,6 +16,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem, unusable_file
 from trunnion.extras import import_extra
+from trunnion.messages import Wording
 from trunnion.model.recording import NO_TIME, Mark, Recording, TextColumn
 from trunnion.twin.recording.files import LONGEST_TEXT, parse_stamp, unguarded
 from trunnion.twin.recording.nodes import STAMPS, TEXTS, TIMES
@@ -50,15 +51,11 @@ def read_recording(path: Path) -> Recording:
         raise InputError(problem)
     suffix = path.suffix.lower()
     if suffix not in (".csv", ".parquet"):
-        raise InputError(
-            Problem(str(path), 0, "is no recording", "give one that ends in .csv or .parquet", code="TWN320")
-        )
+        raise InputError(Problem(str(path), 0, Wording("TWN320", "no_recording")))
     try:
         return _Reader(str(path)).read(_csv_groups(path) if suffix == ".csv" else _parquet_groups(path))
     except (OSError, csv.Error) as error:
-        raise InputError(
-            Problem(str(path), 0, f"cannot be read: {error}", "give a recording of trunnion", code="TWN320")
-        ) from None
+        raise InputError(Problem(str(path), 0, Wording("TWN320", "cannot_read", error=error))) from None
 
 
 class _Reader:
@@ -80,9 +77,7 @@ class _Reader:
                 parts.setdefault(name, []).append(self._column(name, group[name]))
             self._rows += len(group[names[0]])
             if self._rows > _MOST_ROWS:
-                raise InputError(
-                    Problem(self._file, 0, f"has more than {_MOST_ROWS} rows", "record it in parts", code="TWN320")
-                )
+                raise InputError(Problem(self._file, 0, Wording("TWN320", "more_rows", most_rows=_MOST_ROWS)))
             if len(self._problems) >= _MOST_PROBLEMS:
                 break
         if self._problems:
@@ -167,7 +162,7 @@ def _csv_groups(path: Path) -> Iterator[dict[str, _Cells]]:
         lines = csv.reader(source)
         names = [name.strip() for name in next(lines, [])]
         if not names:
-            raise InputError(Problem(str(path), 0, "is empty", "give a recording", code="TWN320"))
+            raise InputError(Problem(str(path), 0, Wording("TWN320", "empty")))
         _check_names(path, names)
         first = True
         while group := list(islice(lines, _GROUP)):
@@ -176,8 +171,13 @@ def _csv_groups(path: Path) -> Iterator[dict[str, _Cells]]:
             group = [line for line in group if line]
             for k, line in enumerate(group):
                 if len(line) != len(names):
-                    what, cure = f"has {len(line)} cells, not {len(names)}", "write one for each column"
-                    raise InputError(Problem(str(path), lines.line_num - len(group) + k + 1, what, cure, code="TWN321"))
+                    raise InputError(
+                        Problem(
+                            str(path),
+                            lines.line_num - len(group) + k + 1,
+                            Wording("TWN321", "cells_not", count=len(line), count_2=len(names)),
+                        )
+                    )
             if group or first:
                 yield dict(zip(names, zip(*group, strict=True), strict=True)) if group else dict.fromkeys(names, ())
             first = False
@@ -220,9 +220,7 @@ def _parquet_groups(path: Path) -> Iterator[dict[str, _Cells]]:
                 for batch in whole.iter_batches(_batch_rows(path, file)):
                     yield {name: _cells(batch.column(k), arrow, path, name) for k, name in enumerate(names)}
     except arrow.ArrowException as error:
-        raise InputError(
-            Problem(str(path), 0, f"is no Parquet file: {error}", "give a recording", code="TWN320")
-        ) from None
+        raise InputError(Problem(str(path), 0, Wording("TWN320", "no_parquet_file", error=error))) from None
 
 
 def _check_kinds(path: Path, schema: Any) -> None:
@@ -234,14 +232,25 @@ def _check_kinds(path: Path, schema: Any) -> None:
         is_time = kind.startswith("timestamp")
         is_text = kind in ("string", "large_string", "null")
         if field.name in STAMPS:
-            good, what = is_time or is_text, "holds no times"
+            good = is_time or is_text
         elif field.name in TEXTS or field.name == "mark":
-            good, what = is_text, "holds no texts"
+            good = is_text
         else:
-            good, what = is_text or kind in _NUMBERS, "holds no numbers"
+            good = is_text or kind in _NUMBERS
         if not good:
-            cure = "times are timestamps, block, program and mark texts, and all else numbers"
-            raise InputError(Problem(str(path), 1, f"column {field.name} {what} but {kind}", cure, code="TWN320"))
+            raise InputError(
+                Problem(
+                    str(path),
+                    1,
+                    Wording("TWN320", "column_holds_no", field=field.name, kind=kind)
+                    if field.name in STAMPS
+                    else (
+                        Wording("TWN320", "column_holds_no_texts", field=field.name, kind=kind)
+                        if field.name in TEXTS or field.name == "mark"
+                        else Wording("TWN320", "column_holds_no_numbers", field=field.name, kind=kind)
+                    ),
+                )
+            )
 
 
 def _batch_rows(path: Path, file: Any) -> int:
@@ -251,8 +260,13 @@ def _batch_rows(path: Path, file: Any) -> int:
     for k in range(metadata.num_row_groups):
         group = metadata.row_group(k)
         if group.total_byte_size > _MOST_BYTES:
-            what = f"has a row group of {group.total_byte_size} bytes, more than {_MOST_BYTES}"
-            raise InputError(Problem(str(path), 0, what, "write it with smaller row groups", code="TWN320"))
+            raise InputError(
+                Problem(
+                    str(path),
+                    0,
+                    Wording("TWN320", "row_group_bytes", total_byte_size=group.total_byte_size, most_bytes=_MOST_BYTES),
+                )
+            )
         most = max(most, group.num_rows)
     return min(_GROUP, most)
 
@@ -269,7 +283,7 @@ def _cells(column: Any, arrow: Any, path: Path, name: str) -> list[Any]:
         return [None if k is None else texts[k] for k in column.indices.to_pylist()]
     if column.nbytes > _MOST_BYTES:
         raise InputError(
-            Problem(str(path), 0, f"holds more than {_MOST_BYTES} bytes in {name}", "give a recording", code="TWN320")
+            Problem(str(path), 0, Wording("TWN320", "holds_more_bytes", most_bytes=_MOST_BYTES, name=name))
         )
     cells: list[Any] = column.to_pylist()
     _check_texts(path, name, [cell for cell in cells if isinstance(cell, str)])
@@ -278,5 +292,6 @@ def _cells(column: Any, arrow: Any, path: Path, name: str) -> list[Any]:
 
 def _check_texts(path: Path, name: str, texts: Sequence[str | None]) -> None:
     if any(text is not None and len(text) > LONGEST_TEXT for text in texts):
-        what = f"has a text of more than {LONGEST_TEXT} characters in {name}"
-        raise InputError(Problem(str(path), 0, what, "no block of a program is so long", code="TWN320"))
+        raise InputError(
+            Problem(str(path), 0, Wording("TWN320", "text_more_characters", longest_text=LONGEST_TEXT, name=name))
+        )

@@ -6,6 +6,7 @@ from typing import Final
 
 from trunnion.encoding import decode
 from trunnion.errors import InputError, Problem, Severity
+from trunnion.messages import Wording
 from trunnion.model.run import Diagnostic, Run
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
 from trunnion.verification.expected.path import ExpectedPath
@@ -66,8 +67,7 @@ def _lines_of(file: str, encoding: str) -> list[str]:
     try:
         return [decode(line, encoding) for line in Path(file).read_bytes().split(b"\n")]
     except OSError as error:
-        what = f"cannot be read again: {error.strerror}"
-        raise InputError(Problem(file, 0, what, "keep the program until it has been verified", code="NC111")) from error
+        raise InputError(Problem(file, 0, Wording("NC111", "cannot_read_again", strerror=error.strerror))) from error
 
 
 def _is_inserted(diagnostic: Diagnostic, lines: Sequence[str], texts: set[str]) -> bool:

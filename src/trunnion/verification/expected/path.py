@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from trunnion.arrays import Codes, Flags, Floats, Ints, Lines
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 from trunnion.model.frames import TURNING_NOISE
 from trunnion.model.toolpath import (
     Arcs,
@@ -116,9 +117,7 @@ class ExpectedPath:
         moving = [(path, operation) for path in toolpaths for operation in path.operations if len(operation.moves)]
         if not moving:
             file = toolpaths[0].file if toolpaths else "CL file"
-            raise InputError(
-                Problem(file, 0, "there is no motion in it to compare with", "output the toolpath again", code="NC180")
-            )
+            raise InputError(Problem(file, 0, Wording("NC180", "no_motion_compare")))
         frame = Frame() if absolute else moving[0][1].frame
         limits = _by_operation(tolerances, len(moving))
         sections: list[Section] = []

@@ -19,6 +19,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.errors import InputError, Problem
 from trunnion.machines import Machine, forward
+from trunnion.messages import Wording
 from trunnion.model.recording import TIP, Mark, Recording
 from trunnion.model.run import Run
 from trunnion.verification.recorded.nearest import Nearest, nearest_pieces, nearest_places
@@ -155,17 +156,32 @@ def _poses(machine: Machine, recording: Recording) -> tuple[Floats | None, Float
     names = [name.casefold() for name in machine.names]
     doubled = [name for name in names if sum(each.casefold() == name for each in recording.values) > 1]
     if doubled:
-        what = f"has two columns for axis {doubled[0].upper()}"
-        raise InputError(
-            Problem(recording.file, 1, what, "leave the one that holds it: capitals make no difference", code="TWN321")
-        )
+        raise InputError(Problem(recording.file, 1, Wording("TWN321", "two_columns_axis", doubled=doubled[0].upper())))
     missing = [machine.names[k] for k, name in enumerate(names) if name not in columns]
     has_tip = all(name in columns for name in TIP)
     if missing and not (has_tip and all(names[k] in columns for k in machine.rotary)):
-        what = f"has no column {missing[0]}" if len(missing) == 1 else f"has no columns {', '.join(missing)}"
-        cure = f"a recording for {machine.key} has the axes {', '.join(machine.names)}"
         raise InputError(
-            Problem(recording.file, 1, what, f"{cure}, or {', '.join(TIP)} in place of the slides", code="TWN350")
+            Problem(
+                recording.file,
+                1,
+                Wording(
+                    "TWN350",
+                    "no_column",
+                    missing=missing[0],
+                    machine=machine.key,
+                    names=tuple(machine.names),
+                    tip=tuple(TIP),
+                )
+                if len(missing) == 1
+                else Wording(
+                    "TWN350",
+                    "no_columns",
+                    missing=tuple(missing),
+                    machine=machine.key,
+                    names=tuple(machine.names),
+                    tip=tuple(TIP),
+                ),
+            )
         )
     joints = np.zeros((len(recording), 5))
     for k, name in enumerate(names):

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Final
 
 from trunnion.controls.family_writer import FIRST_HOLE, Formats
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Sense
 from trunnion.output.shared.spindle import cycle_dwell_seconds, thread
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState, UnsupportedCycleError
@@ -41,17 +42,18 @@ def cycle_lines(
     number = formats["coordinate"].text
     dwell = formats["dwell"].text(dwell_parts(formats) * cycle_dwell_seconds(cycle, spindle)) if cycle.dwell else ""
     if cycle.method not in _CYCLES:
-        what = f"CYCLE/{cycle.method}: whether G84 pecks, and how, is a parameter of the control"
-        raise HoleCycleError(what, "leave DEEP or BRKCHP out, or output the holes as motion", code="CTL360")
+        raise HoleCycleError(Wording("CTL360", "cycle_whether_g84", method=cycle.method))
     plain, with_dwell = _CYCLES[cycle.method]
     code = with_dwell if dwell else plain
     if code is None:
-        what = f"{cycle.method} with a dwell at the bottom, for which {plain} has no word"
-        raise UnsupportedCycleError(what, "leave DWELL out", code="CTL350")
+        raise UnsupportedCycleError(Wording("CTL350", "dwell_bottom_no", method=cycle.method, plain=plain))
     missing = [word.strip() for word in settings.get("missing_cycles", "").split(",")]
     if code in missing or (dwell and f"{code} P" in missing):
-        what = f"{cycle.method}{' with a dwell' if code not in missing else ''}, for which this control has no cycle"
-        raise UnsupportedCycleError(what, "output the holes as motion", code="CTL350")
+        raise UnsupportedCycleError(
+            Wording("CTL350", "dwell_control_no", method=cycle.method)
+            if code not in missing
+            else Wording("CTL350", "control_no_cycle", method=cycle.method)
+        )
     before: list[str] = []
     if cycle.method in (HoleMethod.TAP, HoleMethod.FLOATING_TAP):
         _, running = thread(cycle, spindle)
@@ -85,22 +87,14 @@ def dwell_parts(formats: Formats) -> float:
 def _peck_depth(cycle: Cycle) -> float:
     """Q: the depth of every peck, the first measured from where the feed begins."""
     if any(cycle.pecks[1:]):
-        raise UnsupportedCycleError(
-            "decreasing peck depths, and Q of G83 is constant", "write STEP with one number", code="CTL350"
-        )
+        raise UnsupportedCycleError(Wording("CTL350", "decreasing_peck_depths"))
     return cycle.pecks[0]
 
 
 def _bore_shift(cycle: Cycle, settings: Mapping[str, str]) -> float:
     """Q of G76: how far the tool is shifted off the wall; a parameter of the control has the direction."""
     if cycle.spindle_angle:
-        what = (
-            f"BORE,NODRAG,{cycle.spindle_angle:g}: the angle at which the spindle stops is a parameter of the control"
-        )
-        raise HoleCycleError(what, "write BORE,NODRAG without an angle", code="CTL360")
+        raise HoleCycleError(Wording("CTL360", "bore_nodrag_angle", spindle_angle=cycle.spindle_angle))
     if not settings["bore_lift"]:
-        what = "BORE,NODRAG does not say how far the tool lifts off"
-        raise HoleCycleError(
-            what, "setting bore_lift=MM says it; to which side is a parameter of the control", code="CTL360"
-        )
+        raise HoleCycleError(Wording("CTL360", "bore_nodrag_does"))
     return float(settings["bore_lift"])

@@ -15,6 +15,7 @@ from trunnion.arrays import Floats, Ints
 from trunnion.controls.family_writer import ArcWords, Codes, Formats, UnsupportedFeatureError, WordEvent
 from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import LINES_FOR_SPLINES, SPLINES_SETTING
+from trunnion.messages import Wording
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.toolpath import Arcs, CutterComp, Dwell, Message, Operation, Stop
 from trunnion.output.coordinates.euler_angles import euler_zxz_angles
@@ -103,9 +104,7 @@ def escape_comment(text: str) -> str:
 def tool_call(number: int, name: str, by_name: bool) -> str:
     """Return what follows ``T``: a number, for tools have no names."""
     if by_name:
-        raise UnsupportedFeatureError(
-            f"tools are called by number, and not as {name}", "write setting tool=NUMBER", code="CTL130"
-        )
+        raise UnsupportedFeatureError(Wording("CTL130", "tools_called_number", name=name))
     return str(number)
 
 
@@ -160,8 +159,7 @@ def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[
     """Return G95 without a spindle speed, and radius compensation while the tool axis changes: that is G41.2."""
     problems = iso.feed_per_rev_before_spindle(operation, spindle_known)
     if np.ptp(operation.moves.axis, axis=0).max(initial=0.0) > 0.0:
-        what = "cutter radius compensation while the tool axis changes"
-        why = UnsupportedFeatureError(what, "output the path without CUTCOM", code="CTL220")
+        why = UnsupportedFeatureError(Wording("CTL220", "cutter_radius_compensation"))
         events = [event for event in operation.events if isinstance(event, CutterComp) and event.side != "OFF"]
         problems += [(event.line, why) for event in events]
     return problems

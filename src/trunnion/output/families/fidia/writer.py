@@ -15,6 +15,7 @@ from trunnion.controls.family_writer import FIRST_HOLE, ArcWords, Codes, Formats
 from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import ALL_LEFT_ON, SAFE_START_CHOICES, SAFE_START_SETTING, TCP_USED
 from trunnion.controls.words import ABSENT
+from trunnion.messages import Wording
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, Dwell, Kind, Message, Operation, Sense, Stop
 from trunnion.output.shared import iso
@@ -82,9 +83,7 @@ def escape_comment(text: str) -> str:
 def tool_call(number: int, name: str, by_name: bool) -> str:
     """Return what follows ``T.``: a number, for tools have no names."""
     if by_name:
-        raise UnsupportedFeatureError(
-            f"tools are called by number, and not as {name}", "write setting tool=NUMBER", code="CTL130"
-        )
+        raise UnsupportedFeatureError(Wording("CTL130", "tools_called_number", name=name))
     return str(number)
 
 
@@ -126,10 +125,7 @@ def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[
     per_rev = np.flatnonzero(moves.per_rev & (moves.kind != Kind.RAPID))
     if not len(per_rev):
         return []
-    what = "a feed per revolution, which this control does not have"
-    return [
-        (int(moves.line[per_rev[0]]), UnsupportedFeatureError(what, "output it in mm/min (FEDRAT/MMPM)", code="CTL330"))
-    ]
+    return [(int(moves.line[per_rev[0]]), UnsupportedFeatureError(Wording("CTL330", "feed_per_revolution")))]
 
 
 def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
@@ -146,8 +142,7 @@ def cycle_call(
     """Return the cycle with its first hole: Z is the height of rapid positioning, R the feed start, E the depth."""
     assert cycle.retract_height is not None
     if cycle.method not in _CYCLES:
-        what = f"no documented cycle for {cycle.method}"
-        raise UnsupportedCycleError(what, "output the holes as motion", code="CTL350")
+        raise UnsupportedCycleError(Wording("CTL350", "no_documented_cycle", method=cycle.method))
     _check_thread(cycle, spindle)
     seconds = cycle_dwell_seconds(cycle, spindle)
     number = formats["coordinate"].text
@@ -168,9 +163,7 @@ def cycle_cancel() -> list[str]:
 def _peck_depth(cycle: Cycle) -> float:
     """D: the depth of every peck, the first measured from where the feed begins."""
     if any(cycle.pecks[1:]):
-        raise UnsupportedCycleError(
-            "decreasing peck depths, and D is constant", "write STEP with one number", code="CTL350"
-        )
+        raise UnsupportedCycleError(Wording("CTL350", "decreasing_peck_depths_d"))
     return cycle.pecks[0]
 
 
@@ -180,15 +173,12 @@ def _check_thread(cycle: Cycle, spindle: SpindleState | None) -> None:
         return
     running = running_spindle(spindle, "CYCLE/TAP")
     if running.sense is not Sense.CLW:
-        raise HoleCycleError(
-            "a thread with a left hand, for which no cycle is known", "output it as motion", code="CTL350"
-        )
+        raise HoleCycleError(Wording("CTL350", "thread_left_hand"))
     if cycle.feed is None or not cycle.feed > 0.0:
-        raise HoleCycleError("CYCLE/TAP without a feed", "write MMPR,pitch", code="PLN610")
+        raise HoleCycleError(Wording("PLN610", "cycle_tap_without"))
     feed = cycle.feed * running.rpm if cycle.per_rev else cycle.feed
     if abs(feed - round(feed)) > _FEED_TOLERANCE:
-        what = f"a thread at {feed:.3f} mm/min, and F is a whole number: the pitch would be wrong"
-        raise HoleCycleError(what, "choose a speed at which pitch times speed is whole", code="CTL320")
+        raise HoleCycleError(Wording("CTL320", "thread_mm_min", feed=feed))
 
 
 def row_words(rapid: Flags, per_rev: Flags, codes: Codes) -> dict[str, Ints]:

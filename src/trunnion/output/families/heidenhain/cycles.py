@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from typing import Final
 
 from trunnion.controls.words import NumberFormat
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Sense
 from trunnion.output.shared.spindle import cycle_dwell_seconds, running_spindle
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState
@@ -91,15 +92,11 @@ def cycle_definition(
     """
     define = _DEFINITIONS.get(cycle.method)
     if define is None:
-        what = f"CYCLE/{cycle.method}: no cycle of the control leaves the hole as it asks for"
-        raise HoleCycleError(what, "output the holes as motion", code="CTL350")
+        raise HoleCycleError(Wording("CTL350", "cycle_no_cycle", method=cycle.method))
     number, name, values = define(cycle, top, spindle)
     if cycle.method is HoleMethod.BORE_WITH_LIFT:
         if not side:
-            what = "BORE,NODRAG does not say to which side the tool moves off the wall"
-            raise HoleCycleError(
-                what, "setting disengage=1 is -X, 2 -Y, 3 +X, 4 +Y, with the spindle at its angle", code="CTL360"
-            )
+            raise HoleCycleError(Wording("CTL360", "bore_nodrag_does_not"))
         values = {**values, 214: float(side), 336: cycle.spindle_angle}
     lines = [f"CYCL DEF {number} {name}", *(_parameter_line(q, value, formats) for q, value in values.items())]
     return [f"{line} ~" for line in lines[:-1]] + lines[-1:]
@@ -110,8 +107,17 @@ def _parameter_line(q: int, value: float, formats: Formats) -> str:
     if value == RAPID:
         return f"  Q{q}=MAX ;{name}"
     if value and not number_format.least <= value <= number_format.greatest:
-        what = f"CYCLE with Q{q}={value:g} ({name.lower()})"
-        raise HoleCycleError(what, f"stay within {number_format.least:g} to {number_format.greatest:g}", code="CTL110")
+        raise HoleCycleError(
+            Wording(
+                "CTL110",
+                "cycle_q",
+                q=q,
+                value=value,
+                name=name.lower(),
+                least=number_format.least,
+                greatest=number_format.greatest,
+            )
+        )
     text = number_format.text(value)
     return f"  Q{q}={text if text[0] in '+-' else '+' + text} ;{name}"
 
@@ -144,7 +150,7 @@ def _peck(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefini
     peck, decrement, least = cycle.pecks
     full = cycle.method is HoleMethod.DEEP_DRILLING
     if decrement and not least > 0.0:
-        raise HoleCycleError("STEP without a shortest peck", "write STEP,first,less,shortest", code="PLN610")
+        raise HoleCycleError(Wording("PLN610", "step_without_shortest"))
     if decrement and not full:
         return _peck_with_decreasing_depths(cycle, top, spindle)
     low, high = _heights(cycle, top)
@@ -173,9 +179,7 @@ def _peck_with_decreasing_depths(cycle: Cycle, top: float, spindle: SpindleState
 def _tap(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
     """Without a floating holder: the pitch has the sign of the thread's hand."""
     if cycle.dwell:
-        raise HoleCycleError(
-            "DWELL at the bottom of a thread: the control has none there", "leave DWELL out", code="CTL350"
-        )
+        raise HoleCycleError(Wording("CTL350", "dwell_bottom_thread"))
     running = running_spindle(spindle, "CYCLE/TAP")
     low, high = _heights(cycle, top)
     pitch = _feed(cycle, running) / running.rpm
@@ -191,11 +195,7 @@ def _floating_tap(cycle: Cycle, top: float, spindle: SpindleState | None) -> Cyc
 def _tap_in_pecks(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
     """A rigid tap in pecks, with full retracts or chip breaks between them."""
     if any(cycle.pecks[1:]):
-        raise HoleCycleError(
-            "decreasing peck depths in a thread: the control has constant ones",
-            "write STEP with one number",
-            code="CTL350",
-        )
+        raise HoleCycleError(Wording("CTL350", "decreasing_peck_depths_thread"))
     _, _, values = _tap(cycle, top, spindle)
     back = 0.0 if cycle.method is HoleMethod.DEEP_TAP else _CHIP_BREAK_PITCHES
     pecks = {257: min(cycle.pecks[0], cycle.depth), 256: back, 336: 0.0, 403: 1.0}

@@ -14,6 +14,7 @@ from trunnion.controls.family_writer import ArcWords, Codes, Formats, Unsupporte
 from trunnion.controls.template import Value
 from trunnion.controls.vocabulary import RADIUS_ARC_WORDS
 from trunnion.controls.words import ABSENT
+from trunnion.messages import Wording
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Dwell, Message, Operation, Stop
 from trunnion.output.coordinates.euler_angles import tait_bryan_angles
@@ -118,9 +119,7 @@ def escape_comment(text: str) -> str:
 def tool_call(number: int, name: str, by_name: bool) -> str:
     """Return what follows ``TOOL CALL``: a number, or a name in quotation marks."""
     if by_name and '"' in name:
-        raise UnsupportedFeatureError(
-            f"the tool name {name} has a quotation mark in it", "write setting tool=NUMBER", code="CTL130"
-        )
+        raise UnsupportedFeatureError(Wording("CTL130", "tool_name_quotation", name=name))
     return f'"{name}"' if by_name else str(number)
 
 
@@ -161,9 +160,8 @@ def first_block_words(motion: Motion, tool: str, register: int, settings: Mappin
 
 def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsupportedFeatureError]]:
     """Return radius compensation in another plane than XY."""
-    cure = "write XYPLAN, or no CUTCOM"
     return [
-        (event.line, UnsupportedFeatureError(f"radius compensation in the plane {event.plane}", cure, code="CTL220"))
+        (event.line, UnsupportedFeatureError(Wording("CTL220", "radius_compensation_plane", plane=event.plane)))
         for event in operation.events
         if isinstance(event, CutterComp) and event.plane not in ("", "XYPLAN")
     ]

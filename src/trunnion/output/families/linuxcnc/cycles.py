@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Final
 
 from trunnion.controls.family_writer import EACH_HOLE, FIRST_HOLE, Formats
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Sense
 from trunnion.output.shared.spindle import cycle_dwell_seconds, running_spindle, thread
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState, UnsupportedCycleError
@@ -46,8 +47,7 @@ def cycle_lines(cycle: Cycle, top: float, spindle: SpindleState | None, formats:
         return [f"G0 {EACH_HOLE}", f"Z{rapid}", tap, *([f"G0 Z{retract}"] if retract != rapid else [])]
     make = _CYCLES.get(cycle.method)
     if make is None:
-        what = f"CYCLE/{cycle.method}: no cycle of LinuxCNC leaves the hole as it asks for"
-        raise HoleCycleError(what, "output the holes as motion", code="CTL350")
+        raise HoleCycleError(Wording("CTL350", "cycle_no_cycle_linuxcnc", method=cycle.method))
     code, words = make(cycle, spindle, formats)
     plane = "G99" if retract == rapid else "G98"
     return [" ".join((plane, f"G{code}", FIRST_HOLE, f"Z{bottom}", f"R{rapid}", *words))]
@@ -66,13 +66,9 @@ def _drill(cycle: Cycle, spindle: SpindleState | None, formats: Formats) -> GCod
 def _peck(cycle: Cycle, spindle: SpindleState | None, formats: Formats) -> GCodeAndWords:
     """Equal pecks of Q, the first measured from R."""
     if any(cycle.pecks[1:]):
-        raise UnsupportedCycleError(
-            "decreasing peck depths, and Q of G83 is constant", "write STEP with one number", code="CTL350"
-        )
+        raise UnsupportedCycleError(Wording("CTL350", "decreasing_peck_depths"))
     if cycle.dwell:
-        raise UnsupportedCycleError(
-            "DWELL at the bottom of a pecked hole: the control has none there", "leave DWELL out", code="CTL350"
-        )
+        raise UnsupportedCycleError(Wording("CTL350", "dwell_bottom_pecked"))
     return (83 if cycle.method is HoleMethod.DEEP_DRILLING else 73), [f"Q{formats['coordinate'].text(cycle.pecks[0])}"]
 
 
@@ -80,9 +76,7 @@ def _rigid_pitch(cycle: Cycle, spindle: SpindleState | None) -> float:
     """K of G33.1, mm: the thread has the hand of the spindle."""
     pitch, _ = thread(cycle, spindle)
     if cycle.dwell:
-        raise HoleCycleError(
-            "DWELL at the bottom of a thread: the control has none there", "leave DWELL out", code="CTL350"
-        )
+        raise HoleCycleError(Wording("CTL350", "dwell_bottom_thread"))
     return pitch
 
 

@@ -13,6 +13,7 @@ from trunnion.arrays import Floats, Ints
 from trunnion.controls.family_writer import ArcWords, Codes, Formats, UnsupportedFeatureError
 from trunnion.controls.template import Value
 from trunnion.controls.words import ABSENT
+from trunnion.messages import Wording
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, CutterComp, Dwell, Message, Operation, Stop
 from trunnion.output.families.linuxcnc.cycles import cycle_lines
@@ -65,9 +66,7 @@ def escape_comment(text: str) -> str:
 def tool_call(number: int, name: str, by_name: bool) -> str:
     """Return what follows ``T``: a number, for tools have no names."""
     if by_name:
-        raise UnsupportedFeatureError(
-            f"tools are called by number, and not as {name}", "write setting tool=NUMBER", code="CTL130"
-        )
+        raise UnsupportedFeatureError(Wording("CTL130", "tools_called_number", name=name))
     return str(number)
 
 
@@ -108,9 +107,7 @@ def first_block_words(motion: Motion, tool: str, register: int, settings: Mappin
 
 def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsupportedFeatureError]]:
     """Return G95 without a spindle speed, and G41 or G42 in the plane YZ."""
-    why = UnsupportedFeatureError(
-        "cutter radius compensation in the plane YZ", "output the path without CUTCOM", code="CTL220"
-    )
+    why = UnsupportedFeatureError(Wording("CTL220", "cutter_radius_compensation_plane"))
     compensated = [
         (event.line, why)
         for event in operation.events

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.controls.words import NumberFormat
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Sense
 from trunnion.output.shared.spindle import cycle_dwell_seconds, thread
 from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState
@@ -135,8 +136,7 @@ def _tap_in_pecks(of: _Input) -> CycleArguments:
     """As a tap in one pass; then tool axis, unit of PIT, technology unchanged, VARI, the peck DAM, VRT."""
     peck, decrement, _ = of.cycle.pecks
     if decrement:
-        what = "decreasing peck depths in a thread: the control has constant ones"
-        raise HoleCycleError(what, "write STEP with one number", code="CTL350")
+        raise HoleCycleError(Wording("CTL350", "decreasing_peck_depths_thread"))
     full = of.cycle.method is HoleMethod.DEEP_TAP
     name, arguments = _tap(of)
     pecks = ["2" if full else "1", of.number(min(peck, of.cycle.depth)), "0" if full else of.number(_CHIP_BREAK)]
@@ -154,7 +154,7 @@ def _floating_tap(of: _Input) -> CycleArguments:
 def _ream(of: _Input) -> CycleArguments:
     """In and out at the feed of the cycle."""
     if of.cycle.feed is None:
-        raise HoleCycleError("CYCLE/BORE without a feed", "write MMPM,feed", code="PLN610")
+        raise HoleCycleError(Wording("PLN610", "cycle_bore_without"))
     return "CYCLE85", ["", of.dwell, of.feed(of.cycle.feed), of.feed(of.cycle.feed)]
 
 
@@ -162,8 +162,7 @@ def _bore(of: _Input) -> CycleArguments:
     """Spindle sense, lift-off in three axes, angle of the spindle."""
     lifts = of.cycle.method is HoleMethod.BORE_WITH_LIFT
     if lifts and not of.lift:
-        what = "BORE,NODRAG does not say how far and to which side the tool lifts off"
-        raise HoleCycleError(what, "setting bore_lift=MM says it, along X with the spindle at its angle", code="CTL360")
+        raise HoleCycleError(Wording("CTL360", "bore_nodrag_does_not_say"))
     lift = of.number(of.lift if lifts and of.lift else 0.0)
     return "CYCLE86", ["", of.dwell, _sense_code(of.spindle), lift, "0", "0", of.angle(of.cycle.spindle_angle)]
 

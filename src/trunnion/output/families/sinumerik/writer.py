@@ -22,6 +22,7 @@ from trunnion.controls.vocabulary import (
     SPLINES_SETTING,
     TCP_USED,
 )
+from trunnion.messages import Wording
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Dwell, Message, Operation, Stop
 from trunnion.output.coordinates.euler_angles import tait_bryan_angles
@@ -101,9 +102,7 @@ def escape_comment(text: str) -> str:
 def tool_call(number: int, name: str, by_name: bool) -> str:
     """Return what follows ``T=``: a number, or a name in quotation marks."""
     if by_name and '"' in name:
-        raise UnsupportedFeatureError(
-            f"the tool name {name} has a quotation mark in it", "write setting tool=NUMBER", code="CTL130"
-        )
+        raise UnsupportedFeatureError(Wording("CTL130", "tool_name_quotation", name=name))
     return f'"{name}"' if by_name else str(number)
 
 
@@ -202,8 +201,7 @@ def cycle_call(
     """Return ``MCALL`` with the cycle; or for each hole a frame turned to the tool, and the cycle."""
     lift = float(settings["bore_lift"]) if settings.get("bore_lift") else None
     if settings[HOLES_SETTING] != HOLES_IN_PLANES and cycle.method is HoleMethod.BORE_WITH_LIFT:
-        what = "BORE,NODRAG while the tool axis changes: X of the frame is not known"
-        raise HoleCycleError(what, "setting holes=planes", code="CTL370")
+        raise HoleCycleError(Wording("CTL370", "bore_nodrag_while"))
     call = cycle_statement(cycle, top, spindle, lift, formats)
     if settings[HOLES_SETTING] == "torot":
         return [EACH_HOLE, "TOROT", call, "TOROTOF", "TRANS"]

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 from trunnion.errors import Problem
+from trunnion.messages import Wording
 from trunnion.simulation.tools.library.json_text import finite, short_text
 from trunnion.simulation.tools.library.library import LibraryTool, ToolLibrary, UnusableTool
 from trunnion.simulation.tools.shapes import shape_faults
@@ -87,8 +88,7 @@ def read_freecad(file: str, root: Mapping[str, Any]) -> ToolLibrary:
             f"its {size.replace('_', ' ')} {what}; {cure}" for size, what, cure in shape_faults(sizes)
         ]
     if whats or sizes is None:
-        cure = "state the tool itself: its kind and its sizes"
-        problems = tuple(Problem(file, 0, f"tool bit {name}: {what}", cure, code="SIM152") for what in whats)
+        problems = tuple(Problem(file, 0, Wording("SIM152", "tool_bit", name=name, subject=what)) for what in whats)
         return ToolLibrary(file, (), (UnusableTool(None, name, problems),))
     remarks = [f"a tool bit has no holder: all of its length, {sizes.length:g} mm, stands free"] if sizes.length else []
     remarks += ["it is a tap: simulated without its thread"] if known == "tap" else []

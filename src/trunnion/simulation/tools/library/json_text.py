@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Final, NoReturn
 
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 from trunnion.simulation.tools.sizes import GREATEST
 
 #: Longest text that is read, bytes: catalogues of makers have some ten megabytes.
@@ -26,22 +27,19 @@ def parse_json(file: str, data: bytes) -> object:
         If it is too long, no JSON or nests too deeply; if a number is not finite, or an object has a key twice.
     """
     if len(data) > MAX_BYTES:
-        cure = "export fewer tools at a time"
-        raise InputError(Problem(file, 0, f"has more than {MAX_BYTES >> 20} MB of tools", cure, code="SIM172"))
+        raise InputError(Problem(file, 0, Wording("SIM172", "more_mb_tools", max_bytes=MAX_BYTES >> 20)))
     try:
         text = data.decode("utf-8-sig")
         return json.loads(text, parse_constant=_refuse, object_pairs_hook=_unique)
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        raise InputError(Problem(file, line, "is not UTF-8 text", "export the library again", code="SIM170")) from None
+        raise InputError(Problem(file, line, Wording("SIM170", "not_utf_8"))) from None
     except RecursionError:
-        raise InputError(Problem(file, 0, "nests too deeply", "export the library again", code="SIM170")) from None
+        raise InputError(Problem(file, 0, Wording("SIM170", "nests_too_deeply"))) from None
     except json.JSONDecodeError as error:
-        raise InputError(
-            Problem(file, error.lineno, f"is not JSON: {error.msg}", "export the library again", code="SIM170")
-        ) from None
+        raise InputError(Problem(file, error.lineno, Wording("SIM170", "not_json", msg=error.msg))) from None
     except ValueError as error:  # also a number with thousands of digits
-        raise InputError(Problem(file, 0, f"is not JSON: {error}", "export the library again", code="SIM170")) from None
+        raise InputError(Problem(file, 0, Wording("SIM170", "not_json_or_export", error=error))) from None
 
 
 def _refuse(word: str) -> NoReturn:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.shapes import tool_shape
 from trunnion.simulation.tools.sizes import ToolSizes
@@ -71,10 +72,19 @@ class ToolLibrary:
             if unusable:
                 raise InputError(unusable[0].problems)
             if len(found) > 1:
-                same = ", ".join(dict.fromkeys(tool.name or str(tool.number) for tool in found))
-                cure = "number and name them apart, or state the tool itself: its kind and its sizes"
                 raise InputError(
-                    Problem(self.file, 0, f"{len(found)} tools have the {what} {called}: {same}", cure, code="SIM173")
+                    Problem(
+                        self.file,
+                        0,
+                        Wording(
+                            "SIM173",
+                            "tools_have",
+                            count=len(found),
+                            subject=what,
+                            called=called,
+                            fromkeys=tuple(dict.fromkeys(tool.name or str(tool.number) for tool in found)),
+                        ),
+                    )
                 )
             if found:
                 return found[0].shape()
@@ -91,6 +101,12 @@ class ToolLibrary:
         found = self.find(number, name)
         if found is not None:
             return found
-        called_by = f"number {number}" if number is not None else f'name "{name}"'
-        cure = "add it to the library, or state the tool itself: its kind and its sizes"
-        raise InputError(Problem(self.file, 0, f"has no tool of the {called_by}", cure, code="SIM173"))
+        raise InputError(
+            Problem(
+                self.file,
+                0,
+                Wording("SIM173", "no_tool_number", number=number)
+                if number is not None
+                else Wording("SIM173", "no_tool_name", name=name),
+            )
+        )

@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import Final
 
 from trunnion.errors import InputError, Problem, argument_problem, unusable_file
+from trunnion.messages import Wording
 from trunnion.simulation.tools.library.autodesk import read_autodesk
 from trunnion.simulation.tools.library.freecad import read_freecad
 from trunnion.simulation.tools.library.json_text import MAX_BYTES, parse_json
 from trunnion.simulation.tools.library.library import ToolLibrary
 from trunnion.simulation.tools.library.toml_library import read_toml_library
 from trunnion.simulation.tools.library.tool_table import read_tool_table
-from trunnion.wording import counted
 
 #: How an archive begins, and an entry of its directory.
 _ZIP, _ENTRY = b"PK\x03\x04", b"PK\x01\x02"
@@ -27,8 +27,6 @@ _MAX_TABLE: Final = 1_000_000
 _UNITS: Final = {"mm": 1.0, "inch": 25.4}
 
 _WHAT: Final = "a tool library"
-_AS_EXPORTED: Final = "give an archive of one library, as it was exported"
-_CURE: Final = "give a library in TOML, Autodesk's .tools or .json, a tool bit of FreeCAD, or LinuxCNC's tool.tbl"
 
 
 def read_tools(path: str | Path, unit: str = "") -> ToolLibrary:
@@ -66,10 +64,11 @@ def _read(file: Path, most: int) -> bytes:
         with file.open("rb") as stream:
             data = stream.read(most + 1)
     except OSError as error:
-        raise InputError(Problem(str(file), 0, f"cannot be read: {error.strerror or error}", code="SIM170")) from None
+        raise InputError(
+            Problem(str(file), 0, Wording("SIM170", "cannot_read", strerror=error.strerror or error))
+        ) from None
     if len(data) > most:
-        what = f"has more than {most} bytes"
-        raise InputError(Problem(str(file), 0, what, "export fewer tools at a time", code="SIM172"))
+        raise InputError(Problem(str(file), 0, Wording("SIM172", "more_bytes", most=most)))
     return data
 
 
@@ -82,47 +81,44 @@ def _text(name: str, data: bytes) -> str:
 
 def _unit(unit: str) -> float:
     if unit not in _UNITS:
-        what = f'is "{unit}"' if unit else "is not stated: a tool table does not say its unit"
-        raise InputError(argument_problem("unit", what, 'write "mm" or "inch", the unit of the machine', code="SIM175"))
+        raise InputError(
+            argument_problem(
+                "unit", Wording("SIM175", "is", unit=unit) if unit else Wording("SIM175", "not_stated_tool")
+            )
+        )
     return _UNITS[unit]
 
 
 def _from_json(name: str, data: bytes) -> ToolLibrary:
     if data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] != b"{":
-        raise InputError(Problem(name, 0, "is no tool library that is known here", _CURE, code="SIM171"))
+        raise InputError(Problem(name, 0, Wording("SIM171", "no_tool_library")))
     root = parse_json(name, data)
     assert isinstance(root, dict)
     if "data" in root:
         return read_autodesk(name, root)
     if "parameter" in root and ("shape" in root or "shape-type" in root):
         return read_freecad(name, root)
-    raise InputError(Problem(name, 0, "is JSON, but neither a tool library nor a tool bit", _CURE, code="SIM171"))
+    raise InputError(Problem(name, 0, Wording("SIM171", "json_but_neither")))
 
 
 def _unpack(name: str, data: bytes) -> bytes:
     """The one JSON text of an archive."""
     if data.count(_ENTRY) > _MAX_FILES:
-        raise InputError(
-            Problem(name, 0, f"is an archive with more than {_MAX_FILES} files", _AS_EXPORTED, code="SIM172")
-        )
+        raise InputError(Problem(name, 0, Wording("SIM172", "archive_more_files", max_files=_MAX_FILES)))
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             infos = archive.infolist()
             found = [info for info in infos if info.filename.casefold().endswith(".json")]
             if len(found) != 1:
-                what = f"is an archive with {counted(len(infos), 'file')}, {len(found)} of them JSON"
-                raise InputError(Problem(name, 0, what, _AS_EXPORTED, code="SIM170"))
-            if found[0].flag_bits & 1 or found[0].compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
                 raise InputError(
-                    Problem(name, 0, "is an archive with a password or a rare packing", _AS_EXPORTED, code="SIM170")
+                    Problem(name, 0, Wording("SIM170", "archive_file_them", count=len(infos), count_2=len(found)))
                 )
+            if found[0].flag_bits & 1 or found[0].compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+                raise InputError(Problem(name, 0, Wording("SIM170", "archive_password_rare")))
             with archive.open(found[0]) as stream:
                 text = stream.read(MAX_BYTES + 1)
     except (zipfile.BadZipFile, zlib.error, EOFError, NotImplementedError, OSError, RuntimeError, ValueError) as error:
-        raise InputError(
-            Problem(name, 0, f"is a damaged archive: {error}", "export the library again", code="SIM170")
-        ) from None
+        raise InputError(Problem(name, 0, Wording("SIM170", "damaged_archive", error=error))) from None
     if len(text) > MAX_BYTES:
-        what = f"grows to more than {MAX_BYTES >> 20} MB while it is unpacked"
-        raise InputError(Problem(name, 0, what, "export fewer tools at a time", code="SIM172"))
+        raise InputError(Problem(name, 0, Wording("SIM172", "grows_more_mb", max_bytes=MAX_BYTES >> 20)))
     return text

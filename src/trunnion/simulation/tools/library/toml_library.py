@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from trunnion.definitions import Table, load_table
+from trunnion.messages import Wording
 from trunnion.simulation.tools.library.library import LibraryTool, ToolLibrary
 from trunnion.simulation.tools.shapes import shape_faults
 from trunnion.simulation.tools.sizes import (
@@ -63,13 +64,11 @@ def read_tool_tables(root: Table) -> tuple[LibraryTool, ...]:
         number = table.integer("number", None, at_least=0, at_most=_MOST)
         name = table.text("name", "")
         if "number" not in table and not name:
-            table.add_problem(
-                "", "has neither number nor name", "write number = 3, as programs call the tool", code="SIM174"
-            )
+            table.add_problem("", Wording("SIM174", "neither_number_nor"))
         called: dict[str, int | str | None] = {"number": number, "name": name or None}
         for key, value in called.items():
             if value is not None and taken.setdefault(value, table.path) != table.path:
-                table.add_problem(key, f"is that of {taken[value]} too", "tell tools apart", code="SIM151")
+                table.add_problem(key, Wording("SIM151", "too", taken=taken[value]))
         tools += _read_tool(table, number, name)
     return tuple(tools)
 

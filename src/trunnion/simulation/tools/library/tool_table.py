@@ -7,6 +7,7 @@ import re
 from typing import Final
 
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 from trunnion.simulation.tools.library.library import ToolLibrary
 from trunnion.simulation.tools.sizes import GREATEST
 
@@ -46,13 +47,9 @@ def read_tool_table(file: str, text: str, unit: float) -> ToolLibrary:
             continue
         number, diameter = int(words["T"]), words.get("D", 0.0) * unit
         if number in seen:
-            problems.append(Problem(file, line, f"tool {number} is there twice", "number tools apart", code="SIM151"))
+            problems.append(Problem(file, line, Wording("SIM151", "tool_twice", number=number)))
         elif not 0.0 <= diameter <= GREATEST:
-            problems.append(
-                Problem(
-                    file, line, f"tool {number} has the diameter {words['D']:g}", "write one above 0", code="SIM174"
-                )
-            )
+            problems.append(Problem(file, line, Wording("SIM174", "tool_diameter", number=number, words=words["D"])))
         elif diameter:
             diameters[number] = diameter
         seen.add(number)
