@@ -13,19 +13,20 @@ from trunnion import readers
 from trunnion.arrays import Flags, Ints
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.jobs.inputs.arguments import is_stream, wrong_argument
-from trunnion.jobs.inputs.placed_heads import damaged_notices, stated_place
 from trunnion.jobs.inputs.reading import ToolpathLike, read_toolpaths
 from trunnion.jobs.inputs.settings import Settings, as_texts, number_setting
-from trunnion.jobs.inputs.turned_parts import stated_clamping, turned_toolpaths
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.planning import plan
 from trunnion.machines import Machine
 from trunnion.model.arc_extremes import ArcPaths
+from trunnion.model.clamped_toolpaths import stated_clamping, turned_toolpaths
 from trunnion.model.clamping import Clamping
+from trunnion.model.rotations import about_x
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind, Toolpath
-from trunnion.placing.path_rows import PathRows, Stretch, about_x, joined_rows
+from trunnion.placing.path_rows import PathRows, Stretch, joined_rows
 from trunnion.placing.plan_rows import branches, rows_of_plan
+from trunnion.placing.program_heads import damaged_notices, stated_place
 from trunnion.verification.kinematics.machine_travel import positions_beyond_travel
 from trunnion.verification.kinematics.positioning_moves import approach_rows
 from trunnion.wording import counted

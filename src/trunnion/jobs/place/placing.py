@@ -15,7 +15,6 @@ from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.jobs.inputs.arguments import check_choice, check_observer, check_paths
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.jobs.inputs.settings import Settings, as_texts, set_up_machine
-from trunnion.jobs.inputs.turned_parts import clamped_after
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.place.bodies import BodiesInput, read_bodies, stated_lengths
 from trunnion.jobs.place.distances import standing_at, touch_warnings, with_bodies, with_distance
@@ -24,12 +23,14 @@ from trunnion.jobs.place.orientations import orientations
 from trunnion.jobs.place.table import larger_than_table, limit_of_table, standing_on
 from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
+from trunnion.model.clamped_toolpaths import clamped_after
+from trunnion.model.rotations import about_x, about_z
 from trunnion.placing.best_turn import Grid, TurnResult, best_orientations
 from trunnion.placing.between_rows import most_between
 from trunnion.placing.collisions.best_clearance import farthest_orientations
 from trunnion.placing.collisions.moments import lengths_of
 from trunnion.placing.goals import Goal, PlaceCost, rotary_travel
-from trunnion.placing.path_rows import PathRows, about_x, about_z
+from trunnion.placing.path_rows import PathRows
 from trunnion.placing.placement import AxisUse, Limit, Place, Placement, RotaryUse, TurnMargin
 from trunnion.placing.planned_time import planned_seconds
 from trunnion.placing.region import Region, region_of

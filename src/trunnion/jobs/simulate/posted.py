@@ -13,9 +13,8 @@ from typing import Any, Final, TypeAlias
 
 from trunnion.definitions.messages import did_you_mean
 from trunnion.errors import InputError, Problem, Severity, argument_problem
-from trunnion.jobs.inputs.arguments import check_path
+from trunnion.jobs.inputs.arguments import check_path, checked_angles
 from trunnion.jobs.inputs.reading import FilePath, as_machine
-from trunnion.jobs.inputs.turned_parts import checked_angles
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.post.writing import named_run
 from trunnion.jobs.project.file import is_project, library_files, project_files, read_project
@@ -26,7 +25,6 @@ from trunnion.machines import Machine
 from trunnion.model.clamping import Clamping, are_one_angle, number
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
-from trunnion.placing.path_rows import turn_and_tilt
 from trunnion.simulation.findings import What
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
 from trunnion.simulation.meshes.primitives import box_mesh, cylinder_mesh
@@ -101,7 +99,7 @@ def simulated_bodies(given: SimulationInput) -> Iterator[tuple[str, TriangleMesh
 
     Meshes are read again, and nothing is told of them: the simulation has done it.
     """
-    turn = turn_and_tilt(*checked_angles(given.setups[0].turn, given.setups[0].tilt))
+    turn = Clamping(*checked_angles(given.setups[0].turn, given.setups[0].tilt)).rotation
     for kind, mesh in _drawn_bodies(given):
         yield kind, as_clamped(mesh, turn)
 

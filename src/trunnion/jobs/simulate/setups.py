@@ -17,19 +17,18 @@ import numpy as np
 from trunnion import readers
 from trunnion.arrays import Floats
 from trunnion.errors import ArgumentName, InputError, Problem, Severity, argument_problem
-from trunnion.jobs.inputs.arguments import check_choice, check_path, check_paths, wrong_argument
-from trunnion.jobs.inputs.placed_heads import unlike_bodies
+from trunnion.jobs.inputs.arguments import check_choice, check_path, check_paths, checked_angles, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.jobs.inputs.settings import set_up_machine, work_offset_setting
-from trunnion.jobs.inputs.turned_parts import checked_angles, is_turned, toolpaths_clamped
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.simulate.result import NO_CALL
 from trunnion.jobs.verify.verifying import rapid_feed_of
 from trunnion.machines import Machine
+from trunnion.model.clamped_toolpaths import toolpaths_clamped
 from trunnion.model.clamping import Clamping
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
-from trunnion.placing.path_rows import turn_and_tilt
+from trunnion.placing.program_heads import unlike_bodies
 from trunnion.simulation.meshes import DEVIATION, TriangleMesh, load_mesh
 from trunnion.simulation.stock.turning import Pose
 from trunnion.simulation.tools.choice import choose_tools, tools_of_toolpaths
@@ -114,7 +113,7 @@ class PreparedSetup:
     @property
     def turn(self) -> Floats | None:
         """What turns the part as it is drawn to how it is clamped, (3, 3); None: it is clamped as drawn."""
-        return turn_and_tilt(*self.angles) if is_turned(*self.angles) else None
+        return Clamping(*self.angles).rotation if Clamping(*self.angles).is_turned else None
 
 
 def prepare_setup(
