@@ -15,10 +15,11 @@ from trunnion.jobs.papers.reports import check_report_name
 from trunnion.jobs.papers.simulation_report import write_simulation_report
 from trunnion.jobs.project.file import library_files, project_files
 from trunnion.jobs.simulate.data import simulation_data
-from trunnion.jobs.simulate.result import NearMiss, SimulationFinding, SimulationResult
+from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.simulating import simulate
 from trunnion.model.clamping import Clamping, number
 from trunnion.simulation.meshes import check_mesh_name, save_mesh
+from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.stock.surface import stock_surface
 from trunnion.wording import counted, format_duration, one_line

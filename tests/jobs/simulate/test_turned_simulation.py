@@ -14,12 +14,12 @@ import trunnion
 from tests.support.reports import waves
 from tests.support.simulating import SLOT, cuboid, simulate
 from trunnion.jobs.observer import SILENT
-from trunnion.jobs.simulate.result import SimulationFinding
 from trunnion.jobs.simulate.setups import SetupInput, prepare_setup
 from trunnion.machines import load_machine
 from trunnion.model.clamping import Clamping
 from trunnion.model.columns import StepColumn
 from trunnion.simulation.meshes import box_mesh
+from trunnion.simulation.setup_findings import SimulationFinding
 from trunnion.simulation.turned_parts import run_of_drawn_part
 
 #: The slot of ``SLOT`` goes along X of the machine. A part that is turned by 90 degrees has it along its own -Y.

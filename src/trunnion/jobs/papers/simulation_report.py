@@ -16,7 +16,7 @@ from trunnion.files import atomic_file
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.papers.reports import check_report_name
 from trunnion.jobs.simulate.data import simulation_data
-from trunnion.jobs.simulate.result import NearMiss, SimulationFinding, SimulationResult
+from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.model.clamping import Clamping, number
 from trunnion.reporting.simulation_content import (
     DeviationBin,
@@ -28,6 +28,7 @@ from trunnion.reporting.simulation_content import (
 from trunnion.reporting.simulation_page import render_simulation_page
 from trunnion.reporting.text import clean
 from trunnion.simulation.meshes.picture import picture
+from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.stock.surface import stock_surface
 from trunnion.simulation.stock.surface_points import SurfacePoints, surface_points

@@ -8,7 +8,6 @@ from typing import Final, Literal, TypeAlias
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.place.inputs import PlacedInput
-from trunnion.jobs.simulate.result import NO_CALL
 from trunnion.jobs.simulate.setups import fixture_names, listed, read_mesh, tool_libraries
 from trunnion.machines import Machine
 from trunnion.placing.collisions.best_clearance import Guard
@@ -23,7 +22,7 @@ from trunnion.placing.collisions.guarded_pairs import (
 from trunnion.simulation.collisions import BodyKind, machine_bodies
 from trunnion.simulation.meshes import TriangleMesh, box_mesh, cylinder_mesh
 from trunnion.simulation.stock.solids import stock_shape
-from trunnion.simulation.tools.choice import choose_tools, tools_of_toolpaths
+from trunnion.simulation.tools.choice import NO_CALL, choose_tools, tools_of_toolpaths
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.text import parse_tool
 

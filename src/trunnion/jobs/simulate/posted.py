@@ -18,7 +18,7 @@ from trunnion.jobs.inputs.reading import FilePath, as_machine
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.post.writing import named_run
 from trunnion.jobs.project.file import is_project, library_files, project_files, read_project
-from trunnion.jobs.simulate.result import SimulationFinding, SimulationResult
+from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.setups import SetupInput, SimulationInput
 from trunnion.jobs.simulate.steps import simulate_setups
 from trunnion.machines import Machine
@@ -28,6 +28,7 @@ from trunnion.model.toolpath import Toolpath
 from trunnion.simulation.findings import What
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
 from trunnion.simulation.meshes.primitives import box_mesh, cylinder_mesh
+from trunnion.simulation.setup_findings import SimulationFinding
 from trunnion.simulation.stock.solids import is_mesh, stock_shape
 from trunnion.simulation.turned_parts import as_clamped
 from trunnion.verification import Check, Place

@@ -15,25 +15,24 @@ from typing import Any, Final, TypeAlias
 import numpy as np
 
 from trunnion import readers
-from trunnion.arrays import Floats
 from trunnion.errors import ArgumentName, InputError, Problem, Severity, argument_problem
 from trunnion.jobs.inputs.arguments import check_choice, check_path, check_paths, checked_angles, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.jobs.inputs.settings import set_up_machine, work_offset_setting
 from trunnion.jobs.observer import Observer
-from trunnion.jobs.simulate.result import NO_CALL
 from trunnion.jobs.verify.verifying import rapid_feed_of
 from trunnion.machines import Machine
 from trunnion.model.clamped_toolpaths import toolpaths_clamped
 from trunnion.model.clamping import Clamping
 from trunnion.model.run import Run
-from trunnion.model.toolpath import Kind, Toolpath
+from trunnion.model.toolpath import Kind
 from trunnion.placing.program_heads import unlike_bodies
 from trunnion.simulation.meshes import DEVIATION, TriangleMesh, load_mesh
+from trunnion.simulation.prepared_setup import PreparedSetup
 from trunnion.simulation.stock.turning import Pose
-from trunnion.simulation.tools.choice import choose_tools, tools_of_toolpaths
+from trunnion.simulation.tools.choice import NO_CALL, choose_tools, tools_of_toolpaths
 from trunnion.simulation.tools.library import ToolLibrary, read_tools
-from trunnion.simulation.tools.profile import Role, ToolShape
+from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.text import parse_tool
 from trunnion.verification import restore_rapids
 from trunnion.wording import counted
@@ -93,29 +92,6 @@ class SimulationInput:
     places: Places = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PreparedSetup:
-    """A set-up that has been read: its machine, runs, tools by their names in programs, and meshes as they are drawn.
-
-    angles      turn and tilt of the part, degrees
-    toolpaths   of the part as it is clamped
-    """
-
-    given: SetupInput
-    machine: Machine
-    runs: tuple[Run, ...]
-    tools: dict[str, ToolShape]
-    part: TriangleMesh | None
-    fixtures: tuple[TriangleMesh, ...]
-    toolpaths: list[Toolpath]
-    angles: tuple[float, float] = (0.0, 0.0)
-
-    @property
-    def turn(self) -> Floats | None:
-        """What turns the part as it is drawn to how it is clamped, (3, 3); None: it is clamped as drawn."""
-        return Clamping(*self.angles).rotation if Clamping(*self.angles).is_turned else None
-
-
 def prepare_setup(
     given: SetupInput, remarks: list[Problem], observer: Observer, deviation: float = DEVIATION
 ) -> PreparedSetup:
@@ -150,7 +126,10 @@ def prepare_setup(
     tools = _tools(runs, given.tools, tool_libraries(given.libraries, given.unit), toolpaths)
     if given.work_offset is not None:
         remarks += _other_offsets(runs, given.work_offset, machine)
-    return PreparedSetup(given, machine, runs, tools, part, fixtures, toolpaths, angles)
+    return PreparedSetup(
+        machine, runs, tools, part, fixtures, toolpaths, Clamping(*angles), given.name, given.pose or Pose(),
+        given.until,
+    )  # fmt: skip
 
 
 @contextmanager
@@ -180,15 +159,6 @@ def listed(name: str, values: Any, record: type) -> list[Any]:
     if not all(isinstance(value, single) for value in found):
         raise wrong_argument(name, values, f"give a text, a path, a {record.__name__}, or a list of them")
     return found
-
-
-def cutting_width(tool: ToolShape) -> float:
-    """The greatest diameter of what cuts of a tool, mm; infinite where nothing does."""
-    points = [
-        point for section in tool.sections if section.role is Role.CUTTER
-        for element in section.outline for point in (element.start, element.end)
-    ]  # fmt: skip
-    return 2.0 * max((radius for radius, _ in points), default=float("inf"))
 
 
 def read_mesh(

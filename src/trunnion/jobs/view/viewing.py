@@ -12,14 +12,13 @@ from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as
 from trunnion.jobs.inputs.settings import Settings, set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.project.file import is_project
-from trunnion.jobs.simulate.result import NO_CALL
 from trunnion.jobs.targets import check_output_name
 from trunnion.jobs.view.inputs import bodies_not_clamped_so, of_project, view_program
 from trunnion.jobs.view.stock import view_simulation, with_stock
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.simulation.meshes import load_mesh
-from trunnion.simulation.tools.choice import choose_tools, tools_of_toolpaths
+from trunnion.simulation.tools.choice import NO_CALL, choose_tools, tools_of_toolpaths
 from trunnion.simulation.tools.library import read_tools
 from trunnion.simulation.tools.profile import ToolShape
 from trunnion.simulation.tools.text import parse_tool

@@ -5,7 +5,7 @@ Out:    a ``ToolShape`` for each name. No tool is guessed: those that nothing de
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.model.toolpath import LoadTool, Tool, Toolpath
@@ -124,3 +124,7 @@ def _of_cl_files(cl_tools: Sequence[ClTool], number: int | None, name: str) -> T
                 )
             )
     return shapes[0] if shapes else None
+
+
+#: The number of the tool with which a program cuts that calls none.
+NO_CALL: Final = "0"
