@@ -27,7 +27,6 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.simulation.findings import What
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
-from trunnion.simulation.meshes.primitives import box_mesh, cylinder_mesh
 from trunnion.simulation.setup_findings import SimulationFinding
 from trunnion.simulation.stock.solids import is_mesh, stock_shape
 from trunnion.simulation.turned_parts import as_clamped
@@ -106,13 +105,8 @@ def simulated_bodies(given: SimulationInput) -> Iterator[tuple[str, TriangleMesh
 
 
 def _drawn_bodies(given: SimulationInput) -> Iterator[tuple[str, TriangleMesh]]:
-    shape, setup = stock_shape(given.stock), given.setups[0]
-    if shape.mesh is not None:
-        yield "stock", shape.mesh
-    elif shape.is_cylinder:
-        yield "stock", cylinder_mesh(float(shape.high[0] - shape.low[0]), float(shape.low[2]), float(shape.high[2]))
-    else:
-        yield "stock", box_mesh(shape.low, shape.high)
+    setup = given.setups[0]
+    yield "stock", stock_shape(given.stock).as_mesh()
     for kind, meshes in (("part", [] if setup.part is None else [setup.part]), ("fixture", setup.fixtures)):
         for mesh in meshes:
             yield kind, mesh if isinstance(mesh, TriangleMesh) else load_mesh(mesh)

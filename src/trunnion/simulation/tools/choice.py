@@ -13,6 +13,9 @@ from trunnion.simulation.tools.cl_tools import cl_tool_shape
 from trunnion.simulation.tools.library import ToolLibrary
 from trunnion.simulation.tools.profile import ToolShape
 
+#: The number of the tool with which a program cuts that calls none.
+NO_CALL: Final = "0"
+
 
 class ClTool(NamedTuple):
     """A tool of a CL file: the number by which it is called, None if by name, its description, and where that is."""
@@ -124,7 +127,3 @@ def _of_cl_files(cl_tools: Sequence[ClTool], number: int | None, name: str) -> T
                 )
             )
     return shapes[0] if shapes else None
-
-
-#: The number of the tool with which a program cuts that calls none.
-NO_CALL: Final = "0"
