@@ -18,12 +18,10 @@ from trunnion.hooks.calling import Hooks
 from trunnion.hooks.files import load_hooks
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
-from trunnion.jobs.inputs.arguments import check_observer, check_paths
+from trunnion.jobs.inputs.arguments import check_observer, check_paths, checked_angles
 from trunnion.jobs.inputs.input_files import cl_files, machine_files
-from trunnion.jobs.inputs.placed_heads import placed_notices
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.jobs.inputs.settings import Settings
-from trunnion.jobs.inputs.turned_parts import checked_angles, clamped_after, stated_clamping, turned_toolpaths
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.papers.files import PaperFiles, paper_files
 from trunnion.jobs.papers.reports import write_refusal
@@ -39,9 +37,11 @@ from trunnion.jobs.post.result import PostResult, ProofFailedError
 from trunnion.jobs.post.writing import named_verification, read_back_while_writing, write
 from trunnion.jobs.targets import OutputLike, Target, open_target
 from trunnion.jobs.verify.program_warnings import program_warnings, stated_words
+from trunnion.model.clamped_toolpaths import clamped_after, stated_clamping, turned_toolpaths
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Message, Toolpath
+from trunnion.placing.program_heads import placed_notices
 from trunnion.verification import Verification, rows_from_starts, verify, without_columns
 
 if TYPE_CHECKING:  # imported where a program is simulated: others start sooner

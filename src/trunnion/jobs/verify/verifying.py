@@ -12,9 +12,15 @@ from trunnion.controls.setting_rules import tool_number
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
-from trunnion.jobs.inputs.arguments import check_choice, check_observer, check_paths, check_whole, wrong_argument
+from trunnion.jobs.inputs.arguments import (
+    check_choice,
+    check_observer,
+    check_paths,
+    check_whole,
+    checked_angles,
+    wrong_argument,
+)
 from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
-from trunnion.jobs.inputs.placed_heads import stated_place, unlike_cl_files, unlike_zero
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.jobs.inputs.settings import (
     check_operation_names,
@@ -23,16 +29,17 @@ from trunnion.jobs.inputs.settings import (
     set_up_machine,
     work_offset_setting,
 )
-from trunnion.jobs.inputs.turned_parts import checked_angles, clamped_after, stated_clamping, turned_toolpaths
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.twin.recording import as_recording
 from trunnion.jobs.verify.program_warnings import program_warnings
 from trunnion.machines import Machine
 from trunnion.model.axis_tolerance import AxisTolerance
+from trunnion.model.clamped_toolpaths import clamped_after, stated_clamping, turned_toolpaths
 from trunnion.model.clamping import Clamping
 from trunnion.model.recording import Recording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Operation, Toolpath
+from trunnion.placing.program_heads import stated_place, unlike_cl_files, unlike_zero
 from trunnion.verification import (
     ExpectedValues,
     OperationSettings,
