@@ -148,6 +148,11 @@ def argument_problem(
     return Problem(name, 0, wording, cure, severity, subject=subject, code=code)
 
 
+def setting_problem(name: str, wording: Wording) -> Problem:
+    """Return a problem with a setting; a project states it at a key of its own."""
+    return Problem("settings", 0, wording.of_key(name), subject=Subject(SubjectKind.SETTING, name))
+
+
 def unusable_file(path: Path, what: str) -> Problem | None:
     """Return why a path is no file that can be read; None if it may be one. ``what`` is meant: ``an NC program``."""
     try:

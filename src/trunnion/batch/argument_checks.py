@@ -11,7 +11,7 @@ from trunnion.jobs.convert.converting import check_conversion_settings
 from trunnion.jobs.inputs.arguments import check_whole
 from trunnion.jobs.post.post_job import prepare
 from trunnion.machines import Machine
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.simulation.stock.solids import check_cell, is_mesh, stock_shape
 from trunnion.simulation.tools.text import parse_tool
 
@@ -39,7 +39,7 @@ def check_tiles(action: Action, tiles: object) -> int:
     return count
 
 
-def beside_fault(name: str) -> str:
+def beside_fault(name: str) -> Wording | str:
     """What is wrong with the name of a file that goes with each input; empty if it can be used.
 
     >>> beside_fault("{folder}/{stem}.cls"), beside_fault("{name}.cls"), beside_fault("*.cls")
@@ -50,7 +50,7 @@ def beside_fault(name: str) -> str:
     rest = name.replace("{folder}", "").replace("{stem}", "")
     if "{" in rest or "}" in rest:
         return "has { or } elsewhere than in {folder} and {stem}"
-    return "is a pattern" if "*" in rest or "?" in rest else ""
+    return phrase("pattern") if "*" in rest or "?" in rest else ""
 
 
 def check_to_cl(said: Mapping[str, Any], machine: Machine | None) -> None:

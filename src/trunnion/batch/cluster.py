@@ -258,7 +258,7 @@ class DaskWorkers:
         """What an error of a task means; None: the connection failed, and it is to be given again."""
         name = type(error).__name__
         if name == "KilledWorker":
-            return Outcome(Status.DIED, (died(each.task.file, "several workers died over it"),))
+            return Outcome(Status.DIED, (died(each.task.file, Wording("BAT310", "several_workers_died")),))
         if isinstance(error, InputError):
             raise error
         if name in ("CancelledError", "FutureCancelledError", "TimeoutError", "CommClosedError") or isinstance(

@@ -166,11 +166,24 @@ def folder_batch(
         if (any(matches(name, each) for each in patterns) if patterns else name.lower().endswith(sought))
     ]  # fmt: skip
     if not files:
-        what = f"has no files that match {', '.join(patterns)}" if patterns else f"has no files {', '.join(sought)}"
         reasons = (left_out(folder, each, results) for each in patterns or [f"**/*{each}" for each in sought])
-        what += next((f"; {why}" for why in reasons if why), "")
         cure = "name them by a pattern of files, such as '**/*.nc'"
-        raise InputError(Problem(str(folder), 0, what, cure, code="BAT120"))
+        raise InputError(
+            Problem(
+                str(folder),
+                0,
+                Wording(
+                    "BAT120",
+                    "no_files_match",
+                    patterns=tuple(patterns),
+                    reasons=next((f"; {why}" for why in reasons if why), ""),
+                )
+                if patterns
+                else Wording(
+                    "BAT120", "no_files", sought=tuple(sought), reasons=next((f"; {why}" for why in reasons if why), "")
+                ),
+            )
+        )
     job = Job(str(action), action, files, said, shared, beside, "", extensions.written, report, tiles)
     return Batch(folder, [job], home=home_of(folder))
 

@@ -7,12 +7,13 @@ from trunnion.batch.patterns import matches
 from trunnion.batch.records import FOLDER
 from trunnion.definitions.extends import is_within
 from trunnion.jobs.project.paths import is_file
+from trunnion.messages import Wording, phrase
 
 #: Files that are looked at.
 _MOST = 100_000
 
 
-def left_out(folder: Path, pattern: str, results: Path | None) -> str:
+def left_out(folder: Path, pattern: str, results: Path | None) -> Wording | str:
     """Which file of a folder a pattern means that is none of the inputs, and why; empty: there is none."""
     looked = 0
     for at, folders, names in os.walk(folder):
@@ -25,7 +26,7 @@ def left_out(folder: Path, pattern: str, results: Path | None) -> str:
             if matches(file, pattern) and (why := _reason(folder, file, results)):
                 return f"{file[:200]} {why}"
         if any((Path(at) / name).is_symlink() and _leads_there(here / name, pattern) for name in folders):
-            return f"links to folders are not followed, such as {pattern[:200]}"
+            return phrase("links_folders_not", pattern=pattern[:200])
     return ""
 
 

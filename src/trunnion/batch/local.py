@@ -186,8 +186,18 @@ class LocalWorkers:
         if given.tries < TRIES:
             again.append(given)
             return
-        why = f"its worker process died {given.tries} times (exit code {worker.process.exitcode})"
-        yield given.assignment, Outcome(Status.DIED, (died(given.task.file, why),))
+        yield (
+            given.assignment,
+            Outcome(
+                Status.DIED,
+                (
+                    died(
+                        given.task.file,
+                        Wording("BAT310", "worker_process_died", tries=given.tries, exitcode=worker.process.exitcode),
+                    ),
+                ),
+            ),
+        )
 
     def _late(self) -> Iterator[tuple[Assignment, Outcome]]:
         """End the workers whose time is over."""

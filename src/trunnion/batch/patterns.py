@@ -3,11 +3,13 @@ with all files in them."""
 
 from fnmatch import fnmatchcase
 
+from trunnion.messages import Wording, phrase
+
 #: Characters of a pattern.
 _MOST = 1000
 
 
-def pattern_fault(pattern: str) -> str:
+def pattern_fault(pattern: str) -> Wording | str:
     """What is wrong with a pattern; empty if it can be used.
 
     >>> pattern_fault("../*.cls"), pattern_fault("parts/**/*.cls")
@@ -15,10 +17,10 @@ def pattern_fault(pattern: str) -> str:
     """
     parts = pattern.split("/")
     if not pattern or len(pattern) > _MOST:
-        return "is empty" if not pattern else "is too long"
+        return phrase("empty") if not pattern else phrase("too_long")
     if pattern.startswith("/") or ".." in parts or "\\" in pattern or ":" in parts[0]:
         return "leads out of the folder"
-    return "has two / side by side, or one at its end" if "" in parts else ""
+    return phrase("two_side_side") if "" in parts else ""
 
 
 def matches(name: str, pattern: str) -> bool:

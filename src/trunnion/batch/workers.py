@@ -39,10 +39,9 @@ def shown(name: str) -> str:
     return name.removeprefix(FILES).removeprefix(DEFINITIONS)
 
 
-def died(file: str, why: str) -> Problem:
+def died(file: str, wording: Wording) -> Problem:
     """The problem of a file whose worker has died."""
-    cure = "run the batch again with fewer workers, or this file alone"
-    return Problem(shown(file), 0, why, cure, code="BAT310")
+    return Problem(shown(file), 0, wording)
 
 
 #: The code of shares that cannot be used.
@@ -51,7 +50,7 @@ DAMAGED: Final = "BAT395"
 
 def damaged(file: str, why: str) -> Problem:
     """The problem of a file whose shares cannot be put together."""
-    return Problem(shown(file), 0, f"what its tasks have left is damaged: {why}", "run the batch again", code=DAMAGED)
+    return Problem(shown(file), 0, Wording("BAT395", "damaged", reason=why))
 
 
 #: Errors of the system that say nothing about a file: no space, no memory, no rights, a disk that fails.

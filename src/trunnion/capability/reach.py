@@ -13,6 +13,7 @@ from trunnion.capability.path_reach import PathReach
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
 from trunnion.machines.reach import AxisPoses, PoseBodies, ReachedVolume, axis_poses, pose_bodies, reached_volumes
+from trunnion.messages import Wording
 
 #: Directions by which the share of the sphere is found.
 _SPREAD: Final = 40_000
@@ -155,16 +156,11 @@ def reach_remarks(machine: Machine, placed: bool) -> list[Problem]:
     found = []
     missing = [machine.names[k] for k in machine.linear if not np.isfinite(machine.limits[k]).all()]
     if missing:
-        what = f"no limits of {' and '.join(missing)} are stated, so there is no volume of what it reaches"
-        found.append(Problem(machine.key, 0, what, "write limits_mm into the definition", code="RCH210"))
+        found.append(Problem(machine.key, 0, Wording("RCH210", "no_limits_stated", missing=tuple(missing))))
     if machine.tool_length is None and any(machine.depends_on_length(column) for column in machine.linear):
-        what = "the tool length is not known and counts as 0"
-        cure = "give argument tool_length=MM: what is reached with a tilted tool depends on it"
-        found.append(Problem(machine.key, 0, what, cure, code="RCH140"))
+        found.append(Problem(machine.key, 0, Wording("RCH140", "tool_length_not")))
     if placed and machine.workpiece_zero is None:
-        what = "the workpiece zero is not known, so only tool axes are judged"
-        found.append(Problem(machine.key, 0, what, "give argument zero=X,Y,Z", code="RCH130"))
+        found.append(Problem(machine.key, 0, Wording("RCH130", "workpiece_zero_not")))
     elif placed and machine.tool_length is None:
-        what = "the tool length is not known, so slides that depend on it are not judged"
-        found.append(Problem(machine.key, 0, what, "give argument tool_length=MM", code="RCH140"))
+        found.append(Problem(machine.key, 0, Wording("RCH140", "tool_length_not_known")))
     return [replace(each, severity=Severity.WARNING) for each in found]

@@ -46,34 +46,34 @@ def check_templates(table: Table, control: Control) -> None:
 
 def _report_brace(table: Table, template: Template, text: str) -> None:
     """Report a line with a brace that is no part of a field or statement."""
-    what = f"has a brace that belongs to no field: {text.strip()!r}"
-    cure = "write {name} or {name:format}, and a part that may be left out in [[ ]]"
+    wording = Wording("DEF510", "lone_brace", text=repr(text.strip()))
     for opening, closing in (("{%", "%}"), ("{{", "}}"), ("{#", "#}")):
         if closing in text and opening not in text:
-            what = f"has {closing} without {opening} before it: {text.strip()!r}"
-            cure = f"write {opening} where it begins, in the same line, or take {closing} out"
+            wording = Wording("DEF510", "not_begun", closing=closing, opening=opening, text=repr(text.strip()))
             break
-    _report_line(table, template, template.lines.index(text), what, cure)
+    _report_line(table, template, template.lines.index(text), wording)
 
 
 def _report_format(table: Table, template: Template, control: Control, name: str, number_format: str) -> None:
     """Report a format, or in a text a filter, that there is not."""
     filters = FILTERS if template.is_text else frozenset[str]()
     near = did_you_mean(number_format, {*control.formats, *filters})
-    cure = f"{near} write one of {', '.join(sorted({*control.formats, *filters}))}".strip()
+    known = tuple(sorted({*control.formats, *filters}))
     line = next((k for k, fields in enumerate(template.fields_by_line()) if (name, number_format) in fields), 0)
     is_filter = template.is_text and not re.search(rf":{number_format}\}}", template.lines[line])
-    what = f"prints {{{name}:{number_format}}}, but there is no format {number_format!r}"
+    said: dict[str, object] = {"name": name, "format": number_format, "near": near, "known": known}
     if is_filter:
-        what = f"prints {name} | {number_format}, but there is no filter or format {number_format!r}"
-    _report_line(table, template, line, what, cure)
+        wording = Wording("DEF510", "no_filter_but_near" if near else "no_filter", **said)
+    else:
+        wording = Wording("DEF510", "no_format_but_near" if near else "no_format", **said)
+    _report_line(table, template, line, wording)
 
 
-def _report_line(table: Table, template: Template, line: int, what: str, cure: str) -> None:
+def _report_line(table: Table, template: Template, line: int, wording: Wording) -> None:
     """Report a mistake in a line of a template, counted from 0."""
     file, at = template.place_of(line)
     key = table.key_path(template.name)
-    table.problems.append(Problem(file, at, f"{key} {what}", cure, subject=key_subject(key), code="DEF510"))
+    table.problems.append(Problem(file, at, wording.of_key(key), subject=key_subject(key)))
 
 
 def _check_names(
@@ -83,10 +83,13 @@ def _check_names(
     known |= LISTS if template.is_text else frozenset()
     for name in sorted({name for name, _ in fields} - known):
         near = did_you_mean(name, known)
-        every = "" if near and template.is_text else f"write one of {', '.join(sorted(known))}, or "
-        what = f"prints {{{name}}}, which is neither a template field nor a setting"
-        cure = f"{near} {every}add it to [control.settings]".strip()
-        _report_line(table, template, line, what, cure)
+        if near and template.is_text:
+            wording = Wording("DEF510", "no_value_but_near", name=name, near=near)
+        elif near:
+            wording = Wording("DEF510", "no_field_but_near", name=name, near=near, known=tuple(sorted(known)))
+        else:
+            wording = Wording("DEF510", "no_field", name=name, known=tuple(sorted(known)))
+        _report_line(table, template, line, wording)
 
 
 def _is_about_event(name: str) -> bool:
@@ -103,9 +106,12 @@ def check_formats(entries: Sequence[Table], control: Control) -> None:
         name = entry.text("name")
         if name not in used and "name" in entry:
             near = did_you_mean(name, control.formats.keys() - {name})
-            cure = f"{near} " if near else ""
-            cure += "write the name of the format to change, or print it in a word or a template"
-            entry.add_problem("name", f"is {name!r}, a format that nothing prints", cure, code="DEF515")
+            entry.add_problem(
+                "name",
+                Wording("DEF515", "format_nothing_prints", name=repr(name), near=near)
+                if near
+                else Wording("DEF515", "format_nothing", name=repr(name)),
+            )
 
 
 def check_setting_names(table: Table, control: Control) -> None:

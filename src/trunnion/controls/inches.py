@@ -126,17 +126,20 @@ def _template_problems(control: Control) -> Iterator[Problem]:
     word = re.compile(rf"(?<![A-Za-z0-9.]){re.escape(mm_word)}(?![A-Za-z0-9.])")
     for template in control.templates.values():
         if template.name in PROGRAM_START_TEMPLATES and "unit_word" not in {name for name, _ in template.fields()}:
-            what = f"{template.name} does not say in which unit the program counts"
-            yield _problem(template, 0, what, f"write {{unit_word}} for {mm_word}")
+            yield _problem(template, 0, Wording("DEF540", "does_not_say", template=template.name, mm_word=mm_word))
         for k, (bare, fields) in enumerate(zip(template.plain_lines(), template.fields_by_line(), strict=True)):
             if word.search(without_comments(control, bare)):
-                yield _problem(template, k, f"{template.name} says {mm_word}: millimetres", "write {unit_word} for it")
+                yield _problem(
+                    template, k, Wording("DEF540", "says_millimetres", template=template.name, mm_word=mm_word)
+                )
             literal = literal_length(control, bare)
             if literal:
                 number = re.findall(_NUMBER, literal.partition(" in ")[0])[-1]
-                what = f"{template.name} has a number that may be a length in mm: {literal}"
-                cure = f"write a length as {{{number}:coordinate}}, and another number with a format without inches"
-                yield _problem(template, k, what, cure)
+                yield _problem(
+                    template,
+                    k,
+                    Wording("DEF540", "number_may_length", template=template.name, literal=literal, number=number),
+                )
             yield from _field_problems(control, template, k, fields, lengths.__contains__)
 
 
@@ -145,11 +148,28 @@ def _field_problems(
 ) -> Iterator[Problem]:
     for name, number_format in sorted(fields):
         if number_format and is_length(name) != (control.formats[number_format].inch is not None):
-            fault = "is a length, and its format is in mm" if is_length(name) else "is no length, and has one's format"
-            what = f"{template.name} prints {{{name}:{number_format}}}, which {fault}"
-            cure = f"write inch = {{ decimals = … }} into the format {number_format!r}, or another format"
-            yield _problem(template, k, what, cure)
+            yield _problem(
+                template,
+                k,
+                Wording(
+                    "DEF540",
+                    "prints_length_format",
+                    template=template.name,
+                    name=name,
+                    number_format=number_format,
+                    number_format_2=repr(number_format),
+                )
+                if is_length(name)
+                else Wording(
+                    "DEF540",
+                    "prints_no_length",
+                    template=template.name,
+                    name=name,
+                    number_format=number_format,
+                    number_format_2=repr(number_format),
+                ),
+            )
 
 
-def _problem(template: Template, line: int, what: str, cure: str) -> Problem:
-    return Problem(*template.place_of(line), what, cure, code="DEF540")
+def _problem(template: Template, line: int, wording: Wording) -> Problem:
+    return Problem(*template.place_of(line), wording)

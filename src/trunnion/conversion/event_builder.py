@@ -8,6 +8,7 @@ import numpy as np
 from trunnion.arrays import Ints
 from trunnion.conversion.program_events import ProgramEvent
 from trunnion.conversion.unsupported import Warnings
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import (
     BlockSkip,
@@ -103,14 +104,10 @@ class EventBuilder:
         """M6. Of several changes before the first motion, the last one counts."""
         earlier = [other for other in found if isinstance(other, LoadTool) and other.row == row == 0]
         for other in earlier:
-            self._warn(
-                other.line, f"no motion follows the change to tool {other.number}: not carried over", code="CNV174"
-            )
+            self._warn(other.line, Wording("CNV174", "no_motion_follows", number=other.number))
             found.remove(other)
         if row == row_count:
-            self._warn(
-                event.line, f"no motion follows the change to tool {event.value}: not carried over", code="CNV174"
-            )
+            self._warn(event.line, Wording("CNV174", "no_motion_follows_change", event=event.value))
             return
         self.tool = str(event.value or "").strip()
         if self.tool.isdigit():
@@ -119,10 +116,7 @@ class EventBuilder:
     def _set_spindle(self, event: ProgramEvent, row: int, found: list[Event]) -> bool:
         """M3, M4 or M5; returns whether the event starts the spindle."""
         if event.value in ("oriented", "axis"):
-            cure = "a toolpath has no angle of the spindle"
-            self._warn.refuse(
-                event.line, "the spindle stops at an angle (SPOS, M19, cycle 13)", cure, event.file, code="CNV170"
-            )
+            self._warn.refuse(event.line, Wording("CNV170", "spindle_stops_angle"), event.file)
         elif event.value == "off":
             if self._sense is not None:
                 found.append(SpindleOff(row, event.line))
@@ -144,16 +138,14 @@ class EventBuilder:
                 if str(value).isdigit() and int(str(value)):
                     yield SelectTool(row, line, int(str(value)))
                 else:
-                    self._warn(line, f"T={value} is not carried over", "preselect tools by their number", code="CNV150")
+                    self._warn(line, Wording("CNV150", "t_not_carried", value=value))
             case "coolant":
                 yield Coolant(row, line, self._coolants.get(_COOLANT_CODE[str(value)], str(value).upper()))
             case "dwell":
                 assert isinstance(value, float)
                 yield Dwell(row, line, abs(value), value < 0)
             case "stop" if value == "pallet":
-                self._warn.refuse(
-                    line, "M60 changes the pallet", "a toolpath has no pallets", event.file, code="CNV170"
-                )
+                self._warn.refuse(line, Wording("CNV170", "m60_changes_pallet"), event.file)
             case "stop" | "optional_stop":
                 yield Stop(row, line, event.kind == "optional_stop")
             case "message":
@@ -174,26 +166,13 @@ class EventBuilder:
             case "known":
                 yield Insert(row, line, str(value))
             case "delta" if isinstance(value, tuple) and str(value[0]).startswith("TOOL DEF"):
-                self._warn(
-                    line,
-                    "length and radius of TOOL DEF are not carried over",
-                    "see the tool table",
-                    event.file,
-                    code="CNV173",
-                )
+                self._warn(line, Wording("CNV173", "length_radius_tool"), event.file)
             case "delta":
-                cure = "take it out, and give it by the settings delta_length and delta_radius"
-                self._warn.refuse(
-                    line, "DL or DR of TOOL CALL, which a toolpath does not hold", cure, event.file, code="CNV173"
-                )
+                self._warn.refuse(line, Wording("CNV173", "dl_dr_tool"), event.file)
             case "cycle32":
-                self._warn(
-                    line, "cycle 32 is not carried over", "see the setting tolerance=…", event.file, code="CNV140"
-                )
+                self._warn(line, Wording("CNV140", "cycle_32_not"), event.file)
             case "cycle832":
-                self._warn(
-                    line, "CYCLE832 is not carried over", "see setting cycle832=… and tolerance=…", code="CNV140"
-                )
+                self._warn(line, Wording("CNV140", "cycle832_not_carried"))
 
 
 def _one_line(text: str) -> str:

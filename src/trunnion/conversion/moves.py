@@ -4,10 +4,10 @@ import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Ints
 from trunnion.conversion.unsupported import Warnings
+from trunnion.messages import Wording
 from trunnion.model.feed_path import row_feed_path_lengths
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Arcs, Kind, Moves
-from trunnion.wording import counted
 
 #: Positions are rounded to this many decimals: the rest is rounding error of binary fractions.
 _DECIMALS = 9
@@ -49,8 +49,7 @@ def _feeds(run: Run, rows: Ints, warn: Warnings) -> tuple[Floats, Flags]:
     rescaled = np.union1d(inverse, without_tcp)
     without_feed = run.line[rows[rescaled[feed[rescaled] == 0.0]]]
     if len(without_feed):
-        what = f"no feed in mm/min in {counted(len(without_feed), 'block')}: the tool only turns about its tip"
-        warn(int(without_feed[0]), what, "the feed becomes 0", code="CNV180")
+        warn(int(without_feed[0]), Wording("CNV180", "no_feed_mm", count=len(without_feed)))
     last_cut = np.maximum.accumulate(np.where(rapid, -1, np.arange(len(feed))))
     feed = np.where(last_cut >= 0, feed[last_cut], np.nan)
     return feed, np.asarray((mode[last_cut] == 95) & ~np.isnan(feed))

@@ -8,6 +8,7 @@ from trunnion.arrays import Codes, Ints
 from trunnion.controls.definition import Control
 from trunnion.conversion.program_events import ProgramEvent
 from trunnion.conversion.unsupported import Warnings
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Phase
 
@@ -60,5 +61,5 @@ class PhaseComments:
             phase[(phase == Phase.CUT) & (run.kind[rows] == Kind.RAPID)] = Phase.RAPID
         without_motion += [comment_at[len(rows)]] if len(rows) in comment_at else []
         for event in without_motion:
-            warn(event.line, f"no motion follows {event.text!r}, which is not carried over", code="CNV174")
+            warn(event.line, Wording("CNV174", "no_motion_follows_not", event=repr(event.text)))
         return phase

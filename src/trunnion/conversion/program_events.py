@@ -9,6 +9,7 @@ import numpy as np
 
 from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.unsupported import Warnings
+from trunnion.messages import Wording
 from trunnion.model.run import Run, RunEvent
 
 _SIDE_OF_WORD = {"G40": 0, "G41": 1, "G42": -1}
@@ -63,8 +64,7 @@ def collect_events(run: Run, text: ProgramText, warn: Warnings) -> list[ProgramE
         ]
         own_lines = _compensation_lines(run, text)
     elif skips:
-        what = "block skip signs in a program with jumps or subprograms: a toolpath cannot hold them"
-        warn.refuse(skips[0][0], what, "take the signs out, or flatten the program", code="CNV170")
+        warn.refuse(skips[0][0], Wording("CNV170", "block_skip_signs"))
     found += _compensations(run, text, own_lines)
     return _without_tool_calls(sorted(found, key=lambda event: (event.row, event.line, event.order)))
 

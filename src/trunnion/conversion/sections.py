@@ -8,6 +8,7 @@ import numpy as np
 from trunnion.arrays import Ints
 from trunnion.conversion.program_events import ProgramEvent
 from trunnion.conversion.unsupported import Warnings
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 
 
@@ -90,8 +91,7 @@ def divide_sections(
             divided.append(part)
             sides = [event for event in events[section.first_event : end_event] if event.kind == "comp"]
             if not is_last and sides and not _is_off(sides[-1]):
-                what = "radius compensation stays on while the tool leaves the workpiece"
-                warn.refuse(sides[-1].line, what, "end it with G40 (R0) before", sides[-1].file, code="CNV172")
+                warn.refuse(sides[-1].line, Wording("CNV172", "radius_compensation_stays"), sides[-1].file)
             first_event = end_event
     return divided
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 from trunnion.controls.definition import Control
 from trunnion.conversion.unsupported import Warnings
 from trunnion.conversion.work_offsets import COMMON_OFFSETS
+from trunnion.messages import Wording
 from trunnion.model.machining_method import machining_method
 
 #: Settings that mean the same on every control; the others are words and habits of a family.
@@ -134,9 +135,9 @@ class _Header(NamedTuple):
 def _warn_of_one_value(warn: Warnings, line: int, what: str, name: str) -> None:
     """Refuse, or warn of, a setting that differs between operations where the new program can have only one."""
     if name in _MUST_NOT_BE_LOST:
-        warn.refuse(line, f"{what}; one program has one", "give each operation a name of its own", code="CNV142")
+        warn.refuse(line, Wording("CNV142", "one_program_one", subject=what))
     else:
-        warn(line, f"{what}; one program has one", f"the first is taken; see setting {name}=…", code="CNV142")
+        warn(line, Wording("CNV142", "one_program", subject=what, name=name))
 
 
 def _header_settings(control: Control, values: Mapping[str, str]) -> tuple[dict[str, str], dict[str, str]]:

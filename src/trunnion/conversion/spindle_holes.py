@@ -16,6 +16,7 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.conversion.program_events import ProgramEvent
 from trunnion.conversion.unsupported import Warnings
+from trunnion.messages import Wording
 from trunnion.model.run import Run, SpindleHole, SpindleTask
 from trunnion.model.toolpath import CycleOff, CycleOn, Event, Kind, Sense, SpindleOff, SpindleOn
 
@@ -141,25 +142,12 @@ def _made(run: Run, rows: Ints, hole: SpindleHole, events: Sequence[ProgramEvent
     """One hole as a cycle; None, with an error, if it cannot be one."""
     work = hole.work
     if work.task in _REFUSED:
-        cure = "make the hole anew, or as motion"
-        warn.refuse(
-            hole.line,
-            f"a cycle that {_REFUSED[work.task]}: a toolpath does not hold that",
-            cure,
-            hole.file,
-            code="CNV176",
-        )
+        warn.refuse(hole.line, Wording("CNV176", "cycle_toolpath_does", refused=_REFUSED[work.task]), hole.file)
         return None
     motions = np.arange(hole.first, hole.end)
     lines = motions[run.kind[motions] != Kind.RAPID]
     if not len(lines) or lines[0] - 1 < rows[0]:
-        warn.refuse(
-            hole.line,
-            "a cycle at a position that is not known",
-            "program X, Y and Z before it",
-            hole.file,
-            code="CNV171",
-        )
+        warn.refuse(hole.line, Wording("CNV171", "cycle_position_not"), hole.file)
         return None
     start, axis = run.tip[lines[0] - 1], run.axis[lines[0]]
     offset = run.tip[motions] - start
@@ -167,27 +155,18 @@ def _made(run: Run, rows: Ints, hole: SpindleHole, events: Sequence[ProgramEvent
     aside = float(np.linalg.norm(offset[motions >= lines[0]] - height[motions >= lines[0], None] * axis, axis=1).max())
     depth = -float(height.min())
     if aside > _ON_AXIS or not depth > work.clearance:
-        what = "a cycle that does not go down along the tool axis"
-        warn.refuse(hole.line, what, "tilt the plane, or turn the tool, before it", hole.file, code="CNV176")
+        warn.refuse(hole.line, Wording("CNV176", "cycle_does_not"), hole.file)
         return None
     rpm, sense = _spindle(run, int(lines[0]))
     spindle = work.rpm or rpm, work.hand or sense
     if not (spindle[0] > 0.0 and spindle[1]):
-        warn.refuse(
-            hole.line, "a thread or bore while the spindle stands still", "start it before", hole.file, code="CNV176"
-        )
+        warn.refuse(hole.line, Wording("CNV176", "thread_bore_while"), hole.file)
         return None
     bottom = int(motions[np.argmin(height)])
     heights = work.clearance, depth - work.clearance, max(float(height[-1]), 0.0) + work.clearance
     values = _values(run, hole, int(lines[0]), bottom, heights, events)
     if len({float(feed) for feed in run.feed[lines]}) > 1 and not work.stroke:
-        warn(
-            hole.line,
-            "the tool leaves the thread at another feed, which is not carried over",
-            "",
-            hole.file,
-            code="CNV180",
-        )
+        warn(hole.line, Wording("CNV180", "tool_leaves_thread"), hole.file)
     cycle = CycleOn(0, hole.line, _mode(hole), tuple(values), (("OPTION", ""),) if work.floating else ())
     if any(word == "DWELL,REV" for word, _ in values):
         cycle = CycleOn(0, hole.line, _mode(hole), _with_revolutions(values), (*cycle.words, ("DWELL", "REV")))

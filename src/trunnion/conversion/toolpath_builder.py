@@ -37,6 +37,7 @@ from trunnion.conversion.unsupported import (
 )
 from trunnion.conversion.workpiece_rows import without_turns_in_place, workpiece_stretches
 from trunnion.errors import Problem, Severity
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Event, Frame, LoadTool, Operation, Toolpath
 from trunnion.readers import reader_of
@@ -184,8 +185,7 @@ class _ToolpathBuilder:
     ) -> None:
         run, rows = self._run, [section.rows for section in sections]
         if self._headers.forced_line:
-            what = "the program says that it must not run as it is: it was written although checks had failed"
-            self._warn.refuse(self._headers.forced_line, what, "convert one that is proven", code="CNV178")
+            self._warn.refuse(self._headers.forced_line, Wording("CNV178", "program_says_must"))
         refuse_unsimulated_motions(run, self._warn)
         warn_of_park_positions(run, self._warn)
         warn_of_normals(run, self._warn)

@@ -8,10 +8,10 @@ import numpy as np
 from trunnion.arrays import Ints
 from trunnion.conversion.program_text import ProgramText
 from trunnion.errors import Problem, Severity
+from trunnion.messages import Wording
 from trunnion.model.run import Orientation, ProgrammedWord, Run
 from trunnion.model.toolpath import Kind, Moves
 from trunnion.planning.poses.selection import choose_poses
-from trunnion.wording import counted
 
 #: Lines with lost words that get a warning each; the others are only counted.
 _MAX_WORD_WARNINGS = 5
@@ -46,13 +46,13 @@ class Warnings:
         self._files = files
         self._found: list[Problem] = []
 
-    def __call__(self, line: int, what: str, cure: str = "", file: int = 0, *, code: str) -> None:
+    def __call__(self, line: int, wording: Wording, file: int = 0) -> None:
         """Add a warning; ``file`` is an index as in ``Run.file``."""
-        self._found.append(Problem(self._files[file], line, what, cure, Severity.WARNING, code=code))
+        self._found.append(Problem(self._files[file], line, wording, severity=Severity.WARNING))
 
-    def refuse(self, line: int, what: str, cure: str = "", file: int = 0, *, code: str) -> None:
+    def refuse(self, line: int, wording: Wording, file: int = 0) -> None:
         """Add an error: the program must not be converted without it."""
-        self._found.append(Problem(self._files[file], line, what, cure, Severity.ERROR, code=code))
+        self._found.append(Problem(self._files[file], line, wording))
 
     @property
     def problems(self) -> tuple[Problem, ...]:
@@ -80,22 +80,15 @@ def warn_of_machine_words(
         for line, words in text.sparse_words():
             plain = [_ZEROS.sub(r"\1", word) for word in words]
             if _SURFACE_SPEED.intersection(plain):
-                what = "constant surface speed: S is no rev/min, and a toolpath has only these"
-                warn.refuse(line, what, "write G97 and the speed", file, code="CNV170")
+                warn.refuse(line, Wording("CNV170", "constant_surface_speed"), file)
             lost = [word for word in words if _ZEROS.sub(r"\1", word) in lost_words]
             if not lost or (file == 0 and line in template_lines):
                 continue
             count += 1
             if count <= _MAX_WORD_WARNINGS:
-                warn(
-                    line,
-                    f"{' '.join(lost)} is not carried over",
-                    "write it in a template of the control",
-                    file,
-                    code="CNV150",
-                )
+                warn(line, Wording("CNV150", "not_carried", lost=tuple(lost)), file)
     if count > _MAX_WORD_WARNINGS:
-        warn(0, f"and {count - _MAX_WORD_WARNINGS} more lines with words that are not carried over", code="CNV150")
+        warn(0, Wording("CNV150", "more_lines_words", count=count - _MAX_WORD_WARNINGS))
 
 
 def warn_of_poses(run: Run, operations: Iterable[tuple[Ints, Moves]], warn: Warnings) -> None:
@@ -112,9 +105,11 @@ def warn_of_poses(run: Run, operations: Iterable[tuple[Ints, Moves]], warn: Warn
         differing, columns = np.nonzero(np.abs(difference) > _SAME_ANGLE)
         if len(differing):
             name = machine.axes[machine.rotary[int(columns[0])]].name
-            what = f"other rotary positions than the tool axis gives at {counted(len(np.unique(differing)), 'point')}"
             _warn_at_rows(
-                run, rows[differing], f"{what}, the first in {name}", "only the tool axis is kept", warn, code="CNV160"
+                run,
+                rows[differing],
+                Wording("CNV160", "other_rotary_positions", count=len(np.unique(differing)), name=name),
+                warn,
             )
 
 
@@ -136,9 +131,7 @@ def warn_of_interpolation(run: Run, operations: Iterable[Ints], by_vectors: bool
         ):
             points = rows[found]
             if len(points):
-                what = f"the tool turns {how} to {counted(len(points), 'point')}, which is not carried over"
-                cure = "between points the tool turns as the control's templates have it"
-                _warn_at_rows(run, points, what, cure, warn, code="CNV160")
+                _warn_at_rows(run, points, Wording("CNV160", "tool_turns_point", how=how, count=len(points)), warn)
 
 
 def warn_of_register_changes(run: Run, operations: Iterable[Ints], offset: str, warn: Warnings) -> None:
@@ -154,9 +147,17 @@ def warn_of_register_changes(run: Run, operations: Iterable[Ints], offset: str, 
             # Without a length in force rapids lead away: their positions are those of the spindle nose.
             others = others[(column[others] > 0) | (run.kind[others] != Kind.RAPID)]
             if len(others):
-                what = f"{letter}{column[others[0]]} within an operation, which has {letter}{column[concerned[0]]}"
-                cure = "a toolpath has one of an operation; begin a new one there"
-                warn.refuse(int(run.line[others[0]]), what, cure, int(run.file[others[0]]), code="CNV143")
+                warn.refuse(
+                    int(run.line[others[0]]),
+                    Wording(
+                        "CNV143",
+                        "within_operation",
+                        letter=letter,
+                        column=column[others[0]],
+                        column_2=column[concerned[0]],
+                    ),
+                    int(run.file[others[0]]),
+                )
 
 
 def warn_of_park_positions(run: Run, warn: Warnings) -> None:
@@ -170,9 +171,11 @@ def warn_of_park_positions(run: Run, warn: Warnings) -> None:
         elsewhere = np.flatnonzero(np.abs(positions - axis.home) > _SAME_POSITION)
         if len(elsewhere):
             position = positions[elsewhere[0]]
-            what = f"{axis.name} goes to the machine position {position:g}, which is not carried over"
             _warn_at_rows(
-                run, rows[elsewhere], what, "the control's templates define where to park", warn, code="CNV161"
+                run,
+                rows[elsewhere],
+                Wording("CNV161", "goes_machine_position", axis=axis.name, position=position),
+                warn,
             )
 
 
@@ -180,29 +183,22 @@ def refuse_unsimulated_motions(run: Run, warn: Warnings) -> None:
     """Refuse what the reader only approximates: paths without the tool's radius."""
     for found in run.diagnostics:
         if found.severity is Severity.WARNING and found.text.startswith(_WITHOUT_RADIUS):
-            warn.refuse(
-                found.line, found.text, "a toolpath has no such motion", run.files.index(found.file), code="CNV172"
-            )
+            wording = Wording("CNV172", "without_radius", text=found.text)
+            warn.refuse(found.line, wording, run.files.index(found.file))
 
 
 def warn_of_normals(run: Run, warn: Warnings) -> None:
     """Warn of surface normals."""
     if len(run.normals):
-        what = f"{counted(len(run.normals), 'block')} with a surface normal, which is not carried over"
-        _warn_at_rows(
-            run, run.normals.row, what, "a CL file has contact points of the CAM system instead", warn, code="CNV163"
-        )
+        _warn_at_rows(run, run.normals.row, Wording("CNV163", "block_surface_normal", count=len(run.normals)), warn)
 
 
 def warn_of_splines(run: Run, warn: Warnings) -> None:
     """Warn of splines, of which only their points are carried over."""
     if len(run.splines):
-        what = f"{counted(len(run.splines), 'spline')} of the program as the lines of their points, within 0.001 mm"
-        _warn_at_rows(
-            run, run.splines.first, what, "convert the CL file where the splines come from instead", warn, code="CNV163"
-        )
+        _warn_at_rows(run, run.splines.first, Wording("CNV163", "spline_program_lines", count=len(run.splines)), warn)
 
 
-def _warn_at_rows(run: Run, rows: Ints, what: str, cure: str, warn: Warnings, *, code: str) -> None:
+def _warn_at_rows(run: Run, rows: Ints, wording: Wording, warn: Warnings) -> None:
     """Warn of something in ``rows``, at the first of them."""
-    warn(int(run.line[rows[0]]), what, cure, int(run.file[rows[0]]), code=code)
+    warn(int(run.line[rows[0]]), wording, int(run.file[rows[0]]))

@@ -12,6 +12,7 @@ from trunnion.arrays import Flags, Ints
 from trunnion.conversion.known_positions import behind_retracts
 from trunnion.conversion.unsupported import Warnings
 from trunnion.machines import forward
+from trunnion.messages import Wording
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
 
@@ -109,9 +110,7 @@ def _with_arc_start(run: Run, known: Flags, stretch: Ints, warn: Warnings) -> In
 
 def _warn_of_division(run: Run, first: int, end: int, warn: Warnings) -> None:
     """Warn of the rows from ``first`` up to ``end`` that divide an operation."""
-    what = "the tool leaves the workpiece within an operation, for positions of the machine or to turn without TCP"
-    cure = f"the operation is divided; the new program goes home before line {run.line[end]}"
-    warn(int(run.line[first]), what, cure, int(run.file[first]), code="CNV175")
+    warn(int(run.line[first]), Wording("CNV175", "tool_leaves_workpiece", run_line=run.line[end]), int(run.file[first]))
 
 
 def _refuse_lost_cuts(run: Run, unknown: Ints, rows: Ints, warn: Warnings) -> None:
@@ -125,16 +124,7 @@ def _refuse_lost_cuts(run: Run, unknown: Ints, rows: Ints, warn: Warnings) -> No
 
 
 def _refuse_unknown(run: Run, row: int, warn: Warnings) -> None:
-    what = (
-        "cuts where the tip follows from positions of the machine, and the workpiece zero or tool length is not known"
-    )
-    warn.refuse(
-        int(run.line[row]),
-        what,
-        "give the workpiece zero and the tool length of the program's machine",
-        int(run.file[row]),
-        code="CNV171",
-    )
+    warn.refuse(int(run.line[row]), Wording("CNV171", "cuts_where_tip"), int(run.file[row]))
 
 
 def _refuse_machine_cuts(run: Run, rows: Ints, warn: Warnings) -> None:
@@ -144,8 +134,7 @@ def _refuse_machine_cuts(run: Run, rows: Ints, warn: Warnings) -> None:
         following = np.flatnonzero(~run.machine_frame[row : rows[-1] + 1])
         cuts_then = len(following) > 0 and run.kind[row + int(following[0])] != Kind.RAPID
         if int(run.programmed[row]) & int(_XYZ) != ProgrammedWord.Z or cuts_then:
-            what, cure = "moves at feed to a position of the machine", "a toolpath cannot hold it; write it at rapid"
-            warn.refuse(int(run.line[row]), what, cure, int(run.file[row]), code="CNV170")
+            warn.refuse(int(run.line[row]), Wording("CNV170", "moves_feed_position"), int(run.file[row]))
             return
 
 

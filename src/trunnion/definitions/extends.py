@@ -156,17 +156,35 @@ def _parent(extends: LocatedValue, child: _DefinitionFile, library: Library) -> 
         pure = pure.with_suffix(".toml")
     if outside or pure.suffix != ".toml" or child.folder is None:
         raise InputError(
-            Problem(file, line, f'extends: "{name}" is not a file that a definition may read', cure, code="DEF210")
+            Problem(
+                file,
+                line,
+                Wording("DEF210", "extends_not_file", name=name)
+                if name.casefold().endswith(".toml") and (not name.endswith(".toml"))
+                else Wording("DEF210", "extends_not_file_definition", name=name),
+            )
         )
     location = child.folder / pure
     # A link may lead out of the folder although its name does not.
     if not is_within(location, child.folder):
         raise InputError(
-            Problem(file, line, f'extends: "{name}" leads out of the folder of the definition', cure, code="DEF210")
+            Problem(
+                file,
+                line,
+                Wording("DEF210", "extends_leads_out", name=name)
+                if name.casefold().endswith(".toml") and (not name.endswith(".toml"))
+                else Wording("DEF210", "extends_leads_out_folder", name=name),
+            )
         )
     if not _is_file(location):
         raise InputError(
-            Problem(file, line, f'extends: there is no file "{pure}" beside the definition', cure, code="DEF210")
+            Problem(
+                file,
+                line,
+                Wording("DEF210", "extends_no_file", pure=pure)
+                if name.casefold().endswith(".toml") and (not name.endswith(".toml"))
+                else Wording("DEF210", "extends_no_file_beside", pure=pure),
+            )
         )
     return _DefinitionFile(location, str(location), location.parent)
 
@@ -268,14 +286,19 @@ def load_table(
             names = definition_names(library)
             _check_is_name(text, kind, has_shipped=bool(names))
             if not names:
-                cure = f"give the path of {_with_article(kind)}, whose name ends in .toml"
                 raise InputError(
                     Problem(text, 0, Wording("DEF110", "file_not_found", with_article=_with_article(kind)))
                 )
             near = did_you_mean(text, names)
-            cure = f"{near} " if near else ""
-            cure += f"write the path of a .toml file, or one of {', '.join(names)}"
-            raise InputError(Problem(text, 0, f"there is no shipped {kind} of this name", cure, code="DEF110"))
+            raise InputError(
+                Problem(
+                    text,
+                    0,
+                    Wording("DEF110", "no_shipped_name", kind=kind, near=near, names=tuple(names))
+                    if near
+                    else Wording("DEF110", "no_shipped", kind=kind, names=tuple(names)),
+                )
+            )
     problems: list[Problem] = []
     root, extended = _merge_ancestors(_read(source, kind), source, library, problems)
     if overrides:
@@ -325,7 +348,6 @@ def _check_is_name(text: str, kind: str, *, has_shipped: bool) -> None:
         is_folder, is_file = path.is_dir(), path.is_file()
     except (OSError, ValueError):
         return
-    cure = f"give the path of {_with_article(kind)}" + (f", or the name of a shipped {kind}" if has_shipped else "")
     if is_folder:
         raise InputError(
             Problem(
@@ -337,9 +359,23 @@ def _check_is_name(text: str, kind: str, *, has_shipped: bool) -> None:
             )
         )
     if is_file:
-        what = f"is not {_with_article(kind)}, whose name ends in .toml"
-        what += ", in small letters" if text.casefold().endswith(".toml") else ""
-        raise InputError(Problem(text, 0, what, cure, code="DEF140"))
+        raise InputError(
+            Problem(
+                text,
+                0,
+                (
+                    Wording("DEF140", "not_whose_name", with_article=_with_article(kind), kind=kind)
+                    if has_shipped
+                    else Wording("DEF140", "not_whose_name_ends", with_article=_with_article(kind))
+                )
+                if text.casefold().endswith(".toml")
+                else (
+                    Wording("DEF140", "not_whose_name_ends_toml", with_article=_with_article(kind), kind=kind)
+                    if has_shipped
+                    else Wording("DEF140", "not_whose", with_article=_with_article(kind))
+                ),
+            )
+        )
 
 
 def resolve_extends(table: Table, library: Library) -> Table:

@@ -206,10 +206,10 @@ class _Caller:
         except (Exception, SystemExit) as error:
             raise InputError(failure(self._file.path, error, f"{name} fails for operation {operation.name}")) from error
 
-    def refuse(self, name: str, what: str, cure: str, code: str = "HOK130") -> InputError:
+    def refuse(self, name: str, wording: Wording) -> InputError:
         """The error for what a function has returned."""
         return InputError(
-            Problem(str(self._file.path), self._file.line_of(name), f"{name} returns {what}", cure, code=code)
+            Problem(str(self._file.path), self._file.line_of(name), wording.within("returned", name=name))
         )
 
     def listed(self, name: str, returned: object, kind: type[_Kind]) -> list[_Kind]:
@@ -217,9 +217,8 @@ class _Caller:
         found = [returned] if isinstance(returned, kind) else returned
         if isinstance(found, Sequence) and not isinstance(found, str) and all(isinstance(each, kind) for each in found):
             return list(found)
-        what = f"{type(returned).__name__}"
         word = kind.__name__.lower()
-        raise self.refuse(name, f"a value of type {what}", f"return an {word}, a list of them, or None for no change")
+        raise self.refuse(name, Wording("HOK130", "value_type", name=type(returned).__name__, word=word))
 
     def events(self, operation: Operation, given: Operation) -> tuple[Event, ...]:
         """The events of an operation as ``on_event`` leaves them, which gets those of its copy ``given``."""
@@ -246,10 +245,7 @@ class _Caller:
             for new in [] if returned is None else self.listed("on_block", returned, Event):
                 self._check_types("on_block", new)
                 if new.row not in (block.row, block.row + 1):
-                    cure = "make events with row=block.row, or row=block.row + 1 for behind it"
-                    raise self.refuse(
-                        "on_block", f"an event at row {new.row} for the block of row {block.row}", cure, "HOK132"
-                    )
+                    raise self.refuse("on_block", Wording("HOK132", "event_row_block", row=new.row, row_2=block.row))
                 new = replace(new, line=block.line) if new.line < 1 else new
                 added.append(self._checked("on_block", new, len(operation.moves)))
         return tuple(sorted((*operation.events, *added), key=lambda event: event.row))
@@ -265,16 +261,14 @@ class _Caller:
     def _check_types(self, name: str, event: Event) -> None:
         """Refuse an event of which no CL file could have made the values."""
         if not isinstance(event, Event) or type(event) in (Event, ShopStatement):
-            raise self.refuse(name, "what is no event", "make events of the classes in trunnion.hooks")
+            raise self.refuse(name, Wording("HOK130", "no_event"))
         fault = value_fault(event)
         if fault:
-            cure = "texts are of one line, and numbers are finite; help(trunnion.hooks) has the values of each event"
-            raise self.refuse(name, f"{type(event).__name__} with {fault}", cure, "HOK132")
+            raise self.refuse(name, Wording("HOK132", "with", name=type(event).__name__, fault=fault))
 
     def _checked(self, name: str, event: Event, rows: int) -> Event:
         if not 0 <= event.row <= rows:
-            cure = f"its operation has the rows 0 to {rows}"
-            raise self.refuse(name, f"an event at row {event.row}", cure, "HOK132")
+            raise self.refuse(name, Wording("HOK132", "event_row", row=event.row, rows=rows))
         return replace(event, template="") if isinstance(event, Insert) and event.template else detached(event)
 
 
@@ -295,8 +289,9 @@ def _plain_operation(call: _Caller, before: Operation, given: Operation, operati
     for name, kind in parts.items():
         part = getattr(operation, name)
         if not isinstance(part, kind):
-            cure = f"keep the {name} of the operation, or make others of the classes in trunnion.hooks"
-            raise call.refuse("on_operation", f"an operation with {name} of the type {type(part).__name__}", cure)
+            raise call.refuse(
+                "on_operation", Wording("HOK130", "operation_type", name=name, name_2=type(part).__name__)
+            )
     keeps_events, keeps_moves = operation.events is given.events, operation.moves is given.moves
     own = {
         name: getattr(before, name) if getattr(operation, name) is getattr(given, name) else detached(part)
@@ -307,8 +302,7 @@ def _plain_operation(call: _Caller, before: Operation, given: Operation, operati
     rows = len(operation.moves)
     fault = operation_fault(operation)
     if fault:
-        cure = "change copies of the columns: replace(operation, moves=replace(operation.moves, feed=…))"
-        raise call.refuse("on_operation", f"an operation {operation.name!r:.60} that {fault}", cure, "HOK132")
+        raise call.refuse("on_operation", Wording("HOK132", "operation", operation=repr(operation.name), fault=fault))
     # A spline is about its points: whoever changes these wants lines.
     splines = before.splines if keeps_moves else Splines.empty()
     events = operation.events

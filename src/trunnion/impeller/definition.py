@@ -79,11 +79,11 @@ class ImpellerDefinition:
     places: Mapping[str, tuple[str, int]] = field(default_factory=dict)
     files: tuple[str, ...] = ()
 
-    def problem(self, key: str, what: str, cure: str, *, code: str) -> Problem:
+    def problem(self, key: str, wording: Wording) -> Problem:
         """A mistake that a key makes; it is told at the line of its table where the key is not written."""
         table = key.rpartition(".")[0]
         file, line = self.places.get(key) or self.places.get(table) or (self.file, 0)
-        return Problem(file, line, what, cure, subject=key_subject(key), code=code)
+        return Problem(file, line, wording, subject=key_subject(key))
 
 
 def read_impeller(path: Path) -> ImpellerDefinition:

@@ -97,7 +97,6 @@ def blade_faults(
         k = int(np.where(inside, gap, np.inf).argmin())
         if gap[k] <= 0.0:
             table = definition.sections[0 if v[k] < 0.5 else -1]
-            what = f"blades overlap by {-gap[k]:.3f} mm near this point"
             yield Problem(table.file, _line(table, centre[k]), Wording("IMP212", "blades_overlap_mm", gap=-gap[k]))
     edge = min(radius, max(float(np.hypot(*table.points[:, :2].T).max()) for table in definition.sections) + _BEYOND)
     w = np.linspace(0.0, 1.0, 201)
@@ -111,12 +110,10 @@ def blade_faults(
         k = int(missing.argmax())
         across = float(np.hypot(*place[k, :2]))
         if across > edge:
-            what = f"the blade goes straight on from its points to the stock, and does not reach {body} at radius"
-            cure = "let the points go on farther, or make the stock's diameter smaller"
-            yield definition.problem("stock.diameter_mm", f"{what} {across:.1f}", cure, code="IMP213")
+            yield definition.problem(
+                "stock.diameter_mm", Wording("IMP213", "blade_goes_straight", body=body, across=across)
+            )
         else:
-            what = f"the blade does not reach {body} near this point"
-            cure = "does it lean too much here, or is it too thick? check the curves and the thicknesses"
             yield Problem(table.file, _line(table, place[k]), Wording("IMP213", "blade_does_not", body=body))
 
 
@@ -140,9 +137,7 @@ def fillet_faults(
 def no_place(definition: ImpellerDefinition, error: FilletError) -> Problem:
     """A fillet that finds no place, at the row of the points that is nearest to where it finds none."""
     table, (problem,) = definition.sections[0], error.problems
-    return Problem(
-        table.file, _line(table, error.place), f"{problem.what} near this point", problem.cure, code=problem.code
-    )
+    return Problem(table.file, _line(table, error.place), problem.wording.within("near_this_point"))
 
 
 def _turn(angle: float) -> Floats:

@@ -15,6 +15,7 @@ from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError, Problem
 from trunnion.impeller.blade import Blade
 from trunnion.impeller.profiles import Profile
+from trunnion.messages import Wording
 
 #: A ball this near to the hub touches it, mm; that takes about ten steps.
 _TOUCH: Final = 1e-11
@@ -30,8 +31,8 @@ _IN_BALL: Final = 0.2
 class FilletError(InputError):
     """A ball that does not touch blade and hub at ``place``, a point (3,) of the blade."""
 
-    def __init__(self, what: str, cure: str, place: Floats) -> None:
-        super().__init__(Problem("fillet", 0, what, cure, code="IMP214"))
+    def __init__(self, wording: Wording, place: Floats) -> None:
+        super().__init__(Problem("fillet", 0, wording))
         self.place = place
 
 
@@ -118,9 +119,8 @@ def root_fillet(blade: Blade, hub: Profile, radius: float, stations: Stations) -
 
     missing = (gap(low) > 0.0) | (gap(high) < 0.0)
     if missing.any():
-        what = f"a fillet of {radius:g} mm finds no place between blade and hub"
         place = stations.balls(blade, np.zeros(count))[0][int(missing.argmax())]
-        raise FilletError(what, "make it smaller or the blade thinner, or let its sections reach the hub", place)
+        raise FilletError(Wording("IMP214", "fillet_mm_finds", radius=radius), place)
     v = crossings(gap, low, high)
     centre, normal = stations.touching(blade, v, radius)
     inside = _inside(blade, hub, stations, v, _BELOW * radius)

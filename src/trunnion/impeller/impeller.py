@@ -22,6 +22,7 @@ from trunnion.impeller.definition import ImpellerDefinition
 from trunnion.impeller.faults import blade_faults, direction_faults, section_faults
 from trunnion.impeller.profiles import Profile
 from trunnion.impeller.stock_faults import stock_faults
+from trunnion.messages import Wording
 
 #: How far blades go on beyond hub, shroud and stock, mm, besides their thickness.
 _BEYOND = 1.0
@@ -133,10 +134,7 @@ def _beyond_stock(definition: ImpellerDefinition, curve: BSplineCurve, radius: f
     (point,), (slope,) = curve.derivatives(np.ones(1), 1)
     outward = float(point[:2] @ slope[:2]) / float(np.hypot(*point[:2]))
     if outward < 0.2 * float(np.linalg.norm(slope)):
-        what = "the trailing edge does not lead outward, so that the stock cannot cut it"
-        raise InputError(
-            definition.problem("blade.trailing_edge", what, 'write trailing_edge = "round"', code="IMP213")
-        )
+        raise InputError(definition.problem("blade.trailing_edge", Wording("IMP213", "trailing_edge_does")))
     missing = definition.stock.diameter / 2.0 - float(np.hypot(*point[:2])) + radius + _BEYOND
     return 1.0 + max(missing, radius + _BEYOND) / outward
 

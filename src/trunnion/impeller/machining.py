@@ -123,10 +123,8 @@ def step_paths(
                     Problem(
                         definition.file,
                         step.line,
-                        f"{step.name}: {each.what}",
-                        each.cure,
-                        each.severity,
-                        code=each.code,
+                        each.wording.within("of", name=step.name),
+                        severity=each.severity,
                     )
                     for each in error.problems
                 ]

@@ -15,6 +15,7 @@ from trunnion.errors import Problem, Severity
 from trunnion.geometry.point_tables import PointTable
 from trunnion.impeller.definition import ImpellerDefinition
 from trunnion.impeller.profiles import Profile
+from trunnion.messages import Wording
 
 #: Points may stand out of the stock by as much: tables are rounded.
 _ROUNDED: Final = 0.1
@@ -25,8 +26,6 @@ _LEAST_PART: Final = 0.2
 #: The stock's diameter may cut off so much of a blade without a word, as a part of the diameter.
 _CUT_OFF: Final = 0.01
 
-_SIZES: Final = "check stock.height_mm, stock.bottom_mm and blade.scale"
-
 
 def stock_faults(definition: ImpellerDefinition, hub: Profile) -> Iterator[Problem]:
     """What of the measured blades does not fit into the stock; a warning where its diameter only shortens them."""
@@ -35,9 +34,9 @@ def stock_faults(definition: ImpellerDefinition, hub: Profile) -> Iterator[Probl
     points = np.vstack([table.points for table in tables])
     across, up = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
     if across.max() < _LEAST_PART * radius:
-        what = f"the blade reaches a radius of {across.max():.4g} mm only, and that of the stock is {radius:g}"
-        cure = "check blade.scale, the unit of the points and stock.diameter_mm"
-        yield definition.problem("blade.scale", what, cure, code="IMP215")
+        yield definition.problem(
+            "blade.scale", Wording("IMP215", "blade_reaches_radius", max=across.max(), radius=radius)
+        )
         return
     starts = np.cumsum([0, *(len(table.points) for table in tables[:-1])])
     yield from _across(definition, across, starts)
@@ -46,11 +45,9 @@ def stock_faults(definition: ImpellerDefinition, hub: Profile) -> Iterator[Probl
         return
     high, low = int(np.nanargmax(heights)), int(np.nanargmin(heights))
     if up[high] > stock.top + _ROUNDED:
-        what = f"reaches height {up[high]:.3f} here, and the stock ends at {stock.top:g}"
-        yield _problem(tables, high, what, _SIZES)
+        yield _problem(tables, high, Wording("IMP215", "reaches_height_here", up=up[high], top=stock.top))
     if up[low] < stock.bottom - _ROUNDED:
-        what = f"reaches down to height {up[low]:.3f} here, and the stock begins at {stock.bottom:g}"
-        yield _problem(tables, low, what, _SIZES)
+        yield _problem(tables, low, Wording("IMP215", "reaches_down_height", up=up[low], bottom=stock.bottom))
     yield from _bore(definition, hub)
 
 
@@ -58,19 +55,21 @@ def _across(definition: ImpellerDefinition, across: Floats, starts: Ints) -> Ite
     """Points outside of the stock's diameter: a trailing edge that is cut may have them, a leading edge not."""
     stock, tables = definition.stock, definition.sections
     limit = stock.diameter / 2.0 + _ROUNDED
-    cure = "check stock.diameter_mm and blade.scale"
-    outside = f"outside of the stock of {stock.diameter:g} mm in diameter"
     if definition.trailing_edge == "cut":
         for k in starts[across[starts] > limit].tolist():
-            yield _problem(tables, k, f"begins at a radius of {across[k]:.3f} mm, {outside}", cure)
+            yield _problem(tables, k, Wording("IMP215", "begins_radius_mm", across=across[k], diameter=stock.diameter))
             return
         k = int(across.argmax())
         if across[k] > stock.diameter / 2.0 + _CUT_OFF * stock.diameter:
-            what = f"goes on to a radius of {across[k]:.3f} mm here, {outside}, which cuts the blade off"
-            yield _problem(tables, k, what, cure, Severity.WARNING)
+            yield _problem(
+                tables,
+                k,
+                Wording("IMP215", "goes_radius_mm", across=across[k], diameter=stock.diameter),
+                severity=Severity.WARNING,
+            )
     elif across.max() > limit:
         k = int(across.argmax())
-        yield _problem(tables, k, f"reaches a radius of {across[k]:.3f} mm here, {outside}", cure)
+        yield _problem(tables, k, Wording("IMP215", "reaches_radius_mm", across=across[k], diameter=stock.diameter))
 
 
 def _bore(definition: ImpellerDefinition, hub: Profile) -> Iterator[Problem]:
@@ -78,18 +77,18 @@ def _bore(definition: ImpellerDefinition, hub: Profile) -> Iterator[Problem]:
     place = hub.curve.points(np.linspace(0.0, 1.0, 801))
     k = int(place[:, 0].argmin())
     if definition.stock.bore / 2.0 >= place[k, 0]:
-        what = f"is {definition.stock.bore:g}, and the hub is {2.0 * place[k, 0]:.3f} mm in diameter at height"
         yield definition.problem(
-            "stock.bore_mm", f"stock.bore_mm {what} {place[k, 2]:.3f}", "make the bore smaller", code="IMP215"
+            "stock.bore_mm",
+            Wording(
+                "IMP215", "stock_bore_mm", bore=definition.stock.bore, place=2.0 * place[k, 0], place_2=place[k, 2]
+            ),
         )
 
 
-def _problem(
-    tables: tuple[PointTable, ...], k: int, what: str, cure: str, severity: Severity = Severity.ERROR
-) -> Problem:
+def _problem(tables: tuple[PointTable, ...], k: int, wording: Wording, severity: Severity = Severity.ERROR) -> Problem:
     """A problem with a point of all tables together."""
     for table in tables:
         if k < len(table.points):
-            return Problem(table.file, table.lines[k], f"{table.called} {what}", cure, severity, code="IMP215")
+            return Problem(table.file, table.lines[k], wording.within("of_key", key=table.called), severity=severity)
         k -= len(table.points)
     raise IndexError(k)

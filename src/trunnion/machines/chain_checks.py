@@ -30,21 +30,22 @@ def check_chain(
     if all(entry.to_dict().get("kind") in tuple(AxisKind) for entry in axis_tables) and (
         len(rotary) != 2 or len(slides) != 3
     ):
-        what = f"has {len(slides)} linear and {len(rotary)} rotary axes"
-        cure = "write three linear and two rotary axes, from the workpiece to the tool"
-        if len(axes) > 5:
-            what += f" ({', '.join(axes[k].name for k in (*slides, *rotary))})"
-            cure = (
-                "leave out what a program does not move, such as a quill or a clamped axis (remove = true in the"
-                " [[axis]] of a file that extends another): three linear and two rotary axes are moved together"
+        table.add_problem(
+            "axis",
+            Wording(
+                "DEF410",
+                "linear_rotary_axes",
+                count=len(slides),
+                count_2=len(rotary),
+                slides=tuple(axes[k].name for k in (*slides, *rotary)),
             )
-        table.add_problem("axis", what, cure, code="DEF410")
+            if len(axes) > 5
+            else Wording("DEF410", "linear_rotary", count=len(slides), count_2=len(rotary)),
+        )
         sound = False
     for k in range(1, len(axes)):
         stated = all("carries" in axis_tables[at] for at in (k - 1, k))
         if stated and axes[k].mount is Mount.PART and axes[k - 1].mount is Mount.TOOL:
-            what = f'is "part", but {axes[k - 1].name} before it carries the tool'
-            cure = "order the axes from the workpiece to the tool: all that carry the part come first"
             axis_tables[k].add_problem("carries", Wording("DEF410", "part_but_before", axes=axes[k - 1].name))
     if sound:
         _check_rotary_directions(axis_tables, axes, rotary, spindle)

@@ -8,23 +8,23 @@ Units:  rev/min.
 from typing import Final
 
 from trunnion.machines.machine import Machine
+from trunnion.messages import Wording, phrase
 
 #: Speeds are printed without decimals: this much is rounding.
 _ROUNDING: Final = 0.5 + 1e-6
 
 
-def spindle_speed_fault(machine: Machine, rpm: float) -> str:
+def spindle_speed_fault(machine: Machine, rpm: float) -> Wording | str:
     """Return why the spindle cannot turn at a speed; empty if it can, or if the definition states no range."""
     facts = machine.facts
     greatest, least = machine.spindle_max_rpm, facts.spindle_min_rpm
     if greatest is not None and rpm > greatest + _ROUNDING:
-        return f"S{rpm:g} is above the greatest speed of the spindle, {greatest:g} rev/min"
+        return phrase("s_above_greatest", rpm=rpm, greatest=greatest)
     if least is not None and rpm < least - _ROUNDING:
-        return f"S{rpm:g} is below the least speed of the spindle, {least:g} rev/min"
+        return phrase("s_below_least", rpm=rpm, least=least)
     gears = facts.spindle_gears_rpm
     if gears and not any(low - _ROUNDING <= rpm <= high + _ROUNDING for low, high in gears):
-        ranges = ", ".join(f"{low:g} to {high:g}" for low, high in gears)
-        return f"S{rpm:g} is in no gear of the spindle: {ranges} rev/min"
+        return phrase("s_no_gear", rpm=rpm, gears=tuple(f"{low:g} to {high:g}" for low, high in gears))
     return ""
 
 

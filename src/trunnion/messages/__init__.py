@@ -41,8 +41,9 @@ CATALOGUES: Final = {
     "TWN": "twin",
 }
 
-#: The file of sentences that stand around others.
+#: The files of sentences that stand around others, and of parts that stand in others.
 AROUND: Final = "around"
+PHRASES: Final = "phrases"
 
 Part: TypeAlias = Literal["what", "cure"]
 Parameters: TypeAlias = tuple[tuple[str, object], ...]
@@ -136,6 +137,11 @@ class Wording:
         return other
 
 
+def phrase(variant: str, /, **parameters: object) -> Wording:
+    """A part of other sentences, of the catalogue ``phrases``: one that goes into a parameter."""
+    return Wording("", variant, **parameters)
+
+
 def foreign(what: str, cure: str = "", code: str = "") -> Wording:
     """A text that is in no catalogue, since it is that of others: of a hook, or of a program without a code for it."""
     return Wording(code, "", what=what, cure=cure)
@@ -180,6 +186,8 @@ def _inner_text(wording: Wording, part: Part, words: Words, language: str) -> st
     if not wording.variant:
         return str(parameters[part])
     try:
+        if not wording.code:
+            return filled_in(catalogue(language, PHRASES)[wording.variant], words, parameters)
         variant = catalogue(language, CATALOGUES[wording.code[:-3]])[wording.code][wording.variant]
         return filled_in(variant.get(part, ""), words, parameters)
     except (LookupError, OSError, ValueError, TypeError):

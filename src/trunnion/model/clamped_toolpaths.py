@@ -12,6 +12,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 from trunnion.model.clamping import Clamping, number
 from trunnion.model.frames import frame_from_vectors, into_frame, into_plane
 from trunnion.model.toolpath import Frame, Operation, Toolpath
@@ -31,10 +32,15 @@ def stated_clamping(toolpaths: Sequence[Toolpath]) -> Clamping | None:
     for path in toolpaths:
         own = path.clamping or Clamping()
         if not own.is_like(first.clamping):
-            says = "states nothing of its part" if path.clamping is None else f"states that its part is {own}"
-            what = f"{says}, and {first.file} that it is {first.clamping}"
-            cure = "one program has one clamping: give CL files of one coordinate system"
-            raise InputError(Problem(path.file, 0, what, cure, code="PLC310"))
+            raise InputError(
+                Problem(
+                    path.file,
+                    0,
+                    Wording("PLC310", "states_nothing_part", first_file=first.file, clamping=first.clamping)
+                    if path.clamping is None
+                    else Wording("PLC310", "states_part", own=own, first_file=first.file, clamping=first.clamping),
+                )
+            )
     return first.clamping
 
 
@@ -48,9 +54,8 @@ def clamped_after(stated: Clamping | None, angles: tuple[float, float], file: st
     """
     found = (stated or Clamping()).then(*angles)
     if found is None:
-        what = f"states that its part is {stated}, and a tilt of {number(angles[1])} degrees behind a turn is no tilt"
         raise InputError(
-            Problem(file, 0, what, "turn it without a tilt, or tilt the CL file of the part as drawn", code="PLC320")
+            Problem(file, 0, Wording("PLC320", "states_part_tilt", stated=stated, number=number(angles[1])))
         )
     return found
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.errors import Problem, Severity
+from trunnion.messages import Wording
 from trunnion.model.clamping import Clamping
 from trunnion.placing.best_turn import TurnResult
 from trunnion.placing.collisions.best_clearance import Guard, NearestRow, nearest_at
@@ -50,9 +51,20 @@ def touch_warnings(found: Placement) -> list[Problem]:
     touching = found.touching
     if touching is None:
         return []
-    what = f"{touching.between[0]} and {touching.between[1]} touch at the best place; the goal {found.goal} allows it"
-    cure = "place with the goal collisions, or change fixture, tool or path"
-    return [Problem(touching.file, touching.line, what, cure, Severity.WARNING, code="PLC300")]
+    return [
+        Problem(
+            touching.file,
+            touching.line,
+            Wording(
+                "PLC300",
+                "touch_best_place",
+                between=touching.between[0],
+                between_2=touching.between[1],
+                goal=found.goal,
+            ),
+            severity=Severity.WARNING,
+        )
+    ]
 
 
 def with_distance(found: Placement, most: float | None) -> Placement:

@@ -11,6 +11,7 @@ from typing import Final
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
+from trunnion.messages import Wording
 from trunnion.model.clamping import SAME, Clamping, are_one_angle, number
 from trunnion.model.clamping_notices import StatedPlace, clamped_notices, head_comments, read_place, zero_notices
 
@@ -90,9 +91,15 @@ def unlike_bodies(program: Path, given: Clamping, machine: Machine) -> list[Prob
     found = _unlike_zero(program, stated, machine)
     if stated.clamping is not None and not stated.clamping.is_like(given):
         told = _told(stated.clamping.turn, stated.clamping.tilt)
-        cure = f"give {told}, so that stock, part and fixtures are turned; or give them as they are clamped"
-        what = f"its head says that the part is {stated.clamping}"
-        found.insert(0, Problem(str(program), 0, what, cure, Severity.WARNING, code="PLC230"))
+        found.insert(
+            0,
+            Problem(
+                str(program),
+                0,
+                Wording("PLC230", "head_says_part", clamping=stated.clamping, told=told),
+                severity=Severity.WARNING,
+            ),
+        )
     return found
 
 
@@ -112,9 +119,15 @@ def _unlike_zero(program: Path, stated: StatedPlace, machine: Machine) -> list[P
         return found
     given = [*([] if zero is None else [f"zero {','.join(map(number, zero))}"])]
     given += [] if length is None else [f"tool length {number(length)}"]
-    what = f"its head says that {' and that '.join(said)}, and the slides are judged with {' and '.join(given)}"
-    cure = "give those of the head, or make sure that the program keeps the limits there as well"
-    return [*found, Problem(str(program), 0, what, cure, Severity.WARNING, code="PLC240")]
+    return [
+        *found,
+        Problem(
+            str(program),
+            0,
+            Wording("PLC240", "head_says_slides", said=tuple(said), given=tuple(given)),
+            severity=Severity.WARNING,
+        ),
+    ]
 
 
 def _told(turn: float, tilt: float) -> str:

@@ -4,6 +4,7 @@ import numpy as np
 
 from trunnion.arrays import Flags
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 from trunnion.model.arc_extremes import ArcPaths
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.model.toolpath import Kind
@@ -22,7 +23,7 @@ def rows_of_run(run: Run) -> PathRows:
     machine = run.machine
     keep = _rows_at_workpiece(run)
     if not keep.any():
-        raise InputError(Problem(run.files[0], 0, "there is no motion at the part in it", code="CNV121"))
+        raise InputError(Problem(run.files[0], 0, Wording("CNV121", "no_motion_part")))
     rows = np.flatnonzero(keep)
     joints, tip, axis = run.joints, run.tip[rows], run.axis[rows]
     rotary = joints[:, list(machine.rotary)]

@@ -6,6 +6,7 @@ import numpy as np
 
 from trunnion.arrays import Flags, Floats
 from trunnion.machines import Machine
+from trunnion.messages import Wording, phrase
 from trunnion.planning.poses.states import LIMIT_TOLERANCE
 
 #: What a tool is taken for whose length is not known.
@@ -40,24 +41,26 @@ def exceeds_travel(machine: Machine, extremes: Floats) -> Flags:
     return np.asarray(is_slide & (extremes[:, 1] - extremes[:, 0] > high - low + LIMIT_TOLERANCE))
 
 
-def limit_violation_text(machine: Machine, column: int, value: float) -> str:
+def limit_violation_text(machine: Machine, column: int, value: float) -> Wording:
     """Such as ``axis B would go to 110.00000, above its limit 100 degrees``."""
     axis = machine.axes[column]
-    limit, side = (axis.low, "below") if value < axis.low else (axis.high, "above")
-    unit = "degrees" if axis.is_rotary else "mm"
-    tool = f" with a tool {NO_LENGTH}" if _lacks_length(machine, column) else ""
-    return f"axis {axis.name} would go to {value:.5f}{tool}, {side} its limit {limit:g} {unit}"
+    below = value < axis.low
+    if _lacks_length(machine, column):
+        variant = "below_limit_without_length" if below else "above_limit_without_length"
+    else:
+        variant = "below_limit" if below else "above_limit"
+    limit, unit = axis.low if below else axis.high, "degrees" if axis.is_rotary else "mm"
+    return phrase(variant, axis=axis.name, value=value, limit=limit, unit=unit)
 
 
-def limit_remedy(machine: Machine, column: int, value: float, remark: str = "") -> str:
+def limit_remedy(machine: Machine, column: int, value: float, remark: Wording | str = "") -> Wording:
     """What brings an axis back within its limits, as the cure of a message with a ``remark``."""
     axis = machine.axes[column]
     lacking = axis.low - value if value < axis.low else value - axis.high
     if axis.is_rotary:
-        return f"tilt the workpiece by {lacking:.3f} degrees{remark}, or post for another machine"
-    length = "give the length of the tool by setting tool_length=…, " if _lacks_length(machine, column) else ""
-    cure = f"{length}shift the workpiece zero or change the clamping"
-    return f"{axis.name} exceeds its limit by {lacking:.3f} mm{remark}; {cure}"
+        return phrase("tilt_by", lacking=lacking, remark=remark)
+    variant = "give_length_or_shift" if _lacks_length(machine, column) else "shift"
+    return phrase(variant, axis=axis.name, lacking=lacking, remark=remark)
 
 
 def _lacks_length(machine: Machine, column: int) -> bool:

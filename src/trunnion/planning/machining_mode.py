@@ -86,22 +86,23 @@ def mode_conflicts(
     """Why an operation cannot be made in a mode: the control does not support it, or the tool axis does not fit it."""
     axis, line = operation.moves.axis, operation.moves.line
     if mode not in capabilities.modes:
-        what = f"operation {operation.name}: the control does not support the mode {mode}"
-        cure = capabilities.mode_remedies.get(mode, f"it supports {', '.join(sorted(capabilities.modes))}")
-        return [Problem(file, operation.line, what, cure, code="PLN310")]
+        remedy = capabilities.mode_remedies.get(mode)
+        if remedy:
+            wording = Wording("PLN310", "not_supported_but", operation=operation.name, mode=mode, remedy=remedy)
+        else:
+            known = tuple(sorted(capabilities.modes))
+            wording = Wording("PLN310", "not_supported", operation=operation.name, mode=mode, known=known)
+        return [Problem(file, operation.line, wording)]
     if mode is MachiningMode.THREE_AXIS:
-        expected, what = _UP, "the tool axis is not +Z of the program, and mode is three-axis"
+        expected, variant = _UP, "not_upright"
     elif mode is MachiningMode.TILTED:
-        expected, what = axis[0], "the tool axis changes, and mode is tilted"
+        expected, variant = axis[0], "changes"
     else:
         return []
     tolerance = max(_SAME_AXIS, capabilities.negligible_tilt if mode is MachiningMode.THREE_AXIS else 0.0)
     wrong = np.flatnonzero(np.abs(axis - expected).max(axis=1) > tolerance)
-    cure = "leave the setting mode out, or split the operation"
     return (
-        [Problem(file, int(line[wrong[0]]), Wording("PLN330", "operation", operation=operation.name, subject=what))]
-        if len(wrong)
-        else []
+        [Problem(file, int(line[wrong[0]]), Wording("PLN330", variant, operation=operation.name))] if len(wrong) else []
     )
 
 

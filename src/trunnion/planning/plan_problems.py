@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine, inverse, spindle_speed_fault
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.motion import PoleStrategy
 from trunnion.model.toolpath import Kind, Moves, Operation, SpindleOn
 from trunnion.planning.axis_limits import exceeds_travel, limit_remedy, limit_violation_text, limits_of, outside_limits
@@ -43,7 +43,7 @@ def spindle_speed_problems(file: str, operation: Operation, machine: Machine) ->
     """Spindle speeds that the machine does not have."""
     for event in operation.events:
         if isinstance(event, SpindleOn) and (fault := spindle_speed_fault(machine, event.rpm)):
-            yield Problem(file, event.line, fault, "program a speed that the machine has", code="PLN430")
+            yield Problem(file, event.line, Wording("PLN430", "no_such_speed", fault=fault))
 
 
 def rewind_problems(chosen: ChosenPoses, rewinds: Sequence[Rewind], request: PlanRequest) -> Iterable[Problem]:
@@ -80,18 +80,19 @@ def rewind_problems(chosen: ChosenPoses, rewinds: Sequence[Rewind], request: Pla
 def _made_rewinds(chosen: ChosenPoses, rewinds: Sequence[Rewind], feed_share: float) -> Problem:
     """The warning about rewinds: where they are, what they cost, and why the first one is needed."""
     moves, first = chosen.operation.moves, rewinds[0]
-    what = f"the tool draws back {max(one.retract_distance for one in rewinds):g} mm in the cut to rewind"
+    said: dict[str, object] = {"distance": max(one.retract_distance for one in rewinds), "reason": first.reason}
+    variant = "one_rewind"
     if len(rewinds) > 1:
         lines = [str(moves.line[one.row]) for one in rewinds]
         named = ", ".join(lines[:_NAMED]) + (f" … {lines[-1]}" if len(lines) > _NAMED else "")
         per_min = [not moves.per_rev[one.row] for one in rewinds]
         seconds = sum(one.seconds(chosen.machine, float(moves.feed[one.row]), feed_share) for one in rewinds)
-        takes = f", some {format_duration(seconds)} in all" if all(per_min) else ""
-        what += f" {len(rewinds)} times, in lines {named}{takes}, each of which may leave a mark"
-    cure = "setting rewind=none refuses it"
-    return Problem(
-        chosen.file, int(moves.line[first.row]), f"{what}, {first.reason}", cure, Severity.WARNING, code="PLN220"
-    )
+        said |= {"count": len(rewinds), "lines": named}
+        variant = "rewinds"
+        if all(per_min):
+            said["time"], variant = format_duration(seconds), "rewinds_of_time"
+    wording = Wording("PLN220", variant, **said)
+    return Problem(chosen.file, int(moves.line[first.row]), wording, severity=Severity.WARNING)
 
 
 def winding_problems(chosen: ChosenPoses, request: PlanRequest) -> Iterable[Problem]:
@@ -99,14 +100,38 @@ def winding_problems(chosen: ChosenPoses, request: PlanRequest) -> Iterable[Prob
     machine = request.machine
     for column, turns in wound_turns(machine, chosen.rotary):
         axis = machine.axes[column]
-        takes = (
-            "" if axis.rapid is None else f", {format_duration(60.0 * 360.0 * turns / axis.rapid)} at its rapid speed"
+        yield Problem(
+            chosen.file,
+            int(chosen.operation.moves.line[-1]),
+            (
+                Wording("PLN240", "axis_ends_turns", operation=chosen.operation.name, axis=axis.name, turns=turns)
+                if axis.endless
+                else Wording(
+                    "PLN240", "axis_ends_turns_from", operation=chosen.operation.name, axis=axis.name, turns=turns
+                )
+            )
+            if axis.rapid is None
+            else (
+                Wording(
+                    "PLN240",
+                    "axis_ends_turns_from_home",
+                    operation=chosen.operation.name,
+                    axis=axis.name,
+                    turns=turns,
+                    format_duration=format_duration(60.0 * 360.0 * turns / axis.rapid),
+                )
+                if axis.endless
+                else Wording(
+                    "PLN240",
+                    "axis_ends",
+                    operation=chosen.operation.name,
+                    axis=axis.name,
+                    turns=turns,
+                    format_duration=format_duration(60.0 * 360.0 * turns / axis.rapid),
+                )
+            ),
+            severity=Severity.WARNING,
         )
-        what = f"{chosen.operation.name}: axis {axis.name} ends {turns:.0f} turns from home, and turns back{takes}"
-        cure = "change the path so that it does not wind the axis in one direction"
-        if axis.endless:
-            cure += '; or, if the control takes the shorter way home, write output = "0..360" for the axis'
-        yield Problem(chosen.file, int(chosen.operation.moves.line[-1]), what, cure, Severity.WARNING, code="PLN240")
 
 
 def _forbidden_rewind(chosen: ChosenPoses, rewind: Rewind) -> Problem:
@@ -144,9 +169,6 @@ def _pose_problem(file: str, operation: Operation, poses: PlannedPoses, request:
     line, code = int(moves.line[row]), int(poses.outcome[row])
     if code == OUT_OF_REACH:
         i, j, k = moves.axis[row]
-        what = f"no rotary position of {machine.key} gives the tool axis {i:.6f}, {j:.6f}, {k:.6f}"
-        lacking = f"{degrees_out_of_reach(machine, moves.axis[row]):.3f} degrees"
-        cure = f"tilt the workpiece by {lacking}, or post for a machine that reaches it{remedy}"
         return Problem(
             file,
             line,
@@ -162,8 +184,6 @@ def _pose_problem(file: str, operation: Operation, poses: PlannedPoses, request:
             ),
         )
     if code == BLOCKED:
-        turn = f"{describe_pose(machine, poses.rotary[row - 1])} to {describe_pose(machine, poses.rotary[row])}"
-        what = f"the rotary axes flip between these two points, {turn}; no solution is valid at both"
         return Problem(
             file,
             line,
@@ -177,12 +197,12 @@ def _pose_problem(file: str, operation: Operation, poses: PlannedPoses, request:
     column, value = code - 1, float(poses.beyond_value[row])
     cure = limit_remedy(machine, column, value, _other_pose_remark(machine, moves, poses, row))
     is_hole = any(event.row <= row < end for event, end in cycle_row_ranges(operation))
-    where = "in this hole " if is_hole else "on this arc " if moves.kind[row] == Kind.ARC else ""
-    what = where + limit_violation_text(machine, column, value)
-    return Problem(file, line, what, cure + remedy, code="PLN120")
+    variant = "in_hole" if is_hole else "on_arc" if moves.kind[row] == Kind.ARC else "at_point"
+    violation = limit_violation_text(machine, column, value)
+    return Problem(file, line, Wording("PLN120", variant, violation=violation, cure=cure, remedy=remedy))
 
 
-def _other_pose_remark(machine: Machine, moves: Moves, poses: PlannedPoses, row: int) -> str:
+def _other_pose_remark(machine: Machine, moves: Moves, poses: PlannedPoses, row: int) -> Wording | str:
     """Why the other pose does not help either, in brackets; empty if there is none, or it does."""
     joints = inverse(machine, moves.tip[row : row + 1], moves.axis[row : row + 1]).joints[:, 0]
     difference = joints[:, list(machine.rotary)] - poses.rotary[row]
@@ -192,7 +212,7 @@ def _other_pose_remark(machine: Machine, moves: Moves, poses: PlannedPoses, row:
     outside = np.flatnonzero(outside_limits(other, *limits_of(machine, machine.workpiece_zero is not None)))
     if not len(outside) or distance.max() < 1e-6:
         return ""
-    return f" (in the other pose {machine.axes[outside[0]].name} would go to {other[outside[0]]:.5f})"
+    return phrase("other_pose_would", axes=machine.axes[outside[0]].name, other=other[outside[0]])
 
 
 def travel_problems(operations: Sequence[tuple[str, Moves, PlannedPoses]], machine: Machine) -> Iterable[Problem]:

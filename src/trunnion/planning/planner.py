@@ -4,9 +4,9 @@ import math
 from collections.abc import Sequence
 from typing import Final
 
-from trunnion.errors import InputError, Problem, RefusedError, argument_problem
+from trunnion.errors import InputError, Problem, RefusedError, setting_problem
 from trunnion.machines import Machine
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.motion import MachiningMode, Plan
 from trunnion.model.toolpath import Frame, Operation, Toolpath
 from trunnion.planning.linearization.point_insertion import LinearizedMotion, linearize
@@ -76,9 +76,10 @@ def _check_names(options: PlanOptions, sources: Sequence[tuple[str, Operation]])
     names = [operation.name for _, operation in sources]
     unknown = [name for name in options.mode_by_operation if name not in names]
     if unknown:
-        what = "mode is set for operation {}, and the program has none of that name"
-        cure = f"write one of {', '.join(dict.fromkeys(names))}"
-        raise InputError([argument_problem("settings", what.format(name), cure, code="ARG230") for name in unknown])
+        known = tuple(dict.fromkeys(names))
+        raise InputError(
+            [setting_problem("mode", Wording("ARG230", "no_operation", name=name, known=known)) for name in unknown]
+        )
 
 
 def _check_reach_and_travel(planned: Sequence[PlannedOperation], request: PlanRequest) -> list[Problem]:
@@ -96,16 +97,13 @@ def _check_reach_and_travel(planned: Sequence[PlannedOperation], request: PlanRe
     return problems
 
 
-def _frame_remedy(first: Frame, options: PlanOptions) -> str:
+def _frame_remedy(first: Frame, options: PlanOptions) -> Wording | str:
     """What helps, besides tilting the workpiece, if the first operation's MSYS is tilted; empty if it is upright."""
     upright = float(first.matrix()[2, 2])
     tilt = math.degrees(math.acos(min(max(upright, -1.0), 1.0)))
     if options.absolute_frame or tilt < _LEAST_TILT:
         return ""
-    return (
-        f"; or write setting frame=absolute: the MSYS of the first operation is tilted by {tilt:.4g} degrees, which"
-        " counts as the tilt of the workpiece"
-    )
+    return phrase("write_frame_msys", tilt=tilt)
 
 
 def _linearize(

@@ -12,13 +12,13 @@ import numpy as np
 
 from trunnion.arrays import Flags
 from trunnion.errors import Problem, RefusedError, Severity
+from trunnion.messages import Wording
 from trunnion.model.frames import into_frame, into_plane, relative_frame
 from trunnion.model.motion import Decision, DecisionTopic, MachiningMode
 from trunnion.model.toolpath import CycleOn, Frame, Kind, Operation, Phase
 from trunnion.planning.holes.cycles import HoleCycleError, SpindleState, SpindleStates
 from trunnion.planning.holes.operations import axis_change_rows, normalize_cycles, row_ranges, split_by_axis
 from trunnion.planning.linearization.arc_chords import (
-    FEWER_LINES,
     MOST_LINES,
     arc_sweeps,
     arcs_a_control_takes,
@@ -71,8 +71,8 @@ def prepare_operations(sources: Sequence[tuple[str, Operation]], request: PlanRe
             errors.append(Problem(file, error.line, error.wording))
         lines += max(len(prepared[-1].operation.moves) - len(original.moves), 0) if prepared else 0
         if lines > MOST_LINES:
-            what = f"the arcs of the operations up to {original.name} become {lines} lines"
-            raise RefusedError([Problem(file, original.line, what, FEWER_LINES, code="PLN550")])
+            wording = Wording("PLN550", "too_many_lines", operation=original.name, count=lines)
+            raise RefusedError([Problem(file, original.line, wording)])
         spindle = SpindleStates(original.events, spindle).at(len(original.moves))
     if errors:
         raise RefusedError(errors)
@@ -194,7 +194,12 @@ def _with_holes(prepared: PreparedOperation, spindle: SpindleState | None) -> Pr
         log.append(Decision(prepared.file, operation.name, cycles.line, -1, DecisionTopic.HOLES, text))
         if cycles.reason != REQUESTED:
             warnings.append(
-                Problem(prepared.file, cycles.line, cycles.reason, cycles.description, Severity.WARNING, code="PLN640")
+                Problem(
+                    prepared.file,
+                    cycles.line,
+                    Wording("PLN640", "as_motion", reason=cycles.reason, description=cycles.description),
+                    severity=Severity.WARNING,
+                )
             )
     return replace(
         prepared,

@@ -7,6 +7,7 @@ from functools import cached_property
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import Problem
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.motion import Decision, DecisionTopic, MachiningMode
 from trunnion.model.toolpath import Frame, Operation
 from trunnion.planning.linearization.arc_chords import source_rows
@@ -26,7 +27,7 @@ class PlanRequest:
     chord_tolerance: float
     options: PlanOptions
     capabilities: ControlCapabilities
-    frame_remedy: str = ""
+    frame_remedy: Wording | str = ""
 
     @property
     def keeps_slide_limits(self) -> bool:

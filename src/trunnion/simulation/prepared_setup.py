@@ -7,6 +7,7 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, argument_problem
 from trunnion.machines import Machine
+from trunnion.messages import Wording
 from trunnion.model.clamping import Clamping
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
@@ -85,6 +86,5 @@ def _row_of_block(run: Run, until: str | int) -> int:
     # A block without motion is followed by the next number, not by what runs next: subprograms may stand behind it.
     rows = own[run.block_number[own] == run.block_number[own].min()] if len(own) else own
     if not len(rows):
-        cure = "give the N number of a block of the last program"
-        raise InputError(argument_problem("until", f"{run.files[0]} has no block {until}", cure, code="SIM114"))
+        raise InputError(argument_problem("until", Wording("SIM114", "no_block", files=run.files[0], until=until)))
     return int(rows[0])

@@ -10,6 +10,7 @@ import numpy as np
 from trunnion.errors import Problem, Severity, merge_repeated
 from trunnion.machines import Machine
 from trunnion.machines.inverse import slide_positions
+from trunnion.messages import Wording
 from trunnion.model.run import Run
 from trunnion.model.stated_tips import StatedTips
 from trunnion.model.toolpath import Kind
@@ -20,7 +21,6 @@ from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.stock.solids import StockShape
 from trunnion.simulation.tool_deltas import SIZES, is_told_of_length
 from trunnion.simulation.tools.profile import ToolShape, cutting_width
-from trunnion.wording import counted
 
 #: Sizes that differ by less are the same, mm.
 _SAME: Final = 1e-3
@@ -44,11 +44,21 @@ def _out_of_travel(machine: Machine, stock: StockShape) -> Iterator[Problem]:
         low, high = float(joints[:, k].min()), float(joints[:, k].max())
         beyond = max(axis.low - low, high - axis.high)
         if beyond > 0.0:
-            what = (
-                f"reaches {beyond:.3f} mm beyond the travel of {axis.name}: its corners need {low:.3f} to {high:.3f},"
-                f" limits are {axis.low:g} and {axis.high:g}; rotary axes at zero"
+            yield Problem(
+                "stock",
+                0,
+                Wording(
+                    "SIM130",
+                    "reaches_mm_beyond",
+                    beyond=beyond,
+                    axis=axis.name,
+                    low=low,
+                    high=high,
+                    low_2=axis.low,
+                    high_2=axis.high,
+                ),
+                severity=Severity.WARNING,
             )
-            yield Problem("stock", 0, what, "check its place and the workpiece zero", Severity.WARNING, code="SIM130")
 
 
 def _foreign_length(run: Run, row: int, number: int, names: Sequence[str]) -> list[Problem]:
@@ -58,13 +68,10 @@ def _foreign_length(run: Run, row: int, number: int, names: Sequence[str]) -> li
         return []
     file, line = file_of_row(run, row), int(run.line[row])
     if str(number) in names:
-        return [
-            Problem(
-                file, line, f"tool {name} cuts with the length of tool {number}", "select its own length", code="SIM160"
-            )
-        ]
-    what = f"tool {name} cuts with length number {number}, which is taken for its own length"
-    return [Problem(file, line, what, severity=Severity.WARNING, code="SIM161")]
+        return [Problem(file, line, Wording("SIM160", "tool_cuts_length", name=name, number=number))]
+    return [
+        Problem(file, line, Wording("SIM161", "tool_cuts_length", name=name, number=number), severity=Severity.WARNING)
+    ]
 
 
 def _defined_sizes(run: Run, shapes: Mapping[str, ToolShape]) -> Iterator[Problem]:
@@ -77,20 +84,22 @@ def _defined_sizes(run: Run, shapes: Mapping[str, ToolShape]) -> Iterator[Proble
         name = run.tools[int(run.tool[rows[0]])]
         shape = shapes.get(name)
         if kind == SIZES[0]:
-            told = f"TOOL DEF gives tool {name} the length {value:g} mm"
             if shape is None or not shape.length:
                 yield Problem(
-                    file, event.line, f"{told}, which is taken for its own", severity=Severity.WARNING, code="SIM161"
+                    file,
+                    event.line,
+                    Wording("SIM161", "tool_def_gives", name=name, value=value),
+                    severity=Severity.WARNING,
                 )
             elif abs(shape.length - value) > _SAME:
-                what = f"{told}, and from tip to gauge point it has {shape.length:g} mm: its tip is not on the path"
-                yield Problem(file, event.line, what, "let both be the same", code="SIM163")
+                yield Problem(
+                    file, event.line, Wording("SIM163", "tool_def_gives", name=name, value=value, length=shape.length)
+                )
         elif shape is not None and run.state.compensation.column()[rows].any():
             wide = cutting_width(shape)
             if abs(0.5 * wide - value) > _SAME:
-                what = f"TOOL DEF gives tool {name} the radius {value:g} mm for radius compensation"
                 yield Problem(
-                    file, event.line, f"{what}, and it has {0.5 * wide:g} mm", "let both be the same", code="SIM163"
+                    file, event.line, Wording("SIM163", "tool_def_gives_tool", name=name, value=value, wide=0.5 * wide)
                 )
 
 
@@ -98,9 +107,12 @@ def _edges(run: Run) -> Iterator[Problem]:
     """Cutting edges (Sinumerik: D2) whose offsets nobody knows."""
     for edge in np.unique(run.edge[run.edge > 1]).tolist():
         row = int(np.flatnonzero(run.edge == edge)[0])
-        what = f"works with edge D{edge}, whose length is taken for that of the tool"
-        cure = "check that its offsets are those of the tip"
-        yield Problem(file_of_row(run, row), int(run.line[row]), what, cure, Severity.WARNING, code="SIM161")
+        yield Problem(
+            file_of_row(run, row),
+            int(run.line[row]),
+            Wording("SIM161", "works_edge_d", edge=edge),
+            severity=Severity.WARNING,
+        )
 
 
 def _lengths(runs: Sequence[Run], shapes: Mapping[str, ToolShape]) -> list[Problem]:
@@ -118,17 +130,19 @@ def _lengths(runs: Sequence[Run], shapes: Mapping[str, ToolShape]) -> list[Probl
         without = (edge == unset) & called & ~run.machine_frame[rows]
         if without.any():
             row = int(rows[np.argmax(without)])
-            what, cure = "cuts without a tool length: the spindle goes where the tip should", "select it before the cut"
-            found.append(Problem(file_of_row(run, row), int(run.line[row]), what, cure, code="SIM160"))
+            found.append(Problem(file_of_row(run, row), int(run.line[row]), Wording("SIM160", "cuts_without_tool")))
         if run.uses_length_numbers:
             for number in np.unique(edge[edge > 0]).tolist():
                 own = np.flatnonzero(edge == number)
                 others = own[tool[own] != tool[own[0]]]
                 if len(others):
                     row = int(rows[others[0]])
-                    what = f"cuts with the length of tool {run.tools[int(tool[own[0]])]}, number {number}"
                     found.append(
-                        Problem(file_of_row(run, row), int(run.line[row]), what, "select its own length", code="SIM160")
+                        Problem(
+                            file_of_row(run, row),
+                            int(run.line[row]),
+                            Wording("SIM160", "cuts_length_tool", tools=run.tools[int(tool[own[0]])], number=number),
+                        )
                     )
                 else:
                     found += _foreign_length(run, int(rows[own[0]]), number, names)
@@ -172,18 +186,27 @@ def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]
         rows = np.concatenate(compensated)
         if len(rows):
             row = int(rows.min())
-            what = "radius compensation is on: the programmed path is taken for that of the tool's centre"
-            cure = "compensation for wear is simulated as it should be; a programmed contour is not"
             found.append(
-                Problem(file_of_row(run, row), int(run.line[row]), what, cure, Severity.WARNING, code="SIM147")
+                Problem(
+                    file_of_row(run, row),
+                    int(run.line[row]),
+                    Wording("SIM147", "radius_compensation_programmed"),
+                    severity=Severity.WARNING,
+                )
             )
         found += _unjudged(run)
-        missing = "workpiece zero" if run.machine.workpiece_zero is None else "tool length of the run"
         is_placed = run.machine.workpiece_zero is not None and run.machine.tool_length is not None
         if not is_placed and bool(run.state.machine_frame.values.any()):
-            what = f"machine positions are taken as retracts along the tool axis: the {missing} is not known"
-            cure = "give the workpiece zero and the tool length"
-            found.append(Problem(run.files[0], 0, what, cure, Severity.WARNING, code="SIM145"))
+            found.append(
+                Problem(
+                    run.files[0],
+                    0,
+                    Wording("SIM145", "machine_positions_taken")
+                    if run.machine.workpiece_zero is None
+                    else Wording("SIM145", "machine_positions_taken_retracts"),
+                    severity=Severity.WARNING,
+                )
+            )
     return found
 
 
@@ -191,18 +214,25 @@ def _unjudged(run: Run) -> list[Problem]:
     """Motions with a coordinate that no block has stated: they are neither cut nor judged at an invented place."""
     tips, found = StatedTips.of(run), []
     if len(tips.lost_feeds):
-        what = f"{counted(len(tips.lost_feeds), 'block')} at feed, from here on, where nobody knows where the tool is"
-        cure = "give the workpiece zero and the tool length, or state X, Y and Z in workpiece coordinates before"
         row = int(tips.lost_feeds[0])
         found.append(
-            Problem(file_of_row(run, row), int(run.line[row]), f"{what}: they are not cut", cure, code="SIM143")
+            Problem(
+                file_of_row(run, row),
+                int(run.line[row]),
+                Wording("SIM143", "block_feed_from", count=len(tips.lost_feeds)),
+            )
         )
     if len(tips.unjudged) > len(tips.lost_feeds):
         row = int(np.setdiff1d(tips.unjudged, tips.lost_feeds)[0])
         count = len(tips.unjudged) - len(tips.lost_feeds)
-        what = f"{counted(count, 'motion')} before all coordinates of the tool are stated, from here on: not judged"
-        cure = "give the workpiece zero and the tool length"
-        found.append(Problem(file_of_row(run, row), int(run.line[row]), what, cure, Severity.WARNING, code="SIM146"))
+        found.append(
+            Problem(
+                file_of_row(run, row),
+                int(run.line[row]),
+                Wording("SIM146", "motion_before_all", count=count),
+                severity=Severity.WARNING,
+            )
+        )
     return found
 
 
@@ -221,7 +251,13 @@ def part_remarks(setup: Setup, lacking: Excess | None, slack: float, *, is_later
     if beyond > setup.tolerance + slack:
         what = f"reaches {beyond:.3f} mm beyond the stock: it cannot come out, and what is outside is not compared"
         return [
-            Problem("part", 0, what, "check the pose, and the zero of the part" if is_later else cure, code="SIM131")
+            Problem(
+                "part",
+                0,
+                Wording("SIM131", "reaches_mm_beyond", beyond=beyond)
+                if is_later
+                else Wording("SIM131", "reaches_mm_beyond_stock", beyond=beyond),
+            )
         ]
     if lacking is not None and lacking.largest > setup.limit + slack:
         x, y, z = lacking.places[0].at

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from trunnion.errors import Problem, Severity
+from trunnion.messages import Wording
 from trunnion.simulation.collisions import Body, Collision, check_collisions, fixture_body, machine_bodies, part_body
 from trunnion.simulation.cutting.shares import JoinedShares, Share
 from trunnion.simulation.meshes import TriangleMesh
@@ -86,10 +87,13 @@ class SetupSteps:
             self._part = None if self._part is None else self._part.moved(pose.matrix)
             if not pose.keeps_rays:
                 self._slack += cell
-                what = f"is turned through its surface: it may be {0.5 * cell:.4g} mm off, and what is thinner"
-                what += f" than a cell of {cell:g} mm may be lost"
                 remarks.append(
-                    Problem("stock", 0, what, "turn it by quarters to lose nothing", Severity.WARNING, code="SIM134")
+                    Problem(
+                        "stock",
+                        0,
+                        Wording("SIM134", "turned_through_surface", cell=0.5 * cell, cell_2=cell),
+                        severity=Severity.WARNING,
+                    )
                 )
         self._part = own.part or self._part
         result = self._simulated(own, self._setup(shape, self._part), self._part, remarks)
@@ -146,11 +150,18 @@ class SetupSteps:
         found = self._cut(setup, jobs)
         remarks += part_remarks(setup, found.lacking, self._slack, is_later=self._left is not None)
         if found.leaks:
-            what = f"{found.leaks} of {found.stock.lattice.ray_count} rays pass a hole in it, and were left empty"
-            remarks.append(Problem("part", 0, what, "close the mesh", Severity.WARNING, code="SIM214"))
+            remarks.append(
+                Problem(
+                    "part",
+                    0,
+                    Wording("SIM214", "rays_pass_hole", leaks=found.leaks, ray_count=found.stock.lattice.ray_count),
+                    severity=Severity.WARNING,
+                )
+            )
         if found.start_volume - found.stock.volume <= 0.0:
-            what, cure = "takes nothing from the stock", "check the place of the stock, and the tools"
-            remarks.append(Problem(runs[0].files[0], 0, what, cure, Severity.WARNING, code="SIM133"))
+            remarks.append(
+                Problem(runs[0].files[0], 0, Wording("SIM133", "takes_nothing_from"), severity=Severity.WARNING)
+            )
         self._watcher.problems(of_setup(remarks[told:], name))
         if options.stops_at_first:
             jobs = _until_stop(jobs, found)
@@ -214,9 +225,7 @@ def _bodies(
     if machine.workpiece_zero is not None and _lengths_known(job):
         bodies += machine_bodies(machine, of_machine.append)
     elif number == 0 and machine.bodies:
-        what = "the bodies of the machine are not checked: workpiece zero and tool lengths are not known"
-        cure = "give the workpiece zero, and the tool length or a tool with its holder"
-        remarks.append(Problem(job.run.files[0], 0, what, cure, Severity.WARNING, code="SIM310"))
+        remarks.append(Problem(job.run.files[0], 0, Wording("SIM310", "bodies_machine_not"), severity=Severity.WARNING))
     return bodies
 
 

@@ -14,6 +14,7 @@ from trunnion.errors import InputError, Problem
 from trunnion.impeller.blade import Blade
 from trunnion.impeller.impeller import Impeller, rotated
 from trunnion.impeller.paths.passes import PassFamily
+from trunnion.messages import Wording
 
 #: Halvings of the interval in which the largest ball is.
 _HALVINGS: Final = 40
@@ -86,11 +87,30 @@ def prove_room(around: Surroundings, family: PassFamily, allowance: float, toler
         low, high = np.where(fits, middle, low), np.where(fits, high, middle)
     largest = float(low.min()) - allowance
     x, y, z = touch[0]
-    what = (
-        f"a ball of radius {wanted:g} mm cuts {missing[worst[0]]:.3f} mm into a blade or the hub where it touches"
-        f" ({x:.2f}, {y:.2f}, {z:.2f})"
+    raise InputError(
+        Problem(
+            definition.file,
+            0,
+            Wording(
+                "IMP320",
+                "ball_radius_mm_cuts",
+                wanted=wanted,
+                missing=missing[worst[0]],
+                x=x,
+                y=y,
+                z=z,
+                largest=largest,
+            )
+            if reach < wanted
+            else Wording(
+                "IMP320",
+                "ball_radius_mm_cuts_mm",
+                wanted=wanted,
+                missing=missing[worst[0]],
+                x=x,
+                y=y,
+                z=z,
+                largest=largest,
+            ),
+        )
     )
-    cure = f"there is room for a ball of radius {largest:.2f} mm"
-    if reach < wanted:
-        cure += ", so make the fillet no larger"
-    raise InputError(Problem(definition.file, 0, what, cure, code="IMP320"))

@@ -124,19 +124,19 @@ def _hub_meridian(impeller: Impeller, feet: Floats) -> tuple[Meridian, bool]:
     if first[0] <= _ON_AXIS:
         ways["axis"] = 0.0
     if not ways:
-        raise _refused(impeller, "the hub leads neither to the axis nor out of the stock at its inlet")
+        raise _refused(impeller, Wording("IMP420", "hub_leads_neither"))
     way = min(ways, key=lambda name: ways[name])
     low = -ways[way]
     if way == "top":
         low = min(low, float(at.min()) - _MORE)
     if low >= at.min():
-        raise _refused(impeller, "the fillet reaches farther up than the hub")
+        raise _refused(impeller, Wording("IMP420", "fillet_reaches_farther"))
     reach = max(stock.diameter / 2.0, float(np.hypot(feet[:, 0], feet[:, 1]).max())) + _BEYOND
     outward = (reach - last[0]) / end[0] if end[0] > 0.0 else np.inf
     down = (stock.bottom - _BEYOND - last[2]) / end[2] if end[2] < 0.0 else np.inf
     high = 1.0 + max(min(outward, down), 0.0)
     if not np.isfinite(high):
-        raise _refused(impeller, "the hub does not lead out of the stock at its outlet")
+        raise _refused(impeller, Wording("IMP420", "hub_does_not"))
     found = Meridian.of(profile, low, max(high, float(at.max()) + _MORE))
     if way == "axis":
         found.curve.points[0, :2] = 0.0
@@ -157,15 +157,15 @@ def _check_clear(impeller: Impeller, hub: Meridian) -> None:
     inside = (places[:, 0] < stock.diameter / 2.0) & (places[:, 0] > stock.bore / 2.0)
     inside &= (places[:, 1] < stock.top) & (places[:, 1] > stock.bottom)
     if (_above(impeller.shroud, points) & inside).any():
-        raise _refused(impeller, "hub and shroud cross inside of the stock")
+        raise _refused(impeller, Wording("IMP420", "hub_shroud_cross"))
 
 
 def _above(shroud: Profile, points: Floats) -> Flags:
     return np.asarray(shroud.distances(points)[0] >= 0.0)
 
 
-def _refused(impeller: Impeller, what: str) -> InputError:
-    return InputError(Problem(impeller.definition.file, 0, Wording("IMP420", "so_no_solid", subject=what)))
+def _refused(impeller: Impeller, wording: Wording) -> InputError:
+    return InputError(Problem(impeller.definition.file, 0, wording))
 
 
 def _add_blade(body: Body, loop: RootLoop, angle: float, shroud: Meridian) -> _Foot:

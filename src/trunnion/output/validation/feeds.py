@@ -26,10 +26,15 @@ def missing_feed_problems(program: Program, motion: Motion) -> list[Problem]:
     rows = np.flatnonzero((moves.kind != Kind.RAPID) & ~(moves.feed > 0))
     if not len(rows):
         return []
-    what, cure = "cutting motion without a feed", "put FEDRAT before it"
-    if motion.cl_rows is not None:  # feed=fastest
-        cure += "; feed_limit is for cuts that do not plunge"
-    return [Problem(program.file_of(motion.operation), int(moves.line[rows[0]]), what, cure, code="CTL310")]
+    return [
+        Problem(
+            program.file_of(motion.operation),
+            int(moves.line[rows[0]]),
+            Wording("CTL310", "cutting_motion_without")
+            if motion.cl_rows is not None
+            else Wording("CTL310", "cutting_motion_without_feed"),
+        )
+    ]
 
 
 def rapid_feed_problems(program: Program, motion: Motion) -> list[Problem]:

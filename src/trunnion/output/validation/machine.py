@@ -1,6 +1,7 @@
 """What a machine's definition leaves open that a program for it would take for granted."""
 
 from trunnion.errors import Problem, Severity
+from trunnion.messages import Wording
 from trunnion.output.program import Program
 
 #: Values without a measure that one warning names.
@@ -17,17 +18,20 @@ def machine_problems(program: Program) -> list[Problem]:
     problems = []
     if machine.unmeasured:
         shown, more = machine.unmeasured[:_MOST_SHOWN], len(machine.unmeasured) - _MOST_SHOWN
-        values = ", ".join(shown) + (f" and {more} more" if more > 0 else "")
-        what = f"the definition marks values as not measured yet, and the program is proven with them: {values}"
-        problems.append(_warning(program, what, "measure them at the machine, write them there, and remove the marks"))
+        problems.append(
+            _warning(
+                program,
+                Wording("CTL720", "definition_marks_values", shown=tuple(shown), more=more)
+                if more > 0
+                else Wording("CTL720", "definition_marks_values_not", shown=tuple(shown)),
+            )
+        )
     if homeless:
-        what = f"home of {', '.join(homeless)} is not stated: 0 is assumed, and the program goes there"
-        problems.append(_warning(program, what, "write home_mm of these axes in the definition"))
+        problems.append(_warning(program, Wording("CTL720", "home_not_stated", homeless=tuple(homeless))))
     if unlimited:
-        what = f"travel of {', '.join(unlimited)} is not stated: nothing checks it"
-        problems.append(_warning(program, what, "write limits_mm of these axes in the definition"))
+        problems.append(_warning(program, Wording("CTL720", "travel_not_stated", unlimited=tuple(unlimited))))
     return problems
 
 
-def _warning(program: Program, what: str, cure: str) -> Problem:
-    return Problem(program.machine.key, 0, what, cure, Severity.WARNING, code="CTL720")
+def _warning(program: Program, wording: Wording) -> Problem:
+    return Problem(program.machine.key, 0, wording, severity=Severity.WARNING)

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from contextlib import suppress
 
 from trunnion.errors import InputError, Problem, Severity
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.toolpath import Insert, Message, Operation, Stop
 from trunnion.output.program import Program
 from trunnion.output.template_values import TemplateValues
@@ -23,10 +23,10 @@ def text_problems(program: Program) -> list[Problem]:
     return [*found.values(), *_called(program), *_inserted(program)]
 
 
-def _missing(program: Program, text: str) -> str:
+def _missing(program: Program, text: str) -> Wording | str:
     encoding = program.text_form.encoding
     letter = lacking(text, encoding)
-    return f"{encoding} has no {letter!r}" if letter else "it has characters that nobody sees"
+    return phrase("no", encoding=encoding, letter=repr(letter)) if letter else phrase("characters_nobody_sees")
 
 
 def _cure(program: Program, text: str) -> str:

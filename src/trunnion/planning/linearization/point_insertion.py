@@ -201,5 +201,6 @@ def _limit_problems(file: str, operation: Operation, machine: Machine, path: Div
         k = int(found[np.argmax(rows[found] == row)])
         column = int(np.argmax(outside[k]))
         value = float(joints[k, column])
-        what = f"on the way to this point {limit_violation_text(machine, column, value)}"
-        yield Problem(file, int(operation.moves.line[row]), what, limit_remedy(machine, column, value), code="PLN120")
+        violation, remedy = limit_violation_text(machine, column, value), limit_remedy(machine, column, value)
+        wording = Wording("PLN120", "on_the_way", violation=violation, remedy=remedy)
+        yield Problem(file, int(operation.moves.line[row]), wording)

@@ -11,6 +11,7 @@ import numpy as np
 
 from trunnion.arrays import Flags
 from trunnion.errors import Problem, Severity
+from trunnion.messages import Wording, phrase
 from trunnion.model.deviations import Deviations
 from trunnion.model.motion import Decision, DecisionTopic, PoleStrategy
 from trunnion.model.toolpath import Kind, Operation
@@ -64,7 +65,7 @@ def handle_pole(prepared: PreparedOperation, poses: PlannedPoses) -> PoleResult:
     )
 
 
-def sufficient_setting(prepared: PreparedOperation, poses: PlannedPoses, angle: float) -> str:
+def sufficient_setting(prepared: PreparedOperation, poses: PlannedPoses, angle: float) -> Wording | str:
     """What to set if a lean of ``angle`` degrees is not enough, as the cure of a message.
 
     Without the lower feeds of ``lower_feed`` where all feeds are lowered anyway; then empty if nothing else helps.
@@ -72,9 +73,8 @@ def sufficient_setting(prepared: PreparedOperation, poses: PlannedPoses, angle: 
     fastest = prepared.request.options.fastest_feed
     for more in angle * 2.0 ** np.arange(1, _TRIED):
         if all(region.is_solved for region in _lean(prepared, poses, PoleStrategy.LEAN, float(more)).regions):
-            lean = f"setting pole=lean setting pole_angle={more:.4g} would do"
-            return lean if fastest else f"{lean}, or setting lower_feed=yes"
-    return "" if fastest else "setting lower_feed=yes lowers the feed there"
+            return phrase("pole_pole_angle", more=more) if fastest else phrase("pole_pole_angle_would", more=more)
+    return "" if fastest else phrase("lower_feed_lowers")
 
 
 def _lean(prepared: PreparedOperation, poses: PlannedPoses, strategy: PoleStrategy, angle: float) -> LeanedMoves:
@@ -109,9 +109,6 @@ def _problems(prepared: PreparedOperation, poses: PlannedPoses, leaned: LeanedMo
     cure = sufficient_setting(prepared, poses, angle)
     problems = []
     for region in unsolved[:_NAMED]:
-        what = (
-            f"no lean of the tool axis by up to {angle:g} degrees keeps axis {name} within its speed"
-            f" up to line {line[region.end - 1]}"
-        )
-        problems.append(Problem(prepared.file, int(line[region.first]), what, cure, Severity.WARNING, code="PLN410"))
+        wording = Wording("PLN410", "no_lean", angle=angle, axis=name, line=line[region.end - 1], cure=cure)
+        problems.append(Problem(prepared.file, int(line[region.first]), wording, severity=Severity.WARNING))
     return problems

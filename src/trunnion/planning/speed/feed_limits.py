@@ -102,7 +102,7 @@ def _speed_decisions(prepared: PreparedOperation, poses: PlannedPoses, off_part:
             "setting pole=lean helps" if options.fastest_feed else "setting pole=lean, or setting lower_feed=yes, helps"
         )
         if options.explain and not options.lower_feed:
-            cure = sufficient_setting(prepared, poses, _LEAST_LEAN)
+            cure = str(sufficient_setting(prepared, poses, _LEAST_LEAN))
     rows = f"{worst.count} rows are" if worst.count > 1 else "1 row is"
     yield prepared.decision(
         worst.row,

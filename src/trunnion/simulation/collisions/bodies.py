@@ -86,7 +86,7 @@ def machine_bodies(machine: Machine, warn: Callable[[Problem], None] | None = No
         except InputError as error:
             file, at = body.place
             problems += [
-                Problem(file, at, f"body {body.name}: {each.file} {each.what}", each.cure, code=each.code)
+                Problem(file, at, each.wording.within("of_body", body=body.name, file=each.file))
                 for each in error.problems
             ]
             continue

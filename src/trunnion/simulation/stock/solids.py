@@ -36,7 +36,6 @@ _CELLS: Final = 200
 _LARGEST: Final = 1e5
 
 _NUMBER: Final = re.compile(r"[+-]?(\d{1,9}(\.\d{0,12})?|\.\d{1,12})", re.ASCII)
-_FORM: Final = "write box:X,Y,Z[,x0,y0,z0] or cylinder:D,H[,z0] in mm, or name a mesh file"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -107,14 +106,14 @@ def stock_shape(
         return StockShape(mesh.bounds[0], mesh.bounds[1], mesh=mesh)
     words = [word.strip() for word in sizes.split(",")]
     if not all(_NUMBER.fullmatch(word) for word in words):
-        raise _wrong(text, "is no list of numbers")
+        raise _wrong(text, Wording("SIM122", "no_list_numbers"))
     numbers = [float(word) for word in words]
     if not all(abs(number) <= _LARGEST for number in numbers):
-        raise _wrong(text, f"has a number beyond {_LARGEST:g} mm")
+        raise _wrong(text, Wording("SIM122", "number_beyond_mm", largest=_LARGEST))
     if len(numbers) not in ((3, 6) if kind == "box" else (2, 3)):
-        raise _wrong(text, f"has {len(numbers)} numbers")
+        raise _wrong(text, Wording("SIM122", "numbers", count=len(numbers)))
     if min(numbers[: 3 if kind == "box" else 2]) <= 0.0:
-        raise _wrong(text, "has a size that is not above 0")
+        raise _wrong(text, Wording("SIM122", "size_not_above"))
     if kind == "box":
         low = np.array(numbers[3:] or (0.0, 0.0, 0.0))
         return StockShape(low, low + numbers[:3])
@@ -124,8 +123,8 @@ def stock_shape(
     )
 
 
-def _wrong(text: object, what: str) -> InputError:
-    return InputError(argument_problem("stock", f"{text} {what}", _FORM, code="SIM122"))
+def _wrong(text: object, wording: Wording) -> InputError:
+    return InputError(argument_problem("stock", wording.within("of_key", key=str(text))))
 
 
 def default_cell(shape: StockShape, narrowest: float) -> float:

@@ -130,7 +130,7 @@ class MachineFeed:
         """Try until the machine is there again."""
         assert self._connection is not None
         await self._connection.close()
-        self._warn("the connection is broken; trying to connect again")
+        self._warn(Wording("TWN240", "connection_broken_trying"))
         delay, told = _FIRST_TRY, ""
         while True:
             try:
@@ -138,17 +138,17 @@ class MachineFeed:
             except InputError as error:
                 if str(error) != told:
                     told = str(error)
-                    self._warn(error.problems[0].what, error.problems[0].code)
+                    self._warn(error.problems[0].wording)
             except FAILURES:
                 pass
             else:
-                self._warn("connected again; the gap is marked")
+                self._warn(Wording("TWN240", "connected_again_gap"))
                 return
             await asyncio.sleep(delay)
             delay = min(2.0 * delay, _LAST_TRY)
 
-    def _warn(self, what: str, code: str = "TWN240") -> None:
-        self._tell(Problem(self._access.address, 0, what, severity=Severity.WARNING, code=code))
+    def _warn(self, wording: Wording) -> None:
+        self._tell(Problem(self._access.address, 0, wording, severity=Severity.WARNING))
 
 
 def _reason(error: BaseException) -> str:

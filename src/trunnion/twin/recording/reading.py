@@ -111,7 +111,7 @@ class _Reader:
                 if cell is not None and cell != "":
                     found[k] = cell if isinstance(cell, int) else parse_stamp(cell)
             except (ValueError, OverflowError):
-                self._wrong(k, name, cell, "is no time", "write it as 2026-05-04T08:30:00.020000Z")
+                self._wrong(k, name, cell, Wording("TWN321", "no_time"))
         return found
 
     def _numbers(self, name: str, cells: _Cells) -> Floats:
@@ -121,7 +121,7 @@ class _Reader:
                 if cell is not None and cell != "":
                     found[k] = _number(cell)
             except (TypeError, ValueError):
-                self._wrong(k, name, cell, "is no number", "leave it empty where it is not known")
+                self._wrong(k, name, cell, Wording("TWN321", "no_number"))
                 if len(self._problems) >= _MOST_PROBLEMS:
                     break
         return found
@@ -132,11 +132,11 @@ class _Reader:
                 try:
                     self._marks[self._rows + k] = tuple(map(Mark, str(cell).split()))
                 except ValueError:
-                    self._wrong(k, "mark", cell, "is no mark", f"known are {', '.join(Mark)}")
+                    self._wrong(k, "mark", cell, Wording("TWN321", "no_mark", mark=tuple(Mark)))
 
-    def _wrong(self, k: int, name: str, cell: object, what: str, cure: str) -> None:
+    def _wrong(self, k: int, name: str, cell: object, wording: Wording) -> None:
         self._problems.append(
-            Problem(self._file, self._rows + k + 2, f"{name} {what}: {str(cell)[:40]!r}", cure, code="TWN321")
+            Problem(self._file, self._rows + k + 2, wording.within("of_cell", name=name, cell=repr(str(cell)[:40])))
         )
 
 

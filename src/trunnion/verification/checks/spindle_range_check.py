@@ -26,7 +26,7 @@ def check_spindle_range(context: Context) -> Check:
             if speed > 0.0:
                 speeds.add(speed)
                 fault = spindle_speed_fault(run.machine, speed)
-                places += [context.place(start + k, speed, fault)] if fault and len(places) < MAX_PLACES else []
+                places += [context.place(start + k, speed, str(fault))] if fault and len(places) < MAX_PLACES else []
         last = float(rpm[-1])
     good = f"{min(speeds):g} to {max(speeds):g} rev/min" if speeds else "the spindle does not turn"
     return check_from_places(_KEY, _TITLE, places, good)
