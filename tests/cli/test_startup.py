@@ -36,6 +36,7 @@ def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> Non
         "trunnion.cli.twin_arguments",
         "trunnion.cli.verify_arguments",
         "trunnion.errors",
+        "trunnion.messages",
         "trunnion.twin",
         "trunnion.twin.limits",
         "trunnion.wording",

@@ -1,0 +1,128 @@
+"""Every text of a message stands in a catalogue, all that stand there are said, and parameters agree."""
+
+import ast
+import re
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from string import Formatter
+
+import trunnion
+from trunnion.messages import AROUND, CATALOGUES, PHRASES, catalogue
+
+SOURCE = Path(trunnion.__file__).parent
+
+#: What makes a message of a wording, or of a text with a code.
+MAKERS = {"Problem", "argument_problem", "add_problem", "error", "remark", "fatal"}
+
+#: Names of fields that are no parameters but what a user may set.
+SETTABLE = {"setting", "argument", "switch"}
+
+#: Messages that are still put together where they are said: this number only falls.
+NOT_YET = 0
+
+#: Words of a sentence.
+MOST_WORDS = 35
+
+
+@cache
+def trees() -> dict[Path, ast.Module]:
+    """Every module of the product."""
+    return {path: ast.parse(path.read_text(encoding="utf-8")) for path in sorted(SOURCE.rglob("*.py"))}
+
+
+def texts() -> Iterator[tuple[str, str, dict[str, str]]]:
+    """Code, variant and parts of every text; the code of a phrase is empty."""
+    for name in CATALOGUES.values():
+        for code, variants in catalogue("en", name).items():
+            for variant, parts in variants.items():
+                yield code, variant, parts
+    for variant, text in catalogue("en", PHRASES).items():
+        yield "", variant, {"what": text}
+
+
+def fields(template: str) -> Iterator[str]:
+    """The parameters of a template."""
+    for _, name, spec, _ in Formatter().parse(template):
+        if name is not None and name not in SETTABLE:
+            yield name
+        if spec and "{" in spec:
+            yield from fields(spec)
+
+
+def constants(node: ast.expr) -> list[str]:
+    """The texts that an expression may be; none if it is not known here."""
+    if isinstance(node, ast.IfExp):
+        return [*constants(node.body), *constants(node.orelse)]
+    return [node.value] if isinstance(node, ast.Constant) and isinstance(node.value, str) else []
+
+
+def calls() -> Iterator[tuple[str, ast.Call, ast.Module]]:
+    """Every wording and phrase that is made, and where."""
+    for path, tree in trees().items():
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("Wording", "phrase"):
+                yield f"{path.relative_to(SOURCE)}:{node.lineno}", node, tree
+
+
+def said() -> Iterator[tuple[str, str, str, set[str] | None]]:
+    """Where a text is said, its code and variant, and its parameters if the call names them all."""
+    known = {(code, variant) for code, variant, _ in texts()}
+    for place, call, tree in calls():
+        is_phrase = isinstance(call.func, ast.Name) and call.func.id == "phrase"
+        codes = [""] if is_phrase else constants(call.args[0]) if call.args else []
+        variants = constants(call.args[0 if is_phrase else 1]) if call.args and len(call.args) > 1 - is_phrase else []
+        if not variants:  # chosen before: by a text of the module
+            in_module = {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant)}
+            variants = [variant for code, variant in known if code in codes and variant in in_module]
+        named = {keyword.arg for keyword in call.keywords}
+        for code in codes:
+            for variant in variants:
+                yield place, code, variant, None if None in named else {name for name in named if name}
+
+
+def test_messages_are_wordings() -> None:
+    texts_of_their_own = [
+        f"{path.relative_to(SOURCE)}:{node.lineno}"
+        for path, tree in trees().items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call)
+        and (node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")) in MAKERS
+        and any(keyword.arg == "code" for keyword in node.keywords)
+    ]
+    assert len(texts_of_their_own) <= NOT_YET, "\n".join(texts_of_their_own)
+
+
+def test_what_is_said_is_in_a_catalogue_and_the_other_way_round() -> None:
+    known = {(code, variant) for code, variant, _ in texts()}
+    used = {(code, variant): place for place, code, variant, _ in said()}
+    assert not {pair: used[pair] for pair in used.keys() - known}
+    assert not known - used.keys()
+
+
+def test_parameters_are_those_of_the_text() -> None:
+    wanted = {(c, variant): set().union(*map(fields, parts.values())) for c, variant, parts in texts()}
+    wrong = [
+        f"{place}: {code} {variant}: {given} for {wanted[code, variant]}"
+        for place, code, variant, given in said()
+        if given is not None and given != wanted[code, variant]
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_sentences_around_are_used_and_hold_what_they_are_around() -> None:
+    source = "\n".join(path.read_text(encoding="utf-8") for path in trees())
+    for name, template in catalogue("en", AROUND).items():
+        assert f'within("{name}"' in source, name
+        assert "what" in fields(template), name
+
+
+def test_no_sentence_is_long() -> None:
+    sentences = [
+        sentence
+        for _, _, parts in texts()
+        for text in parts.values()
+        for sentence in re.split(r"[;:.] ", text)
+        if len(sentence.split()) > MOST_WORDS
+    ]
+    assert not sentences
