@@ -156,8 +156,8 @@ def folder_batch(
     for argument, names in beside.items():
         for name in names:
             if fault := beside_fault(name):
-                cure = 'write a name such as "{folder}/{stem}.cls"'
-                raise InputError(argument_problem(argument, f'"{name[:100]}" {fault}', cure, code="ARG140"))
+                wording = Wording("ARG140", "no_name_beside", name=name[:100], fault=fault)
+                raise InputError(argument_problem(argument, wording))
     report, tiles = str(given.pop("report", "")), check_tiles(action, arguments.get("tiles", 1))
     said, shared, extensions = judged(action, given, folder)
     sought = (extensions.read,) if extensions.read else CL_EXTENSIONS
@@ -167,7 +167,6 @@ def folder_batch(
     ]  # fmt: skip
     if not files:
         reasons = (left_out(folder, each, results) for each in patterns or [f"**/*{each}" for each in sought])
-        cure = "name them by a pattern of files, such as '**/*.nc'"
         raise InputError(
             Problem(
                 str(folder),

@@ -95,7 +95,7 @@ class _Tables:
         found = list(table.texts(key, ()))
         for name in found:
             if fault := beside_fault(name):
-                table.add_problem(key, f'"{name[:100]}" {fault}', 'write a name such as "{folder}/{stem}.cls"')
+                table.add_problem(key, Wording("DEF330", "no_name_beside", name=name[:100], fault=fault))
         return found
 
 
@@ -317,7 +317,7 @@ def _inputs(table: Table, names: Collection[str], path: Path, results: Path) -> 
     found = set[str]()
     for pattern in patterns:
         if fault := pattern_fault(pattern):
-            table.add_problem("files", f'"{pattern[:100]}" {fault}', "write a pattern of names beside the file of jobs")
+            table.add_problem("files", Wording("DEF330", "no_pattern", pattern=pattern[:100], fault=fault))
             continue
         matched = [name for name in names if matches(name, pattern)]
         if not matched:

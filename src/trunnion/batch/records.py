@@ -218,7 +218,7 @@ def known_of(record: Record | None) -> dict[str, tuple[str, ...]]:
 
 def _keep_away(store: Store, record: Record, what: str, known: Mapping[str, tuple[str, ...]]) -> Record:
     """Keep a record of a file whose result cannot have its place."""
-    problem = Problem(record.file, 0, what, "remove that file, or choose another folder for results", code="BAT320")
+    problem = Problem(record.file, 0, Wording("BAT320", "place_taken", reason=what))
     record = replace(record, status=Status.UNUSABLE, key="", problems=(problem,), outputs={}, replaces=known)
     store.write(record_name(record.place), record_bytes(record))
     return record

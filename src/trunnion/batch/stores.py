@@ -206,10 +206,12 @@ class FolderStore:
         return sorted(each.relative_to(self._folder).as_posix() for each in found if each.is_file())
 
     def _unusable(self, name: str, what: str, error: OSError) -> InputError:
-        cure = _SPACE if error.errno in _FULL else "choose another folder for the results"
-        return InputError(
-            Problem(str(self._folder / name), 0, f"{what}: {error.strerror or error}", cure, code="FIL230")
-        )
+        reason = str(error.strerror or error)
+        if error.errno in _FULL:
+            wording = Wording("FIL230", "store_full", what_failed=what, reason=reason)
+        else:
+            wording = Wording("FIL230", "store", what_failed=what, reason=reason)
+        return InputError(Problem(str(self._folder / name), 0, wording))
 
 
 class UrlStore:

@@ -6,6 +6,7 @@ from typing import Final
 from trunnion.builder.document import with_value
 from trunnion.definitions.messages import did_you_mean
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 from trunnion.schemas import first_line
 
 
@@ -54,8 +55,13 @@ def chain_text(chain: str, name: str, control: str) -> str:
         If there is no such chain.
     """
     if chain not in CHAINS:
-        cure = did_you_mean(chain, CHAINS) or "write one of " + ", ".join(CHAINS)
-        raise InputError(Problem("the builder", 0, f'there is no order of axes called "{chain}"', cure, code="PAG210"))
+        near = did_you_mean(chain, CHAINS)
+        wording = (
+            Wording("PAG210", "no_chain_but_near", chain=chain, near=near)
+            if near
+            else Wording("PAG210", "no_chain", chain=chain, known=tuple(CHAINS))
+        )
+        raise InputError(Problem("the builder", 0, wording))
     part, _, tool = CHAINS[chain].order.partition("|")
     carried = [(axis, "part") for axis in part.split()] + [(axis, "tool") for axis in tool.split()]
     tables = [_axis_table(axis, side, dict(CHAINS[chain].lines)) for axis, side in carried]

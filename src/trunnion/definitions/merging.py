@@ -49,14 +49,12 @@ def _merge_by_name(
         name = _name_of(item)
         item_path = f"{path}[{i}]"
         if name is None:
-            cure = "write the name of the one to change, or a new name"
             problems.append(Problem(item.file, item.line, Wording("DEF230", "name_missing", path=path, i=i)))
             continue
         remove = item.value.get("remove")
         item = item if keep_removals else _without_remove(item)
         at = next((k for k, old in enumerate(result) if _name_of(old) == name), None)
         if remove is not None and not isinstance(remove.value, bool):
-            what = f"{item_path}.remove is {as_written(remove.value)}"
             problems.append(
                 Problem(
                     remove.file,
@@ -68,13 +66,12 @@ def _merge_by_name(
             if keep_removals:
                 result = [old for old in result if _name_of(old) != name] + [item]
             elif at is None:
-                what = f'{item_path}: there is no {path} called "{name}" to remove'
-                cure = did_you_mean(name, map(str, map(_name_of, result)))
-                problems.append(Problem(remove.file, remove.line, what, cure, code="DEF230"))
+                near = did_you_mean(name, map(str, map(_name_of, result)))
+                wording = Wording("DEF230", "nothing_to_remove", item=item_path, path=path, name=name, near=near)
+                problems.append(Problem(remove.file, remove.line, wording))
             else:
                 del result[at]
         elif name in merged:
-            what = f'{item_path}.name is "{name}" a second time (first in line {merged[name].line})'
             problems.append(
                 Problem(
                     item.file,

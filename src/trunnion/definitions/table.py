@@ -195,8 +195,11 @@ class Table:
             if similar and unit_of(key) != unit_of(similar):
                 self.add_problem(key, Wording("DEF325", "unit_does_not", similar=similar, unit_of=unit_of(similar)))
             else:
-                cure = did_you_mean(key, self.read_keys) or "known here: " + ", ".join(sorted(self.read_keys))
-                self.add_problem(key, "is not a key that is known here", cure, code="DEF320")
+                near = did_you_mean(key, self.read_keys)
+                if near:
+                    self.add_problem(key, Wording("DEF320", "unknown_but_near", near=near))
+                else:
+                    self.add_problem(key, Wording("DEF320", "unknown", known=tuple(sorted(self.read_keys))))
 
     def mark_read(self, *keys: str) -> None:
         """Count keys as read without looking at them."""

@@ -9,25 +9,26 @@ from typing import BinaryIO, Final, cast
 
 from trunnion.errors import InputError, Problem
 from trunnion.files.places import OutputPlace, cannot_write
+from trunnion.messages import Wording
 
 _PIECE: Final = 1 << 20
 
 
 def check_stream(stream: object, argument: str) -> None:
     """Raise ``InputError`` for an argument that takes no bytes: a text stream, a closed one, no stream at all."""
-    name, what, cure = argument, "is no file and no stream", "give a path, or a stream that takes bytes"
-    write, code = getattr(stream, "write", None), "FIL190"
+    name, wording = argument, Wording("FIL190", "no_stream")
+    write = getattr(stream, "write", None)
     if callable(write):
         try:
             write(b"")
         except TypeError:
-            what, cure = "takes text, and a program is bytes", "give a binary stream, such as sys.stdout.buffer"
+            wording = Wording("FIL190", "takes_text")
         except (OSError, ValueError) as error:
             name, reason = stream_name(stream), getattr(error, "strerror", None) or error
-            what, code = f"cannot be written: {reason}", "FIL230"
+            wording = Wording("FIL230", "stream", reason=reason)
         else:
             return
-    raise InputError(Problem(name, 0, what, cure, code=code))
+    raise InputError(Problem(name, 0, wording))
 
 
 def stream_name(stream: object) -> str:

@@ -32,7 +32,7 @@ def point_faults(table: PointTable) -> Iterator[Problem]:
         )
         return
     if len(points) > MOST_POINTS:
-        yield Problem(file, lines[MOST_POINTS], *too_many(len(points)), code="IMP120")
+        yield Problem(file, lines[MOST_POINTS], too_many(len(points)))
         return
     steps = np.diff(points, axis=0)
     lengths = np.linalg.norm(steps, axis=1)

@@ -120,7 +120,7 @@ def parse_point_table(file: str, text: str) -> list[PointTable]:
         columns = _named(file, first_line, first)
         rows = rows[1:]
     if len(rows) > MOST_POINTS:
-        raise InputError(Problem(file, rows[MOST_POINTS][0], *too_many(len(rows)), code="IMP120"))
+        raise InputError(Problem(file, rows[MOST_POINTS][0], too_many(len(rows))))
     problems: list[Problem] = []
     tables = [_table(file, each, rows, len(first), problems) for each in columns]
     problems += _torn(file, rows, len(first))
@@ -131,9 +131,9 @@ def parse_point_table(file: str, text: str) -> list[PointTable]:
     return tables
 
 
-def too_many(count: int) -> tuple[str, str]:
-    """What is wrong with so many points, and the cure."""
-    return f"has {count} points, and {MOST_POINTS} make a curve at most", "leave points out, one of so many"
+def too_many(count: int) -> Wording:
+    """What is wrong with so many points."""
+    return Wording("IMP120", "too_many", count=count, most=MOST_POINTS)
 
 
 def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
@@ -225,7 +225,7 @@ def _table(
         values = [_number(text) for text in texts]
         bad = [text for text, value in zip(texts, values, strict=True) if value is None or not math.isfinite(value)]
         if bad:
-            problems.append(Problem(file, line, f"{bad[0]!r} is not a number", _number_cure(bad[0]), code="IMP112"))
+            problems.append(Problem(file, line, _no_number(bad[0])))
             continue
         if ended:
             problems.append(
@@ -240,12 +240,12 @@ def _table(
     return PointTable(file, columns.name, np.array(points, float).reshape(-1, 3), lines)
 
 
-def _number_cure(cell: str) -> str:
-    """What helps a cell that is no number: a comma may be meant as the decimal sign, and part columns instead."""
+def _no_number(cell: str) -> Wording:
+    """What is wrong with a cell: a comma may be meant as the decimal sign, and part columns instead."""
     parts = cell.replace(",", ".").split()
     if _number(cell) is None and parts and all(_number(part) is not None for part in parts):
-        return "write points for decimals, or part columns by semicolons"
-    return "write X, Y and Z as numbers"
+        return Wording("IMP112", "no_number_but_commas", cell=repr(cell))
+    return Wording("IMP112", "no_number", cell=repr(cell))
 
 
 def _torn(file: str, rows: Sequence[tuple[int, list[str]]], width: int) -> Iterator[Problem]:

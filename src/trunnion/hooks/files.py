@@ -68,11 +68,15 @@ def _load(path: Path) -> HookFile:
     for name, function in named.items():
         if name not in _FUNCTIONS:
             line = getattr(getattr(function, "__code__", None), "co_firstlineno", 0)
-            cure = did_you_mean(name, _FUNCTIONS) or f"hooks are {', '.join(_FUNCTIONS)}"
-            raise InputError(Problem(str(path), line, f"{name} is no hook", cure, code="HOK110"))
+            near = did_you_mean(name, _FUNCTIONS)
+            wording = (
+                Wording("HOK110", "no_hook_but_near", name=name, near=near)
+                if near
+                else Wording("HOK110", "no_hook", name=name, known=tuple(_FUNCTIONS))
+            )
+            raise InputError(Problem(str(path), line, wording))
         _check_signature(path, name, function)
     if not named:
-        cure = f"write a function {' or '.join(_FUNCTIONS)}"
         raise InputError(Problem(str(path), 0, Wording("HOK110", "file_no_hooks", functions=tuple(_FUNCTIONS))))
     return HookFile(path, {name: named[name] for name in _FUNCTIONS if name in named})
 

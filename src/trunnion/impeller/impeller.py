@@ -6,7 +6,7 @@ Units:  mm, axis Z.
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -72,9 +72,7 @@ def build_impeller(definition: ImpellerDefinition) -> Impeller:
     """
     problems = [fault for table in definition.sections for fault in point_faults(table)]
     if problems:
-        raise InputError(
-            [Problem(one.file, one.line, one.what, one.cure, Severity.ERROR, code=one.code) for one in problems]
-        )
+        raise InputError([replace(one, severity=Severity.ERROR) for one in problems])
     _raise_errors(direction_faults(definition))
     curves = tuple(
         interpolate(table.points, parameters_of(table.points, definition.parameterization))

@@ -49,10 +49,10 @@ _LINK_STEPS: Final = 4.0
 _LINK: Final = 3.0
 
 #: What helps a part of a tool that mills flanks.
-_FLANK_CURES: Final = {
-    Role.CUTTER: "take a thinner or shorter cutter, or blade finish by points",
-    Role.SHANK: "take longer flutes or a thinner neck, or blade finish by points",
-    Role.HOLDER: "take a longer tool or a thinner holder, or blade finish by points",
+_NOT_CLEAR: Final = {
+    Role.CUTTER: "flank_cutter_not_clear",
+    Role.SHANK: "flank_shank_not_clear",
+    Role.HOLDER: "flank_holder_not_clear",
 }
 
 #: A ball this far in the form of the shroud still touches it only, mm.
@@ -333,11 +333,9 @@ def _kept(step: MachiningStep, tool: LibraryTool, clearance: Sequence[PartCleara
     problems = []
     for one in missing:
         x, y, z = one.centre
-        what = (
-            f"{one.part} and {one.body} do not clear each other with the ball's centre at ({x:.2f}, {y:.2f}, {z:.2f}): "
-            f"{one.distance:.3f} mm are between them, and {least[one.part]:g} are the least"
-        )
-        problems.append(Problem(tool.name, 0, what, _FLANK_CURES[one.part], code="IMP323"))
+        at: dict[str, object] = {"x": x, "y": y, "z": z, "distance": one.distance, "least": least[one.part]}
+        wording = Wording("IMP323", _NOT_CLEAR[one.part], part=one.part, body=one.body, **at)
+        problems.append(Problem(tool.name, 0, wording))
     raise InputError(problems)
 
 

@@ -17,6 +17,7 @@ from typing import Any, Final
 
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
+from trunnion.messages import Wording
 
 _LOOPBACK_NAMES: Final = ("127.0.0.1", "localhost", "[::1]")
 
@@ -113,13 +114,13 @@ def listen(host: str, port: int) -> socket.socket:
     try:
         return socket.create_server((host, port), family=socket.AF_INET6 if ":" in host else socket.AF_INET)
     except OverflowError:
-        what, cure = f"cannot be served on port {port}", "choose a port from 1 to 65535, or none"
+        wording = Wording("PAG120", "no_port", port=port)
     except socket.gaierror:
-        what, cure = f"cannot be served on {host}: no such name is known", "choose an address of this computer"
+        wording = Wording("PAG120", "no_such_host", host=host)
     except OSError as error:
         why = _REASONS.get(error.errno or 0, str(error))
-        what, cure = f"cannot be served on {host}, port {port}: {why}", "choose another port, or none"
-    raise InputError(Problem("the page", 0, what, cure, code="PAG120"))
+        wording = Wording("PAG120", "not_served", host=host, port=port, reason=why)
+    raise InputError(Problem("the page", 0, wording))
 
 
 def serve(make: Callable[[Access], Any], listening: socket.socket, ready: Callable[[str], None]) -> None:

@@ -22,6 +22,7 @@ from trunnion.impeller.paths.least_clearances import PartClearance
 from trunnion.impeller.paths.passes import Pass
 from trunnion.impeller.paths.shroud import shroud_form
 from trunnion.impeller.steps import MachiningStep, StepKind
+from trunnion.messages import Wording
 from trunnion.simulation.tools.profile import Role, ToolShape
 
 #: Outlines of tool and stock (n, 2): radius and height. A stock's goes from the axis along its top, and down its side.
@@ -39,11 +40,6 @@ _FAR: Final = 10.0
 
 #: A part that is wider than the cutter by less is as wide as it, mm.
 _SAME: Final = 1e-6
-
-_CURES: Final = {
-    Role.SHANK: "take longer flutes or a thinner shank",
-    Role.HOLDER: "take a longer tool or a thinner holder",
-}
 
 
 def stock_clearances(
@@ -80,7 +76,7 @@ def stock_clearances(
             if role not in nearest or off[k] < nearest[role][0]:
                 nearest[role] = float(off[k]), one.centre[rows[k]], axes[rows[k]]
     problems = [
-        Problem(tool.name, 0, _into(role, off, centre - radius * axis), _CURES[role], code="IMP323")
+        Problem(tool.name, 0, _into(role, off, centre - radius * axis))
         for role, (off, centre, axis) in nearest.items()
         if off <= 0.0
     ]
@@ -125,11 +121,12 @@ def rough_before(definition: ImpellerDefinition, step: MachiningStep) -> Machini
     return next((one for one in reversed(earlier) if one.kind is StepKind.STOCK_ROUGHING), None)
 
 
-def _into(role: Role, off: float, tip: Floats) -> str:
+def _into(role: Role, off: float, tip: Floats) -> Wording:
     """What is wrong where a part comes into the stock."""
-    how = f"{-off:.2f} mm into" if off < -_SPACING else f"within {_SPACING:g} mm of"
-    at = f"with the tip at radius {np.hypot(tip[0], tip[1]):.2f}, height {tip[2]:.2f}"
-    return f"the {role} comes {how} the stock that stands before it, {at}"
+    at: dict[str, object] = {"radius": np.hypot(tip[0], tip[1]), "height": tip[2]}
+    if off < -_SPACING:
+        return Wording("IMP323", "shank_in_stock" if role is Role.SHANK else "holder_in_stock", depth=-off, **at)
+    return Wording("IMP323", "shank_at_stock" if role is Role.SHANK else "holder_at_stock", spacing=_SPACING, **at)
 
 
 def _dense(side: Floats) -> Outline:

@@ -275,14 +275,12 @@ class _Search:
             if value[k] < 0.0:
                 start = directions[[int(margins[k].argmax())]]
                 missing, other = self._missing(pieces, asked[[k]], start)
-                what = f"{role} and {other} do not clear each other {place}: {missing:.3f} mm are missing at best"
-                return Problem(name, 0, what, _CURES[role], code="IMP323")
+                wording = Wording("IMP323", _NOT_CLEAR[role], part=role, other=other, place=place, missing=missing)
+                return Problem(name, 0, wording)
             clear = margins >= 0.0
             clear[~clear.any(axis=1)] = True
         if not self._has_end:
-            what = "no smooth field of tool axes was found within the limit of iterations"
             return Problem(name, 0, Wording("IMP324", "no_smooth_field"))
-        what = f"tool axes that are clear {place} do not join with those beside it"
         return Problem(name, 0, Wording("IMP324", "tool_axes_clear", place=place))
 
     def _missing(self, pieces: ToolData, point: Ints, axis: Floats) -> tuple[float, str]:
@@ -292,10 +290,10 @@ class _Search:
         return -float(distances.min()), self._obstacles.names[number]
 
 
-_CURES: Final = {
-    Role.CUTTER: "choose a smaller ball or a conical cutter, or let the tool tilt more",
-    Role.SHANK: "choose a tool with a thinner or longer neck, or let it tilt more",
-    Role.HOLDER: "choose a longer tool or a thinner holder, or let the tool tilt more",
+_NOT_CLEAR: Final = {
+    Role.CUTTER: "cutter_not_clear",
+    Role.SHANK: "shank_not_clear",
+    Role.HOLDER: "holder_not_clear",
 }
 
 

@@ -164,7 +164,7 @@ class Connection:
         """The node of a column; None if it may be absent; a ``Problem`` if it may not."""
         found = await self._node(column.place)
         if isinstance(found, str):
-            missing = Problem(str(column.place), 0, "is not there on the server", found, code="TWN230")
+            missing = Problem(str(column.place), 0, Wording("TWN230", "not_there", found=found))
             return None if column.is_optional else missing
         return found
 

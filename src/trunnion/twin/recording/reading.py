@@ -187,16 +187,15 @@ def _csv_groups(path: Path) -> Iterator[dict[str, _Cells]]:
 
 def _check_names(path: Path, names: Sequence[str]) -> None:
     """Refuse columns that are not those of a recording."""
-    what = ""
+    wording = None
     if len({name.casefold() for name in names}) < len(names):
-        what = "has columns of the same name (capitals make no difference)"
+        wording = Wording("TWN320", "same_names")
     elif len(names) > _MOST_COLUMNS:
-        what = f"has more than {_MOST_COLUMNS} columns"
+        wording = Wording("TWN320", "too_many", most=_MOST_COLUMNS)
     elif "source" not in names:
-        what = "has no column source"
-    if what:
-        cure = "the columns of a recording are source, received, mark, X, Y, …"
-        raise InputError(Problem(str(path), 1, what, cure, code="TWN320"))
+        wording = Wording("TWN320", "no_source")
+    if wording is not None:
+        raise InputError(Problem(str(path), 1, wording))
 
 
 def _ends_with_a_line(path: Path) -> bool:
