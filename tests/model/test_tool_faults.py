@@ -49,13 +49,13 @@ def test_a_sound_tool_has_no_faults(tool: Tool) -> None:
 @pytest.mark.parametrize(("tool", "what"), IMPOSSIBLE, ids=[what for _, what in IMPOSSIBLE])
 def test_an_impossible_tool_has_one(tool: Tool, what: str) -> None:
     (fault,) = tool_faults(tool)
-    assert what in fault.what
+    assert what in fault.wording.what
     assert fault.severity is Severity.ERROR
 
 
 def test_flutes_longer_than_the_tool_are_a_warning() -> None:
     (fault,) = tool_faults(replace(DRILL, flute_length=60.0))
-    assert (fault.severity, "flutes of 60 mm" in fault.what) == (Severity.WARNING, True)
+    assert (fault.severity, "flutes of 60 mm" in fault.wording.what) == (Severity.WARNING, True)
 
 
 @pytest.mark.parametrize(

@@ -322,19 +322,12 @@ def _inputs(table: Table, names: Collection[str], path: Path, results: Path) -> 
         matched = [name for name in names if matches(name, pattern)]
         if not matched:
             why = left_out(path.parent, pattern, results)
-            if not why and matches(path.name, pattern):
-                why = f"{path.name} is the file of jobs itself"
-            table.add_problem(
-                "files",
-                (
-                    Wording("BAT120", "matches_no_file", pattern=pattern[:100], path=path.name)
-                    if not why and matches(path.name, pattern)
-                    else Wording(
-                        "BAT120", "matches_no", pattern=pattern[:100], left_out=left_out(path.parent, pattern, results)
-                    )
-                )
-                if why
-                else Wording("BAT120", "matches_no_file_or_look", pattern=pattern[:100]),
-            )
+            if why:
+                wording = Wording("BAT120", "matches_no", pattern=pattern[:100], left_out=why)
+            elif matches(path.name, pattern):
+                wording = Wording("BAT120", "matches_no_file", pattern=pattern[:100], path=path.name)
+            else:
+                wording = Wording("BAT120", "matches_no_file_or_look", pattern=pattern[:100])
+            table.add_problem("files", wording)
         found.update(matched)
     return sorted(found)

@@ -8,6 +8,7 @@ import numpy as np
 from trunnion.arrays import Codes, Flags, Floats
 from trunnion.cl.builder import CircleStatement
 from trunnion.cl.diagnostics import Diagnostics
+from trunnion.messages import Wording
 from trunnion.model.arcs import ARC_POINT_TOLERANCE, swept_angles
 from trunnion.model.toolpath import Arcs, From, Kind
 
@@ -24,13 +25,11 @@ _NORMAL_TOLERANCE = 0.01
 def complete_circles(circles: list[CircleStatement], kind: Codes, diagnostics: Diagnostics) -> list[CircleStatement]:
     """Return the circles that have an end point; ``kind`` (n,) tells which rows are rapids."""
     if circles and circles[-1].row >= len(kind):
-        cure = "write GOTO/ with the end point of the arc"
-        diagnostics.error(circles[-1].line, "CIRCLE without a GOTO after it", cure, code="CL560")
+        diagnostics.error(circles[-1].line, Wording("CL560", "circle_without_goto"))
         circles = circles[:-1]
     rapid = kind[[circle.row for circle in circles]] == Kind.RAPID
     for index in np.flatnonzero(rapid).tolist():
-        what = "RAPID before an arc; the arc is made at the feed rate"
-        diagnostics.remark(circles[index].line, what, "remove the RAPID", code="CL580")
+        diagnostics.remark(circles[index].line, Wording("CL580", "rapid_before_arc"))
     return circles
 
 
@@ -49,9 +48,7 @@ def arcs_of(
     usable = [circle for circle in circles if circle.row > 0 or circle.row in from_tips]
     for circle in circles:
         if circle.row == 0 and 0 not in from_tips:
-            diagnostics.error(
-                circle.line, "CIRCLE has no start point", "write FROM/ or GOTO/ before the first arc", code="CL510"
-            )
+            diagnostics.error(circle.line, Wording("CL510", "circle_no_start"))
     if not usable:
         return Arcs.empty()
     row = np.array([circle.row for circle in usable], np.int64)
@@ -92,20 +89,17 @@ def _check(
     off_start = np.abs(distance_from_line(start - arcs.centre, arcs.normal) - radius)
     off_end = np.abs(distance_from_line(end - arcs.centre, arcs.normal) - radius)
     for index in np.flatnonzero(~has_unit_normal).tolist():
-        what = "the normal of CIRCLE is not a unit vector"
-        diagnostics.error(circles[index].line, what, "write i, j, k with length 1", code="CL570")
+        diagnostics.error(circles[index].line, Wording("CL570", "normal_circle_not"))
     for index in np.flatnonzero(radius <= 0).tolist():
-        diagnostics.error(
-            circles[index].line, "the radius of CIRCLE is not positive", "write a radius above 0", code="CL570"
-        )
+        diagnostics.error(circles[index].line, Wording("CL570", "radius_circle_not"))
     sound = has_unit_normal & (radius > 0)
     for index in np.flatnonzero(sound & (np.maximum(off_start, off_end) > RADIUS_TOLERANCE)).tolist():
-        which, off = ("start", off_start[index]) if off_start[index] > RADIUS_TOLERANCE else ("end", off_end[index])
+        off = off_start[index] if off_start[index] > RADIUS_TOLERANCE else off_end[index]
         diagnostics.error(
             circles[index].line,
-            f"the {which} point of the arc lies {off:.3f} mm off its radius {radius[index]:.4f}",
-            "write centre, radius and points of one and the same circle",
-            code="CL570",
+            Wording("CL570", "start_point_arc", off=off, radius=radius[index])
+            if off_start[index] > RADIUS_TOLERANCE
+            else Wording("CL570", "end_point_arc", off=off, radius=radius[index]),
         )
 
 
@@ -121,10 +115,7 @@ def _check_angles(
     off = np.abs(turned - said)
     for index in np.flatnonzero((off > _OFF_ANGLE) & (off * arcs.radius > 2.0 * RADIUS_TOLERANCE)).tolist():
         by, not_by = np.degrees([turned[index], said[index]]).tolist()
-        what = f"the arc turns by {by:.3f} degrees about its normal, and not by {not_by:.3f}"
-        diagnostics.error(
-            circles[index].line, what, "write the normal about which it turns by the right-hand rule", code="CL570"
-        )
+        diagnostics.error(circles[index].line, Wording("CL570", "arc_turns_degrees", by=by, not_by=not_by))
 
 
 def report_open_ends(
@@ -144,10 +135,7 @@ def report_open_ends(
             return
         lines.append(may_go_on[row])
     if lines:
-        what = "a point of the same circle follows each arc: whether the arc goes on to it, or a line, is not told"
-        diagnostics.error(
-            lines[0], what, "output one point for each arc (ARC_ONLY), or lines in place of arcs", code="CL560"
-        )
+        diagnostics.error(lines[0], Wording("CL560", "point_same_circle"))
 
 
 def _goes_on(arcs: Arcs, k: int, points: Floats) -> bool:

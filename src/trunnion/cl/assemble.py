@@ -17,6 +17,7 @@ from trunnion.cl.diagnostics import MAX_LISTED, Diagnostics
 from trunnion.cl.phases import COLOUR_PHASES, fill_phases
 from trunnion.cl.tool_axes import fill_tool_axes
 from trunnion.errors import Severity
+from trunnion.messages import Wording
 from trunnion.model.arcs import arc_lengths
 from trunnion.model.splines import Splines
 from trunnion.model.tool_faults import tool_faults
@@ -24,7 +25,6 @@ from trunnion.model.toolpath import Arcs, CycleOff, CycleOn, Event, Frame, From,
 
 #: No machine reaches farther, mm: a coordinate beyond it is a mistake in the file.
 _MAX_COORDINATE = 1e6
-_NO_SUCH_MACHINE = f"no machine reaches farther than {_MAX_COORDINATE:g} mm: correct it, or check the unit of the file"
 
 #: Couplets of CYCLE whose numbers are lengths.
 CYCLE_LENGTHS = frozenset({"RAPTO", "FEDTO", "RTRCTO", "CLEAR", "STEP", "CSKDIA", "HOLDIA"})
@@ -133,19 +133,13 @@ def _inverse_to_per_minute(
     feed[inverse & in_hole] = np.nan
     cuts = inverse & ~in_hole & (kind != Kind.RAPID)
     for row in np.flatnonzero(cuts & ~(length > 0.0))[: MAX_LISTED + 1].tolist():
-        what = "FEDRAT/INVERS for a move whose length is not known, or that only turns the tool"
-        diagnostics.error(int(line[row]), what, "write its feed in MMPM, or FROM/ before the first point", code="CL710")
+        diagnostics.error(int(line[row]), Wording("CL710", "fedrat_invers_move"))
 
 
 def _report_unknown_colours(builder: OperationBuilder, diagnostics: Diagnostics) -> None:
     unknown = dict.fromkeys(colour for _, colour in builder.colours if colour not in COLOUR_PHASES)
     for colour in unknown:
-        diagnostics.remark(
-            builder.line,
-            f"operation {builder.name} uses colour {colour}, which names no phase; the one before it goes on",
-            "use the standard path colours of the CAM system",
-            code="CL810",
-        )
+        diagnostics.remark(builder.line, Wording("CL810", "operation_uses_colour", builder=builder.name, colour=colour))
 
 
 def _report_far_points(
@@ -155,12 +149,13 @@ def _report_far_points(
     if len(tip) and max(float(tip.max()), -float(tip.min())) > _MAX_COORDINATE:
         for row in np.flatnonzero((np.abs(tip) > _MAX_COORDINATE).any(axis=1))[: MAX_LISTED + 1].tolist():
             diagnostics.error(
-                int(line[row]), f"a coordinate of {np.abs(tip[row]).max():.10g} mm", _NO_SUCH_MACHINE, code="CL360"
+                int(line[row]),
+                Wording("CL360", "coordinate_mm", max=np.abs(tip[row]).max(), max_coordinate=_MAX_COORDINATE),
             )
     farthest = max(map(abs, builder.frame.origin)) * unit
     if farthest > _MAX_COORDINATE:
         diagnostics.error(
-            builder.line, f"an MSYS with its origin {farthest:.10g} mm away", _NO_SUCH_MACHINE, code="CL360"
+            builder.line, Wording("CL360", "msys_origin_mm", farthest=farthest, max_coordinate=_MAX_COORDINATE)
         )
 
 
@@ -175,12 +170,7 @@ def _event_in_mm(event: Event, unit: float, tool: Tool, diagnostics: Diagnostics
     if isinstance(event, SurfaceSpeed):
         diameter = tool.diameter if event.diameter is None else event.diameter * unit
         if diameter <= 0:
-            diagnostics.error(
-                event.line,
-                "the spindle speed is a surface speed, and the tool has no diameter",
-                "give the diameter in TLDATA, or the speed in RPM",
-                code="CL730",
-            )
+            diagnostics.error(event.line, Wording("CL730", "spindle_speed_surface"))
             return event
         return SpindleOn(event.row, event.line, event.speed / (math.pi * diameter), event.sense)
     return event
@@ -208,9 +198,9 @@ def _in_mm(centre: tuple[float, float] | None, unit: float) -> tuple[float, floa
 def _report_tool(builder: OperationBuilder, tool: Tool, diagnostics: Diagnostics) -> None:
     """Report sizes of a tool that cannot be, with the line that states them."""
     line, _ = builder.stated.get("tool", (builder.line, None))
-    for what, cure, severity in tool_faults(tool):
-        report = diagnostics.error if severity is Severity.ERROR else diagnostics.remark
-        report(line, what, cure, code="CL770")
+    for fault in tool_faults(tool):
+        report = diagnostics.error if fault.severity is Severity.ERROR else diagnostics.remark
+        report(line, fault.wording)
 
 
 def _frame_in_mm(frame: Frame, unit: float) -> Frame:

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from trunnion.errors import InputError, Problem, Severity
+from trunnion.messages import Wording
 
 #: More problems than this are counted, not listed.
 MAX_LISTED = 100
@@ -11,11 +12,9 @@ MAX_LISTED = 100
 class StatementError(Exception):
     """A statement that cannot be used; the interpreter of the file adds its line."""
 
-    def __init__(self, what: str, cure: str, *, code: str) -> None:
-        super().__init__(what)
-        self.what = what
-        self.cure = cure
-        self.code = code
+    def __init__(self, wording: Wording) -> None:
+        super().__init__(wording)
+        self.wording = wording
 
 
 class Diagnostics:
@@ -27,25 +26,26 @@ class Diagnostics:
         self._more = dict.fromkeys(Severity, 0)
         self._repeated: dict[tuple[str, str], int] = {}
 
-    def error(self, line: int, what: str, cure: str = "", *, code: str) -> None:
+    def error(self, line: int, wording: Wording) -> None:
         """Note a problem that makes the file unusable."""
-        self._add(Problem(self.file, line, what, cure, Severity.ERROR, code=code))
+        self._add(Problem(self.file, line, wording))
 
-    def remark(self, line: int, what: str, cure: str = "", *, code: str) -> None:
+    def remark(self, line: int, wording: Wording) -> None:
         """Note something that the user should know; what is said of many lines is listed once, with their number."""
-        times = self._repeated[what, cure] = self._repeated.get((what, cure), 0) + 1
+        said = wording.what, wording.cure
+        times = self._repeated[said] = self._repeated.get(said, 0) + 1
         if times == 1:
-            self._add(Problem(self.file, line, what, cure, Severity.WARNING, code=code))
+            self._add(Problem(self.file, line, wording, severity=Severity.WARNING))
 
-    def fatal(self, line: int, what: str, cure: str = "", *, code: str) -> InputError:
+    def fatal(self, line: int, wording: Wording) -> InputError:
         """Return this error with all earlier ones as an exception: the file cannot be read any further."""
-        self.error(line, what, cure, code=code)
+        self.error(line, wording)
         return InputError(self._listed(Severity.ERROR))
 
-    def nothing_known(self, what: str, cure: str, *, code: str) -> InputError:
+    def nothing_known(self, wording: Wording) -> InputError:
         """Return this error of the whole file as an exception, with the first of the others: they are alike."""
         first = self._listed(Severity.ERROR)[:1]
-        return InputError((Problem(self.file, 0, what, cure, Severity.ERROR, code=code), *first))
+        return InputError((Problem(self.file, 0, wording), *first))
 
     def raise_errors(self) -> None:
         """Raise the errors, if there are any.
@@ -83,5 +83,7 @@ class Diagnostics:
     def _listed(self, severity: Severity) -> tuple[Problem, ...]:
         problems = sorted(map(self._with_count, self._lists[severity]), key=lambda problem: problem.line)
         if self._more[severity]:
-            problems.append(Problem(self.file, 0, f"and {self._more[severity]} more", "", severity, code="CL180"))
+            problems.append(
+                Problem(self.file, 0, Wording("CL180", "more", more=self._more[severity]), severity=severity)
+            )
         return tuple(problems)

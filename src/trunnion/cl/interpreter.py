@@ -15,6 +15,7 @@ from trunnion.cl.statement import Statement, comments_of, parse
 from trunnion.cl.statements.operations import LENGTH_UNITS
 from trunnion.cl.swallowed import SwallowedStatements
 from trunnion.cl.word_classes import acts_on_machine, drives_tool, words_that_count
+from trunnion.messages import Wording
 from trunnion.model.clamping import Clamping
 from trunnion.model.clamping_notices import may_be_notice, read_place
 from trunnion.model.toolpath import Frame
@@ -29,18 +30,10 @@ _MOST_NOTICES = 100
 #: A file that begins with more unknown statements, and no known one, is no CL file.
 _MAX_UNKNOWN_STATEMENTS = 1000
 
-_NOT_CL = "not a CL file: no statement in it is known"
-_GIVE_CL = (
-    "give a CL file: an NX CLSF, APTSOURCE, NCL or other APT CL data; if this is an NC program, verify, diff,"
-    " convert, fit and place take it, with its machine"
-)
 
 #: What blocks of NC programs begin with.
 _BLOCK_NUMBER = re.compile(r"/?N\d")
 
-_GIVE_POINTS = (
-    "output arcs as CIRCLE/, or in APT as INDIRV and TLON,GOFWD/(CIRCLE/…),ON,(LINE/…), or points in their place"
-)
 
 #: Coordinate systems that turn and shift nothing: nine numbers, three more for the origin, or rows of four.
 _NO_SYSTEMS = (
@@ -121,7 +114,7 @@ class ClInterpreter:
                 handler(self._state, statement)
                 self._known_statements += 1
         except StatementError as error:
-            self._diagnostics.error(line, error.what, error.cure, code=error.code)
+            self._diagnostics.error(line, error.wording)
 
     def finish(self, row: int, complete: bool, lines: int) -> None:
         """Close the last operation, and report a file that is cut off or has no motion.
@@ -143,11 +136,11 @@ class ClInterpreter:
                 state.close_operation()
         elif state.in_operation:
             builder = state.builder
-            what = f"operation {builder.name} has no END-OF-PATH before the end of the file"
-            if not complete:
-                what += f", which ends in the middle of line {lines}"
             self._diagnostics.error(
-                builder.line if complete else lines, what, "the file is cut off: write it out again", code="CL130"
+                builder.line if complete else lines,
+                Wording("CL130", "operation_no_end", builder=builder.name, lines=lines)
+                if not complete
+                else Wording("CL130", "operation_no_end_path", builder=builder.name),
             )
             state.close_operation()
         elif row > state.builder.first:
@@ -155,11 +148,9 @@ class ClInterpreter:
         if self._dialect.in_sections:
             self._report_lost_systems()
         if not self._known_statements and not row:
-            raise self._diagnostics.nothing_known(_NOT_CL, _GIVE_CL, code="CL110")
+            raise self._diagnostics.nothing_known(Wording("CL110", "not_cl_file"))
         if not row and not self._diagnostics.has_errors:
-            self._diagnostics.error(
-                0, "there is no motion in the file", "write out an operation with a tool path", code="CL140"
-            )
+            self._diagnostics.error(0, Wording("CL140", "no_motion_file"))
         if state.builders and state.builder.events:
             # What follows the last operation is done after its last row.
             last = state.builders[-1]
@@ -169,8 +160,7 @@ class ClInterpreter:
         """How comments before the first point say that the part is clamped; those that are damaged are reported."""
         found = read_place(self._notices)
         for line, what in found.faults:
-            cure = "correct it, or take it away: how the part is clamped is not known"
-            self._diagnostics.remark(line, what, cure, code="PLC250")
+            self._diagnostics.remark(line, Wording("PLC250", "damaged_in_cl", fault=what))
         return found.clamping
 
     def _report_lost_systems(self) -> None:
@@ -181,17 +171,14 @@ class ClInterpreter:
             return
         for builder in builders:
             if COORDINATE_SYSTEM not in builder.stated:
-                what = f"operation {builder.name} has no MSYS, and {stating[0].name} has one off the absolute system"
-                cure = "write its MSYS; that of the absolute system is MSYS/0,0,0,1,0,0,0,1,0"
-                self._diagnostics.error(builder.line, what, cure, code="CL430")
+                self._diagnostics.error(
+                    builder.line, Wording("CL430", "operation_no_msys", builder=builder.name, stating=stating[0].name)
+                )
 
     def _report_cut_off(self, complete: bool, lines: int) -> None:
-        where = "" if complete else f", and ends in the middle of line {lines}"
         self._diagnostics.error(
             lines,
-            f"the file has no FINI behind its last motion{where}",
-            "it is cut off: write it out again; if it is known to be whole, write FINI at its end",
-            code="CL130",
+            Wording("CL130", "file_no_fini") if complete else Wording("CL130", "file_no_fini_behind", lines=lines),
         )
 
     def knows_unit(self, given: str | None) -> bool:
@@ -204,26 +191,15 @@ class ClInterpreter:
         if given is not None:
             unit, stated = LENGTH_UNITS[given.upper()], self._state.length_unit
             if stated is not None and stated[0] != unit:
-                what = f"the file states another length unit than {given.lower()}, in which it is read"
-                self._diagnostics.remark(stated[1], what, "leave the unit out if the file is right", code="CL420")
+                self._diagnostics.remark(stated[1], Wording("CL420", "file_states_another", given=given.lower()))
             return unit
         if self._state.length_unit is not None:
             return self._state.length_unit[0]
         mm, inch = self._state.first_mm_feed, self._state.first_inch_feed
         if mm and inch:
-            self._diagnostics.error(
-                max(mm, inch),
-                f"feeds in mm (line {mm}) and in inches (line {inch}), and no UNITS",
-                "write setting cl_units=mm or setting cl_units=inch (setting units=… is that of the program)",
-                code="CL410",
-            )
+            self._diagnostics.error(max(mm, inch), Wording("CL410", "feeds_mm_line", mm=mm, inch=inch))
         if inch and not mm:
-            self._diagnostics.remark(
-                inch,
-                "all feeds are in inches, so lengths are taken as inches too",
-                "if they are not, write setting cl_units=mm",
-                code="CL420",
-            )
+            self._diagnostics.remark(inch, Wording("CL420", "all_feeds_inches"))
             return MM_PER_INCH
         return 1.0
 
@@ -241,18 +217,16 @@ class ClInterpreter:
             return  # the end mark of a DOS file
         self._unknown_statements += 1
         if self._unknown_statements > _MAX_UNKNOWN_STATEMENTS and self._known_statements == 0 and self._state.row == 0:
-            raise self._diagnostics.nothing_known(_NOT_CL, _GIVE_CL, code="CL110")
+            raise self._diagnostics.nothing_known(Wording("CL110", "not_cl_file"))
         why = acts_on_machine(statement.major, self._words)
         if statement.major.startswith("->") and not why and not self._state.strict:
             what = f"$${statement.major[:40]} is a comment to all but the system that wrote it"
-            self._diagnostics.remark(
-                self._state.line, what, "nothing becomes of it: check that nothing should", code="CL220"
-            )
+            self._diagnostics.remark(self._state.line, Wording("CL220", "comment_all_but", major=statement.major[:40]))
             return
         _refuse_no_word(statement)
         if drives_tool(statement.major):
             self._state.direction = None
-            raise StatementError(f"{statement.major} is motion that cannot be read", _GIVE_POINTS, code="CL250")
+            raise StatementError(Wording("CL250", "motion_cannot_read", major=statement.major))
         if not why and self._dialect.alias is not None and _is_system(statement, 12) and not self._state.strict:
             self._dialect.alias(self._state, statement)
             return
@@ -271,19 +245,12 @@ def _refuse_no_word(statement: Statement) -> None:
     """Refuse a statement without a word: it may be a motion."""
     name = statement.major
     if _BLOCK_NUMBER.match(name):
-        raise StatementError(
-            f"{name[:20]} begins with a block number, as in an NC program", "give the CL file", code="CL110"
-        )
+        raise StatementError(Wording("CL110", "begins_block_number", name=name[:20]))
     if "=" in name:
-        what = f"{name.partition('=')[0]} is defined here: this is an APT part program and not CL data"
-        raise StatementError(what, "run it through the APT system, and give its CL data", code="CL120")
+        raise StatementError(Wording("CL120", "defined_here_apt", name=name.partition("=")[0]))
     if name.startswith("IF("):
-        what = "IF is a statement of an APT part program, and not of CL data"
-        raise StatementError(what, "run the part program through the APT system, and give its CL data", code="CL120")
+        raise StatementError(Wording("CL120", "if_statement_apt"))
     if name.isdigit() and "/" in statement.source:
-        what = f"the word is the number {name}, and numbers of words differ from system to system"
-        raise StatementError(what, "output the CL data as text with words", code="CL120")
+        raise StatementError(Wording("CL120", "word_number_numbers", name=name))
     if not name or _NUMBER.match(name):
-        raise StatementError(
-            "numbers without a word", "write GOTO/ before each point, and $ where a line goes on", code="CL160"
-        )
+        raise StatementError(Wording("CL160", "numbers_without_word"))

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from trunnion.cl.builder import FromStatement, OperationBuilder
 from trunnion.cl.diagnostics import Diagnostics
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Coolant, CutterComp, CycleOff, CycleOn, Event, GoHome, LoadTool, Message
 
 
@@ -41,11 +42,11 @@ def join_cuts(
             joined.append(builder)
         else:
             if first := next((load for load in loads if load.row == 0 and load.adjust != register), None):
-                what = f"tool {first.number} is called with another register where operation {before.name} cuts on"
-                diagnostics.error(first.line, what, "retract by RAPID and GOTO/ before it", code="CL780")
-            what = f"operation {builder.name} begins with a cut from where {before.name} ends: they are one operation"
+                diagnostics.error(
+                    first.line, Wording("CL780", "tool_called_another", number=first.number, before=before.name)
+                )
             diagnostics.remark(
-                builder.line, what, "begin it with RAPID if the tool should go home between them", code="CL790"
+                builder.line, Wording("CL790", "operation_begins_cut", builder=builder.name, before=before.name)
             )
             if builder.named:
                 before.joined.append(builder.name)
@@ -70,8 +71,7 @@ def join_first_tool(builders: Iterable[OperationBuilder], diagnostics: Diagnosti
     first = next((event for event in behind.events if isinstance(event, LoadTool) and event.row == 0), None)
     if first is None or any(event.row == 0 and event.line < first.line for event in behind.events):
         return found
-    what = f"the way before the first tool is done with tool {first.number}, at rapid"
-    diagnostics.remark(way.line, what, "check that it only leads to the point where the tool is changed", code="CL790")
+    diagnostics.remark(way.line, Wording("CL790", "way_before_first", number=first.number))
     way.rapids = list(range(way.stop - way.first))
     _append(way, behind)
     way.events.append(first)
@@ -95,9 +95,8 @@ def _report_lost_coolant(builder: OperationBuilder, before: list[OperationBuilde
     coolants = [event for each in before for event in each.events if isinstance(event, Coolant)]
     own = any(isinstance(event, Coolant) and event.kind != "OFF" for event in builder.events)
     if coolants and coolants[-1].kind != "OFF" and not own:
-        what = f"operation {builder.name} has no COOLNT: that of the one before ends with it, and its cuts are dry"
         diagnostics.remark(
-            builder.line, what, f"write COOLNT/{coolants[-1].kind} in each operation that needs it", code="CL750"
+            builder.line, Wording("CL750", "operation_no_coolnt", builder=builder.name, kind=coolants[-1].kind)
         )
 
 
@@ -131,12 +130,18 @@ def _side_lost(
     changes = any(_has_other_tool(each, builder, loads, number) for each in before)
     if not _cuts_before_side(builder):
         return None if changes else side
-    what = f"operation {builder.name} cuts without CUTCOM, and that of line {side.line} ({side.side}) is still on"
-    cure = f"write CUTCOM/OFF before the operation before ends, or CUTCOM/{side.side} before the first cut of this one"
     if changes:
-        diagnostics.remark(builder.line, f"{what}: with another tool it ends", cure, code="CL760")
+        diagnostics.remark(
+            builder.line,
+            Wording("CL760", "operation_cuts_without", builder=builder.name, side_line=side.line, side=side.side),
+        )
     else:
-        diagnostics.error(builder.line, what, cure, code="CL760")
+        diagnostics.error(
+            builder.line,
+            Wording(
+                "CL760", "operation_cuts_without_cutcom", builder=builder.name, side_line=side.line, side=side.side
+            ),
+        )
     return None
 
 

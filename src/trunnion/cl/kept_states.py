@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from trunnion.cl.builder import OperationBuilder
 from trunnion.cl.diagnostics import Diagnostics
+from trunnion.messages import Wording
 from trunnion.model.toolpath import CycleOff, CycleOn, LoadTool
 
 
@@ -14,8 +15,10 @@ def report_kept_states(builders: Sequence[OperationBuilder], diagnostics: Diagno
         _refuse_kept_cycle(builder, tool, diagnostics)
         loads = [event for event in builder.events if isinstance(event, LoadTool)]
         if loads and tool not in (0, loads[0].number) and _keeps_feed(builder, loads[0]):
-            what = f"operation {builder.name} loads tool {loads[0].number}, and cuts with the feed of tool {tool}"
-            diagnostics.remark(loads[0].line, what, "put FEDRAT behind the tool", code="CL720")
+            diagnostics.remark(
+                loads[0].line,
+                Wording("CL720", "operation_loads_tool", builder=builder.name, number=loads[0].number, tool=tool),
+            )
         tool = loads[-1].number if loads else tool
 
 
@@ -30,8 +33,9 @@ def _refuse_kept_cycle(builder: OperationBuilder, tool: int, diagnostics: Diagno
             following = (e.row for e in builder.events[at:] if isinstance(e, CycleOn | CycleOff))
             rows = range(event.row, next(following, builder.stop - builder.first))
             if cycle and tool not in (0, event.number) and not rapids.issuperset(rows):
-                what = f"the cycle of line {cycle.line} is still on where tool {event.number} is loaded"
-                diagnostics.error(event.line, what, "write CYCLE/OFF behind its last hole", code="CL840")
+                diagnostics.error(
+                    event.line, Wording("CL840", "cycle_line_still", cycle_line=cycle.line, number=event.number)
+                )
             tool = event.number
 
 

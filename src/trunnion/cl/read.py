@@ -24,6 +24,7 @@ from trunnion.cl.sources import ClSource, cl_sources, not_one_file
 from trunnion.cl.splines import with_spline_points
 from trunnion.cl.unknown import unknown_statement_remarks
 from trunnion.encoding import EncodingDetector
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Toolpath
 
 #: Bytes read at a time, with what is made of them no more than the processor keeps near.
@@ -36,8 +37,6 @@ _MAX_SPANS = 1 << 15
 #: No statement that makes a row is shorter.
 _MIN_ROW_BYTES = len("GOTO/\n")
 _BOM = b"\xef\xbb\xbf"
-
-_PLAIN_TEXT = "save the file as plain text (ASCII, UTF-8, GBK or Latin-1)"
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,9 +138,9 @@ def read_source(
     """Read one CL file, ``chunk`` bytes at a time; the result does not depend on ``chunk``."""
     diagnostics = Diagnostics(source.name)
     if units is not None and units.lower() not in ("mm", "inch"):
-        raise diagnostics.fatal(0, f"units are {units!r}", "units are mm or inch", code="ARG140")
+        raise diagnostics.fatal(0, Wording("ARG140", "units", units=repr(units)))
     if dialect is not None and dialect not in DIALECTS:
-        raise diagnostics.fatal(0, f"dialect is {dialect!r}", f"dialects are {', '.join(DIALECTS)}", code="ARG140")
+        raise diagnostics.fatal(0, Wording("ARG140", "dialect", dialect=repr(dialect), dialects=tuple(DIALECTS)))
     try:
         survey = _survey(source, diagnostics)
         if dialect is None:
@@ -155,8 +154,9 @@ def read_source(
             file.read(survey.bom_bytes)
             scanner.read(file, chunk, survey.bom_bytes, progress)
     except OSError as error:
-        what = f"cannot be read: {error.strerror or error}"
-        raise diagnostics.fatal(0, what, "give the name of a file that you may read", code="FIL120") from error
+        raise diagnostics.fatal(
+            0, Wording("FIL120", "cannot_read_or_give", strerror=error.strerror or error)
+        ) from error
     interpreter.finish(scanner.rows, survey.complete, scanner.line - 1)
     unit = interpreter.unit(units)
     if unit != 1.0:
@@ -178,7 +178,7 @@ def read_source(
         system=tuple(number * (unit if k % 4 == 3 else 1.0) for k, number in enumerate(interpreter.system)),
     )  # fmt: skip
     for problem in unknown_statement_remarks(toolpath):
-        diagnostics.remark(problem.line, problem.what, problem.cure, code=problem.code)
+        diagnostics.remark(problem.line, problem.wording)
     return replace(toolpath, remarks=(*source.remarks, *diagnostics.remarks))
 
 
@@ -197,25 +197,21 @@ def _surveyed(file: BinaryIO, source: ClSource, diagnostics: Diagnostics) -> Sur
     while piece := file.read(_SURVEY_CHUNK):
         if size == 0:
             if piece.startswith((b"\xff\xfe", b"\xfe\xff")):
-                raise diagnostics.fatal(1, "unknown encoding: this is UTF-16", _PLAIN_TEXT, code="CL150")
+                raise diagnostics.fatal(1, Wording("CL150", "unknown_encoding_utf"))
             bom_bytes = len(_BOM) if piece.startswith(_BOM) else 0
             per_byte = (piece.count(b"\n") + 1) / len(piece)
             head = piece[bom_bytes:_HEAD]
         if (nul := piece.find(0)) >= 0:
             line = _line_at(source, size + nul)
-            raise diagnostics.fatal(
-                line, "unknown encoding: there is a NUL byte in the line", _PLAIN_TEXT, code="CL150"
-            )
+            raise diagnostics.fatal(line, Wording("CL150", "unknown_encoding_nul"))
         detector.add(piece)
         size += len(piece)
         complete = piece.endswith(b"\n")
         lines = lines or b"\n" in piece
         if not lines and b"\r" in piece.rstrip():
-            raise diagnostics.fatal(
-                1, "the lines end with a lone carriage return", "save the file with LF or CRLF line ends", code="CL150"
-            )
+            raise diagnostics.fatal(1, Wording("CL150", "lines_end_lone"))
     if size == bom_bytes:
-        raise diagnostics.fatal(0, "the file is empty", "write the tool path out of the CAM system again", code="CL140")
+        raise diagnostics.fatal(0, Wording("CL140", "file_empty"))
     rows = min(1.02 * per_byte * size, size / _MIN_ROW_BYTES)
     return Survey(bom_bytes, int(rows) + 16, detector.encoding(), complete, head)
 
@@ -295,12 +291,10 @@ class _Scanner:
             if mark & TOO_LONG:
                 raise self._too_long(line)
             if mark & UNFINISHED:
-                cure = "write the rest of the statement"
-                self._diagnostics.error(line, "the file ends after a continuation sign $", cure, code="CL130")
+                self._diagnostics.error(line, Wording("CL130", "file_ends_after"))
             self._interpreter.interpret(bytes(data[begin : begin + length]), line, row, mark)
 
     def _too_long(self, line: int) -> Exception:
-        what = f"a statement longer than {MAX_STATEMENT_BYTES} bytes"
         return self._diagnostics.fatal(
-            line, what, "no CL statement is that long: check whether line ends are missing", code="CL160"
+            line, Wording("CL160", "statement_longer_bytes", max_statement_bytes=MAX_STATEMENT_BYTES)
         )

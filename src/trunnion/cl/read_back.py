@@ -17,6 +17,7 @@ from trunnion.cl.read import read_cl
 from trunnion.cl.writers import WRITERS
 from trunnion.cl.writers.checks import rows_with_own_feed
 from trunnion.errors import InputError, Problem
+from trunnion.messages import Wording
 from trunnion.model.toolpath import (
     CutterComp,
     CycleOff,
@@ -40,8 +41,6 @@ _SAME_FEED: Final = 1e-6
 #: Numbers of events, which some dialects write with fewer decimals.
 _SAME_NUMBER: Final = 1e-5
 
-_CURE: Final = "write another dialect, and report this file: what was written would not be what was read"
-
 
 def read_back_problems(expected: Toolpath, path: Path, dialect: str) -> list[Problem]:
     """What reads back otherwise.
@@ -59,19 +58,26 @@ def read_back_problems(expected: Toolpath, path: Path, dialect: str) -> list[Pro
     try:
         found = read_cl(path)
     except InputError as error:
-        what = f"as {title} it could not be read: line {error.problems[0].line} of the result: {error.problems[0].what}"
-        return [Problem(expected.file, 0, what, _CURE, code="CL920")]
-    if found.dialect != dialect:
-        return [Problem(expected.file, 0, f"as {title} it would be taken for {found.recognized}", _CURE, code="CL920")]
-    if expected.dialect == dialect and not _same_system(expected.system, found.system):
         return [
             Problem(
-                expected.file, 0, f"as {title} it would read back in another coordinate system", _CURE, code="CL920"
+                expected.file,
+                0,
+                Wording(
+                    "CL920",
+                    "could_not_read",
+                    title=title,
+                    problems_line=error.problems[0].line,
+                    problems_what=error.problems[0].what,
+                ),
             )
         ]
+    if found.dialect != dialect:
+        return [Problem(expected.file, 0, Wording("CL920", "would_taken", title=title, recognized=found.recognized))]
+    if expected.dialect == dialect and not _same_system(expected.system, found.system):
+        return [Problem(expected.file, 0, Wording("CL920", "would_read_back_another", title=title))]
     names = {name for each in (expected, found) for operation in each.operations for name in operation.joined}
     return [
-        Problem(expected.file, line, f"as {title} it would read back with another {what}", _CURE, code="CL920")
+        Problem(expected.file, line, Wording("CL920", "would_read_back", title=title, subject=what))
         for line, what in _differences(_Rows.of(expected, names), _Rows.of(found, names))
     ]
 

@@ -23,6 +23,7 @@ from typing import BinaryIO, Final, cast
 from trunnion.cl.dialects import recognize_dialect
 from trunnion.encoding import EncodingDetector
 from trunnion.errors import InputError, Problem, Severity, unusable_file
+from trunnion.messages import Wording
 from trunnion.wording import one_line
 
 #: A text that is longer than this may be no more than so many times as long as its archive. CL files are some 3 to 25
@@ -63,7 +64,6 @@ _HEAD: Final = 1 << 16
 #: A statement that only CL files have.
 _MOTION: Final = re.compile(rb"^[ \t]*(?:GOTO|GODLTA|TLON)[ \t]*[/,]", re.MULTILINE | re.IGNORECASE)
 
-_CUT_OFF = "it is damaged or cut off: fetch or write it again"
 
 #: The flag of a name in UTF-8 in a ZIP archive.
 _NAMES_IN_UTF8: Final = 1 << 11
@@ -133,9 +133,8 @@ def cl_sources(file: Path | BinaryIO, name: str = "stdin") -> list[ClSource]:
             with open_packed() as packed:
                 head, size = packed.read(1024), packed.seek(0, io.SEEK_END)
         except OSError as error:
-            what = f"cannot be read: {error.strerror or error}"
             raise InputError(
-                Problem(name, 0, what, "give the name of a file that you may read", code="FIL120")
+                Problem(name, 0, Wording("FIL120", "cannot_read_or_give", strerror=error.strerror or error))
             ) from error
     else:
         spool = _spooled(file, name)
@@ -164,10 +163,7 @@ def _unpacked(name: str, packed: BinaryIO, unpack: Callable[[BinaryIO], BinaryIO
 
 def not_one_file(first: str, count: int) -> InputError:
     """The error for an archive of several CL files where one is meant; ``first`` is its first file."""
-    what = f"is one of {count} CL files in an archive, and a toolpath is one"
-    return InputError(
-        Problem(first, 0, what, "give the archive to post, verify or describe_cl, or unpack it", code="FIL180")
-    )
+    return InputError(Problem(first, 0, Wording("FIL180", "one_cl_files", count=count)))
 
 
 def _unpacker(head: bytes) -> Callable[[BinaryIO], BinaryIO] | None:
@@ -188,7 +184,21 @@ def _refuse_archive(name: str, head: bytes, nested: str) -> None:
         kind = nested
     if kind:
         raise InputError(
-            Problem(name, 0, f"is {kind}, which is not read", "unpack it, or give a plain ZIP archive", code="FIL150")
+            Problem(
+                name,
+                0,
+                Wording("FIL150", "not_read", nested=nested)
+                if nested and (head.startswith(_ZIP) or _unpacker(head))
+                else (
+                    Wording("FIL150", "tar_archive_not")
+                    if head[_TAR] == b"ustar"
+                    else Wording(
+                        "FIL150",
+                        "not_read_or_unpack",
+                        others=next((kind for begin, kind in _OTHERS.items() if head.startswith(begin)), ""),
+                    )
+                ),
+            )
         )
 
 
@@ -198,7 +208,7 @@ def _zip_sources(name: str, open_packed: Callable[[], BinaryIO], size: int) -> l
         with open_packed() as packed, zipfile.ZipFile(packed) as archive:
             infos = [info for info in archive.infolist() if not info.is_dir()]
     except _DAMAGE as error:
-        raise InputError(Problem(name, 0, f"cannot be unpacked: {error}", _CUT_OFF, code="FIL140")) from error
+        raise InputError(Problem(name, 0, Wording("FIL140", "cannot_unpacked", error=error))) from error
     _check_infos(name, infos, size)
     sources, left_out = [], []
     for info in sorted(infos, key=lambda info: _by_numbers(_member_name(info))):
@@ -206,12 +216,14 @@ def _zip_sources(name: str, open_packed: Callable[[], BinaryIO], size: int) -> l
         opened = _member_opener(inside, open_packed, info.filename, size)
         why = _why_no_cl_file(inside, info, opened)
         if why:
-            left_out.append(Problem(inside, 0, why, "nothing becomes of it", Severity.WARNING, code="FIL170"))
+            wording = Wording("FIL170", "left_out", reason=why)
+            left_out.append(Problem(inside, 0, wording, severity=Severity.WARNING))
         else:
             sources.append(ClSource(inside, opened))
     if not sources:
-        what = "has no CL file in it" if infos else "is empty"
-        raise InputError([Problem(name, 0, what, "put the CL files into the archive", code="FIL180"), *left_out])
+        raise InputError(
+            [Problem(name, 0, Wording("FIL180", "no_cl_file") if infos else Wording("FIL180", "empty")), *left_out]
+        )
     first = sources[0]
     return [ClSource(first.name, first.open, remarks=tuple(left_out)), *sources[1:]]
 
@@ -220,33 +232,27 @@ def _check_infos(name: str, infos: Iterable[zipfile.ZipInfo], size: int) -> None
     """Refuse an archive by its list of files."""
     files = list(infos)
     if len(files) > MAX_FILES:
-        raise InputError(
-            Problem(
-                name, 0, f"has {len(files)} files, more than {MAX_FILES}", "post them in several jobs", code="FIL160"
-            )
-        )
+        raise InputError(Problem(name, 0, Wording("FIL160", "files_more", count=len(files), max_files=MAX_FILES)))
     names = [_member_name(info) for info in files]
     if twice := next((each for each in names if names.count(each) > 1), ""):
-        raise InputError(Problem(name, 0, f"has two files named {twice}", "rename one of them", code="FIL180"))
+        raise InputError(Problem(name, 0, Wording("FIL180", "two_files_named", twice=twice)))
     for info in files:
         if info.flag_bits & 1:
-            what, cure = f"{_member_name(info)} in it has a password", "pack it without a password"
-            raise InputError(Problem(name, 0, what, cure, code="FIL150"))
+            raise InputError(Problem(name, 0, Wording("FIL150", "password", member_name=_member_name(info))))
         if info.compress_type not in _METHODS:
-            what = f"{_member_name(info)} in it is packed in a way that is not read"
-            raise InputError(Problem(name, 0, what, "pack it as other ZIP archives (deflate)", code="FIL150"))
+            raise InputError(Problem(name, 0, Wording("FIL150", "packed_way_not", member_name=_member_name(info))))
     _check_size(name, sum(info.file_size for info in files), size)
 
 
 def _check_size(name: str, unpacked: int, packed: int) -> None:
     """Refuse what is out of all proportion."""
     if unpacked > MAX_BYTES:
-        what = f"is longer than {MAX_BYTES >> 30} GB when it is unpacked"
+        wording = Wording("FIL160", "too_long", gigabytes=MAX_BYTES >> 30)
     elif unpacked > _FREE_BYTES and unpacked > MAX_RATIO * packed:
-        what = f"becomes more than {MAX_RATIO} times as long when it is unpacked, which no CL file does"
+        wording = Wording("FIL160", "out_of_proportion", ratio=MAX_RATIO)
     else:
         return
-    raise InputError(Problem(name, 0, what, "give the CL file itself", code="FIL160"))
+    raise InputError(Problem(name, 0, wording))
 
 
 def _member_name(info: zipfile.ZipInfo) -> str:
@@ -273,7 +279,7 @@ def _member_opener(inside: str, open_packed: Callable[[], BinaryIO], member: str
             text = zipfile.ZipFile(packed).open(member)  # noqa: SIM115 - closed with what reads it
         except _DAMAGE as error:
             packed.close()
-            raise InputError(Problem(inside, 0, f"cannot be unpacked: {error}", _CUT_OFF, code="FIL140")) from error
+            raise InputError(Problem(inside, 0, Wording("FIL140", "cannot_unpacked", error=error))) from error
         return cast("BinaryIO", _Unpacked(cast("BinaryIO", text), inside, size, packed))
 
     return opened
@@ -304,7 +310,7 @@ def _spooled(stream: BinaryIO, name: str) -> BinaryIO:
     try:
         while piece := stream.read(_PIECE):
             if not isinstance(piece, bytes):
-                raise InputError(Problem(name, 0, "is a stream of text", "give a binary stream", code="FIL190"))
+                raise InputError(Problem(name, 0, Wording("FIL190", "stream_text")))
             done += len(piece)
             _check_size(name, done, done)
             if done > _IN_MEMORY and isinstance(spool, io.BytesIO):
@@ -312,7 +318,9 @@ def _spooled(stream: BinaryIO, name: str) -> BinaryIO:
                 spool.write(memory.getbuffer())
             spool.write(piece)
     except OSError as error:
-        raise InputError(Problem(name, 0, f"cannot be read: {error.strerror or error}", "", code="FIL120")) from error
+        raise InputError(
+            Problem(name, 0, Wording("FIL120", "cannot_read_2", strerror=error.strerror or error))
+        ) from error
     return spool
 
 
@@ -395,7 +403,7 @@ class _Unpacked(io.RawIOBase):
                 count += len(piece)
                 _check_size(self._name, self._done + count, self._packed_bytes)
         except _DAMAGE as error:
-            raise InputError(Problem(self._name, 0, f"cannot be unpacked: {error}", _CUT_OFF, code="FIL140")) from error
+            raise InputError(Problem(self._name, 0, Wording("FIL140", "cannot_unpacked", error=error))) from error
         self._done += count
         return count
 

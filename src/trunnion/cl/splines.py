@@ -16,8 +16,8 @@ import numpy as np
 from trunnion.arrays import Floats, Ints
 from trunnion.cl.builder import MoveColumns, OperationBuilder, SplineStatement
 from trunnion.cl.diagnostics import Diagnostics
+from trunnion.messages import Wording
 from trunnion.model.splines import Spline, SplineRows
-from trunnion.wording import counted
 
 #: Where a file states no tolerance, mm; and the largest that is taken from INTOL and OUTTOL, and the smallest.
 _TOLERANCE: Final = 0.001
@@ -73,13 +73,14 @@ def with_spline_points(
                 blocks.append(block)
                 poles, total, line = poles + spline.points, total + len(block.points), line or spline.line
             if total > _MAX_POINTS:
-                what = f"splines that take more than {_MAX_POINTS} points within {within:g} mm"
-                raise diagnostics.fatal(spline.line, what, "give a coarser tolerance, or several files", code="CL600")
+                raise diagnostics.fatal(
+                    spline.line, Wording("CL600", "splines_take_more", max_points=_MAX_POINTS, within=within)
+                )
     if not blocks or diagnostics.has_errors:
         return columns
-    what = f"{counted(len(blocks), 'spline')} (NURBS) with {counted(poles, 'control point')}"
-    what += f": {counted(total, 'point')} within {finest:g} mm stand for them"
-    diagnostics.remark(line, what, "setting spline_tolerance=MM makes more of them, or fewer", code="CL610")
+    diagnostics.remark(
+        line, Wording("CL610", "spline_nurbs_control", count=len(blocks), poles=poles, total=total, finest=finest)
+    )
     return _insert(builders, columns, rows, blocks)
 
 
@@ -112,7 +113,7 @@ def _block_of(
     """A spline with its points; None if it has none, which is reported."""
     fault = _fault(builder, spline)
     first = builder.first + spline.row
-    if not fault:
+    if fault is None:
         starts = [start.tip for start in builder.starts if start.row == spline.row]
         start = np.array(starts[-1]) * unit if starts else columns.tip[first - 1]
         poles = np.vstack((start, columns.tip[first : first + spline.points]))
@@ -120,28 +121,27 @@ def _block_of(
         counts = _counts(poles, knots, tolerance)
         if float(counts.sum()) <= _MAX_POINTS_OF_ONE:
             return _Block(builder, first, poles, knots, evaluate(poles, knots, counts.astype(np.int64)))
-        fault = f"a spline that takes more than {_MAX_POINTS_OF_ONE} points within {tolerance:g} mm"
-    diagnostics.error(spline.line, fault, _CURE, code="CL600")
+        fault = Wording("CL600", "too_many_points", most=_MAX_POINTS_OF_ONE, tolerance=tolerance)
+    diagnostics.error(spline.line, fault)
     return None
 
 
-def _fault(builder: OperationBuilder, spline: SplineStatement) -> str:
-    """Why a spline cannot be evaluated; empty if it can."""
+def _fault(builder: OperationBuilder, spline: SplineStatement) -> Wording | None:
+    """Why a spline cannot be evaluated; None if it can."""
     knots = spline.knots
     if not knots or not spline.points:
-        return "NURBS without knots or without control points"
+        return Wording("CL600", "no_knots")
     if not all(low < high for low, high in pairwise([0.0, *knots])):
-        return "the knots of a NURBS do not increase from 0"
+        return Wording("CL600", "knots_not_increasing")
     if abs(knots[-1] - 1.0) > _AT_END:
-        return f"the last knot of a NURBS is {knots[-1]:g}, not 1"
+        return Wording("CL600", "last_knot", knot=knots[-1])
     degree = spline.points - len(knots) + 1
     if degree != _DEGREE:
-        counts = f"{counted(len(knots), 'knot')} and {counted(spline.points, 'control point')}"
-        return f"NURBS with {counts}: its degree would be {degree}, and only cubic ones are known"
+        return Wording("CL600", "other_degree", knots=len(knots), points=spline.points, degree=degree)
     within = range(spline.row + 1, spline.row + spline.points)
     if any(row in within for row in _rows_of(builder)):
-        return "another statement stands between the control points of a NURBS"
-    return ""
+        return Wording("CL600", "statement_within")
+    return None
 
 
 def _rows_of(builder: OperationBuilder) -> list[int]:

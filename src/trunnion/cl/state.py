@@ -7,6 +7,7 @@ from trunnion.cl.builder import AxisStatement, MoveColumns, NoAxis, OperationBui
 from trunnion.cl.diagnostics import Diagnostics, StatementError
 from trunnion.cl.dialect import Dialect
 from trunnion.cl.statement import Statement
+from trunnion.messages import Wording
 from trunnion.model.toolpath import CycleOn, Event, LoadTool, SpindleOn, UnknownStatement
 
 MM_PER_INCH = 25.4
@@ -43,8 +44,7 @@ class ArcDirection(NamedTuple):
 
     def report_lost_arc(self, diagnostics: Diagnostics) -> None:
         """Report that the motion behind it, if any, is no arc."""
-        what = "INDIRV without its arc: the next motion is no GOFWD"
-        diagnostics.error(self.line, what, "look for a line that is missing, or remove the INDIRV", code="CL560")
+        diagnostics.error(self.line, Wording("CL560", "indirv_without_arc"))
 
 
 @dataclass(slots=True, eq=False)
@@ -153,8 +153,7 @@ class ReaderState:
         if self.dialect.in_sections or self.row == before.first:
             return
         if self.cycle_line:
-            what = f"the cycle of line {self.cycle_line} is still on where another operation begins"
-            self.diagnostics.error(self.line, what, "write CYCLE/OFF behind its last hole", code="CL840")
+            self.diagnostics.error(self.line, Wording("CL840", "cycle_line_still_where", cycle_line=self.cycle_line))
             self.cycle_line = 0
         at = self.operation_row
         self.builder = OperationBuilder(
@@ -185,8 +184,7 @@ class ReaderState:
         """
         line, before = self.builder.stated.setdefault(what, (self.line, value))
         if before != value:
-            cure = "write the one that is meant, or begin another operation with the other one"
-            raise StatementError(f"another {what} than in line {line}: an operation has one", cure, code="CL320")
+            raise StatementError(Wording("CL320", "another_line_operation", subject=what, line=line))
 
     def load_tool(self, number: int, adjust: int) -> None:
         """Load a tool, at the beginning of an operation; a tool that is loaded already is not loaded again."""
@@ -208,8 +206,7 @@ class ReaderState:
         """Report an operation that states the number of its tool and cuts with another one."""
         line, number = builder.stated.get(TOOL_NUMBER, (0, 0))
         if line and self.tool is not None and self.tool.number != number and not self.dialect.in_sections:
-            what = f"tool {number} is stated and not loaded: tool {self.tool.number} is in the spindle"
-            self.diagnostics.error(line, what, "write LOADTL/ with the number of the tool that is meant", code="CL780")
+            self.diagnostics.error(line, Wording("CL780", "tool_stated_not", number=number, number_2=self.tool.number))
 
     def _leave_out_tools(self, number: int) -> None:
         """Leave out tool changes before this one that belong to no operation, or to one without motion."""
@@ -217,8 +214,9 @@ class ReaderState:
         for event in [event for event in events if isinstance(event, LoadTool)]:
             events.remove(event)
             if event.number != number:
-                what = f"tool {event.number} is loaded and does nothing before tool {number}: it is left out"
-                self.diagnostics.remark(event.line, what, "leave out the tool change in the CAM system", code="CL780")
+                self.diagnostics.remark(
+                    event.line, Wording("CL780", "tool_loaded_does", number=event.number, number_2=number)
+                )
 
     def set_axis(self, axis: tuple[float, float, float] | None, no_axis: NoAxis) -> None:
         """Set the tool axis of the rows that follow, and that of points that give none."""
@@ -232,11 +230,7 @@ class ReaderState:
         points of two others cannot be put together.
         """
         if self.system and any(abs(a - b) > _SAME_SYSTEM for a, b in zip(self.system, numbers, strict=True)):
-            raise StatementError(
-                "the coordinate system of the points changes within the file",
-                "output one file for each coordinate system, and post them one at a time",
-                code="CL430",
-            )
+            raise StatementError(Wording("CL430", "coordinate_system_points"))
         self.system = numbers
 
     def note_feed_unit(self, word: str) -> None:
@@ -253,7 +247,7 @@ class ReaderState:
         """
         events = self.builder.events
         if self.strict:
-            self.diagnostics.error(self.line, what, "remove the statement, or read without strict=True", code="CL210")
+            self.diagnostics.error(self.line, Wording("CL210", "unknown_in_strict", unknown=what))
         found = UnknownStatement(self.operation_row, self.line, statement.source, words, what, acts)
         for k in range(len(events) - 1, -1, -1):
             before = events[k]
@@ -274,9 +268,4 @@ class ReaderState:
 
     def report_motion_outside(self) -> None:
         """Report rows that belong to no operation."""
-        self.diagnostics.error(
-            int(self.columns.line[self.builder.first]),
-            "motion outside any operation",
-            "write TOOL PATH/name,TOOL,tool before it and END-OF-PATH behind it",
-            code="CL350",
-        )
+        self.diagnostics.error(int(self.columns.line[self.builder.first]), Wording("CL350", "motion_outside_any"))

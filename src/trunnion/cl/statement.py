@@ -6,7 +6,7 @@ from math import isfinite
 from typing import NamedTuple
 
 from trunnion.cl.diagnostics import StatementError
-from trunnion.wording import counted
+from trunnion.messages import Wording
 
 _TEXT_STATEMENT = re.compile(
     rb"(?:(TOOL[ \t]*PATH|PPRINT|INSERT|DISPLA?Y|PARTNO|TPRINT|REMARK)|(STOP|OPSTOP)(?=[ \t]*(?:/|\Z)))[ \t]*(/?)(.*)",
@@ -67,8 +67,9 @@ class Statement(NamedTuple):
         for choice in map(frozenset, choices):
             both = [word for word in given if word in choice]
             if len(both) > 1:
-                what = f"{self.major} has {both[0]} and {both[1]}, which contradict each other"
-                raise StatementError(what, "write the one that is meant", code="CL320")
+                raise StatementError(
+                    Wording("CL320", "contradict_each_other", major=self.major, both=both[0], both_2=both[1])
+                )
 
 
 def numbers(major: str, values: tuple[str | float, ...], *counts: int) -> tuple[float, ...]:
@@ -81,15 +82,13 @@ def numbers(major: str, values: tuple[str | float, ...], *counts: int) -> tuple[
     """
     for value in values:
         if isinstance(value, str):
-            what = f"{major} has {value or 'nothing'!r} where a number belongs"
-            raise StatementError(what, "write a decimal number", code="CL310")
+            raise StatementError(Wording("CL310", "where_number_belongs", major=major, value=repr(value or "nothing")))
         if value > _MAX_NUMBER or value < -_MAX_NUMBER:
-            cure = "write finite numbers of a size that a machine can have"
-            raise StatementError(f"{major} has the number {value}", cure, code="CL360")
+            raise StatementError(Wording("CL360", "number", major=major, value=value))
     if counts and len(values) not in counts:
-        expected = " or ".join(map(str, counts))
-        what = f"{major} has {counted(len(values), 'number')}, expected {expected}"
-        raise StatementError(what, "look for a missing or an extra comma", code="CL310")
+        raise StatementError(
+            Wording("CL310", "number_expected", major=major, count=len(values), counts=tuple(map(str, counts)))
+        )
     return values  # type: ignore[return-value]
 
 
@@ -103,7 +102,7 @@ def whole_number(major: str, values: tuple[str | float, ...]) -> int:
     """
     (number,) = numbers(major, values, 1)
     if not is_whole(number, 0) or number > _MAX_WHOLE_NUMBER:
-        raise StatementError(f"{major} has {number:g} where a whole number belongs", "write 0, 1, 2 ...", code="CL310")
+        raise StatementError(Wording("CL310", "where_whole_number", major=major, number=number))
     return int(number)
 
 
@@ -122,11 +121,7 @@ def parse(raw: bytes, encoding: str) -> Statement:
     """
     raw = raw.rstrip(b" \t\r\n\x1a")
     if control := _CONTROL_CHARACTER.search(raw):
-        raise StatementError(
-            f"unknown encoding: byte 0x{control.group()[0]:02x} in a statement",
-            "save the file as plain text (ASCII, UTF-8, GBK or Latin-1)",
-            code="CL150",
-        )
+        raise StatementError(Wording("CL150", "unknown_encoding_byte", group=control.group()[0]))
     if raw[:1] and raw[0] in _TEXT_FIRST_BYTES and (text := _TEXT_STATEMENT.match(raw)):
         return _text_statement(text, raw, encoding)
     source = raw.decode(encoding, "replace")
@@ -134,14 +129,11 @@ def parse(raw: bytes, encoding: str) -> Statement:
         source = _without_comment(source)
     plain = joined_lines(source) if "$" in source else source
     if "\r" in plain:
-        raise StatementError(
-            "a carriage return without a line feed", "save the file with LF or CRLF line ends", code="CL150"
-        )
+        raise StatementError(Wording("CL150", "carriage_return_without"))
     major, slash, rest = plain.partition("/")
     name = "".join(major.split()).upper()
     if "$" in name or "$" in rest:
-        cure = "a dollar sign continues a line only at its end"
-        raise StatementError(f"{name} has a dollar sign within the line", cure, code="CL160")
+        raise StatementError(Wording("CL160", "dollar_sign_within", name=name))
     return Statement(name, _values(rest) if slash else (), "", source)
 
 
@@ -163,9 +155,7 @@ def _without_comment(source: str) -> str:
 
 def _text_statement(match: re.Match[bytes], raw: bytes, encoding: str) -> Statement:
     if b"\r" in raw:
-        raise StatementError(
-            "a carriage return without a line feed", "save the file with LF or CRLF line ends", code="CL150"
-        )
+        raise StatementError(Wording("CL150", "carriage_return_without"))
     major = "".join((match[1] or match[2]).decode("ascii").split()).upper()
     text = match[4].decode(encoding, "replace")
     # Only INSERT goes into the program letter by letter.

@@ -21,6 +21,7 @@ from trunnion.arrays import Bytes, Floats, Floats2, Ints, Lines
 from trunnion.decimal_bytes import EXACT_DIGITS, POWERS_OF_TEN, parse_decimal
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.jit import ONE, inner, kernel, unsigned
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Moves, Operation, Tool, Toolpath
 
 #: Bytes read at a time.
@@ -53,8 +54,9 @@ def with_normals(toolpath: Toolpath) -> Toolpath:
         with _text_of(toolpath) as source:
             contact = contact_points(source, line) * toolpath.unit
     except OSError as error:
-        what = f"cannot be read: {error.strerror or error}"
-        raise InputError(Problem(toolpath.file, 0, what, "leave the file where it is", code="FIL120")) from error
+        raise InputError(
+            Problem(toolpath.file, 0, Wording("FIL120", "cannot_read_or_leave", strerror=error.strerror or error))
+        ) from error
     operations, remarks = [], list(toolpath.remarks)
     begin = 0
     for operation in toolpath.operations:
@@ -86,8 +88,12 @@ def _why_no_normals(tool: Tool, contact: Floats) -> str:
 
 
 def _remark(file: str, operation: Operation, why: str) -> Problem:
-    cure = "output contact points (Centerline and Contact Point), with a ball or toroidal mill"
-    return Problem(file, operation.line, f"operation {operation.name} {why}", cure, Severity.WARNING, code="CL940")
+    return Problem(
+        file,
+        operation.line,
+        Wording("CL940", "operation", operation=operation.name, why=why),
+        severity=Severity.WARNING,
+    )
 
 
 def normals(moves: Moves, contact: Floats, tool: Tool) -> Floats:

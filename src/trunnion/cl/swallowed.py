@@ -12,8 +12,7 @@ from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.dialect import Dialect
 from trunnion.cl.statement import Statement, joined_lines
 from trunnion.cl.word_classes import ACTING_WORDS, words_that_count
-
-_LOST_END: Final = "begin a new line before it: look for a lost line end, or for a $ too many"
+from trunnion.messages import Wording
 
 #: Statements that may stand without a slash.
 _BARE_WORDS: Final = ("END-OF-PATH", "OPSTOP", "GOHOME", "RETRCT", "MULTAX", "RAPID", "AUTOPS", "FINI")
@@ -57,9 +56,7 @@ class SwallowedStatements:
         """
         for comment in comments:
             if self._has_commands and comment.lstrip().startswith("->"):
-                raise StatementError(
-                    f"{statement.major[:40]} has $$-> behind it, which begins a line", _LOST_END, code="CL160"
-                )
+                raise StatementError(Wording("CL160", "behind_begins_line", major=statement.major[:40]))
             self.refuse_in_comment(comment)
         if not statement.text:
             found = self._in_values(statement)
@@ -67,24 +64,17 @@ class SwallowedStatements:
             point = None if statement.major == "REMARK" else _POINT.search(statement.text)
             found = point[1] if point else self._in_words(statement.text)
         if found:
-            what = f"{statement.major[:40]} has {found} within it, a statement without a line of its own"
-            raise StatementError(what, _LOST_END, code="CL160")
+            raise StatementError(Wording("CL160", "within_statement_without", major=statement.major[:40], found=found))
 
     def refuse_in_comment(self, comment: str) -> None:
         """Refuse a comment in which a statement stands without a line of its own."""
         comment = comment.rstrip(" \t\r\n\x1a")
         if control := _CONTROL.search(comment):
             if control[0] == "\r":
-                raise StatementError(
-                    "a carriage return without a line feed", "save the file with LF or CRLF line ends", code="CL150"
-                )
-            what = f"unknown encoding: byte 0x{ord(control[0]):02x} in a comment"
-            raise StatementError(
-                what, "save the file as plain text, with a line end in its place if one belongs there", code="CL150"
-            )
+                raise StatementError(Wording("CL150", "carriage_return_without"))
+            raise StatementError(Wording("CL150", "unknown_encoding_byte_0x", ord=ord(control[0])))
         if found := self._in_words(comment):
-            what = f"a $$ comment has {found} within it, a statement without a line of its own"
-            raise StatementError(what, _LOST_END, code="CL160")
+            raise StatementError(Wording("CL160", "comment_within_statement", found=found))
 
     def _in_words(self, text: str) -> str:
         """The statement that is glued to a text or a comment; empty if there is none."""

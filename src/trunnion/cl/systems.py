@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import Final
 
 from trunnion.errors import Problem
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Frame, Toolpath
 
 #: Numbers of a coordinate system are printed with five decimals or more.
@@ -24,13 +25,8 @@ def other_system(toolpaths: Sequence[Toolpath]) -> Problem | None:
     for toolpath in toolpaths[1:]:
         pair = zip(toolpath.system or _IDENTITY, toolpaths[0].system or _IDENTITY, strict=True)
         if any(abs(a - b) > _SAME for a, b in pair):
-            what = f"its points are in another coordinate system than those of {toolpaths[0].file}"
             return Problem(
-                toolpath.file,
-                0,
-                what,
-                "output all files in one coordinate system, or post them one at a time",
-                code="CL430",
+                toolpath.file, 0, Wording("CL430", "points_another_coordinate", toolpaths_file=toolpaths[0].file)
             )
     return None
 
@@ -42,6 +38,4 @@ def _unstated_system(toolpaths: Sequence[Toolpath]) -> Problem | None:
     if off is None or len(stating) == len(toolpaths):
         return None
     other = next(toolpath for toolpath in toolpaths if not toolpath.states_system)
-    what = f"it does not state where its points are, and {off.file} has an MSYS off the absolute system"
-    cure = "write its MSYS, that of the absolute system is MSYS/0,0,0,1,0,0,0,1,0; or post the files one at a time"
-    return Problem(other.file, 0, what, cure, code="CL430")
+    return Problem(other.file, 0, Wording("CL430", "does_not_state", off_file=off.file))

@@ -10,14 +10,13 @@ from trunnion.arrays import Floats
 from trunnion.cl.builder import AxisStatement, FromStatement, MoveColumns, NoAxis, OperationBuilder
 from trunnion.cl.diagnostics import MAX_LISTED, Diagnostics
 from trunnion.cl.scan import fill_modal_axes
+from trunnion.messages import Wording
 from trunnion.model.toolpath import From
 
 #: A tool axis no farther off (0, 0, 1) than this is taken for it.
 _UPRIGHT = 1e-6
 
 _Z = np.array([0.0, 0.0, 1.0])
-_GIVE_AXIS = "write the tool axis in the GOTO, or TLAXIS/ before it"
-_GIVE_MULTAX = "write MULTAX before points with tool axes; output tips, with the compensation of the radius off"
 
 
 def fill_tool_axes(
@@ -54,9 +53,7 @@ def fill_tool_axes(
         _check_upright(columns, builder, diagnostics)
     for row, line, word in builder.upright:
         if row < builder.stop and not _is_upright(columns.axis[row]):
-            diagnostics.error(
-                line, f"{word} with a tilted tool axis cannot be read", "write GOTO/ with the point", code="CL550"
-            )
+            diagnostics.error(line, Wording("CL550", "tilted_tool_axis", word=word))
     return events
 
 
@@ -69,8 +66,7 @@ def _check_vectors(
     axis = columns.axis[begin:stop]
     others = np.flatnonzero(np.abs(axis - modal_axis).max(axis=1, initial=0.0) > _UPRIGHT)
     for row in others[:1].tolist():
-        what = "three more numbers behind a point without MULTAX: a tool axis, or a vector of compensation"
-        diagnostics.error(int(columns.line[begin + row]), what, _GIVE_MULTAX, code="CL530")
+        diagnostics.error(int(columns.line[begin + row]), Wording("CL530", "three_more_numbers"))
 
 
 def _fill(
@@ -89,11 +85,9 @@ def _fill(
         return
     for row in bare[: MAX_LISTED + 1].tolist():
         if no_axis is NoAxis.NEVER:
-            what = "a point without a tool axis, in a coordinate system whose Z is tilted"
-            diagnostics.error(int(columns.line[row]), what, _GIVE_AXIS, code="CL530")
+            diagnostics.error(int(columns.line[row]), Wording("CL530", "point_without_tool"))
         elif not _is_upright(axis[row]):
-            what = "a point without a tool axis after MULTAX/OFF, and the point before has a tilted one"
-            diagnostics.error(int(columns.line[row]), what, _GIVE_AXIS, code="CL530")
+            diagnostics.error(int(columns.line[row]), Wording("CL530", "point_without_tool_axis"))
             return
 
 
@@ -101,8 +95,9 @@ def _check_upright(columns: MoveColumns, builder: OperationBuilder, diagnostics:
     """Refuse a tilted tool axis where the file does not give the coordinates of such points."""
     tilted = np.flatnonzero(np.abs(columns.axis[builder.first : builder.stop] - _Z).max(axis=1, initial=0.0) > _UPRIGHT)
     for row in tilted[:1].tolist():
-        what = "a tilted tool axis, at a point in the coordinates of a plane that the file does not give"
-        diagnostics.error(int(columns.line[builder.first + row]), what, builder.tilted, code="CL550")
+        diagnostics.error(
+            int(columns.line[builder.first + row]), Wording("CL550", "plane_not_given", cure=builder.tilted)
+        )
 
 
 def _is_upright(axis: Floats) -> bool:
@@ -118,5 +113,9 @@ def _set_axis(given: tuple[float, float, float], line: int, modal_axis: Floats, 
 
 def _report_bad_axis(vector: Floats, line: int, diagnostics: Diagnostics) -> None:
     length = float(np.sqrt(np.sum(vector * vector)))
-    what = "the tool-axis vector is zero" if length == 0 else f"the tool-axis vector has the length {length:.6g}, not 1"
-    diagnostics.error(line, what, "write i, j, k as a unit vector from the tip to the holder", code="CL540")
+    diagnostics.error(
+        line,
+        Wording("CL540", "tool_axis_vector")
+        if length == 0
+        else Wording("CL540", "tool_axis_vector_length", length=length),
+    )

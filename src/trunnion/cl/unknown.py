@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.statement import parse
 from trunnion.errors import Problem, Severity, merge_repeated
+from trunnion.messages import Wording
 from trunnion.model.toolpath import ShopStatement, Toolpath, UnknownStatement
 
 _CURE = "a program is refused unless the control's definition says what becomes of it ([control.statements])"
@@ -43,9 +44,11 @@ def unknown_statements(toolpath: Toolpath) -> list[list[UnknownStatement]]:
 def unknown_statement_remarks(toolpath: Toolpath) -> tuple[Problem, ...]:
     """What is not known in a toolpath, as warnings: one for all statements alike."""
     return merge_repeated(
-        Problem(toolpath.file, event.line, event.what, _CURE, Severity.WARNING, code="CL210")
+        Problem(toolpath.file, event.line, Wording("CL210", "unknown", unknown=event.what), severity=Severity.WARNING)
         if event.acts
-        else Problem(toolpath.file, event.line, event.what, _NO_EFFECT, Severity.WARNING, code="CL220")
+        else Problem(
+            toolpath.file, event.line, Wording("CL220", "unknown", unknown=event.what), severity=Severity.WARNING
+        )
         for event in _unknown_events(toolpath)
     )
 
@@ -53,7 +56,7 @@ def unknown_statement_remarks(toolpath: Toolpath) -> tuple[Problem, ...]:
 def unknown_statement_errors(toolpath: Toolpath, cure: str) -> tuple[Problem, ...]:
     """Why no program is made of a toolpath: statements that are not known and may change the machine."""
     return merge_repeated(
-        Problem(toolpath.file, event.line, event.what, cure, code="CL210")
+        Problem(toolpath.file, event.line, Wording("CL210", "unknown_refused", unknown=event.what, cure=cure))
         for event in _unknown_events(toolpath)
         if event.acts
     )

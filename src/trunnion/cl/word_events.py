@@ -8,9 +8,8 @@ from trunnion.cl.dialects.clsf import CLSF
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import parse
 from trunnion.cl.unknown import statement_words
+from trunnion.messages import Wording
 from trunnion.model.toolpath import CycleOff, CycleOn, Event, UnknownStatement
-
-_CURE = "write a statement that switches something or carries text, such as COOLNT/AIR, or nothing"
 
 #: Events that say what later rows mean, so that they cannot stand for a word alone.
 _ABOUT_ROWS = (CycleOn, CycleOff, SurfaceSpeed, UnknownStatement)
@@ -31,11 +30,11 @@ def events_of(text: str) -> tuple[Event, ...]:
     statement = parse(text.encode(), "utf-8")
     handler = CLSF.handlers.get(statement.major)
     if handler is None:
-        raise StatementError(f"{text} is not a statement that is known", _CURE, code="DEF550")
+        raise StatementError(Wording("DEF550", "not_statement_known", text=text))
     handler(state, statement)
     events = state.builder.events
     if diagnostics.has_errors or not events or any(isinstance(event, _ABOUT_ROWS) for event in events):
-        raise StatementError(f"{text} is not an event by itself", _CURE, code="DEF550")
+        raise StatementError(Wording("DEF550", "not_event_itself", text=text))
     return tuple(events)
 
 

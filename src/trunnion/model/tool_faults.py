@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from typing import Final, NamedTuple
 
 from trunnion.errors import Severity
+from trunnion.messages import Wording
 from trunnion.model.toolpath import Tool
 
 #: The greatest length of a tool or a part of it, mm: a larger one is in another unit, or a slip.
@@ -34,10 +35,9 @@ _ANGLE_ROUNDING: Final = 0.01
 
 
 class ToolFault(NamedTuple):
-    """What is wrong with a tool, its cure, and whether it can be lived with."""
+    """What is wrong with a tool, and whether it can be lived with."""
 
-    what: str
-    cure: str
+    wording: Wording
     severity: Severity = Severity.ERROR
 
 
@@ -51,10 +51,9 @@ def _sizes(tool: Tool) -> Iterator[ToolFault]:
     for size in _SIZES:
         value, name = float(getattr(tool, size)), size.replace("_", " ")
         if value < 0.0:
-            yield ToolFault(f"the tool has a negative {name}: {value:g}", f"write the {name} of the tool, 0 or more")
+            yield ToolFault(Wording("CL770", "tool_negative", name=name, value=value))
         elif value > GREATEST and size not in _RADII:
-            cure = f"write one up to {GREATEST:g} mm, or check the unit of the file"
-            yield ToolFault(f"the tool has a {name} of {value:.10g} mm", cure)
+            yield ToolFault(Wording("CL770", "tool_mm", name=name, value=value, greatest=GREATEST))
 
 
 def _corners(tool: Tool) -> Iterator[ToolFault]:
@@ -62,32 +61,29 @@ def _corners(tool: Tool) -> Iterator[ToolFault]:
     d, r = tool.diameter, tool.corner_radius
     e, f = tool.corner_centre or (-1.0, r)
     if d and e >= 0.0 and r - f > _ROUNDING * d:
-        what = (
-            f"the corner of the tool would reach below its tip: its radius is {r:g}, and its centre {f:g} above the tip"
-        )
-        yield ToolFault(what, "write the seven numbers of CUTTER in their order")
+        yield ToolFault(Wording("CL770", "corner_tool_would", r=r, f=f))
     if d and tool.kind != "BARREL" and tool.corner_centre is None and r > 0.5 * d + _ROUNDING * d:
-        what = f"the tool has a corner radius of {r:g}, more than half its diameter {d:g}"
-        yield ToolFault(what, "write the radius of the corner, and half the diameter for a ball")
+        yield ToolFault(Wording("CL770", "tool_corner_radius", r=r, d=d))
 
 
 def _angles(tool: Tool) -> Iterator[ToolFault]:
     """Angles between which there is no cutter."""
     taper, tip = tool.taper_angle, tool.tip_angle
     if abs(taper) >= _RIGHT_ANGLE:
-        yield ToolFault(f"the side of the tool is {taper:g} degrees off its axis", "write an angle below 90")
+        yield ToolFault(Wording("CL770", "side_tool_degrees", taper=taper))
     if tool.kind == "DRILL":
         if not 0.0 <= tip <= 2.0 * _RIGHT_ANGLE:
-            yield ToolFault(f"the point of the drill has {tip:g} degrees", "write the whole angle, from 0 to 180")
+            yield ToolFault(Wording("CL770", "point_drill_degrees", tip=tip))
     elif not 0.0 <= tip < _RIGHT_ANGLE:
-        yield ToolFault(f"the bottom of the tool is {tip:g} degrees off the horizontal", "write an angle from 0 to 90")
+        yield ToolFault(Wording("CL770", "bottom_tool_degrees", tip=tip))
     elif abs(taper) < _RIGHT_ANGLE < taper + tip - _ANGLE_ROUNDING:
-        what = f"bottom and side of the tool never meet: {tip:g} degrees from the horizontal, {taper:g} from the axis"
-        yield ToolFault(what, "write angles that are 90 together at most")
+        yield ToolFault(Wording("CL770", "bottom_side_tool", tip=tip, taper=taper))
 
 
 def _lengths(tool: Tool) -> Iterator[ToolFault]:
     """Lengths that contradict each other."""
     if tool.length and tool.flute_length > tool.length:
-        what = f"the tool has flutes of {tool.flute_length:g} mm, more than its length {tool.length:g}"
-        yield ToolFault(what, "check both in the CAM system", Severity.WARNING)
+        yield ToolFault(
+            Wording("CL770", "tool_flutes_mm", flute_length=tool.flute_length, length=tool.length),
+            severity=Severity.WARNING,
+        )

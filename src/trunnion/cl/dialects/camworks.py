@@ -12,11 +12,11 @@ from trunnion.cl.dialects.solidworks import SOLIDWORKS, pecking_cycle
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, numbers
 from trunnion.cl.statements import events, motion, operations
+from trunnion.messages import Wording
 
 _AXES: Final = ("AAXIS", "BAXIS", "CAXIS")
 #: Angles, radians, and unit vectors are printed with six decimals.
 _ALIKE: Final = 2e-5
-_ONE_SETUP: Final = "output one file for each setup"
 
 _NUMBER: Final = r"\s*([-+.0-9]+)\s*"
 #: Depth, first and other pecks, feed, clearance, and twice the height of the rapid before; blanks stand for commas.
@@ -34,9 +34,7 @@ def _begin(state: ReaderState, statement: Statement) -> None:
 def _end(state: ReaderState, statement: Statement) -> None:
     """Refuse an operation whose setup is not known: its points may belong to another one."""
     if len(state.turned) < len(_AXES):
-        raise StatementError(
-            "OPFEATEND of an operation without ROTABL for three axes", "output the file again", code="CL430"
-        )
+        raise StatementError(Wording("CL430", "opfeatend_operation_without"))
 
 
 def _tlaxis(state: ReaderState, statement: Statement) -> None:
@@ -49,17 +47,12 @@ def _rotabl(state: ReaderState, statement: Statement) -> None:
     """Turn the setup in the model by radians: three axes at the beginning of an operation, and back at its end."""
     values = statement.values
     if len(values) != 4 or values[1] not in _AXES or values[2:] != ("TABLE", "CCLW"):
-        what = f"ROTABL/{statement.listed()} is not known"
-        raise StatementError(
-            what, "write ROTABL/radians,AAXIS,TABLE,CCLW, with BAXIS and CAXIS behind it", code="CL430"
-        )
+        raise StatementError(Wording("CL430", "rotabl_not_known", listed=statement.listed()))
     angles = numbers("ROTABL", values[:1], 1)
     if len(state.turned) == len(_AXES):
         return  # the setup is turned back
     if values[1] != _AXES[len(state.turned)]:
-        raise StatementError(
-            "ROTABL turns other axes than A, B and C, in this order", "output the file again", code="CL430"
-        )
+        raise StatementError(Wording("CL430", "rotabl_turns_other"))
     state.turned += angles
     if len(state.turned) == len(_AXES):
         state.set_system(_setup(state.turned, state.setup_axis))
@@ -73,9 +66,7 @@ def _setup(angles: tuple[float, ...], axis: tuple[float, ...]) -> tuple[float, .
     """
     turning = [k for k, angle in enumerate(angles) if abs(angle) > _ALIKE]
     if len(turning) > 1:
-        raise StatementError(
-            "ROTABL turns the setup about several axes, whose order is not settled", _ONE_SETUP, code="CL430"
-        )
+        raise StatementError(Wording("CL430", "rotabl_turns_setup"))
     about = turning[0] if turning else 0
     c, s = (round(part, 6) + 0.0 for part in (math.cos(angles[about]), math.sin(angles[about])))
     one, two = (about + 1) % 3, (about + 2) % 3
@@ -84,9 +75,7 @@ def _setup(angles: tuple[float, ...], axis: tuple[float, ...]) -> tuple[float, .
     rows[one][two], rows[two][one] = -s, s
     z = tuple(row[2] for row in rows)
     if not axis or math.dist(z, axis) > _ALIKE:
-        raise StatementError(
-            "ROTABL does not turn Z into the tool axis of TLAXIS", "output the file again", code="CL440"
-        )
+        raise StatementError(Wording("CL440", "rotabl_does_not"))
     return (*rows[0], 0.0, *rows[1], 0.0, *rows[2], 0.0)
 
 
@@ -94,9 +83,7 @@ def _circle(state: ReaderState, statement: Statement) -> None:
     """An arc by centre, axis and radius; a word gives its sense."""
     given, sense = statement.values[:-1], statement.values[-1:]
     if sense not in (("CLOCKWISE",), ("COUNTERCLOCKWISE",)):
-        raise StatementError(
-            f"CIRCLE/{statement.listed()} is not known", "write CLOCKWISE or COUNTERCLOCKWISE", code="CL330"
-        )
+        raise StatementError(Wording("CL330", "circle_not_known", listed=statement.listed()))
     x, y, z, i, j, k, r = numbers("CIRCLE", given, 7)
     turn = -1.0 if sense == ("CLOCKWISE",) else 1.0
     motion.begin_circle(state, (x, y, z, turn * i, turn * j, turn * k, r), 1)
@@ -109,19 +96,13 @@ def _cycle(state: ReaderState, statement: Statement) -> None:
     if statement.values != ("OFF",):
         found = _CYCLE.fullmatch(" ".join(statement.source.split()).upper())
         if not found:
-            raise StatementError(
-                f"CYCLE/{statement.listed()} is not known", "output the points of the holes", code="CL820"
-            )
+            raise StatementError(Wording("CL820", "cycle_not_known", listed=statement.listed()))
         try:
             depth, first, others, feed, clearance, height, again, dwell = map(float, found.groups())
         except ValueError:
-            raise StatementError(
-                "CYCLE has no number where one belongs", "output the file again", code="CL820"
-            ) from None
+            raise StatementError(Wording("CL820", "cycle_no_number")) from None
         if height != again:
-            raise StatementError(
-                "CYCLE has two heights for the retract", "output the points of the holes", code="CL320"
-            )
+            raise StatementError(Wording("CL320", "cycle_two_heights"))
         statement = statement._replace(
             values=(
                 "DEEP2", "FEDTO", depth, "1STPECK", first, "SUBPECK", others, "MMPM", feed, "RAPTO", clearance,

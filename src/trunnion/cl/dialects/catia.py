@@ -13,6 +13,7 @@ from trunnion.cl.dialects.apt import APT_HANDLERS, CYCLES
 from trunnion.cl.state import TOOL_NUMBER, ReaderState
 from trunnion.cl.statement import Statement, whole_number
 from trunnion.cl.statements import apt_motion, apt_refused, events, motion
+from trunnion.messages import Wording
 from trunnion.model.frames import frame_from_vectors, relative_frame
 from trunnion.model.toolpath import Frame
 
@@ -27,9 +28,6 @@ _FARTHEST: Final = 1e7
 #: The statement ends where ``$$`` begins a comment.
 _AXIS_AS_COMMENT: Final = "SYN/'TLAXIS','"
 _NUMBER: Final = re.compile(r"[-+.]?\d")
-_TIP: Final = "output tips and tool axes, with the compensation of the radius off or in the plane"
-_WITH_MATRIX: Final = "let the table of words (PPTable) write NC_MACHINING_AXIS with its twelve numbers"
-_MILLING: Final = "output the milling operations alone"
 
 
 def _comment(state: ReaderState, text: str) -> None:
@@ -42,8 +40,7 @@ def _comment(state: ReaderState, text: str) -> None:
     elif matrix := _MATRIX.fullmatch(text):
         _end_matrix(state)
         if matrix[1] != "0":
-            what = f"$${text}: only $$*CATIA0 is known to announce a machining axis system"
-            raise StatementError(what, "output the file with NC_MACHINING_AXIS as $$*CATIA0", code="CL430")
+            raise StatementError(Wording("CL430", "only_catia0_known", text=text))
         state.matrix, state.matrix_line = [], state.line
     elif state.matrix is not None:
         state.matrix.append(text)
@@ -68,8 +65,7 @@ def _numbers_of(lines: Sequence[str]) -> tuple[float, ...]:
 
 
 def _damaged_matrix() -> StatementError:
-    what = "$$*CATIA0 is not followed by an identifier and three lines of four numbers"
-    return StatementError(what, "output the file again", code="CL430")
+    return StatementError(Wording("CL430", "catia0_not_followed"))
 
 
 def _end_matrix(state: ReaderState) -> None:
@@ -82,15 +78,14 @@ def _end_matrix(state: ReaderState) -> None:
             raise _damaged_matrix()
         _miss_system(state)
     except StatementError as error:
-        state.diagnostics.error(state.matrix_line, error.what, error.cure, code=error.code)
+        state.diagnostics.error(state.matrix_line, error.wording)
 
 
 def _miss_system(state: ReaderState) -> None:
     """Go on without the matrix that a table of words leaves out; where it may be another one, it is needed."""
     state.matrix = None
     if state.system or state.row:
-        what = "$$*CATIA0 without its matrix: the machining axis system may be another one than before"
-        raise StatementError(what, _WITH_MATRIX, code="CL430")
+        raise StatementError(Wording("CL430", "catia0_without_matrix"))
 
 
 def _set_system(state: ReaderState, numbers: tuple[float, ...]) -> None:
@@ -100,8 +95,7 @@ def _set_system(state: ReaderState, numbers: tuple[float, ...]) -> None:
     nothing that was said in the coordinates before holds on: last point, tool axis, clearance plane.
     """
     if not state.system and state.row:
-        what = "$$*CATIA0 behind points whose machining axis system nothing states"
-        raise StatementError(what, _WITH_MATRIX, code="CL430")
+        raise StatementError(Wording("CL430", "catia0_behind_points"))
     frame = _frame(numbers)
     own = Frame() if not state.system or numbers == state.system else relative_frame(frame, _frame(state.system))
     if not state.system:
@@ -109,17 +103,12 @@ def _set_system(state: ReaderState, numbers: tuple[float, ...]) -> None:
     if own == state.builder.frame:
         return
     if state.cycle_line or state.direction is not None:
-        raise StatementError(
-            "$$*CATIA0 within a cycle or an arc", "change the machining axis between operations", code="CL430"
-        )
+        raise StatementError(Wording("CL430", "catia0_within_cycle"))
     state.split_operation()
     state.builder.frame, state.builder.continues = own, False
     state.clearance = None
     state.set_axis(None, NoAxis.NEVER)
-    what = "the machining axis system changes: these points are put where they are in the first one of the file"
-    state.diagnostics.remark(
-        state.line, what, "post the operations alone if the part is clamped anew for them", code="CL450"
-    )
+    state.diagnostics.remark(state.line, Wording("CL450", "machining_axis_system"))
 
 
 def _frame(numbers: tuple[float, ...]) -> Frame:
@@ -128,8 +117,7 @@ def _frame(numbers: tuple[float, ...]) -> Frame:
     x, y, z = matrix[:, :3].T
     is_near = np.abs(matrix).max() <= _FARTHEST
     if not is_near or np.abs(matrix[:, :3].T @ matrix[:, :3] - np.eye(3)).max() > _SQUARE or np.cross(x, y) @ z < 0:
-        what = "the machining axis system of $$*CATIA0 is not square, is left-handed or nowhere near the part"
-        raise StatementError(what, "output the file again", code="CL440")
+        raise StatementError(Wording("CL440", "machining_axis_system"))
     x = x / np.linalg.norm(x)
     y = y - (x @ y) * x
     return frame_from_vectors(matrix[:, 3], x, y / np.linalg.norm(y))
@@ -138,8 +126,7 @@ def _frame(numbers: tuple[float, ...]) -> Frame:
 def _goto(state: ReaderState, statement: Statement) -> None:
     """A point: tip, and tool axis. More numbers are a vector of compensation, or a contact point with its normal."""
     if len(statement.values) in (9, 12):
-        what = f"GOTO has {len(statement.values)} numbers: a compensation vector, or a contact point with its normal"
-        raise StatementError(what, _TIP, code="CL470")
+        raise StatementError(Wording("CL470", "goto_numbers_compensation", count=len(statement.values)))
     motion.goto(state, statement)
 
 
@@ -152,9 +139,7 @@ def _tlaxis(state: ReaderState, statement: Statement) -> None:
 def _toolno(state: ReaderState, statement: Statement) -> None:
     """The number of the tool, which LOADTL must have as well, and its kind: turning points are not those of a mill."""
     if "TURN" in statement.words():
-        raise StatementError(
-            f"TOOLNO/{statement.listed()} belongs to turning, which is not read", _MILLING, code="CL260"
-        )
+        raise StatementError(Wording("CL260", "toolno_belongs_turning", listed=statement.listed()))
     number = whole_number("TOOLNO", statement.values[:1])
     if state.tool is not None and state.tool.number != number:
         state.split_operation()
@@ -166,8 +151,7 @@ def _syn(state: ReaderState, statement: Statement) -> None:
     if statement.source.replace(" ", "").upper() != _AXIS_AS_COMMENT:
         apt_refused.refuse(state, statement)
         return
-    what = "SYN makes TLAXIS a comment for the post-processor of ICAM; here it is the tool axis of the points behind it"
-    state.diagnostics.remark(state.line, what, code="CL230")
+    state.diagnostics.remark(state.line, Wording("CL230", "syn_makes_tlaxis"))
 
 
 def _ppfun(state: ReaderState, statement: Statement) -> None:
@@ -182,8 +166,7 @@ def _mode(state: ReaderState, statement: Statement) -> None:
     if statement.values[:1] not in (("CIRCUL",), ("LINEAR",)):
         events.set_mode(state, statement)
         return
-    what = f"MODE/{statement.values[0]} tells ICAM's post-processor whether to fit arcs; the points stay as they are"
-    state.diagnostics.remark(state.line, what, code="CL230")
+    state.diagnostics.remark(state.line, Wording("CL230", "mode_tells_icam", values=statement.values[0]))
 
 
 CATIA: Final = Dialect(

@@ -7,6 +7,7 @@ from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.dialect import CycleWords, Dialect, marks
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statements import HANDLERS
+from trunnion.messages import Wording
 
 _MODES: Final = (
     "DRILL", "DEEP", "BRKCHP", "CSINK", "TAP", "BORE", "DRAG", "NODRAG", "MANUAL", "FACE", "REAM", "THRU", "BACK",
@@ -19,9 +20,7 @@ _CONTOUR: Final = re.compile(r"\s*contact\b.*\bdata\s*", re.IGNORECASE)
 def _comment(state: ReaderState, text: str) -> None:
     """A comment that says what the points are: those of the contour are no tips."""
     if _CONTOUR.fullmatch(text):
-        what = f"$${text}: the points are those of the contour, and not those of the tool"
-        cure = "output the centre line: turn contact points off in the cutter compensation of the operation"
-        raise StatementError(what, cure, code="CL470")
+        raise StatementError(Wording("CL470", "points_those_contour", text=text))
 
 
 CLSF: Final = Dialect(

@@ -12,30 +12,28 @@ from trunnion.cl.dialects.apt import APT_HANDLERS, CYCLES
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement
 from trunnion.cl.statements import apt_tools, events, operations
+from trunnion.messages import Wording
 
 _POST: Final = "output the NC program by the CAM system's post, or CL data with a tool axis at each point"
 
 
 def _partno(state: ReaderState, statement: Statement) -> None:
     """The name of the part, in quotation marks; and what nothing in the file tells."""
-    what = "some revisions of this export write operations in tilted planes without their tool axes"
-    state.diagnostics.remark(state.line, what, "make sure that all operations of the file are upright", code="CL460")
+    state.diagnostics.remark(state.line, Wording("CL460", "some_revisions_export"))
     operations.partno(state, statement._replace(text=statement.text.strip("'")))
 
 
 def _units(state: ReaderState, statement: Statement) -> None:
     """The length unit, which old revisions repeat for each operation."""
     if state.length_unit is not None:
-        what = "UNITS for each operation: an old revision, which writes tilted operations without tool axes"
-        raise StatementError(what, _POST, code="CL460")
+        raise StatementError(Wording("CL460", "units_each_operation"))
     operations.units(state, statement)
 
 
 def _loadtl(state: ReaderState, statement: Statement) -> None:
     """The tool, at the beginning of each operation."""
     if "IN" in statement.words():
-        what = "LOADTL with IN: an export that writes tilted operations without tool axes"
-        raise StatementError(what, _POST, code="CL460")
+        raise StatementError(Wording("CL460", "loadtl_export_writes"))
     state.split_operation()
     apt_tools.loadtl(state, statement)
 
@@ -43,10 +41,7 @@ def _loadtl(state: ReaderState, statement: Statement) -> None:
 def _spindl(state: ReaderState, statement: Statement) -> None:
     """The spindle; the words alone are the wrong way round in all revisions of these posts."""
     if statement.values in (("ON",), ("OFF",)):
-        what = f"SPINDL/{statement.listed()} alone: these exports write ON to stop the spindle, and OFF to start it"
-        raise StatementError(
-            what, "write SPINDL/n,RPM,CLW or STOP, or leave the command out of the operation", code="CL740"
-        )
+        raise StatementError(Wording("CL740", "spindl_alone_these", listed=statement.listed()))
     events.spindl(state, statement)
 
 

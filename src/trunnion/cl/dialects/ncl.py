@@ -9,6 +9,7 @@ from trunnion.cl.dialects.apt import APT_HANDLERS
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, parse
 from trunnion.cl.statements import apt_refused, apt_tools, events, motion, operations
+from trunnion.messages import Wording
 
 
 def _csys(state: ReaderState, statement: Statement) -> None:
@@ -18,8 +19,7 @@ def _csys(state: ReaderState, statement: Statement) -> None:
 
 def _alias(state: ReaderState, statement: Statement) -> None:
     """The coordinate system under a name of the shop's own: an NC alias may stand for ``$$-> CSYS``."""
-    what = f"{statement.major} is taken for CSYS, under an alias"
-    state.diagnostics.remark(state.line, what, "make sure of it: [cl.words] may say what the word is", code="CL240")
+    state.diagnostics.remark(state.line, Wording("CL240", "taken_csys_under", major=statement.major))
     _csys(state, statement)
 
 
@@ -36,10 +36,7 @@ def _mfgno(state: ReaderState, statement: Statement) -> None:
 def _geometry_type(state: ReaderState, statement: Statement) -> None:
     """Say so where points are those of the contour, and not of the tool."""
     if statement.values != ("OUTPUT_ON_CENTER",):
-        what = f"CUTCOM_GEOMETRY_TYPE is {statement.listed()}: points are not those of the tool's centre"
-        state.diagnostics.remark(
-            state.line, what, "the control must have the radius of the tool, and CUTCOM be active", code="CL470"
-        )
+        state.diagnostics.remark(state.line, Wording("CL470", "cutcom_geometry_type", listed=statement.listed()))
 
 
 def _comment(state: ReaderState, text: str) -> None:
@@ -71,12 +68,10 @@ def _settle_cycle(found: CycleParts) -> None:
     """CLEAR is where feeding begins, RAPTO how far rapid goes on from there, RETURN,0 the retract plane."""
     clear, rapto, back = found.take("CLEAR"), found.take("RAPTO"), found.take("RETURN")
     if clear is None:
-        raise StatementError("CYCLE without CLEAR", "write CLEAR,distance above the point", code="CL820")
+        raise StatementError(Wording("CL820", "cycle_without_clear"))
     height = clear[0] - (rapto[0] if rapto else 0.0)
     if not height >= 0.0:
-        raise StatementError(
-            "CYCLE with a RAPTO that passes the point", "write a RAPTO no longer than CLEAR", code="CL830"
-        )
+        raise StatementError(Wording("CL830", "cycle_rapto_passes"))
     found.couplets.append(("RAPTO", (height,)))
     if back is None:
         found.couplets.append(("RTRCTO", clear))

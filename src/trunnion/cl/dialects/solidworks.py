@@ -13,6 +13,7 @@ from trunnion.cl.state import COORDINATE_SYSTEM, ReaderState
 from trunnion.cl.statement import Statement
 from trunnion.cl.statements import apt_tools, events, motion, operations
 from trunnion.cl.statements.cycles import cycle
+from trunnion.messages import Wording
 
 #: How far columns of a CSYS may be off unit length and off square: they are printed with six decimals or more.
 _SQUARE: Final = 1e-3
@@ -41,8 +42,7 @@ def _cutter(state: ReaderState, statement: Statement) -> None:
 def _trntyp(state: ReaderState, statement: Statement) -> None:
     """Points are those of the world's coordinate system; anything else cannot be read."""
     if statement.values != ("WORLD", 0.0, 0.0, 0.0):
-        what = f"TRNTYP/{statement.listed()}: the coordinate system of the points is not known"
-        raise StatementError(what, "output the points in world coordinates (TRNTYP/WORLD,0,0,0)", code="CL430")
+        raise StatementError(Wording("CL430", "trntyp_coordinate_system", listed=statement.listed()))
     state.split_operation()
 
 
@@ -51,9 +51,7 @@ def _csys(state: ReaderState, statement: Statement) -> None:
     numbers = statement.numbers(12)
     columns = np.array(numbers).reshape(3, 4)[:, :3]
     if np.abs(columns.T @ columns - np.eye(3)).max() > _SQUARE:
-        raise StatementError(
-            "the columns of CSYS are not X, Y and Z of a coordinate system", "output the file again", code="CL440"
-        )
+        raise StatementError(Wording("CL440", "columns_csys_not"))
     state.split_operation()
     state.state_once(COORDINATE_SYSTEM, numbers)
     z = (numbers[2], numbers[6], numbers[10])
@@ -84,10 +82,7 @@ def pecking_cycle(state: ReaderState, statement: Statement) -> None:
     pecks = dict(zip(statement.values, statement.values[1:], strict=False))
     first, others = pecks.get("1STPECK", 0.0), pecks.get("SUBPECK", 0.0)
     if isinstance(first, float) and isinstance(others, float) and others > first > 0.0:
-        what = f"pecks of {others:g} behind a first one of {first:g}: all are made as long as the first"
-        state.diagnostics.remark(
-            state.line, what, "write a first peck that is the longest if that takes too long", code="CL860"
-        )
+        state.diagnostics.remark(state.line, Wording("CL860", "pecks_behind_first", others=others, first=first))
 
 
 def _flute_length(state: ReaderState, statement: Statement) -> None:
@@ -106,13 +101,11 @@ def _settle_cycle(found: CycleParts) -> None:
     first, others = found.take("1STPECK"), found.take("SUBPECK")
     if first is not None and others is not None:
         if not others[0] > 0.0:
-            raise StatementError(
-                "CYCLE with a SUBPECK that is not above 0", "write the length of the pecks", code="CL830"
-            )
+            raise StatementError(Wording("CL830", "cycle_subpeck_not"))
         alike = others[0] >= first[0]
         found.couplets.append(("STEP", first if alike else (first[0], first[0] - others[0], others[0])))
     elif first is not None or others is not None:
-        raise StatementError("CYCLE has one of 1STPECK and SUBPECK", "write both", code="CL820")
+        raise StatementError(Wording("CL820", "cycle_one_1stpeck"))
 
 
 SOLIDWORKS: Final = Dialect(

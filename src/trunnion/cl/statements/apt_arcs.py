@@ -9,6 +9,7 @@ from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import ArcDirection, ReaderState
 from trunnion.cl.statement import Statement, joined_lines, numbers
 from trunnion.cl.statements import apt_refused, motion
+from trunnion.messages import Wording
 
 _Vector = tuple[float, float, float]
 
@@ -30,8 +31,6 @@ _OFF_TANGENT: Final = 0.02
 _AXIS_PARALLEL: Final = 1e-3
 #: An arc that ends nearer to the line through its start and the centre than this, radians, meets it anywhere.
 _ON_LINE: Final = 0.02
-
-_CURE: Final = "output arcs as INDIRV and TLON,GOFWD/(CIRCLE/…),ON,(LINE/…), or lines in their place"
 
 
 def indirv(state: ReaderState, statement: Statement) -> None:
@@ -56,27 +55,26 @@ def gofwd(state: ReaderState, statement: Statement) -> None:
         direction = None
     start = motion.current_tip(state)
     if start is None or direction is None:
-        what = "GOFWD without INDIRV, the direction in which it begins" if start else "GOFWD without a start point"
-        raise StatementError(what, "write INDIRV/ and a point before each arc", code="CL510")
+        raise StatementError(
+            Wording("CL510", "gofwd_without_indirv") if start else Wording("CL510", "gofwd_without_start")
+        )
     if found := _CIRCLE.fullmatch(text):
         centre, radius = _split(_floats(found[1], 4))
         centre = (centre[0], centre[1], centre[2])
         line = _floats(found[3], 6)
         if math.dist(line[:3], centre) > max(_OFF_RADIUS * radius, _OFF_RADIUS):
-            raise StatementError("GOFWD ends at a line that does not begin in the centre", _CURE, code="CL570")
+            raise StatementError(Wording("CL570", "gofwd_ends_line"))
         end, given = (line[3], line[4], line[5]), None
     elif found := _CYLINDER.fullmatch(text):
         cylinder, last = _floats(found[1], 7), _floats(found[6], 3)
         centre, radius = (cylinder[0], cylinder[1], cylinder[2]), cylinder[6]
         end, given = (last[0], last[1], last[2]), (cylinder[3], cylinder[4], cylinder[5])
     else:
-        raise StatementError("GOFWD along other geometry than a circle", _CURE, code="CL250")
+        raise StatementError(Wording("CL250", "gofwd_along_other"))
     i, j, k = direction.vector
     normal = _normal(_minus(start, centre), (i, j, k), given)
     if abs(_dot(_minus(end, start), normal)) > _OFF_PLANE:
-        raise StatementError(
-            "GOFWD ends off the plane in which it begins: along a circle no tool goes there", _CURE, code="CL570"
-        )
+        raise StatementError(Wording("CL570", "gofwd_ends_off"))
     end = _on_circle(centre, normal, radius, end)
     _check_intersection(_minus(start, centre), _minus(end, centre), normal, found[2])
     motion.begin_circle(state, (*centre, *normal, radius), 1)
@@ -88,12 +86,10 @@ def movarc(state: ReaderState, statement: Statement) -> None:
     """Make the next row an arc: MOVARC/xc,yc,zc,i,j,k,r,ANGLE,degrees."""
     values = statement.values
     if len(values) != 9 or values[7] != "ANGLE":
-        raise StatementError(
-            f"MOVARC/{statement.listed()} is not known", "write MOVARC/xc,yc,zc,i,j,k,r,ANGLE,degrees", code="CL330"
-        )
+        raise StatementError(Wording("CL330", "movarc_not_known", listed=statement.listed()))
     given, (angle,) = numbers("MOVARC", values[:7], 7), numbers("MOVARC ANGLE", values[8:], 1)
     if not 0.0 < angle < 360.0 * motion.MAX_TURNS:
-        raise StatementError(f"MOVARC has an ANGLE of {angle:g} degrees", "write an angle above 0", code="CL570")
+        raise StatementError(Wording("CL570", "movarc_angle_degrees", angle=angle))
     motion.begin_circle(state, given, math.ceil(angle / 360.0 - 1e-6), angle=angle)
 
 
@@ -102,9 +98,7 @@ def _floats(text: str, count: int) -> tuple[float, ...]:
     try:
         found = tuple(float(field.replace("D", "E", 1)) for field in text.split(","))
     except ValueError:
-        raise StatementError(
-            f"GOFWD has {text!r} where numbers belong", "write decimal numbers", code="CL310"
-        ) from None
+        raise StatementError(Wording("CL310", "gofwd_where_numbers", text=repr(text))) from None
     return numbers("GOFWD", found, count)
 
 
@@ -127,7 +121,7 @@ def _cross(a: Sequence[float], b: Sequence[float]) -> _Vector:
 def _unit(vector: Sequence[float]) -> _Vector:
     length = math.hypot(*vector)
     if not length > 0.0:
-        raise StatementError("GOFWD with a direction or an axis of no length", "write unit vectors", code="CL570")
+        raise StatementError(Wording("CL570", "gofwd_direction_axis"))
     return vector[0] / length, vector[1] / length, vector[2] / length
 
 
@@ -138,10 +132,10 @@ def _normal(radial: _Vector, direction: _Vector, given: _Vector | None) -> _Vect
         axis = _unit(given)
         side = _dot(_unit(_cross(axis, radial)), direction)
         if abs(side) < 1.0 - _OFF_TANGENT:
-            raise StatementError("INDIRV is not the tangent at the start of the arc", _CURE, code="CL570")
+            raise StatementError(Wording("CL570", "indirv_not_tangent"))
         return axis if side > 0 else (-axis[0], -axis[1], -axis[2])
     if abs(_dot(_unit(radial), direction)) > _OFF_TANGENT:
-        raise StatementError("INDIRV is not the tangent at the start of the arc", _CURE, code="CL570")
+        raise StatementError(Wording("CL570", "indirv_not_tangent"))
     normal = _unit(_cross(radial, direction))
     for k in range(3):
         if abs(normal[k]) > 1.0 - 0.5 * _AXIS_PARALLEL**2:
@@ -173,6 +167,8 @@ def _check_intersection(start: _Vector, end: _Vector, normal: _Vector, count: st
     if min(angle, abs(angle - math.pi), 2.0 * math.pi - angle) < _ON_LINE:
         return
     if (angle > math.pi) != (count == "2"):
-        turned, which = f"{math.degrees(angle):.1f} degrees", "second" if count == "2" else "first"
-        what = f"GOFWD turns by {turned}, where its circle does not meet the line for the {which} time"
-        raise StatementError(what, _CURE, code="CL570")
+        raise StatementError(
+            Wording("CL570", "gofwd_turns_degrees", angle=math.degrees(angle))
+            if count == "2"
+            else Wording("CL570", "gofwd_turns_degrees_where", angle=math.degrees(angle))
+        )

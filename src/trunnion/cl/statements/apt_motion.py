@@ -5,6 +5,7 @@ from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, numbers
 from trunnion.cl.statements import events, motion
+from trunnion.messages import Wording
 
 _IDENTITY = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
@@ -31,20 +32,21 @@ def clearance(state: ReaderState, statement: Statement) -> None:
     if len(values) == 4 and values[:3] == (0.0, 0.0, 1.0):
         values = values[3:]
     if len(values) != 1 or isinstance(values[0], str):
-        what = f"{statement.major}/{statement.listed()} is not a plane of constant Z"
-        raise StatementError(what, "write CLRSRF/z, and GOTO/ for retracts to other planes", code="CL590")
+        raise StatementError(Wording("CL590", "not_plane_constant", major=statement.major, listed=statement.listed()))
     state.clearance = numbers(statement.major, values, 1)[0]
 
 
 def retrct(state: ReaderState, statement: Statement) -> None:
     """Retract at rapid to the clearance plane; a tool above it stays where it is."""
     if statement.values or not state.has_row:
-        what = f"RETRCT/{statement.listed()}: where the tool goes is not known"
-        raise StatementError(what, "write GOTO/ with the point", code="CL590")
+        raise StatementError(Wording("CL590", "retrct_where_tool", listed=statement.listed()))
     start = motion.current_tip(state)
     if state.clearance is None or start is None:
-        what = "RETRCT without a clearance plane" if state.clearance is None else "RETRCT before any point"
-        raise StatementError(what, "write CLRSRF/z and a point before it, or GOTO/ with the point", code="CL590")
+        raise StatementError(
+            Wording("CL590", "retrct_without_clearance")
+            if state.clearance is None
+            else Wording("CL590", "retrct_before_any")
+        )
     motion.refuse_in_circle(state, "RETRCT")
     state.builder.rapids.append(state.operation_row)
     state.builder.upright.append((state.row, state.line, "RETRCT"))
@@ -55,10 +57,7 @@ def retrct(state: ReaderState, statement: Statement) -> None:
 def cutcom(state: ReaderState, statement: Statement) -> None:
     """Switch radius compensation; in space, the numbers of the points that follow are not tip and axis."""
     if not {"NORMDS", "NORMPS", "ENDPT"}.isdisjoint(statement.words()):
-        what = f"CUTCOM/{statement.listed()}: radius compensation in space cannot be read"
-        raise StatementError(
-            what, "output tips and tool axes, with the compensation of the radius off or in the plane", code="CL470"
-        )
+        raise StatementError(Wording("CL470", "cutcom_radius_compensation", listed=statement.listed()))
     events.cutcom(state, statement)
 
 
@@ -74,5 +73,4 @@ def no_shift(state: ReaderState, statement: Statement) -> None:
     values = statement.values
     if values in (_IDENTITY, _IDENTITY[:3] + _IDENTITY[4:7]) or (values and set(values) == {0.0} and len(values) <= 3):
         return
-    what = f"{statement.major}/{statement.listed()} shifts or turns the points that follow"
-    raise StatementError(what, "output the points in one coordinate system, that of the machining origin", code="CL480")
+    raise StatementError(Wording("CL480", "shifts_turns_points", major=statement.major, listed=statement.listed()))

@@ -5,6 +5,7 @@ from typing import Final
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement
+from trunnion.messages import Wording
 
 #: Statements that the APT processor executes, and that CL data never have.
 PART_PROGRAM_WORDS: Final = (
@@ -14,31 +15,19 @@ PART_PROGRAM_WORDS: Final = (
     "INCLUD", "INCLUDE", "*INCLUD", "*INCLUDE", "WHILE", "UNTIL", "UNDEF",
 )  # fmt: skip
 
-_ROTARY: Final = (
-    "turns a rotary axis itself, and does not say in which coordinates the points behind it are",
-    "output the points with tool axes (i, j, k) in the coordinates of the workpiece",
-    "CL480",
-)
-_SYSTEM: Final = (
-    "repeats, shifts or turns motion",
-    "output all motion itself, in one coordinate system",
-    "CL480",
-)
-_SUBPROGRAM: Final = ("belongs to a subprogram", "output the motion itself, without subprograms", "CL260")
-_MOTION: Final = (
-    "is motion that cannot be read",
-    "write GOTO/ with each point, and CIRCLE/ or GOFWD/ for arcs",
-    "CL250",
-)
-_TURNING: Final = ("belongs to turning, which is not read", "output the milling operations alone", "CL260")
-_PROBING: Final = ("moves the tool until it touches the part", "output the cutting operations alone", "CL260")
+_ROTARY: Final = Wording("CL480", "turns_rotary_axis")
+_SYSTEM: Final = Wording("CL480", "repeats_motion")
+_SUBPROGRAM: Final = Wording("CL260", "subprogram")
+_MOTION: Final = Wording("CL250", "unreadable_motion")
+_TURNING: Final = Wording("CL260", "turning")
+_PROBING: Final = Wording("CL260", "probing")
 
-#: Statements that move the machine, or change what the points behind them mean: why, how to do without, and the code.
+#: Statements that move the machine, or change what the points behind them mean: what is said of them.
 REFUSED_WORDS: Final = {
     "ROTABL": _ROTARY,
     "ROTATE": _ROTARY,
     "ROTHED": _ROTARY,
-    "POSITN": ("moves the tool to a point that it does not give", "write GOTO/ with the point", "CL250"),
+    "POSITN": Wording("CL250", "no_point"),
     "MOVE": _MOTION,
     "CONT": _MOTION,
     "ARC": _MOTION,
@@ -56,18 +45,16 @@ REFUSED_WORDS: Final = {
     "CALSUB": _SUBPROGRAM,
     "DEFSUB": _SUBPROGRAM,
     "ENDSUB": _SUBPROGRAM,
-    "SYN": ("gives words other meanings", "leave it out of the table of the CAM system", "CL120"),
+    "SYN": Wording("CL120", "other_meanings"),
 }
 
 
 def part_program(state: ReaderState, statement: Statement) -> None:
     """Refuse a statement of an APT part program."""
-    what = f"{statement.major} is a statement of an APT part program, and not of CL data"
-    raise StatementError(what, "run the part program through the APT system, and give its CL data", code="CL120")
+    raise StatementError(Wording("CL120", "statement_apt_part", major=statement.major))
 
 
 def refuse(state: ReaderState, statement: Statement) -> None:
     """Refuse motion that cannot be read."""
     word = statement.major.removeprefix("->")
-    why, cure, code = REFUSED_WORDS[word]
-    raise StatementError(f"{word} {why}", cure, code=code)
+    raise StatementError(REFUSED_WORDS[word].of_key(word))

@@ -7,6 +7,7 @@ from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, numbers, whole_number
 from trunnion.cl.statements import events
+from trunnion.messages import Wording
 from trunnion.model.apt_cutter import stated_centre
 from trunnion.model.toolpath import SelectTool, Tool
 
@@ -104,18 +105,14 @@ def loadtl(state: ReaderState, statement: Statement) -> None:
         # LOADTL/n,register, or LOADTL/n,0,length,register.
         plain = [value for value in values[1:] if not isinstance(value, str)]
         if len(plain) != len(values) - 1 or len(plain) not in (1, 2, 3) or (len(plain) == 3 and plain[0] != 0):
-            raise StatementError(
-                f"LOADTL/{statement.listed()} is not known", "write LOADTL/number,ADJUST,register", code="CL330"
-            )
+            raise StatementError(Wording("CL330", "loadtl_not_known", listed=statement.listed()))
         if len(plain) == 2 and plain[0] != plain[1]:
-            raise StatementError(
-                f"LOADTL/{statement.listed()} is not known", "write LOADTL/number,ADJUST,register", code="CL330"
-            )
+            raise StatementError(Wording("CL330", "loadtl_not_known", listed=statement.listed()))
         adjust, at = whole_number("LOADTL", tuple(plain[-1:])), len(values)
         length = plain[1] if len(plain) == 3 else 0.0
     statement.refuse_contradictions(_REGISTERS)
     if twice := next((word for word in (*_REGISTERS, "LENGTH") if values.count(word) > 1), ""):
-        raise StatementError(f"LOADTL has {twice} twice", "write the one that is meant", code="CL320")
+        raise StatementError(Wording("CL320", "loadtl_twice", twice=twice))
     while at < len(values):
         word = values[at]
         if word in _REGISTERS:

@@ -9,6 +9,7 @@ from trunnion.cl.dialect import CycleParts
 from trunnion.cl.state import FEED_UNITS, ReaderState
 from trunnion.cl.statement import Statement, numbers
 from trunnion.cl.statements.motion import refuse_in_circle
+from trunnion.messages import Wording
 from trunnion.model.toolpath import CycleOff, CycleOn
 
 #: Words that need a number, and take no more than one; STEP takes up to three.
@@ -37,15 +38,14 @@ def cycle(state: ReaderState, statement: Statement) -> None:
     row, line = state.operation_row, state.line
     if statement.values == ("OFF",):
         if not state.cycle_line and state.operation_row:
-            what = "CYCLE/OFF where no cycle is on: the points before it are no holes"
-            state.diagnostics.remark(line, what, "look for a CYCLE that is missing", code="CL850")
+            state.diagnostics.remark(line, Wording("CL850", "cycle_off_where"))
         state.add(CycleOff(row, line))
         state.cycle_line = 0
         return
     refuse_in_circle(state, "CYCLE")
     if statement.values == ("ON",):
         if state.cycle is None:
-            raise StatementError("CYCLE/ON before any cycle", "write the cycle with its values", code="CL850")
+            raise StatementError(Wording("CL850", "cycle_before_any"))
         state.cycle = replace(state.cycle, row=row, line=line)
     else:
         found = _parse(state, statement)
@@ -58,11 +58,9 @@ def _parse(state: ReaderState, statement: Statement) -> CycleParts:
     """Take a cycle apart: each word and each number belongs to exactly one couplet, or the statement is refused."""
     values = statement.values
     if len(values) > _MOST_VALUES:
-        what = f"CYCLE has {len(values)} values, and none has more than {_MOST_VALUES}"
-        raise StatementError(what, "look for a lost line end, or commas too many", code="CL160")
+        raise StatementError(Wording("CL160", "cycle_values_none", count=len(values), most_values=_MOST_VALUES))
     if not values or not isinstance(values[0], str):
-        what = "CYCLE without a word for its kind"
-        raise StatementError(what, "write CYCLE/DRILL, CYCLE/TAP, ..., or CYCLE/OFF", code="CL820")
+        raise StatementError(Wording("CL820", "cycle_without_word"))
     dialect = state.dialect.cycles
     found = CycleParts()
     groups = _groups(values)
@@ -71,7 +69,7 @@ def _parse(state: ReaderState, statement: Statement) -> CycleParts:
         word, given = groups[at]
         at += 1
         if why := dialect.refused.get(word):
-            raise StatementError(f"CYCLE with {word} cannot be read: {why}", "output the holes as motion", code="CL820")
+            raise StatementError(Wording("CL820", "cycle_cannot_read", word=word, why=why))
         if word in FEED_UNITS:
             bare = not given and bool(found.couplets) and found.couplets[-1][0] == _BARE_FEED
             _feed(state, found, word, found.couplets.pop()[1] if bare else given)
@@ -83,9 +81,7 @@ def _parse(state: ReaderState, statement: Statement) -> CycleParts:
         else:
             _couplet(state, statement, found, word, given)
     if any(word == _BARE_FEED for word, _ in found.couplets):
-        raise StatementError(
-            "CYCLE has a number too many, or a feed without a unit", "name each number of the cycle", code="CL820"
-        )
+        raise StatementError(Wording("CL820", "cycle_number_too"))
     _refuse_unused(found)
     if dialect.settle is not None:
         dialect.settle(found)
@@ -112,44 +108,41 @@ def _refuse_unused(found: CycleParts) -> None:
     """Refuse a word that the mode does not use: one of the two is wrong."""
     for word, _ in (*found.couplets, *found.words):
         if word in _USED_BY and _USED_BY[word].isdisjoint(found.mode):
-            what = f"CYCLE/{','.join(found.mode)} has {word}, which only {' and '.join(sorted(_USED_BY[word]))} uses"
-            raise StatementError(what, f"write another mode, or leave {word} out", code="CL820")
+            raise StatementError(
+                Wording(
+                    "CL820", "cycle_only_uses", mode=tuple(found.mode), word=word, used_by=tuple(sorted(_USED_BY[word]))
+                )
+            )
 
 
 def _refuse_repetitions(found: CycleParts) -> None:
     """Refuse a number that is given twice: nobody knows which of them is meant."""
     names = ["a feed" if word in ("MMPM", "MMPR") else word for word, _ in found.couplets]
     if twice := next((name for n, name in enumerate(names) if name in names[:n]), ""):
-        raise StatementError(f"CYCLE has {twice} twice", "write the one that is meant", code="CL320")
+        raise StatementError(Wording("CL320", "cycle_twice", twice=twice))
     couplets, words = dict(found.couplets), dict(found.words)
     if "RTRCTO" in couplets and "RTRCTO" in words:
-        raise StatementError(
-            f"CYCLE has RTRCTO with a height and {words['RTRCTO']}", "write the one that is meant", code="CL320"
-        )
+        raise StatementError(Wording("CL320", "cycle_rtrcto_height", words=words["RTRCTO"]))
     if couplets.get("CLEAR", couplets.get("RAPTO")) != couplets.get("RAPTO", couplets.get("CLEAR")):
-        raise StatementError(
-            "CYCLE has RAPTO and CLEAR of different heights", "write the one that is meant", code="CL320"
-        )
+        raise StatementError(Wording("CL320", "cycle_rapto_clear"))
 
 
 def _refuse_impossible(found: CycleParts) -> None:
     """Refuse a dwell below 0, and pecks of which no control makes so many."""
     couplets = dict(found.couplets)
     if any(value < 0.0 for value in couplets.get("DWELL", ())):
-        raise StatementError(
-            f"CYCLE has the dwell {couplets['DWELL'][0]:g}, below 0", "write DWELL,seconds, or none", code="CL830"
-        )
+        raise StatementError(Wording("CL830", "cycle_dwell_below", couplets=couplets["DWELL"][0]))
     first, less, least = (*couplets.get("STEP", ()), 0.0, 0.0, 0.0)[:3]
     if "STEP" in couplets and (not first > 0.0 or not 0.0 <= less < first or not 0.0 <= least <= first):
-        what = f"CYCLE has pecks that cannot be: STEP,{','.join(f'{number:g}' for number in couplets['STEP'])}"
         raise StatementError(
-            what, "write STEP,first peck[,how much shorter each next one is[,shortest one]]", code="CL830"
+            Wording("CL830", "cycle_pecks_cannot", couplets=tuple(f"{number:g}" for number in couplets["STEP"]))
         )
     shortest = least if less else first
     depth = abs(couplets.get("FEDTO", (0.0,))[0])
     if shortest > 0.0 and depth > _MOST_PECKS * shortest:
-        what = f"CYCLE would peck more than {_MOST_PECKS} times: STEP {shortest:g} for a depth of {depth:g}"
-        raise StatementError(what, "write longer pecks", code="CL830")
+        raise StatementError(
+            Wording("CL830", "cycle_would_peck", most_pecks=_MOST_PECKS, shortest=shortest, depth=depth)
+        )
 
 
 def _positions(state: ReaderState, found: CycleParts, word: str, given: tuple[float, ...]) -> None:
@@ -161,8 +154,7 @@ def _positions(state: ReaderState, found: CycleParts, word: str, given: tuple[fl
         found.couplets.append((word, numbers(f"CYCLE {word}", given, 1)))
         return
     if not len(positions) <= len(given) <= len(positions) + 1 or not positions:
-        what = f"CYCLE/{word} has numbers without words, which mean something else in each system"
-        raise StatementError(what, "name each number of the cycle, or output the holes as motion", code="CL820")
+        raise StatementError(Wording("CL820", "cycle_numbers_without", word=word))
     found.couplets += [(name, (number,)) for name, number in zip(positions, given, strict=False)]
     if len(given) > len(positions):
         found.couplets.append((_BARE_FEED, given[-1:]))
@@ -185,20 +177,23 @@ def _with_part(found: CycleParts, word: str, given: tuple[float, ...], following
     if part == "REV":
         found.couplets.append((word, _one_number(f"{word},REV", given + behind)))
     elif behind:
-        raise StatementError(
-            f"CYCLE has {behind[0]:g} behind {word},{part}", "write the one that is meant", code="CL320"
-        )
+        raise StatementError(Wording("CL320", "cycle_behind", behind=behind[0], word=word, part=part))
     return 1
 
 
 def _one_number(word: str, given: tuple[float, ...], most: int = 1) -> tuple[float, ...]:
     """The numbers behind a word: one, or up to ``most``."""
     if not given:
-        raise StatementError(f"CYCLE has {word} without a number", f"write {word},value", code="CL820")
+        raise StatementError(Wording("CL820", "cycle_without_number", word=word))
     if len(given) > most:
-        what = f"CYCLE has {len(given)} numbers behind {word}, {','.join(f'{number:g}' for number in given)}"
         raise StatementError(
-            what, "write one number, with a decimal point, and a word before each other one", code="CL820"
+            Wording(
+                "CL820",
+                "cycle_numbers_behind",
+                count=len(given),
+                word=word,
+                given=tuple(f"{number:g}" for number in given),
+            )
         )
     return given
 
@@ -206,8 +201,7 @@ def _one_number(word: str, given: tuple[float, ...], most: int = 1) -> tuple[flo
 def _couplet(state: ReaderState, statement: Statement, found: CycleParts, word: str, given: tuple[float, ...]) -> None:
     """Take a word with the numbers behind it, or without any."""
     if word in _PARTS:
-        what = f"CYCLE has {word}, which belongs behind {_PARTS[word]}"
-        raise StatementError(what, f"write {_PARTS[word]},{word}, or leave it out", code="CL820")
+        raise StatementError(Wording("CL820", "cycle_belongs_behind", word=word, parts=_PARTS[word]))
     meant = state.dialect.cycles.words.get(word, word)
     if meant in _NUMBER_WORDS | state.dialect.cycles.numbers:
         found.couplets.append((meant, _one_number(word, given, _STEP_NUMBERS if meant == "STEP" else 1)))

@@ -9,6 +9,7 @@ from trunnion.cl.builder import FeedChange, SurfaceSpeed
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import FEED_UNITS, FILE_UNIT_FEEDS, MM_PER_FOOT, ReaderState
 from trunnion.cl.statement import Statement, numbers, whole_number
+from trunnion.messages import Wording
 from trunnion.model.toolpath import (
     BlockSkip,
     Coolant,
@@ -55,16 +56,15 @@ def fedrat(state: ReaderState, statement: Statement) -> None:
             state.feed_inverse, state.bare_feeds = False, True
             continue
         if word not in FEED_UNITS:
-            cure = "write the feed in MMPM, MMPR, IPM or IPR, or INVERS,f with f as one over the minutes of each move"
-            raise StatementError(f"FEDRAT/{statement.listed()} is not a known feed", cure, code="CL710")
+            raise StatementError(Wording("CL710", "fedrat_not_known", listed=statement.listed()))
         state.feed_factor, state.feed_per_rev = FEED_UNITS[word]
         state.feed_inverse = state.bare_feeds = False
         state.note_feed_unit(word)
     (value,) = numbers("FEDRAT", statement.plain_numbers(), 1)
     if value < 0:
-        raise StatementError(f"FEDRAT is negative: {value:g}", "write a feed above 0", code="CL710")
+        raise StatementError(Wording("CL710", "fedrat_negative", value=value))
     if value == 0:
-        state.diagnostics.remark(state.line, "FEDRAT is 0", "write a feed above 0, or RAPID", code="CL715")
+        state.diagnostics.remark(state.line, Wording("CL715", "fedrat_0"))
     value *= state.feed_factor
     feed = FeedChange(state.operation_row, value, state.feed_per_rev, state.bare_feeds, state.feed_inverse)
     state.builder.feeds.append(feed)
@@ -75,9 +75,7 @@ def spindl(state: ReaderState, statement: Statement) -> None:
     statement.refuse_contradictions(("OFF", "ON"), ("OFF", "CLW", "CCLW"), ("OFF", "RPM", *_SURFACE_SPEEDS))
     words = set(statement.words())
     if not statement.values:
-        raise StatementError(
-            "SPINDL without a speed or a word", "write SPINDL/RPM,n,CLW, SPINDL/ON or SPINDL/OFF", code="CL730"
-        )
+        raise StatementError(Wording("CL730", "spindl_without_speed"))
     if "OFF" in words:
         if statement.values != ("OFF",):
             rest = [word for word in statement.words() if word != "OFF"]
@@ -96,16 +94,12 @@ def spindl(state: ReaderState, statement: Statement) -> None:
     row, line = state.operation_row, state.line
     if speed is None:
         if state.spindle is None:
-            raise StatementError(
-                "SPINDL turns the spindle on before any speed was given", "write SPINDL/RPM,n,CLW", code="CL730"
-            )
+            raise StatementError(Wording("CL730", "spindl_turns_spindle"))
         state.spindle = replace(state.spindle, row=row, line=line, sense=sense)
     elif speed < 0:
-        raise StatementError(f"SPINDL has a negative speed: {speed:g}", "write CLW or CCLW for the sense", code="CL730")
+        raise StatementError(Wording("CL730", "spindl_negative_speed", speed=speed))
     elif speed == 0:
-        raise StatementError(
-            "SPINDL has the speed 0: the tool would cut standing", "write the speed, or SPINDL/OFF", code="CL730"
-        )
+        raise StatementError(Wording("CL730", "spindl_speed_0"))
     elif surface:
         state.spindle = SurfaceSpeed(row, line, speed * _SURFACE_SPEEDS[surface.pop()], sense, diameter)
     else:
@@ -129,8 +123,7 @@ def _speed_and_diameter(statement: Statement) -> tuple[float | None, float | Non
             elif last == "RANGE" or (isinstance(last, str) and last and last not in _SPINDLE_WORDS):
                 continue
             elif speed is not None:
-                what = f"SPINDL has two speeds, {speed:g} and {value:g}"
-                raise StatementError(what, "write the one that is meant", code="CL320")
+                raise StatementError(Wording("CL320", "spindl_two_speeds", speed=speed, value=value))
             else:
                 speed = value
         last = value
@@ -174,7 +167,7 @@ def loadtl(state: ReaderState, statement: Statement) -> None:
 def coolnt(state: ReaderState, statement: Statement) -> None:
     """Switch the coolant; COOLNT alone is ON."""
     if not statement.values and "/" in statement.source:
-        raise StatementError("COOLNT/ without a word", "write COOLNT/FLOOD, MIST, THRU, AIR, ON or OFF", code="CL330")
+        raise StatementError(Wording("CL330", "coolnt_without_word"))
     kind, *rest = statement.values or ("ON",)
     known = isinstance(kind, str) and kind in _COOLANTS
     if rest or not known:
@@ -213,7 +206,7 @@ def delay(state: ReaderState, statement: Statement) -> None:
         return
     (amount,) = numbers("DELAY", statement.plain_numbers(), 1)
     if amount < 0:
-        raise StatementError("DELAY is negative", "write the time in seconds, or the revolutions and REV", code="CL340")
+        raise StatementError(Wording("CL340", "delay_negative"))
     state.add(Dwell(state.operation_row, state.line, amount, bool(words)))
 
 
@@ -252,10 +245,9 @@ def set_mode(state: ReaderState, statement: Statement) -> None:
     """Keep SET, MODE or MULTAX where it states what every program does anyway."""
     words = (statement.major, *statement.words())
     if "INCR" in words and "OFF" not in words:
-        what = f"{statement.source.strip()}: the points that follow would count from each other"
-        raise StatementError(what, "output absolute coordinates, or GODLTA/ for each distance", code="CL480")
+        raise StatementError(Wording("CL480", "points_follow_would", source=statement.source.strip()))
     if words == ("MODE", "TURN"):
-        raise StatementError("MODE/TURN: turning is not read", "output the milling operations alone", code="CL260")
+        raise StatementError(Wording("CL260", "mode_turn_turning"))
     if words in _FULFILLED_MODES and not statement.plain_numbers():
         state.add(SetMode(state.operation_row, state.line, words))
     else:

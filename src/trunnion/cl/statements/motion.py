@@ -6,6 +6,7 @@ from trunnion.cl.builder import CircleStatement, FromStatement, NoAxis
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, is_whole, numbers
+from trunnion.messages import Wording
 from trunnion.model.toolpath import GoHome
 
 #: Points no farther from each other, in units of the file, are the same: they are printed with three decimals or more.
@@ -37,7 +38,7 @@ def godlta(state: ReaderState, statement: Statement) -> None:
     x, y, z = statement.numbers(3)
     start = current_tip(state)
     if start is None:
-        raise StatementError("GODLTA without a point to go from", "write FROM/ or GOTO/ before it", code="CL510")
+        raise StatementError(Wording("CL510", "godlta_without_point"))
     refuse_in_circle(state, "GODLTA")
     write_row(state, (start[0] + x, start[1] + y, start[2] + z))
     keep_axis(state)
@@ -62,22 +63,19 @@ def from_(state: ReaderState, statement: Statement) -> None:
     vector = (axis[0], axis[1], axis[2]) if axis else None
     for start in state.builder.starts:
         if start.row == state.operation_row and start.tip != (x, y, z):
-            raise StatementError(
-                f"FROM is another point than in line {start.line}", "write the one that is meant", code="CL520"
-            )
+            raise StatementError(Wording("CL520", "from_another_point", start_line=start.line))
     row = state.operation_row
     if row and not any(isinstance(event, GoHome) and event.row == row for event in state.builder.events):
         last = state.columns.tip[state.row - 1].tolist()
         if max(abs(a - b) for a, b in zip(last, (x, y, z), strict=True)) > _SAME_POINT:
-            what = "FROM is another point than the one to which the tool has gone before it"
-            raise StatementError(what, "write GOTO/ for a motion, or begin another operation", code="CL520")
+            raise StatementError(Wording("CL520", "from_another_point_one"))
     state.builder.starts.append(FromStatement(state.operation_row, state.line, (x, y, z), vector))
 
 
 def circle(state: ReaderState, statement: Statement) -> None:
     """Make the next row an arc."""
     if not state.in_operation:
-        raise StatementError("CIRCLE outside any operation", "write TOOL PATH/name,TOOL,tool before it", code="CL350")
+        raise StatementError(Wording("CL350", "circle_outside_any"))
     values = statement.values
     turns = 1.0
     if "TIMES" in values:
@@ -88,7 +86,7 @@ def circle(state: ReaderState, statement: Statement) -> None:
     if len(given) in (8, 12):
         turns = given[-1]
     if not is_whole(turns, 1) or turns > MAX_TURNS:
-        raise StatementError(f"CIRCLE has {turns:g} turns", "write TIMES,n with n = 1, 2, 3 ...", code="CL570")
+        raise StatementError(Wording("CL570", "circle_turns", turns=turns))
     begin_circle(state, given[:7], int(turns))
 
 
@@ -114,8 +112,7 @@ def begin_circle(
     refuse_in_circle(state, "another CIRCLE")
     _count_turns(state, turns)
     if state.cycle_line:
-        what = f"CIRCLE within the cycle of line {state.cycle_line}, where each point is a hole"
-        raise StatementError(what, "write CYCLE/OFF before it", code="CL620")
+        raise StatementError(Wording("CL620", "circle_within_cycle", cycle_line=state.cycle_line))
     if state.operation_row == 0 and state.builder.continues:
         start = current_tip(state)
         if start is not None and not state.builder.starts:
@@ -128,8 +125,7 @@ def _count_turns(state: ReaderState, turns: int) -> None:
     most = TURNS_IN_ANY_CASE + min(TURNS_PER_LINE * state.line, MOST_TURNS)
     state.turns += turns
     if state.turns > most >= state.turns - turns:
-        what = f"the arcs of the file have more than {most} turns so far"
-        raise StatementError(what, "split the file, or cut threads by cycles", code="CL575")
+        raise StatementError(Wording("CL575", "arcs_file_have", most=most))
 
 
 def unsupported(state: ReaderState, statement: Statement) -> None:
@@ -137,17 +133,13 @@ def unsupported(state: ReaderState, statement: Statement) -> None:
     if statement.major in ("KNOT", "CNTRL", "MOVNRB") and state.spline_reported:
         return  # part of a spline that was refused already
     state.spline_reported = True
-    raise StatementError(
-        f"{statement.major} is motion that cannot be read",
-        "turn off spline output in the CAM system, and write lines and circles in the machining coordinates",
-        code="CL250",
-    )
+    raise StatementError(Wording("CL250", "motion_cannot", major=statement.major))
 
 
 def write_row(state: ReaderState, values: tuple[float, ...]) -> None:
     """Write the row that the scan has reserved; the scan has set its axis to NaN, that is "not given"."""
     if not state.has_row:
-        raise StatementError("a motion without coordinates", "write GOTO/x,y,z or GOTO/x,y,z,i,j,k", code="CL310")
+        raise StatementError(Wording("CL310", "motion_without_coordinates"))
     state.columns.tip[state.row] = values[:3]
     if len(values) == 6:
         state.columns.axis[state.row] = values[3:]
@@ -175,8 +167,4 @@ def refuse_in_circle(state: ReaderState, what: str) -> None:
     circles = state.builder.circles
     if circles and circles[-1].row == state.operation_row:
         begun = circles.pop()
-        raise StatementError(
-            f"{what} where the GOTO of the CIRCLE in line {begun.line} must stand",
-            "write GOTO/ with the end point of the arc after each CIRCLE",
-            code="CL560",
-        )
+        raise StatementError(Wording("CL560", "where_goto_circle", subject=what, begun_line=begun.line))

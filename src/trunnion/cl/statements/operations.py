@@ -8,9 +8,9 @@ from typing import Any
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import COORDINATE_SYSTEM, LENGTH_REGISTER, MM_PER_INCH, TOOL_NUMBER, ReaderState
 from trunnion.cl.statement import Statement, numbers, whole_number
+from trunnion.messages import Wording
 from trunnion.model.apt_cutter import stated_centre
 from trunnion.model.toolpath import Frame, Tool
-from trunnion.wording import counted
 
 #: Names of length units, in mm.
 LENGTH_UNITS = {"MM": 1.0, "INCHES": MM_PER_INCH, "INCH": MM_PER_INCH, "IN": MM_PER_INCH}
@@ -41,10 +41,7 @@ def tool_path(state: ReaderState, statement: Statement) -> None:
     """Begin an operation."""
     if state.in_operation:
         state.diagnostics.error(
-            state.builder.line,
-            f"operation {state.builder.name} has no END-OF-PATH before the next TOOL PATH in line {state.line}",
-            "end each operation with END-OF-PATH",
-            code="CL350",
+            state.builder.line, Wording("CL350", "operation_no_end", builder=state.builder.name, state_line=state.line)
         )
         state.close_operation()
     elif state.operation_row:
@@ -69,9 +66,7 @@ def tool_path(state: ReaderState, statement: Statement) -> None:
 def end_of_path(state: ReaderState, statement: Statement) -> None:
     """End an operation."""
     if not state.in_operation:
-        raise StatementError(
-            "END-OF-PATH without TOOL PATH", "begin each operation with TOOL PATH/name,TOOL,tool", code="CL350"
-        )
+        raise StatementError(Wording("CL350", "end_path_without"))
     state.close_operation()
 
 
@@ -83,9 +78,21 @@ def tldata(state: ReaderState, statement: Statement) -> None:
     layouts = _TLDATA_FIELDS.get(form, {})
     if form in _TLDATA_FIELDS and len(given) not in layouts:
         *others, last = map(str, layouts)
-        expected = f"{', '.join(others)} or {last}" if others else last
-        what = f"TLDATA/{form} has {counted(len(given), 'number')}, expected {expected}"
-        raise StatementError(what, "write TLDATA as NX does", code="CL770")
+        raise StatementError(
+            (
+                Wording(
+                    "CL770", "tldata_number_expected", words=words[0], count=len(given), others=tuple(others), last=last
+                )
+                if others
+                else Wording("CL770", "tldata_number", words=words[0], count=len(given), last=last)
+            )
+            if words
+            else (
+                Wording("CL770", "tldata_number_expected_or_write", count=len(given), others=tuple(others), last=last)
+                if others
+                else Wording("CL770", "tldata_number_expected_or_write_tldata", count=len(given), last=last)
+            )
+        )
     sizes = zip(layouts.get(len(given), ()), given, strict=False)
     fields: dict[str, Any] = {field: number for field, number in sizes if field}
     if len(given) in (7, 10):
@@ -97,34 +104,28 @@ def tldata(state: ReaderState, statement: Statement) -> None:
     state.state_once("diameter of the tool", fields.get("diameter"))
     state.builder.tool = Tool(kind=kind, name=state.builder.tool.name, **fields)
     if form not in _TLDATA_FIELDS:
-        what = f"TLDATA/{form} is not a known form of tool"
         state.diagnostics.remark(
-            state.line, what, "the program has the tool's name and number, and no sizes", code="CL770"
+            state.line,
+            Wording("CL770", "tldata_not_known", words=words[0])
+            if words
+            else Wording("CL770", "tldata_not_known_form"),
         )
 
 
 def msys(state: ReaderState, statement: Statement) -> None:
     """Set the coordinate system of the operation: origin, X and Y, made exactly unit and square."""
     if state.operation_row:
-        raise StatementError(
-            "MSYS after motion", "one operation has one frame: write MSYS before its first GOTO", code="CL430"
-        )
+        raise StatementError(Wording("CL430", "msys_after_motion"))
     state.state_once(COORDINATE_SYSTEM, statement.numbers(9))
     ox, oy, oz, *vectors = statement.numbers(9)
     x, y = vectors[:3], vectors[3:]
     for name, vector in (("X", x), ("Y", y)):
         if abs(math.hypot(*vector) - 1) > _FRAME_TOLERANCE:
-            raise StatementError(
-                f"the {name} vector of MSYS has the length {math.hypot(*vector):.6g}, not 1",
-                "write origin, X and Y of the coordinate system",
-                code="CL440",
-            )
+            raise StatementError(Wording("CL440", "vector_msys_length", name=name, vector=math.hypot(*vector)))
     x = _unit(x)
     along = _dot(x, y)
     if abs(along) > _FRAME_TOLERANCE:
-        raise StatementError(
-            "X and Y of MSYS are not square to each other", "write origin, X and Y of the frame", code="CL440"
-        )
+        raise StatementError(Wording("CL440", "x_y_msys"))
     y = _unit([b - along * a for a, b in zip(x, y, strict=True)])
     state.builder.frame = Frame((ox, oy, oz), (x[0], x[1], x[2]), (y[0], y[1], y[2]))
 
@@ -147,12 +148,13 @@ def units(state: ReaderState, statement: Statement) -> None:
     """Set the length unit of the file."""
     word = statement.values[0] if statement.values else ""
     if not isinstance(word, str) or word not in LENGTH_UNITS or len(statement.values) > 1:
-        raise StatementError(
-            f"UNITS/{statement.listed()} is not a known unit", "write UNITS/MM or UNITS/INCHES", code="CL410"
-        )
+        raise StatementError(Wording("CL410", "units_not_known", listed=statement.listed()))
     if state.length_unit is not None and state.length_unit[0] != LENGTH_UNITS[word]:
-        what = f"UNITS/{word} after another unit in line {state.length_unit[1]}"
-        raise StatementError(what, "keep to one unit in a file", code="CL410")
+        raise StatementError(
+            Wording("CL410", "units_after_another", values=statement.values[0], length_unit=state.length_unit[1])
+            if statement.values
+            else Wording("CL410", "units_after_another_unit", length_unit=state.length_unit[1])
+        )
     state.length_unit = state.length_unit or (LENGTH_UNITS[word], state.line)
 
 
@@ -178,12 +180,11 @@ def _tolerance(state: ReaderState, statement: Statement) -> float:
     """A tolerance in units of the file, 0 or more."""
     (tolerance,) = statement.numbers(1)
     if tolerance < 0.0:
-        raise StatementError(
-            f"{statement.major} is negative: {tolerance:g}", "write the tolerance of the operation", code="CL340"
-        )
+        raise StatementError(Wording("CL340", "negative", major=statement.major, tolerance=tolerance))
     if tolerance > _WIDEST_TOLERANCE:
-        what = f"{statement.major} is {tolerance:g}: the control may leave the path by that much"
-        state.diagnostics.remark(state.line, what, "check the tolerance, or the unit of the file", code="CL800")
+        state.diagnostics.remark(
+            state.line, Wording("CL800", "control_may_leave", major=statement.major, tolerance=tolerance)
+        )
     return tolerance
 
 
@@ -196,8 +197,7 @@ def paint(state: ReaderState, statement: Statement) -> None:
 def end_of_file(state: ReaderState, statement: Statement) -> None:
     """Note that no motion is missing: it is the last statement of a file whose operations have no end of their own."""
     if 0 <= state.end_row < state.row:
-        what = "motion stands behind an end of the file, with an end of its own: two files, or a line too many"
-        state.diagnostics.remark(state.line, what, "make sure that the motion belongs to this job", code="CL170")
+        state.diagnostics.remark(state.line, Wording("CL170", "motion_stands_behind"))
     state.end_row = state.row
 
 

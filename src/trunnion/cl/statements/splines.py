@@ -4,15 +4,12 @@ That it is cubic and begins in the point before it is settled by real files: eac
 than knots, and only so its speed is continuous. The knot 0 is not written, the knot 1 once.
 """
 
-from typing import Final
-
 from trunnion.cl.builder import SplineStatement
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement
 from trunnion.cl.statements import motion
-
-_CURE: Final = "output splines as NX does for three axes, or turn spline output off in the CAM system"
+from trunnion.messages import Wording
 
 
 def nurbs(state: ReaderState, statement: Statement) -> None:
@@ -20,18 +17,16 @@ def nurbs(state: ReaderState, statement: Statement) -> None:
     state.spline = None
     state.spline_reported = True  # until it is certain that this one can be read
     if not state.in_operation:
-        raise StatementError("NURBS outside any operation", "write TOOL PATH/name,TOOL,tool before it", code="CL350")
+        raise StatementError(Wording("CL350", "nurbs_outside_any"))
     if statement.values:
-        what = f"NURBS/{statement.listed()}: the spline has a degree, weights or a form whose meaning is not known"
-        raise StatementError(what, _CURE, code="CL600")
+        raise StatementError(Wording("CL600", "nurbs_spline_degree", listed=statement.listed()))
     motion.refuse_in_circle(state, "NURBS")
     if state.cycle_line:
-        what = f"NURBS within the cycle of line {state.cycle_line}, where each point is a hole"
-        raise StatementError(what, "write CYCLE/OFF before it", code="CL620")
+        raise StatementError(Wording("CL620", "nurbs_within_cycle", cycle_line=state.cycle_line))
     if state.operation_row in state.builder.rapids:
-        raise StatementError("RAPID before a NURBS", "remove the RAPID", code="CL580")
+        raise StatementError(Wording("CL580", "rapid_before_nurbs"))
     if motion.current_tip(state) is None:
-        raise StatementError("NURBS without a point to begin in", "write FROM/ or GOTO/ before it", code="CL510")
+        raise StatementError(Wording("CL510", "nurbs_without_point"))
     state.spline_reported = False
     state.spline = SplineStatement(state.operation_row, state.line)
     state.builder.splines.append(state.spline)
@@ -42,7 +37,7 @@ def knot(state: ReaderState, statement: Statement) -> None:
     if state.spline_reported:
         return
     if state.spline is None or state.spline.points:
-        raise StatementError("KNOT without a NURBS before it", _CURE, code="CL600")
+        raise StatementError(Wording("CL600", "knot_without_nurbs"))
     state.spline.knots += _numbers(state, statement)
 
 
@@ -52,13 +47,13 @@ def cntrl(state: ReaderState, statement: Statement) -> None:
         return
     if len(statement.values) == 6:
         _give_up(state)
-        raise StatementError("CNTRL with a tool axis: what it means along a spline is not known", _CURE, code="CL600")
+        raise StatementError(Wording("CL600", "cntrl_tool_axis"))
     values = _numbers(state, statement, 3)
     motion.write_row(state, values)
     spline = state.spline
     if spline is None or state.operation_row != spline.row + spline.points:
         _give_up(state)
-        raise StatementError("CNTRL that follows neither KNOT nor another CNTRL", _CURE, code="CL600")
+        raise StatementError(Wording("CL600", "cntrl_follows_neither"))
     spline.points += 1
 
 

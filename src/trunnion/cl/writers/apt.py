@@ -14,6 +14,7 @@ from trunnion.cl.writers.lengths import INCH
 from trunnion.cl.writers.points import number_text
 from trunnion.cl.writers.writer import UNSETTLED_SYSTEM, ClWriter
 from trunnion.errors import Problem
+from trunnion.messages import Wording
 from trunnion.model.apt_cutter import apt_cutter
 from trunnion.model.arcs import FLAT_ARC
 from trunnion.model.frames import into_frame
@@ -35,7 +36,6 @@ from trunnion.model.toolpath import (
     Tool,
     Toolpath,
 )
-from trunnion.wording import counted
 
 #: Kinds of holes as one word, by the modes that a toolpath has.
 _CYCLES: Final = {
@@ -72,11 +72,9 @@ class AptWriter(ClWriter):
         frames = [operation.frame for operation in toolpath.operations]
         if any(frame != frames[0] for frame in frames):
             first = next(operation for operation in toolpath.operations if operation.frame != frames[0])
-            what = f"operations have coordinate systems of their own, and {self.title} has one"
-            self.remark(first.line, what, "all points are written in that of the first operation")
+            self.remark(first.line, Wording("CL930", "operations_have_coordinate", title=self.title))
         elif frames and frames[0] != Frame():
-            what = f"where its coordinate system (MSYS) lies is not carried over: {self.title} has no word for it here"
-            self.remark(toolpath.operations[0].line, what, "points stay as they are")
+            self.remark(toolpath.operations[0].line, Wording("CL930", "where_coordinate_system", title=self.title))
         self._remark_system(toolpath)
         operations, halved = [], 0
         for operation in toolpath.operations:
@@ -84,8 +82,7 @@ class AptWriter(ClWriter):
             operations.append(found)
             halved += count
         if halved:
-            what = f"{counted(halved, 'full circle')} become two arcs each: {self.title} tells an arc by its end"
-            self.remark(0, what, "the path stays the same")
+            self.remark(0, Wording("CL930", "full_circle_become", halved=halved, title=self.title))
         self._remark_phases(operations)
         self._remark_tolerances(operations)
         for operation in operations:
@@ -95,7 +92,7 @@ class AptWriter(ClWriter):
     def _remark_system(self, toolpath: Toolpath) -> None:
         identity = tuple(np.eye(3, 4).ravel().tolist())
         if toolpath.system not in ((), identity) and toolpath.dialect != self.name:
-            self.remark(0, UNSETTLED_SYSTEM, "points stay as they are")
+            self.remark(0, UNSETTLED_SYSTEM)
 
     def system_numbers(self) -> list[str]:
         """The coordinate system of the file in that of the model, if it comes from a file of this dialect."""
@@ -111,8 +108,7 @@ class AptWriter(ClWriter):
             plain = np.where(moves.kind == Kind.RAPID, Phase.RAPID, Phase.CUT)
             off = np.flatnonzero(moves.phase != plain)
             if len(off):
-                what = f"phases of motion (colours) are not carried over: {self.title} has no words for them"
-                self.remark(int(moves.line[off[0]]), what, "points are rapids or cuts")
+                self.remark(int(moves.line[off[0]]), Wording("CL930", "phases_motion_colours", title=self.title))
                 return
 
     def _remark_tolerances(self, operations: Sequence[Operation]) -> None:
@@ -120,8 +116,9 @@ class AptWriter(ClWriter):
         for before, operation in pairwise(operations):
             pairs = ((before.intol, operation.intol), (before.outtol, operation.outtol))
             if any(was is not None and now is None for was, now in pairs):
-                what = f"{operation.name} states no tolerance, and in {self.title} that of the operation before goes on"
-                self.remark(operation.line, what, "write INTOL/ and OUTTOL/ into it")
+                self.remark(
+                    operation.line, Wording("CL930", "states_no_tolerance", operation=operation.name, title=self.title)
+                )
 
     def _remark_tool(self, operation: Operation) -> None:
         """Say which sizes of a tool CUTTER has no place for."""
@@ -142,8 +139,9 @@ class AptWriter(ClWriter):
         if "," in tool.name:
             lost.append("name behind the comma")
         if lost:
-            what = f"{called(operation)}: {', '.join(lost)} not carried over"
-            self.remark(operation.line, what, "complete it by hand")
+            self.remark(
+                operation.line, Wording("CL930", "not_carried_over", called=called(operation), lost=tuple(lost))
+            )
 
     def losses(self, operation: Operation) -> Iterator[Problem]:
         """Helices, several turns, and cycles of which the dialect says nothing."""
@@ -153,15 +151,15 @@ class AptWriter(ClWriter):
             start = starts.get(row, moves.tip[row - 1])
             rise = abs(float((moves.tip[row] - start) @ arcs.normal[index]))
             if rise > FLAT_ARC or arcs.full_turns[index]:
-                what = f"a helix or an arc of several turns, for which {self.title} has no words"
-                yield self._lost(int(moves.line[row]), what, "output it as lines")
+                yield self._lost(int(moves.line[row]), Wording("CL910", "helix_arc_several", title=self.title))
             yield from self.arc_losses(operation, index)
         for event in operation.events:
             if isinstance(event, CycleOn):
                 yield from self._cycle_losses(event)
             elif isinstance(event, LoadTool) and event.row > 0:
-                what = f"{operation.name} loads a second tool, and in {self.title} that begins another operation"
-                yield self._lost(event.line, what, "begin an operation for it, with its form")
+                yield self._lost(
+                    event.line, Wording("CL910", "loads_second_tool", operation=operation.name, title=self.title)
+                )
         yield from self._side_losses(operation)
         yield from self._feed_losses(operation)
 
@@ -177,10 +175,9 @@ class AptWriter(ClWriter):
         if event.mode not in _CYCLES:
             words.append(",".join(event.mode))
         if words:
-            what = f"CYCLE with {' and '.join(words)}, of which it is not settled how {self.title} says it"
-            yield self._lost(event.line, what, "output the holes as motion")
+            yield self._lost(event.line, Wording("CL910", "cycle_not_settled", words=tuple(words), title=self.title))
         if not {"FEDTO", "RAPTO"} <= {word for word, _ in event.values}:
-            yield self._lost(event.line, "CYCLE without FEDTO or RAPTO", "write the depth and the height of the cycle")
+            yield self._lost(event.line, Wording("CL910", "cycle_without_fedto"))
 
     def _side_losses(self, operation: Operation) -> Iterator[Problem]:
         """Radius compensation that is on at a GOHOME with motion behind it, which begins another operation here."""
@@ -189,8 +186,7 @@ class AptWriter(ClWriter):
             if isinstance(event, CutterComp):
                 side = event.side
             elif isinstance(event, GoHome) and 0 < event.row < len(operation.moves) and side != "OFF":
-                what = f"CUTCOM/{side} is on at GOHOME, and in {self.title} another operation begins behind it"
-                yield self._lost(event.line, what, "write CUTCOM/OFF before GOHOME")
+                yield self._lost(event.line, Wording("CL910", "cutcom_gohome_another", side=side, title=self.title))
 
     def _feed_losses(self, operation: Operation) -> Iterator[Problem]:
         """Points without a feed behind operations that have one: here feeds go on."""
@@ -198,11 +194,13 @@ class AptWriter(ClWriter):
         before = operations[: next(n for n, each in enumerate(operations) if each is operation)]
         bare = np.isnan(operation.moves.feed) & (operation.moves.kind != Kind.RAPID) & ~rows_with_own_feed(operation)
         if bare.any() and any(not np.isnan(each.moves.feed).all() for each in before):
-            what = f"{operation.name} cuts before it has a feed, and in {self.title} the last one goes on"
-            yield self._lost(int(operation.moves.line[bare.argmax()]), what, "write FEDRAT/ before it")
+            yield self._lost(
+                int(operation.moves.line[bare.argmax()]),
+                Wording("CL910", "cuts_before_feed", operation=operation.name, title=self.title),
+            )
 
-    def _lost(self, line: int, what: str, cure: str) -> Problem:
-        return Problem(self.source.file, line, what, cure, code="CL910")
+    def _lost(self, line: int, wording: Wording) -> Problem:
+        return Problem(self.source.file, line, wording)
 
     def begin(self, number: int, operation: Operation) -> list[str]:
         """The name, the tool and the tolerances."""

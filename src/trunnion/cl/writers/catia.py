@@ -10,6 +10,7 @@ from trunnion.arrays import Floats
 from trunnion.cl.writers.apt import AptWriter
 from trunnion.cl.writers.points import AxisRule, PointForm, number_text
 from trunnion.errors import Problem
+from trunnion.messages import Wording
 from trunnion.model.toolpath import CycleOn, From, LoadTool, Operation, SpindleOn
 
 #: A tool axis that turns by no more than this between the ends of an arc stays, as its last decimal may differ.
@@ -71,8 +72,7 @@ class CatiaWriter(AptWriter):
         row = int(operation.arcs.row[index])
         start = _axis_before(operation, row)
         if start is not None and float(np.abs(operation.moves.axis[row] - start).max()) > _SAME_AXIS:
-            what = "the tool axis turns along an arc, for which CATIA APTSOURCE has no words"
-            yield Problem(self.source.file, int(operation.moves.line[row]), what, "output it as lines", code="CL910")
+            yield Problem(self.source.file, int(operation.moves.line[row]), Wording("CL910", "tool_axis_turns"))
 
     def arc(self, operation: Operation, index: int) -> tuple[list[str], bool]:
         """The direction at the start, the circle, and where it ends."""

@@ -9,6 +9,7 @@ import numpy as np
 from trunnion.arrays import Flags
 from trunnion.encoding import EncodingDetector
 from trunnion.errors import Problem
+from trunnion.messages import Wording
 from trunnion.model.arcs import ARC_POINT_TOLERANCE
 from trunnion.model.toolpath import (
     CycleOff,
@@ -56,9 +57,7 @@ def problems_of(toolpath: Toolpath, comments: Iterable[str]) -> list[Problem]:
     texts = {"part name": toolpath.part, **{f"comment {text!r}": text for text in comments}}
     found += [_bad_text(toolpath.file, 0, what) for what, text in texts.items() if not _is_one_line(text)]
     if not toolpath.operations:
-        found.append(
-            Problem(toolpath.file, 0, "there is no operation in it", "give a toolpath with motion", code="CL140")
-        )
+        found.append(Problem(toolpath.file, 0, Wording("CL140", "no_operation")))
     return found
 
 
@@ -82,15 +81,19 @@ def _arc_problems(file: str, operation: Operation) -> Iterator[Problem]:
     for index, row in enumerate(arcs.row.tolist()):
         start = starts.get(row) or (tuple(moves.tip[row - 1].tolist()) if row else None)
         if start is None:
-            what = f"operation {operation.name} begins with an arc, which has no start"
-            yield Problem(file, int(moves.line[row]), what, "put a point before it", code="CL910")
+            yield Problem(
+                file, int(moves.line[row]), Wording("CL910", "operation_begins_arc", operation=operation.name)
+            )
             continue
         offsets = np.array([start, moves.tip[row]]) - arcs.centre[index]
         across = np.linalg.norm(np.cross(offsets, arcs.normal[index]), axis=1)
         off = float(np.max(np.abs(across - arcs.radius[index])))
         if off > ARC_POINT_TOLERANCE:
-            what = f"an end of the arc lies {off:.3f} mm off its radius; a CL file allows {ARC_POINT_TOLERANCE} mm"
-            yield Problem(file, int(moves.line[row]), what, "make it a line, or correct its centre", code="CL910")
+            yield Problem(
+                file,
+                int(moves.line[row]),
+                Wording("CL910", "end_arc_lies", off=off, arc_point_tolerance=ARC_POINT_TOLERANCE),
+            )
 
 
 def _texts(operation: Operation) -> Iterator[tuple[int, str, str]]:
@@ -111,6 +114,4 @@ def _is_one_line(text: str) -> bool:
 
 
 def _bad_text(file: str, line: int, what: str) -> Problem:
-    return Problem(
-        file, line, f"{what} has a line break or a control character in it", "write it in one line", code="CL910"
-    )
+    return Problem(file, line, Wording("CL910", "line_break_control", subject=what))

@@ -10,8 +10,8 @@ from trunnion.cl.writers.checks import called
 from trunnion.cl.writers.points import number_text
 from trunnion.cl.writers.writer import UNSETTLED_SYSTEM, ClWriter
 from trunnion.errors import Problem
+from trunnion.messages import Wording
 from trunnion.model.toolpath import CycleOn, Kind, LoadTool, Operation, Phase, SelectTool, Tool, Toolpath
-from trunnion.wording import counted
 
 _PHASE_COLOURS: Final = {phase: colour for colour, phase in COLOUR_PHASES.items()} | {
     Phase.INITIAL: 186,
@@ -32,20 +32,25 @@ class ClsfWriter(ClWriter):
     def prepared(self, toolpath: Toolpath) -> Toolpath:
         """The toolpath as it is; a coordinate system whose meaning is not settled is lost."""
         if toolpath.system and toolpath.system != _IDENTITY:
-            self.remark(0, UNSETTLED_SYSTEM, "points stay as they are")
+            self.remark(0, UNSETTLED_SYSTEM)
         for operation in toolpath.operations:
             tool = operation.tool
             sizes = {"holder": tool.holder, "extension": tool.extension, "length in the spindle": tool.set_length}
             if lost := [word for word, said in sizes.items() if said]:
-                what = f"{called(operation)}: {', '.join(lost)} not carried over"
-                self.remark(operation.line, what, f"{self.title} has no words for it")
+                self.remark(
+                    operation.line,
+                    Wording("CL930", "not_carried", called=called(operation), lost=tuple(lost), title=self.title),
+                )
         return toolpath
 
     def losses(self, operation: Operation) -> Iterator[Problem]:
         """A name that cannot be told from that of the tool."""
         if ",TOOL," in operation.name:
-            what = f"operation name {operation.name!r} has ',TOOL,' in it, which ends the name in a CL file"
-            yield Problem(self.source.file, operation.line, what, "rename the operation", code="CL910")
+            yield Problem(
+                self.source.file,
+                operation.line,
+                Wording("CL910", "operation_name_tool", operation=repr(operation.name)),
+            )
 
     def head(self, comments: Sequence[str]) -> list[str]:
         """Comments, unit and part."""
@@ -87,9 +92,10 @@ class ClsfWriter(ClWriter):
         if len(off):
             row = int(off[0])
             was, now = Phase(int(moves.phase[row])).name.lower(), Phase(int(read[row])).name.lower()
-            points = counted(len(off), "point")
-            what = f"{operation.name}: {points} in another phase, the first in {now} instead of {was}"
-            self.remark(int(moves.line[row]), what, "the colours of a CL file cannot express this order")
+            self.remark(
+                int(moves.line[row]),
+                Wording("CL930", "point_another_phase", operation=operation.name, count=len(off), now=now, was=was),
+            )
         return [(row, f"PAINT/COLOR,{colour}") for row, colour in colours]
 
     def feed(self, value: float, *, per_rev: bool) -> list[str]:

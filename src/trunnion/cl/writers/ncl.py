@@ -6,8 +6,8 @@ from typing import Final
 
 from trunnion.cl.writers.apt import AptWriter
 from trunnion.cl.writers.points import AxisRule, PointForm
+from trunnion.messages import Wording
 from trunnion.model.toolpath import CycleOn, LoadTool, Operation
-from trunnion.wording import counted
 
 #: The only name that an operation of the dialect has: its number.
 _NUMBER: Final = re.compile(r"FEATNO ([0-9]{1,9})")
@@ -27,8 +27,7 @@ class NclWriter(AptWriter):
         """Comments, part, unit, and the coordinate system if it is that of an NCL file."""
         names = [operation.name for operation in self.toolpath.operations if not _NUMBER.fullmatch(operation.name)]
         if names:
-            what = f"names of {counted(len(names), 'operation')} become numbers: Creo NCL has no names"
-            self.remark(self.toolpath.operations[0].line, what, "their names stand in comments")
+            self.remark(self.toolpath.operations[0].line, Wording("CL930", "names_operation_become", count=len(names)))
         lines = [f"$$ {text}" for text in comments]
         if self.toolpath.part:
             lines.append(f"PARTNO / {self.toolpath.part}")

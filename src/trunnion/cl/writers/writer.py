@@ -19,6 +19,7 @@ from trunnion.cl.writers.checks import is_detected_as_utf8, joined, problems_of
 from trunnion.cl.writers.lengths import INCH, in_unit
 from trunnion.cl.writers.points import PointForm, axis_texts, encode_lines, number_text, write_points
 from trunnion.errors import InputError, Problem, Severity
+from trunnion.messages import Wording
 from trunnion.model.toolpath import (
     Arcs,
     BlockSkip,
@@ -49,7 +50,7 @@ from trunnion.model.toolpath import (
 _LINE = 72
 
 #: What becomes of ``Toolpath.system`` in another dialect.
-UNSETTLED_SYSTEM = "its coordinate system in that of the model is not carried over: which numbers are its axes is open"
+UNSETTLED_SYSTEM = Wording("CL930", "unsettled_system")
 
 
 @dataclass(slots=True)
@@ -286,9 +287,9 @@ class ClWriter(ABC):
                 return self.statement("CYCLE", "OFF")
         raise TypeError(type(event).__name__)
 
-    def remark(self, line: int, what: str, cure: str) -> None:
+    def remark(self, line: int, wording: Wording) -> None:
         """Note what is lost."""
-        self.remarks.append(Problem(self.source.file, line, what, cure, Severity.WARNING, code="CL930"))
+        self.remarks.append(Problem(self.source.file, line, wording, severity=Severity.WARNING))
 
 
 def _written_events(operation: Operation) -> tuple[Event, ...]:

@@ -270,7 +270,6 @@ class _Search:
             k = int(value.argmin())
             place = _place_words(self.places[asked[k]], self.centres[asked[k]])
             if value[k] == -np.inf:
-                what = f"no tool axis within {self._tilt:g} degrees of Z is in the machine's reach {place}"
                 return Problem(name, 0, Wording("IMP322", "no_tool_axis", tilt=self._tilt, place=place))
             if value[k] < 0.0:
                 start = directions[[int(margins[k].argmax())]]

@@ -154,4 +154,4 @@ def _events(machine: Machine, word: str, text: str) -> tuple[Event, ...]:
         return events_of(text)
     except StatementError as error:
         file = machine.files[-1] if machine.files else machine.key
-        raise InputError(Problem(file, 0, f"[cl.words] {word}: {error.what}", error.cure, code=error.code)) from None
+        raise InputError(Problem(file, 0, error.wording.within("of", name=f"[cl.words] {word}"))) from None
