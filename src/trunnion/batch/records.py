@@ -16,7 +16,7 @@ from typing import Any, Final
 from trunnion.batch.keys import digest
 from trunnion.batch.stores import Store, TakenError
 from trunnion.batch.task import NO_COSTS, Costs, Outcome, Status
-from trunnion.errors import InputError, Problem, Severity
+from trunnion.errors import InputError, Problem, Severity, key_subject
 from trunnion.messages import Wording
 
 #: The folder of records within the results; no output has a name that begins with a point.
@@ -81,7 +81,7 @@ def record_name(place: str) -> str:
 
 def record_bytes(record: Record) -> bytes:
     """A record as it is kept."""
-    values = asdict(record)
+    values = asdict(record) | {"problems": [each.to_dict() for each in record.problems]}
     costs = {**values.pop("costs"), "home": values.pop("home")}
     lines = (json.dumps(each, ensure_ascii=False, allow_nan=False, sort_keys=True) for each in (values, costs))
     return ("\n".join(lines) + "\n").encode("utf-8", "backslashreplace")
@@ -114,7 +114,9 @@ def _is_result(name: str) -> bool:
 
 
 def _problem(values: dict[str, Any]) -> Problem:
-    return Problem(**{**values, "severity": Severity(values["severity"])})
+    file, line, what, cure = (values[name] for name in ("file", "line", "what", "cure"))
+    subject = key_subject(values["key"]) if values["key"] else None
+    return Problem(file, line, what, cure, Severity(values["severity"]), subject=subject, code=values["code"])
 
 
 def read_records(store: Store, places: Sequence[str]) -> Iterator[Record | None]:

@@ -1,27 +1,15 @@
 """Messages of the library in the words of the command line: options in place of arguments."""
 
 import re
+from functools import cache
 from typing import Final
 
 from trunnion.errors import Problem, TrunnionError
+from trunnion.jobs.registry import JOBS
+from trunnion.messages import Words
 
-#: Options that are not called after their arguments.
-_OPTIONS: Final = {
-    "settings": "--set",
-    "work_offset": "--offset",
-    "subprograms": "--with",
-    "to_subprograms": "--to-with",
-    "tools": "--tool",
-    "libraries": "--tools",
-    "fixtures": "--fixture",
-    "operations": "--operation",
-    "cl": "CL",
-    "code": "CODE",
-    "impeller": "IMPELLER",
-    "nc": "NC",
-    "first": "NC",
-    "second": "NC",
-}
+#: Arguments that a command knows by their place, or under several names.
+_BY_PLACE: Final = {"cl": "CL", "code": "CODE", "first": "NC", "second": "NC"}
 
 #: A setting, such as ``setting tool=5``; an argument with a value, such as ``argument trust=ABC``; and one that is
 #: switched on, such as ``force=True``.
@@ -36,10 +24,29 @@ def in_command_words(text: str) -> str:
     return _SWITCH.sub(lambda found: _option(found[1]), text)
 
 
+class CommandWords(Words):
+    """Options in place of settings and arguments."""
+
+    def setting(self, name: str, value: str) -> str:
+        """A setting with a value."""
+        return f"--set {name}={value}"
+
+    def argument(self, name: str, value: str) -> str:
+        """An option with a value."""
+        return f"{_option(name)} {value}"
+
+    def switch(self, name: str) -> str:
+        """An option that is switched on."""
+        return _option(name)
+
+
+_WORDS: Final = CommandWords()
+
+
 def problem_line(problem: Problem) -> str:
     """A problem as the command line prints it."""
-    text = in_command_words(str(problem))
-    return _option(problem.argument) + text.removeprefix(problem.file) if problem.argument else text
+    called = _option(problem.argument) if problem.argument else ""
+    return in_command_words(problem.line_of_text(_WORDS, called))
 
 
 def error_lines(error: TrunnionError) -> str:
@@ -48,4 +55,12 @@ def error_lines(error: TrunnionError) -> str:
 
 
 def _option(argument: str) -> str:
-    return _OPTIONS.get(argument, "--" + argument.replace("_", "-"))
+    return _options().get(argument, "--" + argument.replace("_", "-"))
+
+
+@cache
+def _options() -> dict[str, str]:
+    """What the command line calls an argument of the library: its flag, or what stands in its place."""
+    options = [option for job in JOBS.values() for option in job.options]
+    by_place = {option.name: option.value_name.partition("|")[0] for option in options if not option.flag}
+    return by_place | {option.name: option.flag for option in reversed(options) if option.flag} | _BY_PLACE

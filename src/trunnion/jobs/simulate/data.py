@@ -1,7 +1,6 @@
 """A simulation as data for JSON; the schema is in ``docs/simulation.md``."""
 
 import math
-from dataclasses import asdict
 from typing import Final
 
 from trunnion.jobs.simulate.result import SimulationResult
@@ -43,7 +42,7 @@ def simulation_data(found: SimulationResult) -> dict[str, object]:
             for each in found.operations
         ],
         "remarks": [
-            asdict(each) | {"severity": str(each.severity), "setup": one.setup or None}
+            each.to_dict() | {"setup": one.setup or None}
             for one in found.setups or (found,) for each in one.remarks
         ],
         "seconds": _number(found.seconds),
