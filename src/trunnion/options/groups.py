@@ -61,6 +61,9 @@ FEED: Final = Option(
     "feed", "--feed", Choice(FEEDS), "fastest: of each block what the axes reach, within the feed of the CL file"
 )
 
+#: Options of a post that are settings too, under the same name: each is declared here, and acts where its setting is read.
+POSTING: Final = Group("limits of a post", ())
+
 ZERO: Final = Option("zero", "--zero", Text("X,Y,Z"), "the workpiece zero on the machine, mm", key="zero_mm")
 
 TOOL_LENGTH: Final = Option(
