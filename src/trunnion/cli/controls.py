@@ -2,10 +2,9 @@
 
 import argparse
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
 from typing import Final
 
-from trunnion.cli.results import as_json, print_result
+from trunnion.cli.results import print_result
 from trunnion.jobs.describe.controls import (
     ControlDescription,
     SettingDescription,
@@ -13,6 +12,7 @@ from trunnion.jobs.describe.controls import (
     describe_control,
     describe_controls,
 )
+from trunnion.results import as_json, to_data
 
 _INDENT: Final = "  "
 
@@ -21,7 +21,7 @@ def controls(arguments: argparse.Namespace) -> int:
     """List the shipped controls, or explain one."""
     if arguments.name:
         control = describe_control(arguments.name)
-        print_result(*([as_json(asdict(control))] if arguments.json else control_lines(control)))
+        print_result(*([as_json(to_data(control))] if arguments.json else control_lines(control)))
         return 0
     found = describe_controls()
     print_result(*([as_json([_list_entry(control) for control in found])] if arguments.json else _list_lines(found)))
@@ -29,14 +29,8 @@ def controls(arguments: argparse.Namespace) -> int:
 
 
 def _list_entry(control: ControlDescription) -> dict[str, object]:
-    return {
-        "key": control.key,
-        "name": control.name,
-        "family": control.family,
-        "description": control.description,
-        "settings": len(control.settings),
-        "run_settings": len(control.run_settings),
-    }
+    data: dict[str, object] = to_data(control, only=("key", "name", "family", "description"))
+    return data | {"settings": len(control.settings), "run_settings": len(control.run_settings)}
 
 
 def _list_lines(found: Sequence[ControlDescription]) -> Iterator[str]:

@@ -2,18 +2,13 @@
 
 import argparse
 from collections.abc import Iterator
-from typing import Final
 
-from trunnion.cli.results import as_json, print_result
+from trunnion.cli.results import print_result
 from trunnion.cli.terminal import Terminal
 from trunnion.geometry.fitting import CurveFit
 from trunnion.jobs.impeller.curves import check_picture, fit_curve, read_points, write_curve_picture
+from trunnion.results import as_json, to_data
 from trunnion.wording import counted, one_line
-
-_DECIMALS: Final = 9
-
-#: A larger radius is that of a straight line, mm.
-_STRAIGHT: Final = 1e9
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -35,7 +30,9 @@ def run(arguments: argparse.Namespace) -> int:
     Terminal().problems([remark for one in fits for remark in one.remarks])
     if arguments.picture is not None:
         write_curve_picture(fits, arguments.picture, inputs=[arguments.file])
-    print_result(*([as_json(curve_data(fits))] if arguments.json else map(one_line, curve_lines(fits))))
+    print_result(
+        *([as_json({"schema": 2, "curves": to_data(fits)})] if arguments.json else map(one_line, curve_lines(fits)))
+    )
     return 0
 
 
@@ -60,38 +57,3 @@ def curve_lines(fits: list[CurveFit]) -> Iterator[str]:
             f"  points are at most {one.offsets.max():.6f} mm off, {(one.offsets**2).mean() ** 0.5:.6f} rms;"
             f" natural ends would move the curve by up to {worst.bend:.5f} mm"
         )
-
-
-def curve_data(fits: list[CurveFit]) -> dict[str, object]:
-    """Curves as data."""
-    return {"schema": 1, "curves": [_data(one) for one in fits]}
-
-
-def _data(one: CurveFit) -> dict[str, object]:
-    curve = one.curve
-    return {
-        "name": one.name,
-        "degree": 3,
-        "control_points": [[round(number, _DECIMALS) for number in point] for point in curve.control_points.tolist()],
-        "knots": [round(knot, 12) for knot in curve.knots.tolist()],
-        "length_mm": round(one.length, _DECIMALS),
-        "points": [
-            {"point": point, "parameter": round(parameter, 12), "off_mm": round(off, _DECIMALS)}
-            for point, parameter, off in zip(
-                one.points.tolist(), one.parameters.tolist(), one.offsets.tolist(), strict=True
-            )
-        ],
-        "spans": [
-            {
-                "length_mm": round(span.length, _DECIMALS),
-                "sag_mm": round(span.sag, _DECIMALS),
-                "radius_mm": round(span.radius, _DECIMALS) if span.radius < _STRAIGHT else None,
-                "turn_deg": round(span.turn, _DECIMALS),
-                "off_natural_mm": round(span.bend, _DECIMALS),
-            }
-            for span in one.spans
-        ],
-        "remarks": [
-            {"file": r.file, "line": r.line, "what": r.what, "cure": r.cure, "code": r.code} for r in one.remarks
-        ],
-    }

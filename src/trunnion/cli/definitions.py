@@ -2,13 +2,12 @@
 
 import argparse
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path, PurePath
 
 from trunnion.cli.controls import control_lines
 from trunnion.cli.machine_list import machine_list
 from trunnion.cli.machine_text import machine_data, machine_lines
-from trunnion.cli.results import as_json, print_result
+from trunnion.cli.results import print_result
 from trunnion.controls import load_control
 from trunnion.controls.definition_files import is_control_file, load_control_table
 from trunnion.controls.loading import shipped_controls, with_control
@@ -23,6 +22,7 @@ from trunnion.jobs.inputs.cl_statements import check_statements
 from trunnion.machines import load_machine, shipped_machines
 from trunnion.machines.loading import machine_library
 from trunnion.readers import check_reading
+from trunnion.results import as_json, to_data
 from trunnion.schemas import first_line
 
 
@@ -58,7 +58,7 @@ def check(arguments: argparse.Namespace) -> int:
         _check_control_file(arguments.file)
         control = describe_control(arguments.file)
         good = f"{arguments.file}: good"
-        print_result(*([as_json(asdict(control))] if arguments.json else [good, "", *control_lines(control)]))
+        print_result(*([as_json(to_data(control))] if arguments.json else [good, "", *control_lines(control)]))
         return 0
     _check_is_known(arguments.file)
     key = PurePath(arguments.file).name.removesuffix(".toml")

@@ -3,14 +3,15 @@
 import argparse
 import textwrap
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 
-from trunnion.cli.results import as_json, print_result
+from trunnion.cli.results import print_result
 from trunnion.cli.wording import in_command_words
 from trunnion.errors import InputError, Problem
 from trunnion.explanations import SUBJECTS, Explanation
 from trunnion.jobs.describe.codes import all_explanations
 from trunnion.jobs.describe.codes import explain as explain_code
+from trunnion.results import as_json, to_data
 
 _WIDTH = 100
 
@@ -20,7 +21,7 @@ def explain(arguments: argparse.Namespace) -> int:
     found, faults = _asked(arguments.codes)
     found = found if arguments.codes else list(all_explanations())
     if arguments.json:
-        print_result(as_json([asdict(each) for each in found]))
+        print_result(as_json(to_data(found)))
     elif arguments.codes:
         if found:
             print_result("\n\n".join(map(_text, found)))

@@ -3,15 +3,14 @@
 import argparse
 import math
 from collections.abc import Iterator, Sequence
-from pathlib import Path
-from typing import Any
 
 from trunnion.cli.cl_files import cl_inputs, named_files
-from trunnion.cli.results import as_json, print_result
+from trunnion.cli.results import print_result
 from trunnion.cli.terminal import Terminal
 from trunnion.cli.wording import in_command_words
 from trunnion.files import atomic_file, check_outputs
 from trunnion.jobs.capability.fitting import AxisMargin, FitStatus, MachineFit, fit
+from trunnion.results import as_json, to_data
 from trunnion.wording import format_duration, one_line
 
 
@@ -32,11 +31,11 @@ def run(arguments: argparse.Namespace) -> int:
         observer=Terminal(),
     )
     if arguments.json == "-":
-        print_result(as_json(fit_data(found)))
+        print_result(as_json({"schema": 1, "machines": to_data(found)}))
     else:
         if arguments.json is not None:
             with atomic_file(arguments.json, inputs=read) as sink:
-                sink.write((as_json(fit_data(found)) + "\n").encode())
+                sink.write((as_json({"schema": 1, "machines": to_data(found)}) + "\n").encode())
         print_result(*map(one_line, fit_lines(found)))
     return 0 if any(each.status is not FitStatus.NOT for each in found) else 1
 
@@ -67,29 +66,3 @@ def _facts(each: MachineFit) -> str:
 def _margin(margin: AxisMargin) -> str:
     unit = "°" if margin.unit == "deg" else " mm"
     return f"{margin.axis} {margin.margin:.1f}{unit}"
-
-
-def fit_data(found: Sequence[MachineFit]) -> dict[str, Any]:
-    """The machines as data, in their order."""
-    return {"schema": 1, "machines": [_data(each) for each in found]}
-
-
-def _data(each: MachineFit) -> dict[str, Any]:
-    return {
-        "machine": each.key if not each.key.endswith(".toml") else Path(each.key).as_posix(),
-        "status": str(each.status),
-        "is_example": each.is_example,
-        "reasons": list(each.reasons),
-        "seconds": None if each.seconds is None else round(each.seconds, 3),
-        "zero_mm": None if each.zero_mm is None else list(each.zero_mm),
-        "turn_deg": each.turn_deg,
-        "missing_mm": None if each.missing is None else round(each.missing, 6),
-        "margins": [
-            {
-                "axis": margin.axis,
-                "unit": margin.unit,
-                "left": round(margin.margin, 6) if math.isfinite(margin.margin) else None,
-            }
-            for margin in each.margins
-        ],
-    }

@@ -2,27 +2,21 @@
 
 import argparse
 from collections.abc import Iterator, Sequence
-from dataclasses import fields, is_dataclass
 from typing import Final
 
 from trunnion.cli.cl_files import cl_inputs, named_files
-from trunnion.cli.results import as_json, print_result
+from trunnion.cli.results import print_result
 from trunnion.cli.terminal import Terminal
 from trunnion.jobs.describe.cl_files import ClDescription, OperationDescription, ToolDescription, Vector, describe_cl
 from trunnion.jobs.describe.plot import check_plot, write_plot
 from trunnion.model.toolpath import Frame
+from trunnion.results import as_json, to_data
 from trunnion.wording import counted, format_duration, one_line
 
 _INDENT: Final = "  "
 
-#: Decimals of numbers in data.
-_DECIMALS: Final = 9
-
 #: Planes that the text shows of an operation.
 _MOST_PLANES: Final = 6
-
-#: Fields of a description that are no data.
-_NOT_DATA: Final = frozenset({"toolpaths", "remarks"})
 
 
 def info(arguments: argparse.Namespace) -> int:
@@ -40,35 +34,8 @@ def info(arguments: argparse.Namespace) -> int:
     terminal.problems(found.remarks)
     if arguments.plot is not None:
         write_plot(found, arguments.plot)
-    print_result(*([as_json(info_data(found))] if arguments.json else map(one_line, info_lines(found))))
+    print_result(*([as_json(to_data(found))] if arguments.json else map(one_line, info_lines(found))))
     return 0
-
-
-def info_data(found: ClDescription) -> dict[str, object]:
-    """A description as data."""
-    data: dict[str, object] = {"schema": 1}
-    for field in fields(found):
-        if field.name not in _NOT_DATA:
-            data[field.name] = _plain(getattr(found, field.name))
-    data["remarks"] = [
-        {"file": r.file, "line": r.line, "what": r.what, "cure": r.cure, "code": r.code} for r in found.remarks
-    ]
-    return data
-
-
-def _plain(value: object) -> object:
-    if isinstance(value, Frame):
-        x, y, z = value.matrix().T.tolist()
-        return _plain({"origin": value.origin, "x": x, "y": y, "z": z})
-    if isinstance(value, float):
-        return round(value, _DECIMALS) + 0.0
-    if isinstance(value, tuple | list):
-        return [_plain(each) for each in value]
-    if isinstance(value, dict):
-        return {key: _plain(each) for key, each in value.items()}
-    if is_dataclass(value) and not isinstance(value, type):
-        return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
-    return value
 
 
 def info_lines(found: ClDescription) -> Iterator[str]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 from trunnion.arrays import Floats
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.place_bodies import body_lines, gain_text, touch_line
-from trunnion.cli.results import as_json, print_result, tell
+from trunnion.cli.results import print_result, tell
 from trunnion.cli.terminal import Terminal, output_place
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.files import atomic_file, check_outputs
@@ -16,7 +16,6 @@ from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import FilePath, ToolpathLike, load_machine
 from trunnion.jobs.inputs.settings import as_texts
 from trunnion.jobs.place.bodies import BodiesInput
-from trunnion.jobs.place.data import placement_data
 from trunnion.jobs.place.inputs import toolpaths_to_post
 from trunnion.jobs.place.placing import place
 from trunnion.jobs.place.posting import post_placed
@@ -25,6 +24,7 @@ from trunnion.model.clamping import are_one_angle, number
 from trunnion.placing.placement import AxisUse, Limit, Place, Placement, RotaryUse, TurnMargin
 from trunnion.placing.program_use import ProgramUse, other_positions
 from trunnion.placing.table_limits import KEPT
+from trunnion.results import as_json, to_data
 from trunnion.wording import counted, format_duration, one_line
 
 if TYPE_CHECKING:  # imported where a project is placed
@@ -89,12 +89,12 @@ def run(arguments: argparse.Namespace) -> int:
     )
     lines = tell if arguments.apply == "-" else print_result
     if arguments.json == "-":
-        print_result(as_json(placement_data(found)))
+        print_result(as_json(to_data(found)))
     else:
         lines(*map(one_line, placement_lines(found)))
     if arguments.json not in (None, "-"):
         with atomic_file(arguments.json, inputs=read) as stream:
-            stream.write((as_json(placement_data(found)) + "\n").encode())
+            stream.write((as_json(to_data(found)) + "\n").encode())
     if arguments.plot is not None:
         from trunnion.jobs.place.plot import write_placing_plot
 

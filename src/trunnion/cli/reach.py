@@ -10,14 +10,15 @@ from trunnion.capability.part_reach import PartReach
 from trunnion.capability.path_reach import PathReach
 from trunnion.capability.reach import Reach, TiltReach
 from trunnion.cli.cl_files import cl_inputs, named_files
-from trunnion.cli.results import as_json, print_result
+from trunnion.cli.results import print_result
 from trunnion.cli.terminal import Terminal
 from trunnion.files import atomic_file, check_outputs
-from trunnion.jobs.capability.reach_report import check_reach_plot, reach_data, write_reach_plot
+from trunnion.jobs.capability.reach_report import check_reach_plot, write_reach_plot
 from trunnion.jobs.capability.reaching import reach
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import load_machine
 from trunnion.machines.reach import ReachedVolume
+from trunnion.results import as_json, to_data
 from trunnion.wording import counted, one_line
 
 _DM3: Final = 1e6
@@ -49,11 +50,11 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.plot is not None:
         write_reach_plot(found, arguments.plot, read)
     if arguments.json == "-":
-        print_result(as_json(reach_data(found)))
+        print_result(as_json(to_data(found)))
     else:
         if arguments.json is not None:
             with atomic_file(arguments.json, inputs=read) as sink:
-                sink.write((as_json(reach_data(found)) + "\n").encode())
+                sink.write((as_json(to_data(found)) + "\n").encode())
         print_result(*map(one_line, reach_lines(found)))
     missed = any(each.no_axis or each.no_travel for each in found.paths)
     return 1 if missed or (found.part is not None and len(found.part.missed)) else 0

@@ -1,6 +1,5 @@
 """Results on stdout."""
 
-import json
 import sys
 
 from trunnion.errors import InputError, Problem
@@ -31,8 +30,3 @@ def print_result(*lines: str, end: str = "\n") -> None:
     except OSError as error:
         what = f"cannot be written: {error.strerror or error}"
         raise InputError(Problem("stdout", 0, what, "let it go elsewhere", code="FIL230")) from None
-
-
-def as_json(value: object) -> str:
-    """Data as text."""
-    return json.dumps(value, ensure_ascii=False, allow_nan=False, indent=1)

@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Iterator
 
 from trunnion.capability.sensitivity import ErrorExtent, NumberSensitivity, Sensitivity
-from trunnion.cli.results import as_json, print_result
+from trunnion.cli.results import print_result
 from trunnion.cli.terminal import Terminal
 from trunnion.files import atomic_file, check_outputs
 from trunnion.jobs.capability.sensitivity import sensitivity
@@ -12,12 +12,12 @@ from trunnion.jobs.capability.sensitivity_report import (
     amount_text,
     check_sensitivity_report,
     place_text,
-    sensitivity_data,
     write_sensitivity_report,
     zero_text,
 )
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import load_machine
+from trunnion.results import as_json, to_data
 from trunnion.wording import counted, one_line
 
 
@@ -42,11 +42,11 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.report is not None:
         write_sensitivity_report(found, arguments.report, read)
     if arguments.json == "-":
-        print_result(as_json(sensitivity_data(found)))
+        print_result(as_json(to_data(found)))
         return 0
     if arguments.json is not None:
         with atomic_file(arguments.json, inputs=read) as sink:
-            sink.write((as_json(sensitivity_data(found)) + "\n").encode())
+            sink.write((as_json(to_data(found)) + "\n").encode())
     print_result(*map(one_line, sensitivity_lines(found)))
     return 0
 

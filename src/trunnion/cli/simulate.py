@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from trunnion.cli.cl_files import cl_inputs, named_files
-from trunnion.cli.results import as_json, print_result
+from trunnion.cli.results import print_result
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import Severity
 from trunnion.files import atomic_file, check_outputs
@@ -14,10 +14,10 @@ from trunnion.jobs.inputs.reading import load_machine
 from trunnion.jobs.papers.reports import check_report_name
 from trunnion.jobs.papers.simulation_report import write_simulation_report
 from trunnion.jobs.project.file import library_files, project_files
-from trunnion.jobs.simulate.data import simulation_data
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.simulating import simulate
 from trunnion.model.clamping import Clamping, number
+from trunnion.results import as_json, to_data
 from trunnion.simulation.meshes import check_mesh_name, save_mesh
 from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
 from trunnion.simulation.stock.deviation import Excess
@@ -68,12 +68,12 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.report is not None:
         write_simulation_report(found, arguments.report, read)
     if arguments.json == "-":
-        print_result(as_json(simulation_data(found)))
+        print_result(as_json(to_data(found)))
     else:
         print_result(*map(one_line, simulation_lines(found)))
         if arguments.json is not None:
             with atomic_file(arguments.json, inputs=read) as stream:
-                stream.write((as_json(simulation_data(found)) + "\n").encode())
+                stream.write((as_json(to_data(found)) + "\n").encode())
     return 0 if found.passed else 1
 
 
