@@ -88,18 +88,18 @@ def _figures_of(kind: type) -> tuple[KeyFigure, ...]:
     found = list[KeyFigure]()
     moved = list[tuple[str, list[KeyFigure]]]()
     for name, figures in _stated(kind):
-        place = found
+        group = found
         for each in figures:
             if each.after:
-                moved.append((each.after, place := []))
-            place.append(KeyFigure(each.key_of(name), name, each))
+                moved.append((each.after, group := []))
+            group.append(KeyFigure(each.key_of(name), name, each))
     while moved:  # what stands behind one that is moved itself waits for that
         behind = {name: k + 1 for k, each in enumerate(found) for name in (each.key, each.figure.within)}
         ready = next((k for k, (after, _) in enumerate(moved) if after in behind or after == FIRST), None)
         assert ready is not None, f"{kind.__name__} has no {moved[0][0]}"
         after, own = moved.pop(ready)
-        place = behind.get(after, 0)
-        found[place:place] = own
+        begin = behind.get(after, 0)
+        found[begin:begin] = own
     return tuple(found)
 
 
