@@ -1,10 +1,9 @@
 """``trunnion controls``."""
 
-import argparse
 from collections.abc import Iterator, Sequence
 from typing import Final
 
-from trunnion.cli.results import print_result
+from trunnion.cli.results import show
 from trunnion.jobs.describe.controls import (
     ControlDescription,
     SettingDescription,
@@ -12,19 +11,20 @@ from trunnion.jobs.describe.controls import (
     describe_control,
     describe_controls,
 )
-from trunnion.results import as_json, to_data
+from trunnion.jobs.job import Given
+from trunnion.results import to_data
 
 _INDENT: Final = "  "
 
 
-def controls(arguments: argparse.Namespace) -> int:
+def controls(given: Given) -> int:
     """List the shipped controls, or explain one."""
-    if arguments.name:
-        control = describe_control(arguments.name)
-        print_result(*([as_json(to_data(control))] if arguments.json else control_lines(control)))
+    if given.name:
+        control = describe_control(given.name)
+        show(given, lambda: control, control_lines(control))
         return 0
     found = describe_controls()
-    print_result(*([as_json([_list_entry(control) for control in found])] if arguments.json else _list_lines(found)))
+    show(given, lambda: [_list_entry(control) for control in found], _list_lines(found))
     return 0
 
 

@@ -1,8 +1,12 @@
 """Results on stdout."""
 
 import sys
+from collections.abc import Callable, Iterable
 
 from trunnion.errors import InputError, Problem
+from trunnion.files import atomic_file
+from trunnion.jobs.job import Given
+from trunnion.results import as_json, to_data
 from trunnion.wording import one_line, printable
 
 
@@ -30,3 +34,26 @@ def print_result(*lines: str, end: str = "\n") -> None:
     except OSError as error:
         what = f"cannot be written: {error.strerror or error}"
         raise InputError(Problem("stdout", 0, what, "let it go elsewhere", code="FIL230")) from None
+
+
+def show(given: Given, result: Callable[[], object], lines: Iterable[str], *, aside: bool = False) -> None:
+    """Print a result, as ``--json`` says: in lines, as data, or both where the data goes to a file.
+
+    Parameters
+    ----------
+    given
+        What the command was given.
+    result
+        Makes the result, a record or plain data, if it is asked for as data.
+    lines
+        Of text; beside data on stdout they are not printed.
+    aside
+        Lines go to stderr: stdout has something else.
+    """
+    if given.json == "-":
+        print_result(as_json(to_data(result())))
+        return
+    (tell if aside else print_result)(*map(one_line, lines))
+    if given.json is not None:
+        with atomic_file(given.json, inputs=given.read) as sink:
+            sink.write((as_json(to_data(result())) + "\n").encode())
