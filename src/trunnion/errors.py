@@ -115,13 +115,6 @@ class Problem:
     def _subject_of(self, kind: SubjectKind) -> str:
         return self.subject.name if self.subject is not None and self.subject.kind is kind else ""
 
-    def to_dict(self) -> dict[str, object]:
-        """What it says, in English, as JSON has it."""
-        return {
-            "file": self.file, "line": self.line, "what": self.what, "cure": self.cure,
-            "severity": str(self.severity), "key": self.key, "code": self.code,
-        }  # fmt: skip
-
     def __str__(self) -> str:
         """Return ``file:line: severity: what; cure [code]``."""
         return self.line_of_text()

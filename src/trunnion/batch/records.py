@@ -81,7 +81,7 @@ def record_name(place: str) -> str:
 
 def record_bytes(record: Record) -> bytes:
     """A record as it is kept."""
-    values = asdict(record) | {"problems": [each.to_dict() for each in record.problems]}
+    values = asdict(record) | {"problems": [_values(each) for each in record.problems]}
     costs = {**values.pop("costs"), "home": values.pop("home")}
     lines = (json.dumps(each, ensure_ascii=False, allow_nan=False, sort_keys=True) for each in (values, costs))
     return ("\n".join(lines) + "\n").encode("utf-8", "backslashreplace")
@@ -111,6 +111,13 @@ def _is_result(name: str) -> bool:
     """Whether a name is one within the results: what a record names may be removed."""
     parts = name.split("/")
     return not {"", ".", "..", FOLDER} & set(parts) and "\\" not in name and ":" not in name
+
+
+def _values(problem: Problem) -> dict[str, Any]:
+    return {
+        "file": problem.file, "line": problem.line, "what": problem.what, "cure": problem.cure,
+        "severity": str(problem.severity), "key": problem.key, "code": problem.code,
+    }  # fmt: skip
 
 
 def _problem(values: dict[str, Any]) -> Problem:
