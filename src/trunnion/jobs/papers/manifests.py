@@ -105,7 +105,6 @@ def manifest_bytes(
     program: Program,
     job: PostJob,
     result: PostResult,
-    verification: Verification | None,
     inputs: Mapping[str, list[dict[str, object]]],
 ) -> bytes:
     """Return the manifest of a post whose other files are complete and flushed; ``inputs`` as ``post_inputs``."""
@@ -133,7 +132,7 @@ def manifest_bytes(
         "settings_in_force": dict(sorted(program.effective_settings().items())),
         "overruled": [clean(each.what) for each in result.problems if each.severity is Severity.ERROR],
         "warnings": [clean(each.what) for each in result.problems if each.severity is Severity.WARNING],
-        **_proof(verification),
+        **_proof(result.verification),
     }
     return (json.dumps(data, ensure_ascii=False, allow_nan=False, indent=1) + "\n").encode("utf-8", "replace")
 
