@@ -18,13 +18,13 @@ from trunnion import readers
 from trunnion.arrays import Floats
 from trunnion.errors import ArgumentName, InputError, Problem, Severity, argument_problem
 from trunnion.jobs.inputs.arguments import check_choice, check_path, check_paths, wrong_argument
+from trunnion.jobs.inputs.control_settings import rapid_feed_of
 from trunnion.jobs.inputs.placed_heads import unlike_bodies
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.jobs.inputs.settings import set_up_machine, work_offset_setting
 from trunnion.jobs.inputs.turned_parts import checked_angles, is_turned, toolpaths_clamped
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.simulate.result import NO_CALL
-from trunnion.jobs.verify.verifying import rapid_feed_of
 from trunnion.machines import Machine
 from trunnion.model.clamping import Clamping
 from trunnion.model.run import Run

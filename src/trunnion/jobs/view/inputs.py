@@ -16,6 +16,7 @@ from trunnion.controls import load_control
 from trunnion.encoding import decode
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.jobs.inputs.arguments import is_stream
+from trunnion.jobs.inputs.control_settings import rapid_feed_of
 from trunnion.jobs.inputs.placed_heads import stated_place
 from trunnion.jobs.inputs.reading import ToolpathLike, as_run, as_toolpaths
 from trunnion.jobs.inputs.settings import Settings
@@ -24,7 +25,7 @@ from trunnion.jobs.observer import Observer
 from trunnion.jobs.post.posting import post
 from trunnion.jobs.project.file import read_project
 from trunnion.jobs.simulate.setups import SetupInput
-from trunnion.jobs.verify.verifying import rapid_feed_of, verify
+from trunnion.jobs.verify.verifying import verify
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Toolpath
 from trunnion.verification import Verification, restore_rapids
