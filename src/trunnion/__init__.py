@@ -44,6 +44,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
+    from trunnion.capability.reach import Reach as Reach
+    from trunnion.capability.sensitivity import Sensitivity as Sensitivity
     from trunnion.errors import InputError as InputError
     from trunnion.errors import Problem as Problem
     from trunnion.errors import RefusedError as RefusedError
@@ -59,9 +61,7 @@ if TYPE_CHECKING:
     from trunnion.impeller.solid.making import ImpellerSolid as ImpellerSolid
     from trunnion.jobs.capability.fitting import MachineFit as MachineFit
     from trunnion.jobs.capability.fitting import fit as fit
-    from trunnion.jobs.capability.reaching import Reach as Reach
     from trunnion.jobs.capability.reaching import reach as reach
-    from trunnion.jobs.capability.sensitivity import Sensitivity as Sensitivity
     from trunnion.jobs.capability.sensitivity import sensitivity as sensitivity
     from trunnion.jobs.convert.converting import ConvertResult as ConvertResult
     from trunnion.jobs.convert.converting import convert as convert

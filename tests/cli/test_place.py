@@ -9,9 +9,10 @@ import pytest
 
 import trunnion
 from trunnion.cli import main
-from trunnion.jobs.inputs.placed_heads import stated_place
 from trunnion.jobs.place.project import placed_setup
-from trunnion.model.clamping import Clamping, StatedPlace
+from trunnion.model.clamping import Clamping
+from trunnion.model.clamping_notices import StatedPlace
+from trunnion.placing.program_heads import stated_place
 from trunnion.simulation.meshes import TriangleMesh, box_mesh, save_mesh
 
 BLADE = "tests/golden/yl569/3_blade_finish.cls"

@@ -18,12 +18,12 @@ from trunnion.jobs.inputs.settings import as_texts
 from trunnion.jobs.place.bodies import BodiesInput
 from trunnion.jobs.place.data import placement_data
 from trunnion.jobs.place.inputs import toolpaths_to_post
-from trunnion.jobs.place.placed_program import ProgramUse, other_positions
 from trunnion.jobs.place.placing import place
 from trunnion.jobs.place.posting import post_placed
 from trunnion.jobs.project.file import library_files
 from trunnion.model.clamping import are_one_angle, number
 from trunnion.placing.placement import AxisUse, Limit, Place, Placement, RotaryUse, TurnMargin
+from trunnion.placing.program_use import ProgramUse, other_positions
 from trunnion.placing.table_limits import KEPT
 from trunnion.wording import counted, format_duration, one_line
 

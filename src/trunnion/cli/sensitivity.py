@@ -3,10 +3,11 @@
 import argparse
 from collections.abc import Iterator
 
+from trunnion.capability.sensitivity import ErrorExtent, NumberSensitivity, Sensitivity
 from trunnion.cli.results import as_json, print_result
 from trunnion.cli.terminal import Terminal
 from trunnion.files import atomic_file, check_outputs
-from trunnion.jobs.capability.sensitivity import ErrorExtent, NumberSensitivity, Sensitivity, sensitivity
+from trunnion.jobs.capability.sensitivity import sensitivity
 from trunnion.jobs.capability.sensitivity_report import (
     amount_text,
     check_sensitivity_report,

@@ -14,7 +14,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 import trunnion.jit
-from trunnion.cli.cl_files import read_toolpaths
+from trunnion.cli.cl_files import begin_reading
 from trunnion.cli.post_arguments import names_project
 
 if TYPE_CHECKING:  # imported while the first CL file is read
@@ -46,7 +46,7 @@ def post_files(
     executor = ThreadPoolExecutor(1)
     try:
         given = dict(arguments.settings)
-        coming = read_toolpaths(
+        coming = begin_reading(
             arguments.files, given.get("cl_units"), arguments.strict, executor, given.get("dialect"),
             given.get("spline_tolerance", ""),
         )  # fmt: skip

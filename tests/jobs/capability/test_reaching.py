@@ -11,9 +11,9 @@ import pytest
 
 import trunnion
 from tests.support.locations import GOLDEN
+from trunnion.capability.part_reach import facet_reach
 from trunnion.cli import main
 from trunnion.jobs.capability.reach_report import reach_data
-from trunnion.jobs.capability.reaching_parts import facet_reach
 from trunnion.machines import load_machine
 from trunnion.simulation.meshes import TriangleMesh, box_mesh, save_mesh
 

@@ -11,8 +11,8 @@ import pytest
 
 import trunnion
 from tests.support.locations import YL569
+from trunnion.capability.sensitivity import NumberSensitivity, Sensitivity, errors_over
 from trunnion.cli import main
-from trunnion.jobs.capability.sensitivity import NumberSensitivity, Sensitivity, errors_over
 from trunnion.jobs.capability.sensitivity_report import sensitivity_data, write_sensitivity_report
 from trunnion.machines import forward, slide_positions
 

@@ -11,9 +11,9 @@ import trunnion
 from trunnion.cl.writers import WRITERS
 from trunnion.cli import main
 from trunnion.errors import Problem
-from trunnion.jobs.inputs.placed_heads import stated_place
 from trunnion.jobs.observer import Observer
 from trunnion.model.clamping import Clamping
+from trunnion.placing.program_heads import stated_place
 
 SETTINGS: Final[Any] = {"zero": (10.0, -5.0, -60.0), "tool_length": 120.0}
 POINTS = [(0, 0, 10, 0.62, 0.1), (5, 2, 9, 0.63, 0.12), (10, 4, 8, 0.65, 0.15), (15, 5, 8, 0.66, 0.2)]

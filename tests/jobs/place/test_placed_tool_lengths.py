@@ -9,11 +9,11 @@ import pytest
 import trunnion
 from tests.support.brute_clearance import box_body
 from tests.support.placed_paths import path_rows
-from trunnion.jobs.place.placing import _rounded
 from trunnion.machines import Machine, load_machine
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.table_limits import ClampingArea, Standing
 from trunnion.placing.travel_limits import CutSet
+from trunnion.placing.travel_use import rounded_zero
 from trunnion.placing.turns import Choice, TurnedPath
 
 SHORT, LONG = "1=flat:10,length=60,flutes=20,gauge=60", "2=flat:10,length=180,flutes=20,gauge=180"
@@ -106,8 +106,8 @@ def test_a_rounded_place_stays_on_the_table() -> None:
     stands = Standing(ClampingArea((0.0, 0.0), (200.0, 100.0)), outline)
     cuts = TurnedPath.of(mill(-900, 900), Choice.FIRST, rows, np.zeros(3), stands).at(0.0)
     assert isinstance(cuts, CutSet)
-    assert _rounded(cuts, np.array([-87.6544, 1.0, 2.0])).tolist() == [-87.654, 1.0, 2.0]
+    assert rounded_zero(cuts, np.array([-87.6544, 1.0, 2.0])).tolist() == [-87.654, 1.0, 2.0]
     opposite = np.array([[-12, -5, 0], [12.3456, 5, 0], [12.3456, -5, 0], [-12, 5, 0]])
     cuts = TurnedPath.of(mill(-900, 900), Choice.FIRST, rows, np.zeros(3), replace(stands, points=opposite)).at(0.0)
     assert isinstance(cuts, CutSet)
-    assert _rounded(cuts, np.array([87.6544, 0.0004, 0.0006])).tolist() == [87.654, 0.0, 0.001]
+    assert rounded_zero(cuts, np.array([87.6544, 0.0004, 0.0006])).tolist() == [87.654, 0.0, 0.001]

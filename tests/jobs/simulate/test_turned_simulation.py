@@ -14,12 +14,12 @@ import trunnion
 from tests.support.reports import waves
 from tests.support.simulating import SLOT, cuboid, simulate
 from trunnion.jobs.observer import SILENT
-from trunnion.jobs.simulate.result import SimulationFinding
 from trunnion.jobs.simulate.setups import SetupInput, prepare_setup
 from trunnion.machines import load_machine
+from trunnion.model.clamping import Clamping
 from trunnion.model.columns import StepColumn
-from trunnion.placing.path_rows import turn_and_tilt
 from trunnion.simulation.meshes import box_mesh
+from trunnion.simulation.setup_findings import SimulationFinding
 from trunnion.simulation.turned_parts import run_of_drawn_part
 
 #: The slot of ``SLOT`` goes along X of the machine. A part that is turned by 90 degrees has it along its own -Y.
@@ -188,7 +188,7 @@ def test_the_run_past_the_drawn_part_has_the_same_axes_and_its_tips_turned_back(
     if is_tip:
         state = replace(run.state, xyz_is_tip=StepColumn.constant(len(run), 1, np.bool_))
         run = replace(run, xyz=run.tip, state=state)
-    found = run_of_drawn_part(run, turn_and_tilt(turn, tilt))
+    found = run_of_drawn_part(run, Clamping(turn, tilt).rotation)
     angle, lean = math.radians(turn), math.radians(tilt)
     x, y, z = found.tip.T
     y, z = y * math.cos(lean) - z * math.sin(lean), y * math.sin(lean) + z * math.cos(lean)

@@ -10,9 +10,9 @@ from typing import Any, Final
 
 import numpy as np
 
+from trunnion.capability.part_reach import PartReach
+from trunnion.capability.reach import Reach, TiltReach
 from trunnion.files import OutputPlace, atomic_file, check_outputs
-from trunnion.jobs.capability.reaching import Reach, TiltReach
-from trunnion.jobs.capability.reaching_parts import PartReach
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.targets import check_output_name
 from trunnion.machines.reach import ReachedVolume

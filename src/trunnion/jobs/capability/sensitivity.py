@@ -1,21 +1,19 @@
 """Where the tool goes over a program when a number of the machine's geometry is not what its definition says."""
 
-import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
-from trunnion.arrays import Floats, Ints
+from trunnion.capability.sensitivity import Sensitivity, program_sensitivity
+from trunnion.capability.tip_errors import joints_at_zero
 from trunnion.errors import InputError, Problem, Severity
-from trunnion.jobs.capability.feed_samples import feed_samples
-from trunnion.jobs.capability.tip_errors import TipErrors, in_radians, joints_at_zero, tip_errors, zero_pose
 from trunnion.jobs.inputs.arguments import wrong_argument
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run, read_toolpaths
 from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.observer import SILENT
-from trunnion.machines.sensitivity import GeometryNumber, idle_numbers
+from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.wording import counted
 
@@ -25,76 +23,6 @@ DEFAULT_ANGLE: Final = 5.0
 
 #: The most that they may be off: derivatives tell small errors only.
 _MOST: Final = {"length": 10.0, "angle": 3600.0}
-
-
-@dataclass(frozen=True, slots=True)
-class ProgramPlace:
-    """The block of a motion: ``line`` of ``file`` from 1, ``block`` its N number, -1 where it has none."""
-
-    file: str
-    line: int
-    block: int
-
-
-@dataclass(frozen=True, slots=True)
-class ErrorExtent:
-    """How far the tip is off over a program.
-
-    largest  mm
-    rms      root of the mean square over the motions, mm
-    place    where it is farthest off
-    """
-
-    largest: float
-    rms: float
-    place: ProgramPlace
-
-
-@dataclass(frozen=True, slots=True)
-class NumberSensitivity:
-    """What one number does to a program.
-
-    number    of the machine's geometry
-    amount    how far it is off, mm, or seconds of arc for an angle
-    tip       how far the tip is off
-    zeroed    how far it is still off when the workpiece zero was set with the same error; None: no zero was assumed
-    axis_deg  how far the tool axis is off at most, degrees
-    """
-
-    number: GeometryNumber
-    amount: float
-    tip: ErrorExtent
-    zeroed: ErrorExtent | None
-    axis_deg: float
-
-    @property
-    def worst(self) -> ErrorExtent:
-        """The error by which numbers are ranked: what is left once the zero is set, or all of it."""
-        return self.tip if self.zeroed is None else self.zeroed
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Sensitivity:
-    """What each number of a machine's geometry does to a program, the worst one first.
-
-    run      the program
-    motions  how many of its motions are at feed; the others do not count
-    numbers  all that can move the tool
-    idle     those that cannot: a point along its own axis, a direction turned about itself
-    zero_at  where the rotary axes stood when the workpiece zero was set, degrees by names; None: as the error is
-    remarks  what was assumed
-    length   how far lengths are off, mm
-    angle    how far angles are off, seconds of arc
-    """
-
-    run: Run
-    motions: int
-    numbers: tuple[NumberSensitivity, ...]
-    idle: tuple[GeometryNumber, ...]
-    zero_at: Mapping[str, float] | None
-    remarks: tuple[Problem, ...]
-    length: float
-    angle: float
 
 
 def sensitivity(
@@ -155,103 +83,13 @@ def sensitivity(
     >>> found.numbers[0].number.name
     'gauge point X'
     """
-    amounts = in_radians(_amount("length", length), _amount("angle", angle))
-    loaded = set_up_machine(as_machine(machine), zero, tool_length)
-    run = as_run(nc, loaded, subprograms)
-    loaded = run.machine
-    pose = zero_pose(loaded, zero_at)
-    joints = None if pose is None else joints_at_zero(loaded, pose)
-    totals: dict[GeometryNumber, _Total] = {}
-    count = motions = 0
-    for samples in feed_samples(run):
-        count += len(samples.row)
-        motions += int(np.count_nonzero(np.diff(samples.row, prepend=-1)))
-        for found in tip_errors(loaded, samples.joints, joints, amounts):
-            totals.setdefault(found.number, _Total(found.number)).add(found, samples.row)
-    if not count:
+    _check_amount("length", length)
+    _check_amount("angle", angle)
+    run = as_run(nc, set_up_machine(as_machine(machine), zero, tool_length), subprograms)
+    found = program_sensitivity(run, _zero_pose(run.machine, zero_at), length, angle, tuple(_remarks(run)))
+    if not found.motions:
         raise InputError(_without_cuts(run))
-    numbers = [total.result(run, count, (length, angle)) for total in totals.values()]
-    return Sensitivity(
-        run,
-        motions,
-        tuple(sorted(numbers, key=lambda each: -each.worst.largest)),
-        idle_numbers(loaded),
-        pose,
-        tuple(_remarks(run)),
-        length,
-        angle,
-    )
-
-
-def errors_over(found: Sensitivity, numbers: Sequence[GeometryNumber]) -> tuple[Ints, Floats]:
-    """The rows at feed (k,), and how far the tip is off at most in each by some numbers, (k, m) float32, mm.
-
-    With the zero set, where it was.
-    """
-    run, at = found.run, {number: k for k, number in enumerate(numbers)}
-    joints = None if found.zero_at is None else joints_at_zero(run.machine, found.zero_at)
-    amounts = in_radians(found.length, found.angle)
-    rows, errors = [np.zeros(0, np.int64)], [np.zeros((0, len(numbers)), np.float32)]
-    for samples in feed_samples(run):
-        starts = np.flatnonzero(np.diff(samples.row, prepend=-1))
-        part = np.zeros((len(starts), len(numbers)), np.float32)
-        for each in tip_errors(run.machine, samples.joints, joints, amounts):
-            if each.number in at:
-                size = np.linalg.norm(each.tip if each.left is None else each.left, axis=1)
-                part[:, at[each.number]] = np.maximum.reduceat(size, starts)
-        rows.append(samples.row[starts])
-        errors.append(part)
-    return np.concatenate(rows), np.concatenate(errors)
-
-
-class _Total:
-    """What is found over all chunks for one number."""
-
-    def __init__(self, number: GeometryNumber) -> None:
-        self._number = number
-        self._tip, self._left = _Extent(), _Extent()
-        self._axis = 0.0
-        self._is_zeroed = False
-
-    def add(self, errors: TipErrors, rows: Ints) -> None:
-        """Count the errors of some rows."""
-        self._tip.add(errors.tip, rows)
-        if errors.left is not None:
-            self._is_zeroed = True
-            self._left.add(errors.left, rows)
-        if len(rows):
-            self._axis = max(self._axis, float(np.linalg.norm(errors.axis, axis=1).max()))
-
-    def result(self, run: Run, count: int, amounts: tuple[float, float]) -> NumberSensitivity:
-        """The totals; amounts as they are told, mm and seconds of arc."""
-        return NumberSensitivity(
-            self._number,
-            amounts[self._number.is_angle],
-            self._tip.result(run, count),
-            self._left.result(run, count) if self._is_zeroed else None,
-            math.degrees(self._axis),
-        )
-
-
-class _Extent:
-    """The largest length of vectors, its row, and the sum of squares."""
-
-    def __init__(self) -> None:
-        self._largest, self._row, self._squares = -1.0, 0, 0.0
-
-    def add(self, vectors: Floats, rows: Ints) -> None:
-        if not len(rows):
-            return
-        squares = np.einsum("ni,ni->n", vectors, vectors)
-        worst = int(np.argmax(squares))
-        self._squares += float(squares.sum())
-        if squares[worst] > self._largest:
-            self._largest, self._row = float(squares[worst]), int(rows[worst])
-
-    def result(self, run: Run, count: int) -> ErrorExtent:
-        row = self._row
-        place = ProgramPlace(run.files[run.state.file[row]], int(run.lines[row]), int(run.block_numbers[row]))
-        return ErrorExtent(math.sqrt(max(self._largest, 0.0)), math.sqrt(self._squares / count), place)
+    return found
 
 
 def _without_cuts(run: Run) -> Problem:
@@ -270,10 +108,10 @@ def _is_cl_file(name: str) -> bool:
     return any(len(operation.moves) for toolpath in found for operation in toolpath.operations)
 
 
-def _amount(name: str, value: object) -> float:
-    """How far numbers are off, checked."""
+def _check_amount(name: str, value: object) -> None:
+    """Refuse how far numbers are off unless it is a small amount."""
     if isinstance(value, int | float) and not isinstance(value, bool) and 0.0 < value <= _MOST[name]:
-        return float(value)
+        return
     raise wrong_argument(name, value, f"give a number above 0, and at most {_MOST[name]:g}")
 
 
@@ -297,3 +135,52 @@ def _remarks(run: Run) -> list[Problem]:
             )
         )
     return [replace(each, severity=Severity.WARNING) for each in found]
+
+
+def _zero_pose(machine: Machine, zero_at: str | Mapping[str, float] | None) -> dict[str, float] | None:
+    """Where the rotary axes stood when the zero was set, degrees by names; None: nothing was set.
+
+    Raises
+    ------
+    InputError
+        If it names something else than rotary axes, or no angles, or the slides cannot reach the zero there.
+    """
+    pose = _stated_pose(machine, zero_at)
+    if pose is not None and np.isnan(joints_at_zero(machine, pose)).any():
+        text = ",".join(f"{name}={value:g}" for name, value in pose.items())
+        raise wrong_argument("zero_at", text, "give another pose: the slides cannot reach the zero in this one")
+    return pose
+
+
+def _stated_pose(machine: Machine, zero_at: str | Mapping[str, float] | None) -> dict[str, float] | None:
+    names = [machine.names[k] for k in machine.rotary]
+    home = {name: machine.axis(name).home for name in names}
+    if zero_at is None or zero_at == "none":
+        return None
+    if zero_at == "home":
+        return home
+    cure = f"give home, none, or angles such as {','.join(f'{name}=0' for name in names)}"
+    if isinstance(zero_at, str):
+        parts = [part.partition("=") for part in zero_at.split(",")]
+        given: Mapping[str, object] = {name.strip(): value for name, _, value in parts}
+    elif isinstance(zero_at, Mapping):
+        given = zero_at
+    else:
+        raise wrong_argument("zero_at", zero_at, cure)
+    for name in given:
+        if name not in names:
+            raise wrong_argument(
+                "zero_at", str(zero_at), f"{name or 'no name'} is no rotary axis of the machine; {cure}"
+            )
+    try:
+        pose = home | {name: float(str(value)) for name, value in given.items()}
+    except ValueError:
+        raise wrong_argument("zero_at", str(zero_at), cure) from None
+    if not all(abs(value) < 1e5 for value in pose.values()):  # NaN is none either
+        raise wrong_argument("zero_at", str(zero_at), cure)
+    for name, value in pose.items():
+        axis = machine.axis(name)
+        if not axis.low <= value <= axis.high:
+            limits = f"{name} goes from {axis.low:g} to {axis.high:g} degrees"
+            raise wrong_argument("zero_at", str(zero_at), f"{limits}; give an angle within them")
+    return pose

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from trunnion.arrays import Floats, Ints, Lines
+from trunnion.capability.sensitivity import ErrorExtent, NumberSensitivity, Sensitivity, errors_over
 from trunnion.files import OutputPlace, atomic_file, check_outputs
-from trunnion.jobs.capability.sensitivity import ErrorExtent, NumberSensitivity, Sensitivity, errors_over
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.targets import check_output_name
 from trunnion.model.run import Run

@@ -12,7 +12,7 @@ from trunnion.jobs.inputs.reading import read_cl
 from trunnion.jobs.inputs.settings import Settings, as_texts
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.targets import Target
-from trunnion.model.clamping import clamped_notices
+from trunnion.model.clamping_notices import clamped_notices
 from trunnion.model.toolpath import Toolpath
 
 #: Settings of a conversion from CL file to CL file, and what they may be.

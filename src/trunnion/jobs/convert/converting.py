@@ -21,7 +21,6 @@ from trunnion.jobs import kernels
 from trunnion.jobs.convert.cl_files import convert_cl, write_and_prove
 from trunnion.jobs.inputs.arguments import check_choice, check_observer, check_path, check_paths, is_stream
 from trunnion.jobs.inputs.input_files import machine_files
-from trunnion.jobs.inputs.placed_heads import damaged_notices, placed_notices, stated_place
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, read_program
 from trunnion.jobs.inputs.settings import Settings, control_setting_faults, set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
@@ -32,6 +31,7 @@ from trunnion.jobs.targets import OutputLike, open_target, written_text
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
+from trunnion.placing.program_heads import damaged_notices, placed_notices, stated_place
 from trunnion.wording import counted
 
 #: Places that are not understood which an error names one by one.

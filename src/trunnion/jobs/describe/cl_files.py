@@ -8,7 +8,6 @@ import numpy as np
 
 from trunnion.cl import DIALECTS, other_system, unknown_statements
 from trunnion.errors import InputError, Problem, argument_problem
-from trunnion.jobs.describe.path_measures import Range, extents, kind_and_planes, measure
 from trunnion.jobs.inputs.reading import ToolpathLike, read_toolpaths
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.model.apt_cutter import apt_cutter
@@ -27,6 +26,7 @@ from trunnion.model.toolpath import (
 )
 from trunnion.planning.holes.cycles import SpindleState
 from trunnion.planning.holes.operations import hole_rows
+from trunnion.planning.path_measures import Range, extents, kind_and_planes, measure
 
 Vector = tuple[float, float, float]
 

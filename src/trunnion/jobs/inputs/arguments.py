@@ -56,3 +56,20 @@ def check_observer(value: object) -> None:
     """Refuse what is no ``Observer``."""
     if not isinstance(value, Observer):
         raise wrong_argument("observer", value, "give a trunnion.Observer, or leave it out")
+
+
+def checked_angles(turn: object, tilt: object) -> tuple[float, float]:
+    """Turn and tilt as arguments, checked, in whole thousandths of a degree; None is 0.
+
+    Raises
+    ------
+    InputError
+        If one is no number from -360 to 360.
+    """
+    found = []
+    for name, value in (("turn", turn), ("tilt", tilt)):
+        value = 0.0 if value is None else value
+        if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= 360.0:
+            raise wrong_argument(name, value, "give degrees, -360 to 360")
+        found.append(round(float(value), 3) + 0.0)
+    return found[0], found[1]

@@ -7,11 +7,12 @@ from pathlib import Path
 from typing import BinaryIO, Final, TypeAlias
 
 from trunnion import machines, readers
-from trunnion.cl import DIALECTS, not_one_file, other_system, read_cl_files
+from trunnion.cl import DIALECTS, not_one_file, other_system
+from trunnion.cl.watched import read_watched
 from trunnion.controls.definition_files import is_control_file
 from trunnion.controls.loading import control_library
 from trunnion.definitions import resolve_extends
-from trunnion.errors import InputError, Problem, unusable_file
+from trunnion.errors import InputError, Problem
 from trunnion.jobs.inputs.arguments import (
     check_choice,
     check_observer,
@@ -119,19 +120,9 @@ def _read(
         check_choice("dialect", dialect, tuple(DIALECTS))
     if spline_tolerance is not None and not _is_spline_tolerance(spline_tolerance):
         raise wrong_argument("spline_tolerance", spline_tolerance, "give a number from 0.0001 to 1")
-    is_plain = isinstance(path, Path) and unusable_file(path, "a CL file") is None
-    size = path.stat().st_size if isinstance(path, Path) and is_plain else 0
-    with observer.progress(path.name if isinstance(path, Path) else "stdin", size, "B") as advance:
-        done = 0
-
-        def read(total: int) -> None:
-            nonlocal done
-            advance(total - done)
-            done = total
-
-        return read_cl_files(
-            path, units=units, dialect=dialect, strict=strict, spline_tolerance=spline_tolerance, progress=read
-        )
+    return read_watched(
+        path, observer.progress, units=units, dialect=dialect, strict=strict, spline_tolerance=spline_tolerance
+    )
 
 
 def _is_spline_tolerance(value: object) -> bool:

@@ -13,7 +13,7 @@ from trunnion.jobs.papers.writing import MADE_BY
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.result import PostResult
 from trunnion.machines import Machine
-from trunnion.model.clamping import PLACED_NOTICES
+from trunnion.model.clamping_notices import PLACED_NOTICES
 from trunnion.model.motion import MachiningMode, Motion
 from trunnion.model.run import NO_OFFSET, Run
 from trunnion.model.toolpath import CutterComp, CycleOn, Insert, Kind, Operation, SpindleOn, Stop, Tool

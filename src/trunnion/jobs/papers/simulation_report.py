@@ -14,11 +14,10 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.files import atomic_file
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.inputs.turned_parts import is_turned
 from trunnion.jobs.papers.reports import check_report_name
 from trunnion.jobs.simulate.data import simulation_data
-from trunnion.jobs.simulate.result import NearMiss, SimulationFinding, SimulationResult
-from trunnion.model.clamping import number
+from trunnion.jobs.simulate.result import SimulationResult
+from trunnion.model.clamping import Clamping, number
 from trunnion.reporting.simulation_content import (
     DeviationBin,
     FindingRow,
@@ -29,6 +28,7 @@ from trunnion.reporting.simulation_content import (
 from trunnion.reporting.simulation_page import render_simulation_page
 from trunnion.reporting.text import clean
 from trunnion.simulation.meshes.picture import picture
+from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.stock.surface import stock_surface
 from trunnion.simulation.stock.surface_points import SurfacePoints, surface_points
@@ -100,7 +100,7 @@ def simulation_content(found: SimulationResult) -> SimulationContent:
 
 def _clamped(found: SimulationResult) -> str:
     """How the part of a set-up is clamped; empty: as it is drawn."""
-    if not is_turned(found.turn, found.tilt):
+    if not Clamping(found.turn, found.tilt).is_turned:
         return ""
     name = f"{found.setup}: " if found.setup else ""
     return f"{name}tilted {number(found.tilt)}°, then turned {number(found.turn)}°; places are those of the drawing"

@@ -2,14 +2,12 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Final, Literal, TypeAlias
+from typing import Final, Literal
 
 from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.jobs.inputs.bodies import MeshLike, fixture_meshes, known_tools, read_mesh
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.place.inputs import PlacedInput
-from trunnion.jobs.simulate.result import NO_CALL
-from trunnion.jobs.simulate.setups import fixture_names, listed, read_mesh, tool_libraries
 from trunnion.machines import Machine
 from trunnion.placing.collisions.best_clearance import Guard
 from trunnion.placing.collisions.guarded_pairs import (
@@ -21,16 +19,13 @@ from trunnion.placing.collisions.guarded_pairs import (
     guarded_tool,
 )
 from trunnion.simulation.collisions import BodyKind, machine_bodies
-from trunnion.simulation.meshes import TriangleMesh, box_mesh, cylinder_mesh
+from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.stock.solids import stock_shape
-from trunnion.simulation.tools.choice import choose_tools, tools_of_toolpaths
+from trunnion.simulation.tools.choice import NO_CALL, tools_of_toolpaths
 from trunnion.simulation.tools.profile import ToolShape
-from trunnion.simulation.tools.text import parse_tool
 
 #: Tools whose lengths differ by less are as long, mm.
 _LIKE_LENGTH: Final = 1e-6
-
-MeshLike: TypeAlias = str | Path | TriangleMesh
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -110,9 +105,8 @@ def _none_could_meet(machine: Machine, *, is_needed: bool) -> Problem:
 
 def _carried(given: BodiesInput, problems: list[Problem]) -> Iterable[Guarded]:
     """What is clamped with the part."""
-    fixtures: list[MeshLike] = listed("fixtures", given.fixtures, TriangleMesh)
-    for fixture, name in zip(fixtures, fixture_names(fixtures), strict=True):
-        yield guarded_on_part(read_mesh(fixture, name, problems), BodyKind.FIXTURE)
+    for fixture in fixture_meshes(given.fixtures, problems):
+        yield guarded_on_part(fixture, BodyKind.FIXTURE)
     if given.part is not None:
         yield guarded_on_part(read_mesh(given.part, "part", problems), BodyKind.PART)
     if given.stock is not None:
@@ -128,28 +122,19 @@ def stock_mesh(stock: MeshLike, problems: list[Problem]) -> TriangleMesh:
     InputError
         If a mesh cannot be used, or the text of a stock is none.
     """
-    shape = stock_shape(stock, problems.append)
-    if shape.mesh is not None:
-        return shape.mesh
-    if shape.is_cylinder:
-        return cylinder_mesh(float(shape.high[0] - shape.low[0]), float(shape.low[2]), float(shape.high[2]))
-    return box_mesh(shape.low, shape.high)
+    return stock_shape(stock, problems.append).as_mesh()
 
 
 def _tools(given: BodiesInput, placed: PlacedInput, problems: list[Problem]) -> dict[int, ToolShape]:
     """The bodies of the tools that are called, by their number in ``placed.tools``; one without a form is told."""
-    read = tool_libraries(given.libraries, given.unit)
-    diameters = {number: wide for library in reversed(read) for number, wide in library.diameters.items()}
-    texts = listed("tools", given.tools, ToolShape)
-    stated = [tool if isinstance(tool, ToolShape) else parse_tool(tool, diameters) for tool in texts]
-    cl_tools = tools_of_toolpaths(placed.toolpaths)
+    known = known_tools(given.tools, given.libraries, given.unit, placed.toolpaths)
     found: dict[int, ToolShape] = {}
     for number in placed.used_tools:
         called = placed.tools[number] or NO_CALL
         try:
-            found[number] = choose_tools([called], stated, read, cl_tools)[called]
+            found[number] = known.choose([called])[called]
         except InputError as error:
-            if placed.tools[number] and (stated or read):
+            if placed.tools[number] and (known.stated or known.libraries):
                 raise
             first = error.problems[0]
             what = f"tool {called} is not kept apart from anything: {first.what}"

@@ -10,31 +10,28 @@ from typing import cast
 import numpy as np
 
 from trunnion import readers
-from trunnion.arrays import Flags, Ints
+from trunnion.arrays import Ints
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.jobs.inputs.arguments import is_stream, wrong_argument
-from trunnion.jobs.inputs.placed_heads import damaged_notices, stated_place
 from trunnion.jobs.inputs.reading import ToolpathLike, read_toolpaths
 from trunnion.jobs.inputs.settings import Settings, as_texts, number_setting
-from trunnion.jobs.inputs.turned_parts import stated_clamping, turned_toolpaths
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.planning import plan
 from trunnion.machines import Machine
-from trunnion.model.arc_extremes import ArcPaths
+from trunnion.model.clamped_toolpaths import stated_clamping, turned_toolpaths
 from trunnion.model.clamping import Clamping
-from trunnion.model.run import ProgrammedWord, Run
-from trunnion.model.toolpath import Kind, Toolpath
-from trunnion.placing.path_rows import PathRows, Stretch, about_x, joined_rows
-from trunnion.placing.plan_rows import branches, rows_of_plan
+from trunnion.model.rotations import about_x
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Toolpath
+from trunnion.placing.path_rows import PathRows, joined_rows
+from trunnion.placing.plan_rows import rows_of_plan
+from trunnion.placing.program_heads import damaged_notices, stated_place
+from trunnion.placing.program_rows import _rows_at_workpiece, rows_of_run
 from trunnion.verification.kinematics.machine_travel import positions_beyond_travel
-from trunnion.verification.kinematics.positioning_moves import approach_rows
 from trunnion.wording import counted
 
 #: Places that are not understood which an error names one by one.
 _MOST_NAMED = 20
-
-_SLIDE_WORDS = int(ProgrammedWord.X | ProgrammedWord.Y | ProgrammedWord.Z)
-_ROTARY_WORDS = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWord.VECTOR)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -228,49 +225,3 @@ def _of_runs(runs: Sequence[Run]) -> PlacedInput:
         own = np.array([tools.index(name) if name in tools else 0 for name in run.tools])
         parts.append(own[run.state.tool.column().astype(np.int64)[_rows_at_workpiece(run)]])
     return PlacedInput(joined_rows([rows_of_run(run) for run in runs]), np.concatenate(parts), tools)
-
-
-def rows_of_run(run: Run) -> PathRows:
-    """The rows of a run that move slides to positions of the workpiece."""
-    machine = run.machine
-    keep = _rows_at_workpiece(run)
-    if not keep.any():
-        raise InputError(Problem(run.files[0], 0, "there is no motion at the part in it", code="CNV121"))
-    rows = np.flatnonzero(keep)
-    joints, tip, axis = run.joints, run.tip[rows], run.axis[rows]
-    rotary = joints[:, list(machine.rotary)]
-    begins = np.append(True, np.diff(rows) > 1)
-    firsts = np.flatnonzero(begins)
-    solution = branches(machine, tip, axis, rotary[rows])
-    arc = np.flatnonzero(keep[run.arcs.row])
-    starts = run.positions(run.arcs.row[arc] - 1).tip
-    seconds = np.zeros(len(rows))
-    feed, mode = run.feed[rows], run.feed_mode[rows]
-    way = np.append(0.0, np.linalg.norm(np.diff(tip, axis=0), axis=1))
-    timed = (run.kind[rows] != Kind.RAPID) & (mode == 94) & (feed > 0.0) & ~begins
-    seconds[timed] = 60.0 * way[timed] / feed[timed]
-    files = run.file[rows]
-    return PathRows(
-        tip,
-        axis,
-        solution,
-        run.line[rows].astype(np.int64),
-        run.tcp[rows],
-        seconds,
-        tuple(
-            Stretch(first, run.files[int(files[first])] if files[first] else run.files[0]) for first in firsts.tolist()
-        ),
-        rotary[rows[firsts]],
-        ArcPaths.of(run.arcs, arc, starts, run.tip[run.arcs.row[arc]]),
-        np.searchsorted(rows, run.arcs.row[arc]),
-    )
-
-
-def _rows_at_workpiece(run: Run) -> Flags:
-    """Which rows move slides, and not to positions of the machine; first legs of approaches are among those."""
-    programmed = run.programmed.astype(np.int64)
-    names_slides = ((programmed & _SLIDE_WORDS) != 0) | ((programmed & (_SLIDE_WORDS | _ROTARY_WORDS)) == 0)
-    moves = run.tcp | names_slides
-    moves &= ~run.machine_frame
-    moves[approach_rows(run)] = False
-    return np.asarray(moves)

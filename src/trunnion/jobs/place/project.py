@@ -6,13 +6,14 @@ from pathlib import Path
 from typing import Literal
 
 from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.jobs.inputs.arguments import checked_angles
+from trunnion.jobs.inputs.bodies import MeshLike, read_mesh
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.inputs.settings import SettingValue
-from trunnion.jobs.inputs.turned_parts import checked_angles, is_turned
-from trunnion.jobs.place.bodies import BodiesInput, MeshLike, stock_mesh
+from trunnion.jobs.place.bodies import BodiesInput, stock_mesh
 from trunnion.jobs.project.file import load_project, project_inputs
 from trunnion.jobs.project.project import PostedSetup, Project
-from trunnion.jobs.simulate.setups import SimulationInput, read_mesh
+from trunnion.jobs.simulate.setups import SimulationInput
 from trunnion.model.clamping import Clamping
 
 
@@ -49,7 +50,7 @@ def placed_setup(project: Path, name: str | None = None) -> PlacedSetup:
     setup = _setup(loaded, project, name)
     settings = dict(setup.settings)
     angles, problems = checked_angles(setup.turn, setup.tilt), list[Problem]()
-    if is_turned(*angles) and settings.pop("zero", None) is not None:
+    if Clamping(*angles).is_turned and settings.pop("zero", None) is not None:
         what = f"its zero is that of the part {Clamping(*angles)}, and it is placed as drawn: it has no present zero"
         cure = "give the zero too, if there is one for the part as it is drawn"
         problems.append(Problem(str(project), 0, what, cure, Severity.WARNING, code="PLC330"))

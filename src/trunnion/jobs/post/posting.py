@@ -15,11 +15,10 @@ from trunnion.hooks.calling import Hooks
 from trunnion.hooks.files import load_hooks
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
-from trunnion.jobs.inputs.arguments import check_observer, check_paths
+from trunnion.jobs.inputs.arguments import check_observer, check_paths, checked_angles
 from trunnion.jobs.inputs.input_files import cl_files, machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.jobs.inputs.settings import Settings
-from trunnion.jobs.inputs.turned_parts import checked_angles
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.papers.files import PaperFiles, paper_files
 from trunnion.jobs.papers.writing import PostPapers, post_papers

@@ -9,10 +9,10 @@ from dataclasses import replace
 
 from trunnion.controls.vocabulary import HOOKS_NOTICE
 from trunnion.hooks.calling import Hooks
-from trunnion.jobs.inputs.placed_heads import placed_notices
-from trunnion.jobs.inputs.turned_parts import clamped_after, stated_clamping, turned_toolpaths
 from trunnion.jobs.post.post_job import PostJob
+from trunnion.model.clamped_toolpaths import clamped_after, stated_clamping, turned_toolpaths
 from trunnion.model.toolpath import Message, Toolpath
+from trunnion.placing.program_heads import placed_notices
 
 
 def as_clamped(

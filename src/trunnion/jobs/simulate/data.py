@@ -4,7 +4,8 @@ import math
 from dataclasses import asdict
 from typing import Final
 
-from trunnion.jobs.simulate.result import AirCut, BlockRemoval, NearMiss, SimulationFinding, SimulationResult
+from trunnion.jobs.simulate.result import SimulationResult
+from trunnion.simulation.setup_findings import AirCut, BlockRemoval, NearMiss, SimulationFinding
 from trunnion.simulation.stock.deviation import Excess
 
 _DECIMALS: Final = 6

@@ -13,23 +13,21 @@ from typing import Any, Final, TypeAlias
 
 from trunnion.definitions.messages import did_you_mean
 from trunnion.errors import InputError, Problem, Severity, argument_problem
-from trunnion.jobs.inputs.arguments import check_path
+from trunnion.jobs.inputs.arguments import check_path, checked_angles
 from trunnion.jobs.inputs.reading import FilePath, as_machine
-from trunnion.jobs.inputs.turned_parts import checked_angles
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.post.writing import named_run
 from trunnion.jobs.project.file import is_project, library_files, project_files, read_project
-from trunnion.jobs.simulate.result import SimulationFinding, SimulationResult
+from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.setups import SetupInput, SimulationInput
 from trunnion.jobs.simulate.steps import simulate_setups
 from trunnion.machines import Machine
 from trunnion.model.clamping import Clamping, are_one_angle, number
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
-from trunnion.placing.path_rows import turn_and_tilt
 from trunnion.simulation.findings import What
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
-from trunnion.simulation.meshes.primitives import box_mesh, cylinder_mesh
+from trunnion.simulation.setup_findings import SimulationFinding
 from trunnion.simulation.stock.solids import is_mesh, stock_shape
 from trunnion.simulation.turned_parts import as_clamped
 from trunnion.verification import Check, Place
@@ -101,19 +99,14 @@ def simulated_bodies(given: SimulationInput) -> Iterator[tuple[str, TriangleMesh
 
     Meshes are read again, and nothing is told of them: the simulation has done it.
     """
-    turn = turn_and_tilt(*checked_angles(given.setups[0].turn, given.setups[0].tilt))
+    turn = Clamping(*checked_angles(given.setups[0].turn, given.setups[0].tilt)).rotation
     for kind, mesh in _drawn_bodies(given):
         yield kind, as_clamped(mesh, turn)
 
 
 def _drawn_bodies(given: SimulationInput) -> Iterator[tuple[str, TriangleMesh]]:
-    shape, setup = stock_shape(given.stock), given.setups[0]
-    if shape.mesh is not None:
-        yield "stock", shape.mesh
-    elif shape.is_cylinder:
-        yield "stock", cylinder_mesh(float(shape.high[0] - shape.low[0]), float(shape.low[2]), float(shape.high[2]))
-    else:
-        yield "stock", box_mesh(shape.low, shape.high)
+    setup = given.setups[0]
+    yield "stock", stock_shape(given.stock).as_mesh()
     for kind, meshes in (("part", [] if setup.part is None else [setup.part]), ("fixture", setup.fixtures)):
         for mesh in meshes:
             yield kind, mesh if isinstance(mesh, TriangleMesh) else load_mesh(mesh)

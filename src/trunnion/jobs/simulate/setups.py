@@ -5,37 +5,33 @@ Out:    ``PreparedSetup`` records: runs, bodies of tools, meshes.
 Units:  mm, degrees.
 """
 
-import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any, Final, TypeAlias
+from typing import Final, TypeAlias
 
 import numpy as np
 
 from trunnion import readers
-from trunnion.arrays import Floats
 from trunnion.errors import ArgumentName, InputError, Problem, Severity, argument_problem
-from trunnion.jobs.inputs.arguments import check_choice, check_path, check_paths, wrong_argument
+from trunnion.jobs.inputs.arguments import check_paths, checked_angles, wrong_argument
+from trunnion.jobs.inputs.bodies import KnownTools, fixture_meshes, known_tools, listed, read_mesh
 from trunnion.jobs.inputs.control_settings import rapid_feed_of
-from trunnion.jobs.inputs.placed_heads import unlike_bodies
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
 from trunnion.jobs.inputs.settings import set_up_machine, work_offset_setting
-from trunnion.jobs.inputs.turned_parts import checked_angles, is_turned, toolpaths_clamped
 from trunnion.jobs.observer import Observer
-from trunnion.jobs.simulate.result import NO_CALL
 from trunnion.machines import Machine
+from trunnion.model.clamped_toolpaths import toolpaths_clamped
 from trunnion.model.clamping import Clamping
 from trunnion.model.run import Run
-from trunnion.model.toolpath import Kind, Toolpath
-from trunnion.placing.path_rows import turn_and_tilt
-from trunnion.simulation.meshes import DEVIATION, TriangleMesh, load_mesh
+from trunnion.model.toolpath import Kind
+from trunnion.placing.program_heads import unlike_bodies
+from trunnion.simulation.meshes import DEVIATION, TriangleMesh
+from trunnion.simulation.prepared_setup import PreparedSetup
 from trunnion.simulation.stock.turning import Pose
-from trunnion.simulation.tools.choice import choose_tools, tools_of_toolpaths
-from trunnion.simulation.tools.library import ToolLibrary, read_tools
-from trunnion.simulation.tools.profile import Role, ToolShape
-from trunnion.simulation.tools.text import parse_tool
+from trunnion.simulation.tools.choice import NO_CALL
+from trunnion.simulation.tools.profile import ToolShape
 from trunnion.verification import restore_rapids
 from trunnion.wording import counted
 
@@ -94,29 +90,6 @@ class SimulationInput:
     places: Places = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PreparedSetup:
-    """A set-up that has been read: its machine, runs, tools by their names in programs, and meshes as they are drawn.
-
-    angles      turn and tilt of the part, degrees
-    toolpaths   of the part as it is clamped
-    """
-
-    given: SetupInput
-    machine: Machine
-    runs: tuple[Run, ...]
-    tools: dict[str, ToolShape]
-    part: TriangleMesh | None
-    fixtures: tuple[TriangleMesh, ...]
-    toolpaths: list[Toolpath]
-    angles: tuple[float, float] = (0.0, 0.0)
-
-    @property
-    def turn(self) -> Floats | None:
-        """What turns the part as it is drawn to how it is clamped, (3, 3); None: it is clamped as drawn."""
-        return turn_and_tilt(*self.angles) if is_turned(*self.angles) else None
-
-
 def prepare_setup(
     given: SetupInput, remarks: list[Problem], observer: Observer, deviation: float = DEVIATION
 ) -> PreparedSetup:
@@ -132,9 +105,7 @@ def prepare_setup(
     machine = set_up_machine(machine, given.zero, given.tool_length)
     angles = checked_angles(given.turn, given.tilt)
     part = None if given.part is None else read_mesh(given.part, "part", remarks, deviation)
-    around = listed("fixtures", given.fixtures, TriangleMesh)
-    named = zip(around, fixture_names(around), strict=True)
-    fixtures = tuple(read_mesh(fixture, name, remarks, deviation) for fixture, name in named)
+    fixtures = fixture_meshes(given.fixtures, remarks, deviation)
     programs: list[FilePath | Run] = listed("nc", given.programs, Run)
     if not programs:
         raise wrong_argument("nc", given.programs, "give an NC program")
@@ -148,10 +119,13 @@ def prepare_setup(
     toolpaths = as_toolpaths(given.cl, None, False, observer)
     if not given.cl_is_turned:
         toolpaths = toolpaths_clamped(toolpaths, *angles)
-    tools = _tools(runs, given.tools, tool_libraries(given.libraries, given.unit), toolpaths)
+    tools = _tools(runs, known_tools(given.tools, given.libraries, given.unit, toolpaths))
     if given.work_offset is not None:
         remarks += _other_offsets(runs, given.work_offset, machine)
-    return PreparedSetup(given, machine, runs, tools, part, fixtures, toolpaths, angles)
+    return PreparedSetup(
+        machine, runs, tools, part, fixtures, toolpaths, Clamping(*angles), given.name, given.pose or Pose(),
+        given.until,
+    )  # fmt: skip
 
 
 @contextmanager
@@ -172,68 +146,16 @@ def with_place(problem: Problem, places: Places, setup: str = "") -> Problem:
     return replace(problem, file=file, line=line, what=f"{of_setup}{key}: {problem.what}")
 
 
-def listed(name: str, values: Any, record: type) -> list[Any]:
-    """One or several texts, paths or records; errors name the argument."""
-    single = (str, os.PathLike, record)
-    if isinstance(values, single):
-        return [values]
-    found = list(values) if isinstance(values, Iterable) else [None]
-    if not all(isinstance(value, single) for value in found):
-        raise wrong_argument(name, values, f"give a text, a path, a {record.__name__}, or a list of them")
-    return found
-
-
-def cutting_width(tool: ToolShape) -> float:
-    """The greatest diameter of what cuts of a tool, mm; infinite where nothing does."""
-    points = [
-        point for section in tool.sections if section.role is Role.CUTTER
-        for element in section.outline for point in (element.start, element.end)
-    ]  # fmt: skip
-    return 2.0 * max((radius for radius, _ in points), default=float("inf"))
-
-
-def read_mesh(
-    mesh: str | Path | TriangleMesh, name: str, remarks: list[Problem], deviation: float = DEVIATION
-) -> TriangleMesh:
-    """A mesh as it is given, or of a file, with its name; remarks get what is odd about it."""
-    if isinstance(mesh, TriangleMesh):
-        return mesh.named(name)
-    check_path(name, mesh)
-    return load_mesh(mesh, name=name, closed=True, deviation=deviation, warn=remarks.append)
-
-
-def fixture_names(fixtures: Sequence[str | Path | TriangleMesh]) -> list[str]:
-    """What findings call fixtures: by their files, and by their numbers where these are the same or there is none."""
-    files = ["" if isinstance(each, TriangleMesh) else Path(each).name for each in fixtures]
-    alone = [name and files.count(name) == 1 for name in files]
-    return [
-        f"fixture {name}" if is_alone else f"fixture {k} {name}".rstrip()
-        for k, (name, is_alone) in enumerate(zip(files, alone, strict=True), 1)
-    ]
-
-
-def tool_libraries(libraries: Sequence[FilePath], unit: str | None) -> list[ToolLibrary]:
-    """The tool libraries that are named."""
-    if unit is not None:
-        check_choice("unit", unit, ("mm", "inch"))
-    return [read_tools(path, unit or "") for path in check_paths("libraries", libraries)]
-
-
-def _tools(
-    runs: Sequence[Run], tools: Iterable[str | ToolShape], read: Sequence[ToolLibrary], toolpaths: Any
-) -> dict[str, ToolShape]:
+def _tools(runs: Sequence[Run], known: KnownTools) -> dict[str, ToolShape]:
     """The bodies of the tools with which the programs move at feed or at rapid."""
-    diameters = {number: wide for library in reversed(read) for number, wide in library.diameters.items()}
-    given = listed("tools", tools, ToolShape)
-    stated = [tool if isinstance(tool, ToolShape) else parse_tool(tool, diameters) for tool in given]
     called = [run.tools[int(index)] for run in runs for index in run.state.tool.distinct()]
-    in_spindle = any(tool.number == int(NO_CALL) for tool in stated)
+    in_spindle = any(tool.number == int(NO_CALL) for tool in known.stated)
     if in_spindle or any(_cuts_without_call(run) for run in runs):
         called.append(NO_CALL)
         if not in_spindle:
             what, cure = "the program cuts before it calls a tool", "state the one that is in the spindle: 0=ball:10"
             raise InputError(argument_problem("tools", what, cure, code="SIM150"))
-    found = choose_tools(called, stated, read, tools_of_toolpaths(toolpaths))
+    found = known.choose(called)
     return found | ({"": found[NO_CALL]} if NO_CALL in found else {})
 
 

@@ -7,10 +7,9 @@ from typing import Final
 
 from trunnion.controls.setting_rules import tool_number
 from trunnion.errors import InputError, argument_problem
-from trunnion.jobs.inputs.arguments import check_choice, check_paths, check_whole, wrong_argument
+from trunnion.jobs.inputs.arguments import check_choice, check_paths, check_whole, checked_angles, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath, ToolpathLike
 from trunnion.jobs.inputs.settings import check_tolerance
-from trunnion.jobs.inputs.turned_parts import checked_angles
 
 #: How far the tip may be off its CL point, mm.
 DEFAULT_TOLERANCE: Final = 0.001

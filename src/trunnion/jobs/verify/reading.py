@@ -10,16 +10,16 @@ from pathlib import Path
 
 from trunnion.controls import Control
 from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
-from trunnion.jobs.inputs.placed_heads import stated_place, unlike_cl_files, unlike_zero
 from trunnion.jobs.inputs.reading import FilePath, as_run, as_toolpaths
-from trunnion.jobs.inputs.turned_parts import clamped_after, stated_clamping, turned_toolpaths
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.verify.arguments import VerifyArguments
 from trunnion.jobs.verify.program_warnings import program_warnings
 from trunnion.machines import Machine
+from trunnion.model.clamped_toolpaths import clamped_after, stated_clamping, turned_toolpaths
 from trunnion.model.clamping import Clamping
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
+from trunnion.placing.program_heads import stated_place, unlike_cl_files, unlike_zero
 
 
 @dataclass(frozen=True, slots=True, eq=False)

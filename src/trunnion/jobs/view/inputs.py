@@ -15,19 +15,20 @@ from trunnion.cl.sources import cl_sources
 from trunnion.controls import load_control
 from trunnion.encoding import decode
 from trunnion.errors import InputError, Problem, Severity
-from trunnion.jobs.inputs.arguments import is_stream
+from trunnion.jobs.inputs.arguments import checked_angles, is_stream
 from trunnion.jobs.inputs.control_settings import rapid_feed_of
-from trunnion.jobs.inputs.placed_heads import stated_place
 from trunnion.jobs.inputs.reading import ToolpathLike, as_run, as_toolpaths
 from trunnion.jobs.inputs.settings import Settings
-from trunnion.jobs.inputs.turned_parts import checked_angles, is_turned, stated_clamping
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.post.posting import post
 from trunnion.jobs.project.file import read_project
 from trunnion.jobs.simulate.setups import SetupInput
 from trunnion.jobs.verify.verifying import verify
 from trunnion.machines import Machine
+from trunnion.model.clamped_toolpaths import stated_clamping
+from trunnion.model.clamping import Clamping
 from trunnion.model.toolpath import Toolpath
+from trunnion.placing.program_heads import stated_place
 from trunnion.verification import Verification, restore_rapids
 
 #: Arguments of a view that a set-up of a project states; and those of the project as a whole.
@@ -156,7 +157,7 @@ def of_project(path: Path, setup: str | None, given: Mapping[str, Any]) -> dict[
     project = read_project(path, tuple(stated))
     chosen, number = _setup(path, project.setups, setup)
     programs = list(chosen.programs)
-    if is_turned(*checked_angles(chosen.turn, chosen.tilt)):
+    if Clamping(*checked_angles(chosen.turn, chosen.tilt)).is_turned:
         what = f"has a part that is clamped turned{f' in {chosen.name}' if chosen.name else ''}, and a view turns none"
         cure = "view the program itself, with bodies as they are clamped"
         raise InputError(Problem(str(path), 0, what, cure, code="PAG115"))

@@ -16,11 +16,13 @@ import numpy as np
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.simulate.posted import simulate_posted, simulation_checks, simulation_input
-from trunnion.jobs.simulate.result import NearMiss, SimulationFinding, SimulationResult
-from trunnion.jobs.simulate.setups import SimulationInput, cutting_width
+from trunnion.jobs.simulate.result import SimulationResult
+from trunnion.jobs.simulate.setups import SimulationInput
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
+from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
+from trunnion.simulation.tools.profile import cutting_width
 from trunnion.viewer.content import ViewContent
 from trunnion.viewer.stock import StockView
 

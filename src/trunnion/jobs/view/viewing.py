@@ -8,21 +8,18 @@ from typing import Any, Literal
 from trunnion.errors import InputError, argument_problem
 from trunnion.files import OutputPlace, atomic_file
 from trunnion.jobs.inputs.arguments import check_path, check_paths
+from trunnion.jobs.inputs.bodies import KnownTools, known_tools
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.jobs.inputs.settings import Settings, set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.project.file import is_project
-from trunnion.jobs.simulate.result import NO_CALL
 from trunnion.jobs.targets import check_output_name
 from trunnion.jobs.view.inputs import bodies_not_clamped_so, of_project, view_program
 from trunnion.jobs.view.stock import view_simulation, with_stock
 from trunnion.model.run import Run
-from trunnion.model.toolpath import Toolpath
 from trunnion.simulation.meshes import load_mesh
-from trunnion.simulation.tools.choice import choose_tools, tools_of_toolpaths
-from trunnion.simulation.tools.library import read_tools
+from trunnion.simulation.tools.choice import NO_CALL
 from trunnion.simulation.tools.profile import ToolShape
-from trunnion.simulation.tools.text import parse_tool
 from trunnion.verification.comparison import align
 from trunnion.viewer.content import ViewContent, side_by_side, view_content
 from trunnion.viewer.page import render_view
@@ -119,7 +116,7 @@ def _prepared(
     around = [load_mesh(mesh, name=f"fixture {k}") for k, mesh in enumerate(fixtures, 1)]
     design = None if given["part"] is None else load_mesh(check_path("part", given["part"]), name="part")
     run = viewed.verification.run
-    bodies = _known_tools(run, given["tools"], given["libraries"], given["unit"], viewed.toolpaths)
+    bodies = _shown_tools(run, known_tools(given["tools"], given["libraries"], given["unit"], viewed.toolpaths))
     content = view_content(viewed.verification, viewed.texts, viewed.cl_texts, bodies, design, around, viewed.toolpaths)
     if simulated is not None:
         content = with_stock(content, simulated, run, viewed.toolpaths, observer)
@@ -213,18 +210,12 @@ def _shown_files(content: ViewContent) -> list[Path]:
     return [Path(file) for scene in scenes for file in scene.get("files", ())]
 
 
-def _known_tools(
-    run: Run, tools: Iterable[str], libraries: Sequence[FilePath], unit: str | None, toolpaths: Sequence[Toolpath]
-) -> dict[str, ToolShape]:
+def _shown_tools(run: Run, known: KnownTools) -> dict[str, ToolShape]:
     """The bodies of the tools whose form something states."""
-    read = [read_tools(path, unit or "") for path in check_paths("libraries", libraries)]
-    diameters = {number: wide for library in reversed(read) for number, wide in library.diameters.items()}
-    stated = [parse_tool(tool, diameters) for tool in tools]
-    of_cl_files = tools_of_toolpaths(toolpaths)
     found: dict[str, ToolShape] = {}
     for name in run.tools:
         try:
-            found[name] = choose_tools([name or NO_CALL], stated, read, of_cl_files)[name or NO_CALL]
+            found[name] = known.choose([name or NO_CALL])[name or NO_CALL]
         except InputError:
             continue  # drawn as a needle, which the page says
     return found

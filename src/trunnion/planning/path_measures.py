@@ -10,8 +10,8 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Flags, Floats
-from trunnion.cl.arcs import arc_lengths
 from trunnion.model.arc_extremes import operation_arcs, tip_reach
+from trunnion.model.arcs import arc_lengths
 from trunnion.model.toolpath import CycleOff, CycleOn, Dwell, Event, Kind, Operation, SpindleOff, SpindleOn
 from trunnion.planning.holes.cycles import HoleCycleError, HoleMethod, SpindleState, cycle_feed, cycle_from_event
 from trunnion.planning.holes.hole_ends import hole_ends

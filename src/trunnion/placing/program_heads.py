@@ -11,17 +11,8 @@ from typing import Final
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
-from trunnion.model.clamping import (
-    SAME,
-    Clamping,
-    StatedPlace,
-    are_one_angle,
-    clamped_notices,
-    head_comments,
-    number,
-    read_place,
-    zero_notices,
-)
+from trunnion.model.clamping import SAME, Clamping, are_one_angle, number
+from trunnion.model.clamping_notices import StatedPlace, clamped_notices, head_comments, read_place, zero_notices
 
 #: So much of a program is its head at most, bytes.
 _HEAD: Final = 1 << 16

@@ -12,33 +12,9 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem
-from trunnion.jobs.inputs.arguments import wrong_argument
 from trunnion.model.clamping import Clamping, number
 from trunnion.model.frames import frame_from_vectors, into_frame, into_plane
 from trunnion.model.toolpath import Frame, Operation, Toolpath
-from trunnion.placing.path_rows import turn_and_tilt
-
-
-def checked_angles(turn: object, tilt: object) -> tuple[float, float]:
-    """Turn and tilt as arguments, checked, in whole thousandths of a degree; None is 0.
-
-    Raises
-    ------
-    InputError
-        If one is no number from -360 to 360.
-    """
-    found = []
-    for name, value in (("turn", turn), ("tilt", tilt)):
-        value = 0.0 if value is None else value
-        if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= 360.0:
-            raise wrong_argument(name, value, "give degrees, -360 to 360")
-        found.append(round(float(value), 3) + 0.0)
-    return found[0], found[1]
-
-
-def is_turned(turn: float, tilt: float) -> bool:
-    """Whether a part is clamped otherwise than it is drawn, degrees."""
-    return turn % 360.0 != 0.0 or tilt % 360.0 != 0.0
 
 
 def stated_clamping(toolpaths: Sequence[Toolpath]) -> Clamping | None:
@@ -86,11 +62,11 @@ def turned_toolpaths(
 
     That is the coordinate system of the first operation with motion, or the ``absolute`` one of the CAM system.
     """
-    if not is_turned(degrees, tilt):
+    if not Clamping(degrees, tilt).is_turned:
         return list(toolpaths)
     return [
         replace(path, clamping=(path.clamping or Clamping()).then(degrees, tilt))
-        for path in _rotated(toolpaths, turn_and_tilt(degrees, tilt), absolute)
+        for path in _rotated(toolpaths, Clamping(degrees, tilt).rotation, absolute)
     ]
 
 
@@ -107,7 +83,7 @@ def toolpaths_clamped(toolpaths: Sequence[Toolpath], degrees: float, tilt: float
         return turned_toolpaths(toolpaths, degrees, tilt)
     if stated.is_like(Clamping(degrees, tilt)):
         return list(toolpaths)
-    return _rotated(toolpaths, turn_and_tilt(degrees, tilt) @ turn_and_tilt(stated.turn, stated.tilt).T, False)
+    return _rotated(toolpaths, Clamping(degrees, tilt).rotation @ Clamping(stated.turn, stated.tilt).rotation.T, False)
 
 
 def _rotated(toolpaths: Sequence[Toolpath], rotation: Floats, absolute: bool) -> list[Toolpath]:

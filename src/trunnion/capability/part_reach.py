@@ -2,16 +2,14 @@
 
 import math
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
-from trunnion.jobs.observer import Observer
 from trunnion.machines import Machine
 from trunnion.machines.reach import reached_points
-from trunnion.simulation.meshes import TriangleMesh, load_mesh
+from trunnion.simulation.meshes import TriangleMesh
 
 #: Directions on a ring around a normal.
 _AROUND: Final = 12
@@ -50,18 +48,6 @@ class PartReach:
         """Facets that are not reached, the largest first."""
         rows = np.flatnonzero(~self.travel)
         return np.asarray(rows[np.argsort(-self.area[rows], kind="stable")])
-
-
-def part_reach(machine: Machine, file: Path, lean: float, step: float, observer: Observer) -> PartReach:
-    """Judge all facets of a mesh.
-
-    Raises
-    ------
-    InputError
-        If the mesh cannot be read.
-    """
-    mesh = load_mesh(file, warn=lambda problem: observer.problems((problem,)))
-    return facet_reach(machine, mesh, lean, step)
 
 
 def facet_reach(machine: Machine, mesh: TriangleMesh, lean: float, step: float) -> PartReach:

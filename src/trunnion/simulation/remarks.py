@@ -8,19 +8,18 @@ from typing import Final
 import numpy as np
 
 from trunnion.errors import Problem, Severity, merge_repeated
-from trunnion.jobs.simulate.result import file_of_row
-from trunnion.jobs.simulate.setups import cutting_width
 from trunnion.machines import Machine
 from trunnion.machines.inverse import slide_positions
 from trunnion.model.run import Run
 from trunnion.model.stated_tips import StatedTips
 from trunnion.model.toolpath import Kind
 from trunnion.simulation.cutting.sweeps import sideways_exits, unknown_swivels
+from trunnion.simulation.findings import file_of_row
 from trunnion.simulation.simulator import Setup
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.stock.solids import StockShape
 from trunnion.simulation.tool_deltas import SIZES, is_told_of_length
-from trunnion.simulation.tools.profile import ToolShape
+from trunnion.simulation.tools.profile import ToolShape, cutting_width
 from trunnion.wording import counted
 
 #: Sizes that differ by less are the same, mm.

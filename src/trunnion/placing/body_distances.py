@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.errors import Problem, Severity
+from trunnion.model.clamping import Clamping
 from trunnion.placing.best_turn import TurnResult
 from trunnion.placing.collisions.best_clearance import Guard, NearestRow, nearest_at
 from trunnion.placing.collisions.guarded_pairs import Changes, GuardedPair, standing
-from trunnion.placing.path_rows import PathRows, turn_and_tilt
+from trunnion.placing.path_rows import PathRows
 from trunnion.placing.placement import BodyDistance, Place, Placement
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.turns import TurnedPath
@@ -41,7 +42,7 @@ def standing_at(best: TurnResult, guard: Guard) -> list[GuardedPair]:
     """The pairs that a simulation does not check at the best place, where the part stands on bodies at home."""
     if best.path is None or best.best is None:
         return []
-    return standing(best.path.machine, guard.pairs, turn_and_tilt(best.turn, best.tilt), best.best.zero)
+    return standing(best.path.machine, guard.pairs, Clamping(best.turn, best.tilt).rotation, best.best.zero)
 
 
 def touch_warnings(found: Placement) -> list[Problem]:
@@ -73,7 +74,7 @@ def _with_nearest(place: Place, rows: PathRows, guard: Guard, path: TurnedPath) 
 
 def _standing(place: Place, guard: Guard, path: TurnedPath) -> list[GuardedPair]:
     """The pairs that a simulation does not check at a place."""
-    turn = turn_and_tilt(place.turn_deg, place.tilt_deg)
+    turn = Clamping(place.turn_deg, place.tilt_deg).rotation
     return standing(path.machine, guard.pairs, turn, np.array(place.zero_mm))
 
 
