@@ -11,12 +11,12 @@ from trunnion.errors import Severity
 from trunnion.files import atomic_file, check_outputs
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import load_machine
-from trunnion.jobs.papers.reports import check_report_name
-from trunnion.jobs.papers.simulation_report import write_simulation_report
 from trunnion.jobs.project.file import library_files, project_files
 from trunnion.jobs.simulate.data import simulation_data
+from trunnion.jobs.simulate.report import write_simulation_report
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.simulating import simulate
+from trunnion.jobs.targets import check_report_name
 from trunnion.model.clamping import Clamping, number
 from trunnion.simulation.meshes import check_mesh_name, save_mesh
 from trunnion.simulation.setup_findings import NearMiss, SimulationFinding

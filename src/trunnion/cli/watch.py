@@ -21,11 +21,11 @@ from trunnion.files import OutputGroup, file_on_disk, output_group
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import load_machine
 from trunnion.jobs.observer import Observer
+from trunnion.jobs.post_project.posting import post_into
+from trunnion.jobs.post_project.setups import ProjectOptions
+from trunnion.jobs.post_project.watching import FolderNotices, Waiting, mentioned_files, watch
 from trunnion.jobs.project.file import load_project, project_inputs
-from trunnion.jobs.project.posting import post_into
 from trunnion.jobs.project.project import Project
-from trunnion.jobs.project.setups import ProjectOptions
-from trunnion.jobs.project.watching import FolderNotices, Waiting, mentioned_files, watch
 from trunnion.jobs.simulate.posted import simulation_files
 from trunnion.wording import counted, one_line
 

@@ -20,11 +20,10 @@ from trunnion.jobs.inputs.input_files import cl_files, machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.jobs.inputs.settings import Settings
 from trunnion.jobs.observer import SILENT, Observer
-from trunnion.jobs.papers.files import PaperFiles, paper_files
-from trunnion.jobs.papers.writing import PostPapers, post_papers
 from trunnion.jobs.post.expected_values import expectation
 from trunnion.jobs.post.left_over_files import left_over
 from trunnion.jobs.post.machining_times import new_time_token, prints_times, write_times
+from trunnion.jobs.post.papers.writing import PostPapers, post_papers
 from trunnion.jobs.post.planning import load_toolpaths, new_problems, plan_program
 from trunnion.jobs.post.post_job import FORCING, PostJob, prepare
 from trunnion.jobs.post.program_places import ProgramPlaces
@@ -34,7 +33,7 @@ from trunnion.jobs.post.refusals import refused, reported_refusals
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.stages import PlannedProgram, Posting, WrittenProgram
 from trunnion.jobs.post.writing import write_and_read_back
-from trunnion.jobs.targets import OutputLike, Target, open_target
+from trunnion.jobs.targets import OutputLike, PaperFiles, Target, open_target, paper_files
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.program import Program
 

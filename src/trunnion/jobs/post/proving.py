@@ -14,7 +14,7 @@ from trunnion.jobs.post.forcing import Untold, write_forced
 from trunnion.jobs.post.machining_times import operation_times
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.stages import PlannedProgram, Posting, Proof, WrittenProgram
-from trunnion.jobs.post.writing import named_verification
+from trunnion.jobs.post.writing import named_run, named_verification
 from trunnion.jobs.verify.program_warnings import program_warnings, stated_words
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
@@ -57,7 +57,8 @@ def _simulate(posting: Posting, run: Run | None, found: Verification | None) -> 
 
     # What may get notices in its head is told when lines are those of the file that stays.
     observer = Untold(posting.observer) if job.force else posting.observer
-    simulated = simulate_posted(job.simulation, run, posting.target.name, posting.toolpaths, observer)
+    named = None if run is None else named_run(run, posting.target.name)
+    simulated = simulate_posted(job.simulation, named, posting.toolpaths, observer)
     if found is not None:
         found = replace(found, checks=(*found.checks, *simulation_checks(simulated)))
     return Proof(found, simulated)

@@ -5,9 +5,9 @@ from contextlib import contextmanager
 from dataclasses import replace
 
 from trunnion.errors import Problem, TrunnionError
-from trunnion.jobs.papers.reports import write_refusal
 from trunnion.jobs.post.result import PostResult, ProofFailedError
 from trunnion.jobs.post.stages import Posting, Proof
+from trunnion.jobs.verify.reports import write_refusal
 
 
 @contextmanager

@@ -9,25 +9,22 @@ The papers of a project's programs are written when its checks are done: they te
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
-from trunnion import __version__
 from trunnion.errors import Problem
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.papers.reports import add_report
+from trunnion.jobs.post.papers import MADE_BY
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.targets import Target
+from trunnion.jobs.verify.reports import add_report
 from trunnion.output.program import Program
 from trunnion.verification import Verification
 
 if TYPE_CHECKING:  # imported where they are written
+    from trunnion.jobs.inputs.simulation_input import SimulationInput
     from trunnion.jobs.simulate.result import SimulationResult
-    from trunnion.jobs.simulate.setups import SimulationInput
     from trunnion.reporting.setup_sheet import SheetFile
-
-#: What made a paper.
-MADE_BY: Final = f"Trunnion {__version__}"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,7 +48,7 @@ class PostPapers:
         files: Iterable[FilePath],
     ) -> "PostPapers":
         """The papers with what was found after the post: problems, and a simulation with what it was of and read."""
-        from trunnion.jobs.papers.manifests import inputs_of
+        from trunnion.jobs.post.papers.manifests import inputs_of
 
         # A sheet has room for some warnings: these are the first.
         result = replace(self.result, problems=(*problems, *self.result.problems), simulation=simulation)
@@ -76,7 +73,7 @@ class PostPapers:
             text = listing(verification.run, name, verification.operations, slides=slides, made_by=MADE_BY)
             files.add_paper(places["listing"]).writelines(text)
         if "manifest" in places:
-            from trunnion.jobs.papers.manifests import manifest_bytes
+            from trunnion.jobs.post.papers.manifests import manifest_bytes
 
             files.flush()
             data = manifest_bytes(target, self.program, job, result, self.inputs)
@@ -84,7 +81,7 @@ class PostPapers:
 
     def _sheet(self, verification: Verification, suffix: str) -> bytes:
         """The setup sheet as a page or as data; stock, part and fixtures are drawn where the program is simulated."""
-        from trunnion.jobs.papers.setup_sheets import setup_sheet
+        from trunnion.jobs.post.papers.setup_sheets import setup_sheet
         from trunnion.reporting.path_drawing import DrawnBody
         from trunnion.reporting.setup_sheet_page import sheet_json, sheet_page
 
@@ -103,7 +100,7 @@ def post_papers(target: Target, program: Program, job: PostJob, result: PostResu
     """The papers of a post that is proven."""
     inputs: dict[str, list[dict[str, object]]] = {}
     if "manifest" in target.papers:
-        from trunnion.jobs.papers.manifests import post_inputs
+        from trunnion.jobs.post.papers.manifests import post_inputs
 
         inputs = post_inputs(job, result)
     return PostPapers(target, program, job, result, inputs)
@@ -111,7 +108,7 @@ def post_papers(target: Target, program: Program, job: PostJob, result: PostResu
 
 def _written_files(target: Target) -> "list[SheetFile]":
     """The files of a program with their checksums, the main program first."""
-    from trunnion.jobs.papers.manifests import checksum
+    from trunnion.jobs.post.papers.manifests import checksum
     from trunnion.reporting.setup_sheet import SheetFile
 
     target.files.flush()

@@ -18,13 +18,13 @@ from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.inputs.settings import Settings
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.result import PostResult
-from trunnion.jobs.project.checks import SetupFindings, check_project
-from trunnion.jobs.project.dividing import programs_of_operations
+from trunnion.jobs.post_project.checks import SetupFindings, check_project
+from trunnion.jobs.post_project.dividing import programs_of_operations
+from trunnion.jobs.post_project.left_over_setups import left_over_setups, remember_setups
+from trunnion.jobs.post_project.replaced_files import check_replaced
+from trunnion.jobs.post_project.setups import NO_OPTIONS, PostedPrograms, ProjectOptions, ProjectPosting, post_setups
 from trunnion.jobs.project.file import load_project, project_inputs, told_by_keys
-from trunnion.jobs.project.left_over_setups import left_over_setups, remember_setups
 from trunnion.jobs.project.project import Division, PostedSetup, Project
-from trunnion.jobs.project.replaced_files import check_replaced
-from trunnion.jobs.project.setups import NO_OPTIONS, PostedPrograms, ProjectOptions, ProjectPosting, post_setups
 
 if TYPE_CHECKING:  # imported where a project is simulated
     from trunnion.jobs.simulate.result import SimulationResult
@@ -178,7 +178,7 @@ def _write_papers(posting: ProjectPosting, found: _Found) -> None:
     """Write the papers that have waited for the checks."""
     if not posting.later:
         return
-    from trunnion.jobs.project.papers import write_setup_papers  # only for those that have some
+    from trunnion.jobs.post_project.papers import write_setup_papers  # only for those that have some
 
     papers, project = {each.target.path: each for each in posting.later}, posting.project
     for number, (setup, own) in enumerate(zip(project.posted, found.of_setups, strict=True)):
