@@ -19,8 +19,8 @@ from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_r
 from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.targets import check_output_name
 from trunnion.model.run import Run
+from trunnion.options.limits import FASTEST, LONGEST_RATE, SHORTEST_RATE, SLOWEST
 from trunnion.timing import time_run
-from trunnion.twin.limits import FASTEST, LONGEST_RATE, SHORTEST_RATE, SLOWEST
 from trunnion.twin.mtconnect.device import device_xml
 from trunnion.twin.playback import Playback
 from trunnion.twin.ports import listen
