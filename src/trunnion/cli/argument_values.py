@@ -4,9 +4,6 @@ import argparse
 from collections.abc import Sequence
 from typing import Any, Final, cast
 
-#: Dialects of CL files; listed here, so that a command line is taken apart before any reader is imported.
-DIALECTS = ("clsf", "ncl", "solidworks", "clt", "catia", "fusion", "apt")
-
 #: Values of the setting ``feed``.
 FEEDS = ("programmed", "fastest")
 

@@ -9,7 +9,6 @@ from typing import Final, NoReturn
 
 from trunnion import __version__
 from trunnion.cli.argument_values import (
-    DIALECTS,
     FEEDS,
     add_angles,
     add_settings,
@@ -25,6 +24,7 @@ from trunnion.cli.post_arguments import post_mistake
 from trunnion.cli.stock_arguments import add_stock
 from trunnion.cli.twin_arguments import add_machine_access, add_record, add_twin
 from trunnion.cli.verify_arguments import add_verify
+from trunnion.dialect_names import READ_DIALECTS, WRITTEN_DIALECTS
 
 
 class _Parser(argparse.ArgumentParser):
@@ -43,9 +43,6 @@ _NEGATIVE_LIST: Final = re.compile(r"-[0-9.]+(?:,[-+0-9.eE]+)+")
 
 #: Kinds of files that there are schemas of; listed here for the same reason.
 SCHEMAS = ("machine", "control", "project", "tools", "impeller", "nodes", "batch")
-
-#: Dialects that are written.
-WRITTEN_DIALECTS = ("clsf", "catia", "ncl")
 
 
 def _not_expected(unknown: Sequence[str], command: str) -> str:
@@ -169,7 +166,7 @@ def _add_post(parser: argparse.ArgumentParser) -> None:
         help="Python file whose functions change what the CL files ask for; it is run; may be repeated",
     )  # fmt: skip
     parser.add_argument(
-        "--dialect", choices=DIALECTS, help="what the CL files are written in; by default their content decides"
+        "--dialect", choices=READ_DIALECTS, help="what the CL files are written in; by default their content decides"
     )
     parser.add_argument(
         "--feed", choices=FEEDS, help="fastest: of each block what the axes reach, within the feed of the CL file"
@@ -247,8 +244,9 @@ def _add_convert(parser: argparse.ArgumentParser) -> None:
     into.add_argument("--to-cl", action="store_true", help="write a CL file")
     into.add_argument("--to-machine", metavar="NAME_OR_FILE", help="write a program for this machine")
     parser.add_argument(
-        "--dialect", choices=WRITTEN_DIALECTS, dest="to_dialect", help="what the CL file is written in; by default clsf"
-    )
+        "--dialect", choices=tuple(WRITTEN_DIALECTS), dest="to_dialect",
+        help="what the CL file is written in; by default clsf",
+    )  # fmt: skip
     parser.add_argument("--zero", metavar="X,Y,Z", help="the workpiece zero on the program's own machine, mm")
     parser.add_argument("--tool-length", metavar="MM", help="length of the tool there, gauge point to tip")
     parser.add_argument("--output", metavar="FILE|-|FOLDER", help="result; without it a file of that name here")
@@ -345,7 +343,7 @@ def _add_simulate(parser: argparse.ArgumentParser) -> None:
 def _add_info(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("files", nargs="+", metavar="CL", help="CL file; several are one job in their order")
     parser.add_argument("--units", choices=("mm", "inch"), help="length unit of the files, whatever they state")
-    parser.add_argument("--dialect", choices=DIALECTS, help="what they are written in")
+    parser.add_argument("--dialect", choices=READ_DIALECTS, help="what they are written in")
     parser.add_argument("--strict", action="store_true", help="unknown statements are errors")
     parser.add_argument("--json", action="store_true", help="data in place of text")
     parser.add_argument("--plot", metavar="FILE", help="the path by operation in space, as a page (.html)")

@@ -4,7 +4,6 @@ import argparse
 import shlex
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Final
 
 from trunnion.api.converting import convert
 from trunnion.api.reading import load_machine
@@ -12,11 +11,9 @@ from trunnion.cli.cl_files import cl_inputs, named_files, result_stem
 from trunnion.cli.results import tell
 from trunnion.cli.terminal import ConversionTerminal, check_unnamed, output_folder, output_place
 from trunnion.controls import load_control
+from trunnion.dialect_names import WRITTEN_DIALECTS
 from trunnion.files import check_outputs
 from trunnion.wording import counted
-
-#: Extensions of CL files by their dialects.
-_CL_EXTENSIONS: Final = {"clsf": ".cls", "catia": ".aptsource", "ncl": ".ncl"}
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -24,7 +21,7 @@ def run(arguments: argparse.Namespace) -> int:
     machine = load_machine(arguments.machine) if arguments.machine else None
     to_machine = load_machine(arguments.to_machine) if arguments.to_machine else None
     dialect = arguments.to_dialect or "clsf"
-    extension = _CL_EXTENSIONS[dialect] if to_machine is None else load_control(to_machine.control).extension
+    extension = WRITTEN_DIALECTS[dialect] if to_machine is None else load_control(to_machine.control).extension
     target = _target_file(arguments, extension)
     converted = convert(
         cl_inputs([arguments.file])[0] if machine is None else arguments.file,

@@ -2,7 +2,8 @@
 
 import argparse
 
-from trunnion.cli.argument_values import DIALECTS, FEEDS, add_angles, add_subprograms, edge, tolerance
+from trunnion.cli.argument_values import FEEDS, add_angles, add_subprograms, edge, tolerance
+from trunnion.dialect_names import READ_DIALECTS
 
 
 def add_verify(parser: argparse.ArgumentParser) -> None:
@@ -44,7 +45,7 @@ def add_verify(parser: argparse.ArgumentParser) -> None:
         help="cutting edge under which the tool works; with --cl that of the control's definition, if it has one",
     )  # fmt: skip
     parser.add_argument("--units", choices=("mm", "inch"), help="length unit of the CL files, whatever they state")
-    parser.add_argument("--dialect", choices=DIALECTS, help="what the CL files are written in")
+    parser.add_argument("--dialect", choices=READ_DIALECTS, help="what the CL files are written in")
     parser.add_argument(
         "--frame", choices=("first", "absolute"), default="first",
         help="whose coordinate system the program's is: the first operation's, or the CAM's absolute one",

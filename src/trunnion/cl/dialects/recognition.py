@@ -1,6 +1,6 @@
 """Which dialect a CL file is written in, told by its lines and never by its name."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final
 
@@ -22,23 +22,22 @@ class Recognition:
     marked: bool = True
 
 
-def recognize(head: bytes, dialects: Sequence[Dialect], general: Dialect, default: Dialect) -> Recognition:
+def recognize(head: bytes, dialects: Iterable[Dialect], default: Dialect) -> Recognition:
     """The dialect with most different marks in the lines of ``head``, the first one among equals.
 
-    Without any mark it is the ``general`` one, if that has a mark, else the ``default``.
+    A general one counts where no other has a mark; without any mark it is the ``default``.
     """
-    lines = head.splitlines()
     seen: dict[bytes, int] = {}
-    for number, line in enumerate(lines, 1):
+    for number, line in enumerate(head.splitlines(), 1):
         if not line.lstrip()[:7].upper().startswith(_NO_MARKS):
             seen.setdefault(line[:_COMPARED], number)
     best, why, most = default, "no line shows which CAM system wrote it", 0
-    for dialect in dialects:
+    for dialect in sorted(dialects, key=lambda dialect: dialect.is_general):
+        if dialect.is_general and most:
+            break
         found = _marks(dialect, seen)
         if len(found) > most:
             best, why, most = dialect, min(found)[1], len(found)
-    if not most and (found := _marks(general, seen)):
-        best, why, most = general, min(found)[1], 1
     return Recognition(best, why, most > 0)
 
 

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from trunnion.cl.assemble import CYCLE_LENGTHS
+from trunnion.cl.conventions import CycleParts
 from trunnion.cl.diagnostics import StatementError
-from trunnion.cl.dialect import CycleParts
 from trunnion.cl.state import FEED_UNITS, ReaderState
 from trunnion.cl.statement import Statement, numbers
 from trunnion.cl.statements.motion import refuse_in_circle

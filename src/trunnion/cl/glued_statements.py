@@ -1,7 +1,7 @@
-"""Statements that another one has swallowed: a line end is lost between them, or there is a continuation sign too many.
+"""Statements that are glued to another one: a line end is lost between them, or there is a continuation sign too many.
 
 A text, a comment and a statement that says nothing take whatever stands behind them; so each is searched for the words
-of other statements that are glued to it.
+of other statements.
 """
 
 import re
@@ -36,7 +36,7 @@ _CONTROL: Final = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
 _POINT: Final = re.compile(r"(GOTO|GODLTA)\s*/\s*[-+.]?\d", re.IGNORECASE)
 
 
-class SwallowedStatements:
+class GluedStatements:
     """Finds statements of ``dialect`` within others."""
 
     def __init__(self, dialect: Dialect) -> None:
