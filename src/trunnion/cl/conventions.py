@@ -1,4 +1,4 @@
-"""What a dialect of CL files means by what its statements leave unsaid: what the handlers of statements ask of it."""
+"""The conventions of a dialect of CL files: what its files leave unsaid, and handlers of statements ask for."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -8,7 +8,7 @@ from trunnion.cl.builder import NoAxis
 
 @dataclass(slots=True, eq=False)
 class CycleParts:
-    """The fields of a ``CycleOn`` while they are collected: modes, couplets with numbers, words without."""
+    """The fields of a ``CycleOn`` while they are collected: modes, couplets, and words without numbers."""
 
     mode: list[str] = field(default_factory=list)
     couplets: list[tuple[str, tuple[float, ...]]] = field(default_factory=list)
@@ -17,7 +17,7 @@ class CycleParts:
     def take(self, word: str) -> tuple[float, ...] | None:
         """Remove the couplet of a word; return its numbers, None if there is none.
 
-        One that is given twice stays, and is refused as that.
+        A couplet that is given twice stays, and is refused later.
         """
         found = [couplet for couplet in self.couplets if couplet[0] == word]
         if len(found) == 1:
@@ -27,14 +27,14 @@ class CycleParts:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CycleWords:
-    """How a dialect writes CYCLE; all becomes the words of NX's CLSF, which the toolpath has.
+    """How a dialect writes CYCLE; the toolpath has the words of NX's CLSF.
 
-    modes      words of a kind of cycle, and the modes that they are
-    words      words before numbers, and the words that they are
-    positions  what the numbers directly behind a mode are, in their order; they need no word of their own
+    modes      words for a kind of cycle, with their modes in a CLSF
+    words      words before numbers, with their words in a CLSF
+    positions  the words of the numbers directly behind a mode, in order, where the dialect leaves them out
     numbers    words with numbers that ``settle`` takes
-    refused    words that cannot be followed, and why
-    settle     turns what the words say together into what the toolpath says; raises ``StatementError``
+    refused    words whose meaning is not settled, with the reason
+    settle     completes a cycle whose words depend on each other; raises ``StatementError``
     """
 
     modes: Mapping[str, tuple[str, ...]]
@@ -47,17 +47,17 @@ class CycleWords:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Conventions:
-    """What is understood in a dialect.
+    """What the files of a dialect leave unsaid.
 
-    name         for settings and messages in short
-    title        for messages: what writes it
+    name         its name in settings
+    title        its name in messages
     cycles       how it writes CYCLE
     end          the statement behind the last motion, for messages
-    in_sections  operations stand between TOOL PATH and END-OF-PATH; else they begin with a tool, a name, a system
+    in_sections  operations stand between TOOL PATH and END-OF-PATH; else a tool, a name or a system begins one
     no_axis      the tool axis of a point that gives none, before any statement about it
     multax_off   the same after MULTAX/OFF
     vectors      points may give tool axes before any MULTAX, and after MULTAX/OFF
-    upright      points with a tilted tool axis are in coordinates that the file does not give: what to do instead
+    upright      the cure for points with a tilted tool axis, whose coordinates the file does not give; empty: read them
     """
 
     name: str

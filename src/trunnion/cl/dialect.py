@@ -22,7 +22,7 @@ class Dialect(Conventions):
     text           the form of its text
     is_general     its marks are words that other dialects have as well: they count where no other has one
     comment        takes the text of a ``$$`` line that carries a statement
-    after_comment  judges lines of comment that belong together, where other lines follow
+    after_comment  checks lines of comment that belong together, where other lines follow
     alias          takes twelve numbers behind an unknown word: the coordinate system under another name
     """
 

@@ -1,7 +1,6 @@
-"""Statements that are glued to another one: a line end is lost between them, or there is a continuation sign too many.
+"""Refuses statements without a line of their own: a line end before them is lost, or a continuation sign is too many.
 
-A text, a comment and a statement that says nothing take whatever stands behind them; so each is searched for the words
-of other statements.
+A text, a comment and a statement without effect would hide such a statement, so each is searched for words of others.
 """
 
 import re

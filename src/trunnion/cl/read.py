@@ -101,7 +101,7 @@ def read_cl_files(
     units
         Length unit of the file, ``"mm"`` or ``"inch"``; None: as the file says.
     dialect
-        A key of ``trunnion.cl.dialects.DIALECTS``; None: told by the content of the file.
+        A key of ``trunnion.cl.dialects.DIALECTS``; None: the content of the file decides.
     strict
         Make an unknown statement an error instead of a remark.
     spline_tolerance

@@ -3,8 +3,8 @@
 In:     a path or a binary stream.
 Out:    ``ClSource``: the texts of the CL files in it, each of which can be read from its beginning again and again.
 
-What a file is, its first bytes say, and never its name. Nothing is unpacked to disk. What grows beyond all measure
-while it is unpacked is refused.
+The first bytes of a file decide how it is packed, never its name. Nothing is unpacked to disk. A text that grows out
+of proportion while it is unpacked is refused.
 """
 
 import bz2
@@ -348,7 +348,7 @@ class _Shared(io.RawIOBase):
 class _Bzip2(io.RawIOBase):
     """A text packed by bzip2, in one stream or several behind each other, as programs with several threads write it.
 
-    ``bz2.BZ2File`` ends in silence at what is no stream, and loses all that follows.
+    ``bz2.BZ2File`` ends without an error at data that is no stream, and loses all that follows.
     """
 
     def __init__(self, packed: BinaryIO) -> None:

@@ -53,7 +53,7 @@ class ArcDirection(NamedTuple):
 class ReaderState:
     """What the handlers of statements (``trunnion.cl.statements``) read and change.
 
-    dialect          what the file leaves unsaid
+    dialect          the conventions of the dialect
     strict           an unknown statement is an error
     builders         the operations that are complete
     builder          the operation being read; outside of operations one without a name, which the next one takes over
@@ -160,18 +160,18 @@ class ReaderState:
         self.builders.append(before)
 
     def name_operation(self, name: str) -> None:
-        """Begin an operation with a name; what was stated of one without motion counts no more."""
+        """Begin an operation with a name; what was stated for one without motion no longer counts."""
         self.split_operation()
         self.builder.name, self.builder.line, self.builder.named = name, self.line, True
         self.builder.stated.clear()
 
     def state_once(self, what: str, value: object) -> None:
-        """Note what is true of the whole operation, also of its rows before this line.
+        """Note what holds for the whole operation, also for its rows before this line.
 
         Raises
         ------
         StatementError
-            If the operation has stated another value: nobody knows which of them is meant.
+            If the operation has stated another value: which of them is meant is unknown.
         """
         line, before = self.builder.stated.setdefault(what, (self.line, value))
         if before != value:
@@ -230,7 +230,7 @@ class ReaderState:
         self.system = numbers
 
     def note_feed_unit(self, word: str) -> None:
-        """Remember the first line with a feed in mm, and in inches: they tell the unit of a file without UNITS."""
+        """Note the first line with a feed in mm, and in inches: they give the unit of a file without UNITS."""
         if FEED_UNITS[word][0] == 1.0:
             self.first_mm_feed = self.first_mm_feed or self.line
         else:

@@ -1,4 +1,4 @@
-"""The form of CL text: how it is cut into points and statements, and how a statement is taken apart.
+"""The form of CL text: how it is cut into points and statements, and how a statement is parsed.
 
 Most systems write the statements of APT. A dialect of another form, such as pairs of lines of numbers, brings a scan
 and a ``parse`` of its own; everything behind them is shared.
@@ -38,12 +38,11 @@ class Scan(Protocol):
 class TextFormat:
     """The form of a CL file's text.
 
-    scan        compiled where files are large
-    parse       takes the bytes of a statement apart, in the encoding of the file; its ``source`` is ``MAJOR/values``,
-                which messages and definitions name. Raises ``StatementError``
-    unfinished  what is wrong with a file that ends within a statement
-    has_words   statements begin with words: one without a handler is judged by its word, which may be damaged, and
-                statements and comments are searched for others that a lost line end has glued to them
+    scan        finds points and spans of statements
+    parse       parses the bytes of a statement in the encoding of the file; raises ``StatementError``. The ``source``
+                of a statement is ``MAJOR/values``, by which messages and definitions name it
+    unfinished  the message for a file that ends within a statement
+    has_words   statements begin with words: an unknown one may be damaged, or hide another statement, and is checked
     """
 
     scan: Scan

@@ -84,7 +84,7 @@ def _damaged_matrix() -> StatementError:
 
 
 def _end_matrix(state: ReaderState) -> None:
-    """Judge the lines behind ``$$*CATIA0`` where other lines follow: they are whole, or there is none of the matrix."""
+    """Check the lines behind ``$$*CATIA0`` where other lines follow: the matrix is whole, or missing altogether."""
     matrix = state.own(_Matrix)
     if matrix.lines is None:
         return
@@ -98,7 +98,7 @@ def _end_matrix(state: ReaderState) -> None:
 
 
 def _miss_system(state: ReaderState) -> None:
-    """Go on without the matrix that a table of words leaves out; where it may be another one, it is needed."""
+    """Go on without the matrix that a table of words leaves out; refuse that where it may be another one."""
     state.own(_Matrix).lines = None
     if state.system or state.row:
         what = "$$*CATIA0 without its matrix: the machining axis system may be another one than before"
@@ -109,7 +109,7 @@ def _set_system(state: ReaderState, numbers: tuple[float, ...]) -> None:
     """Set the machining axis system of the points that follow; that of the file is the first one.
 
     Columns are axes and origin in the model. Operations of a later system have their frame in the first one, and
-    nothing that was said in the coordinates before holds on: last point, tool axis, clearance plane.
+    nothing in the coordinates before goes on: last point, tool axis, clearance plane.
     """
     if not state.system and state.row:
         what = "$$*CATIA0 behind points whose machining axis system nothing states"

@@ -1,4 +1,4 @@
-"""Which dialect a CL file is written in, told by its lines and never by its name."""
+"""Recognizes the dialect of a CL file by its lines, never by its name."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -9,13 +9,13 @@ from trunnion.cl.dialect import Dialect
 #: Bytes of a line that marks are looked for in: the same line comes often.
 _COMPARED: Final = 48
 
-#: Text behind these words is anybody's, and no mark; points look alike in most dialects, and there are many.
+#: Text behind these words may be anything, so it is no mark; points look alike in most dialects, and there are many.
 _NO_MARKS: Final = (b"PPRINT", b"INSERT", b"DISPLY", b"DISPLAY", b"TPRINT", b"GOTO")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Recognition:
-    """The dialect of a file, and why it is taken for that; ``marked``: by a mark, and not for want of any."""
+    """The dialect of a file, and why; ``marked``: a line has a mark of it, so that it is no mere default."""
 
     dialect: Dialect
     why: str
@@ -42,7 +42,7 @@ def recognize(head: bytes, dialects: Iterable[Dialect], default: Dialect) -> Rec
 
 
 def _marks(dialect: Dialect, lines: dict[bytes, int]) -> list[tuple[int, str]]:
-    """The first line with each of its marks, and what it says."""
+    """The first line with each mark of a dialect, and the mark as it stands there."""
     found = []
     for mark in dialect.marks:
         for line, number in lines.items():

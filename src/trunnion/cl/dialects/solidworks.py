@@ -113,7 +113,7 @@ def _extension(state: ReaderState, statement: Statement) -> None:
 def _settle_cycle(found: CycleParts) -> None:
     """The first peck, and then pecks of one length: as first, decrease and minimum.
 
-    Pecks that grow cannot be said so; shorter ones are kind to the drill.
+    Pecks that grow have no words; shorter ones are safe for the drill.
     """
     first, others = found.take("1STPECK"), found.take("SUBPECK")
     if first is not None and others is not None:

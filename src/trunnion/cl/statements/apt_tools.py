@@ -35,8 +35,8 @@ class _Stated:
 def cutter(state: ReaderState, statement: Statement) -> None:
     """Set the form of the tool: CUTTER/d[,r[,e,f,a,b,h]].
 
-    d diameter, r corner radius, e and f the centre of the corner's circle from the axis and above the tip, a the angle
-    of the tip from the horizontal, b that of the side from the axis, h the height.
+    d diameter; r corner radius; e, f centre of the corner's circle from the axis and above the tip; h height.
+    a is the angle of the tip from the horizontal, b that of the side from the axis, both in degrees.
     """
     tool, stated = _form(statement), state.own(_Stated)
     now = state.builder.tool

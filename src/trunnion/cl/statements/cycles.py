@@ -117,7 +117,7 @@ def _refuse_unused(found: CycleParts) -> None:
 
 
 def _refuse_repetitions(found: CycleParts) -> None:
-    """Refuse a number that is given twice: nobody knows which of them is meant."""
+    """Refuse a number that is given twice: which of them is meant is unknown."""
     names = ["a feed" if word in ("MMPM", "MMPR") else word for word, _ in found.couplets]
     if twice := next((name for n, name in enumerate(names) if name in names[:n]), ""):
         raise StatementError(f"CYCLE has {twice} twice", "write the one that is meant", code="CL320")

@@ -133,7 +133,7 @@ def begin_circle(
 
 
 def _count_turns(state: ReaderState, turns: int) -> None:
-    """Refuse more turns than anybody cuts: every one of them is looked at."""
+    """Refuse more turns than any job has: each of them takes time."""
     most = TURNS_IN_ANY_CASE + min(TURNS_PER_LINE * state.line, MOST_TURNS)
     state.turns += turns
     if state.turns > most >= state.turns - turns:
