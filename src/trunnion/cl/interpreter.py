@@ -65,6 +65,7 @@ class ClInterpreter:
         self._encoding = encoding
         self._words = words_that_count(dialect)
         self._glued = GluedStatements(dialect) if dialect.text.has_words else None
+        self._is_behind_comment = False
         self._known_statements = 0
         self._unknown_statements = 0
         self._parse_cache: dict[bytes, tuple[Handler | None, Statement]] = {}
@@ -109,11 +110,14 @@ class ClInterpreter:
                     self._glued.refuse_in_comment(comment)
                 if not row and len(self._notices) < _MOST_NOTICES and may_be_notice(comment):
                     self._notices.append((line, comment))
+                self._is_behind_comment = True
                 if self._dialect.comment is not None:
                     self._dialect.comment(self._state, comment)
                 return
-            if self._dialect.after_comment is not None:
-                self._dialect.after_comment(self._state)
+            if self._is_behind_comment:
+                self._is_behind_comment = False
+                if self._dialect.after_comment is not None:
+                    self._dialect.after_comment(self._state)
             handler, statement = self._parse_cache.get(raw) or self._look_up(raw)
             if handler is None:
                 self._unknown_statement(statement)
