@@ -35,6 +35,7 @@ def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> Non
         "trunnion.cli.stock_arguments",
         "trunnion.cli.twin_arguments",
         "trunnion.cli.verify_arguments",
+        "trunnion.dialect_names",
         "trunnion.errors",
         "trunnion.twin",
         "trunnion.twin.limits",
