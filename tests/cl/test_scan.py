@@ -33,7 +33,7 @@ def scan_all(
     found = []
     while at < len(data):
         at, number, rows, count = scan(
-            array, at, len(data), True, apt, number, rows, PointColumns(tip, axis, line), room
+            apt, array, at, len(data), True, number, rows, PointColumns(tip, axis, line), room
         )
         for begin, length, where, row, mark in room[:count].tolist():
             found.append((naive.blank(data[begin : begin + length].decode("latin-1")), where, row, mark))
