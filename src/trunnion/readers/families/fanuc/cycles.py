@@ -9,17 +9,8 @@ from typing import Final
 from trunnion.model.run import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion, check_pecks
 
-#: Canned cycles, by their G code in tenths.
-CYCLES: Final = frozenset({730, 740, 760, 810, 820, 830, 840, 850, 860, 870, 880, 890})
-
-#: Threads.
-THREADS: Final = frozenset({740, 840})
-
 #: The one whose I and J shift the tool off the wall.
 FINE_BORE: Final = 760
-
-#: Those that need Q.
-NEED_Q: Final = frozenset({730, 830})
 
 #: Words of cycles that hold until the cycles end.
 MODAL_WORDS: Final = "RZPQIJ"

@@ -9,9 +9,6 @@ from typing import Final
 from trunnion.model.run import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion, check_pecks
 
-#: Canned cycles, by their G code in tenths.
-CYCLES: Final = frozenset({810, 820, 830, 840, 850, 860, 890})
-
 #: Words of cycles that hold until the cycles end.
 MODAL_WORDS: Final = "ZERDH"
 

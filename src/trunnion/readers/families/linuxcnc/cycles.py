@@ -9,16 +9,6 @@ from typing import Final
 from trunnion.model.run import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion, check_pecks
 
-#: Canned cycles that drill, by their G code in tenths.
-CYCLES: Final = frozenset({730, 740, 810, 820, 830, 840, 850, 860, 870, 880, 890})
-
-#: Those that need Q and P when they begin.
-NEED_Q: Final = frozenset({730, 830})
-NEED_P: Final = frozenset({820, 860, 880, 890})
-
-#: Taps, which without a P of their own dwell as long as the last cycle that dwelled.
-KEEP_P: Final = frozenset({740, 840})
-
 #: Words of cycles that hold until another cycle begins.
 MODAL_WORDS: Final = "RZPQIJK"
 
