@@ -4,34 +4,26 @@ import re
 
 import pytest
 
-from tests.support.locations import DOCS
+from tests.support.words_page import TABLES, file_of, page
 from trunnion.readers.families.fanuc import text as fanuc_text
 from trunnion.readers.families.fanuc import variables
-from trunnion.readers.families.fanuc import words as fanuc
-from trunnion.readers.families.fidia import words as fidia
 from trunnion.readers.families.linuxcnc import parameters
 from trunnion.readers.families.linuxcnc import text as linuxcnc_text
-from trunnion.readers.families.linuxcnc import words as linuxcnc
 from trunnion.readers.rs274 import expressions
 
-PAGES = {name: (DOCS / f"reader-{name}.md").read_text(encoding="utf-8") for name in ("linuxcnc", "fanuc", "fidia")}
-NOT_SIMULATED = {
-    name: {word.split("[")[0] for word in re.findall(r"`([^`\n]+)`", page)} for name, page in PAGES.items()
-}
-
-TABLES = {"linuxcnc": linuxcnc.TABLE, "fanuc": fanuc.TABLE, "fidia": fidia.TABLE}
+PAGES = {name: file_of(name).read_text(encoding="utf-8") for name in TABLES}
+WORDS = {name: {word.split("[")[0] for word in re.findall(r"`([^`\n]+)`", page)} for name, page in PAGES.items()}
 
 
-@pytest.mark.parametrize("name", PAGES)
-def test_every_word_is_in_its_page(name: str) -> None:
-    words = {word.text for word in TABLES[name] if word.own and word.code >= 0}
-    assert words - NOT_SIMULATED[name] == set()
+@pytest.mark.parametrize("name", TABLES)
+def test_the_words_of_a_page_are_those_of_the_reader(name: str) -> None:
+    assert PAGES[name] == page(name), "run: python -m tests.support.words_page"
 
 
 @pytest.mark.parametrize(("name", "arithmetic"), [("linuxcnc", parameters.ARITHMETIC), ("fanuc", variables.ARITHMETIC)])
 def test_operators_and_functions_are_in_their_pages(name: str, arithmetic: expressions.Arithmetic) -> None:
-    assert {operator for level in arithmetic.levels for operator in level} <= NOT_SIMULATED[name]
-    assert {*arithmetic.functions, *arithmetic.pairs} <= NOT_SIMULATED[name]
+    assert {operator for level in arithmetic.levels for operator in level} <= WORDS[name]
+    assert {*arithmetic.functions, *arithmetic.pairs} <= WORDS[name]
 
 
 def test_limits_are_those_of_the_pages() -> None:

@@ -17,7 +17,7 @@ _REGISTER: Final = whole(0, 999)
 #: choose another of the two positions of the rotary axes than the nearest.
 TABLE: Final = WordTable(
     *COMMON_WORDS,
-    Word("G4", "dwell", act="dwell", when=_BEHIND, moves=False),
+    Word("G4", "dwell", act="dwell", letters="PXU", when=_BEHIND, moves=False),
     Word("G5", effect=_NONE, letters="P", values={"P": one_of(0, 10000)}, moves=False),
     Word(
         "G5.1", "AI contour control", effect=_NONE, act="contour_control", letters="QRXYZABC",
@@ -29,7 +29,7 @@ TABLE: Final = WordTable(
     Word("G7.1", "cylindrical interpolation is not simulated", effect=_ERROR, letters="ABC"),
     Word("G8", effect=_NONE, letters="P", values={"P": one_of(0, 1)}, moves=False),
     Word("G9", "event `exact_stop`: `block`", effect=_NONE, act="exact_stop", sets="block"),
-    Word("G10", "sets a work offset", act="set_data", when=_BEHIND, moves=False, numbered=True),
+    Word("G10", "sets a work offset", act="set_data", letters="LP", when=_BEHIND, moves=False, numbered=True),
     Word("G11", effect=_NONE),
     Word("G12.1", "polar coordinate interpolation is not simulated", effect=_ERROR, group="polar interpolation"),
     Word("G13.1", effect=_NONE, group="polar interpolation"),
@@ -92,26 +92,27 @@ TABLE: Final = WordTable(
         moves=False,
     ),
     Word("G54 G55 G56 G57 G58 G59", "work offset", act="work_offset", sets=(1, 2, 3, 4, 5, 6), group="offset"),
-    Word("G54.1", "work offset `P`", act="work_offset", sets=1, group="offset", numbered=True),
+    Word("G54.1", "work offset `P`", act="work_offset", sets=1, group="offset", letters="P", numbered=True),
     Word("G54.4", "workpiece setting errors are not simulated", effect=_ERROR, letters="P"),
     Word("G60", "positioning from one side, past its end and back, is not simulated", effect=_ERROR),
     Word("G61", "event `exact_stop`: `on`", effect=_NONE, act="exact_stop", sets="on", group="exact stop"),
     Word("G62", "another feed at inside corners is not simulated", effect=_ERROR, group="exact stop"),
     Word("G63", effect=_NONE, group="exact stop"),
     Word("G64", "event `exact_stop`: `off`", effect=_NONE, act="exact_stop", sets="off", group="exact stop"),
-    Word("G65", "calls a macro", when=_BEHIND, moves=False, numbered=True, calls=True),
+    Word("G65", "calls a macro", letters="PL", when=_BEHIND, moves=False, numbered=True, calls=True),
     Word(
-        "G66", "calls a macro after every motion", group="modal macro", when=_BEHIND, moves=False, numbered=True,
+        "G66", "calls a macro after every motion", group="modal macro", letters="PL", when=_BEHIND,
+        moves=False, numbered=True,
     ),
     Word(
         "G66.1", "a modal macro call at every block is not simulated", effect=_ERROR, group="modal macro",
         letters="PL", moves=False,
     ),
     Word("G67", "ends `G66`", act="end_modal_macro", group="modal macro"),
-    Word("G68", "rotation by `R`", act="rotate", group="rotation", when=_BEHIND, moves=False),
+    Word("G68", "rotation by `R`", act="rotate", group="rotation", letters="XYZIJKR", when=_BEHIND, moves=False),
     Word(
-        "G68.2", "tilted plane by Euler angles", act="tilt", group="rotation", when=_BEHIND, moves=False,
-        numbered=True,
+        "G68.2", "tilted plane by Euler angles", act="tilt", group="rotation", letters="XYZIJKPQR", when=_BEHIND,
+        moves=False, numbered=True,
     ),
     Word(
         "G68.3", "a plane by the tool's direction is not simulated", effect=_ERROR, group="rotation", letters="XYZR",
@@ -135,20 +136,20 @@ TABLE: Final = WordTable(
         act="take_plane_of_pose", group="plane of the rotary position",
     ),
     Word(
-        "G: no plane of the rotary position", "ends it", act="leave_plane_of_pose",
+        "G: no plane of the rotary position", "ends that plane", act="leave_plane_of_pose",
         group="plane of the rotary position",
     ),
     Word(
         "G: smoothness", "degree `P`, rough to fine; `E`: how far corners may be rounded", act="smoothness",
-        letters="P", values={"P": whole(1, 3)}, numbered=True,
+        letters="PE", values={"P": whole(1, 3)}, numbered=True,
     ),
     Word(
         "G: look-ahead", "how many blocks the control reads ahead; 0: as many as it can", act="look_ahead",
         letters="P", values={"P": whole(0, 15)}, numbered=True,
     ),
     Word("M29", "stops the spindle for a rigid thread; event `m`", act="stop_for_thread", own=False),
-    Word("M98", "calls a subprogram", act="call", when=_AFTER, numbered=True, calls=True),
-    Word("M99", "returns from it", act="return", when=_AFTER, numbered=True),
+    Word("M98", "calls a subprogram", act="call", letters="PL", when=_AFTER, numbered=True, calls=True),
+    Word("M99", "returns from a subprogram", act="return", letters="P", when=_AFTER, numbered=True),
     Word(
         "M198", "programs of other folders are not called", effect=_ERROR, letters="PL", when=_AFTER, numbered=True,
         calls=True, problem="NC132",

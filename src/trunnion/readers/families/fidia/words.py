@@ -13,7 +13,7 @@ OFFSET_BASE: Final = 500
 
 TABLE: Final = WordTable(
     *ISO_WORDS,
-    Word("G4", "dwell, `HD` seconds"),
+    Word("G4", "dwell, `HD` seconds", letters="H"),
     Word(
         "G17 G18 G19", "working plane XY, ZX, YZ", act="plane", sets=(2, 1, 0), group="plane", letters="Q",
         values={"Q": one_of(1)},
@@ -21,9 +21,9 @@ TABLE: Final = WordTable(
     Word("G20", "ends a plane of G21, which is not simulated", effect=_ERROR, moves=False),
     Word("G21", "a plane by its angles is not simulated", effect=_ERROR, letters="XYZ", moves=False),
     Word("G22 G23", "a helix by its angle is not simulated", effect=_ERROR, letters="XYZIJKP", moves=False),
-    Word("G55", "work offset `O`, and the tool length on", act="work_offset"),
+    Word("G55", "work offset `O`, and the tool length on", act="work_offset", letters="O"),
     Word("G154", "takes up the plane perpendicular to the tool", act="take_plane", group="plane of the tool"),
-    Word("G69", "ends it", act="end_plane", group="plane of the tool"),
+    Word("G69", "ends that plane", act="end_plane", group="plane of the tool"),
     Word("G70 G71", "inches (an error: what F counts then is not known), millimetres", act="units",
          sets=(True, False), group="units"),
     Word("G81 G82 G83 G84 G85 G86 G89", "cycle", act="cycle", needs="ZER"),

@@ -16,7 +16,7 @@ _SWITCH, _BIT, _REGISTER = one_of(0, 1), whole(0, 63), whole(0, 99999)
 #: Which code has which letters, values and group: LinuxCNC's own list, and its interpreter.
 TABLE: Final = WordTable(
     *COMMON_WORDS,
-    Word("G4", "dwell, `P` seconds", act="dwell", group="non-modal", when=_BEHIND),
+    Word("G4", "dwell, seconds", act="dwell", group="non-modal", letters="P", when=_BEHIND),
     Word("G5", "a spline, taken as nothing", effect=_ERROR, group="motion", letters="XYIJPQ", moves=False),
     Word("G5.1", "a spline, taken as nothing", effect=_ERROR, group="motion", letters="XYIJ", moves=False),
     Word("G5.2", "a NURBS, taken as nothing", effect=_ERROR, group="motion", letters="XYPL", moves=False),
@@ -25,7 +25,9 @@ TABLE: Final = WordTable(
     Word("G6.3", "a NURBS, taken as nothing", effect=_ERROR, moves=False),
     Word("G7", "turning is not simulated", effect=_ERROR, group="diameters"),
     Word("G8", effect=_NONE, group="diameters"),
-    Word("G10", "sets a work offset", act="set_data", group="non-modal", when=_BEHIND, moves=False),
+    Word(
+        "G10", "sets a work offset", act="set_data", group="non-modal", letters="LPR", when=_BEHIND, moves=False,
+    ),
     Word("G17.1 G18.1 G19.1", "a plane of U V W is not simulated", effect=_ERROR, group="plane"),
     Word("G20 G21", "inches, millimetres; also of feeds", act="units", sets=(True, False), group="units"),
     Word(
@@ -69,7 +71,10 @@ TABLE: Final = WordTable(
         "G61 G61.1", "events `tolerance` 0 and `exact_stop`: `path`, `on`", effect=_NONE, act="exact_path",
         sets=("path", "on"), group="path control",
     ),
-    Word("G64", "events `tolerance` `P` and `exact_stop`: `off`", effect=_NONE, act="blending", group="path control"),
+    Word(
+        "G64", "events `tolerance` and `exact_stop`: `off`", effect=_NONE, act="blending", group="path control",
+        letters="PQ",
+    ),
     Word(
         "G70 G71 G71.1 G71.2 G72 G72.1 G72.2", "a turning cycle is not simulated", effect=_ERROR, group="motion",
         letters="XZDEPQIR", moves=False,
