@@ -218,6 +218,19 @@ class WordInterpreter(Rs274Interpreter[A]):
         number = block.words["D"].value if "D" in block.words else -1.0
         self.control.modal.radius.set(self.control.row, int(number) if abs(number) < 1e6 else 0)
 
+    def _dwell(self, word: Word, block: Block) -> None:
+        """Wait for the seconds of a letter; ``word.sets`` is how it is written."""
+        seconds = block.take(word.letters)
+        if seconds is None:
+            self._note(f"{word.text} without a time {word.sets}", Severity.ERROR, "NC218")
+        elif seconds < 0.0:
+            raise BlockError("a dwell below zero", code="NC215")
+        else:
+            self.control.add_event("dwell", seconds)
+
+    def _tcp(self, word: Word, block: Block) -> None:
+        self.control.set_tcp(word.sets)
+
     def _end_of_cycles(self, word: Word, block: Block) -> None:
         self._to_initial = word.sets
 

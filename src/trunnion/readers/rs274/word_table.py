@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import KW_ONLY, dataclass, field, replace
 from enum import Enum, IntEnum
 from typing import Any, Final
 
@@ -33,10 +33,13 @@ class When(IntEnum):
     AFTER_MOTION = 3
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class WordFacts:
-    """What a control does with a word, besides its name.
+@dataclass(frozen=True, slots=True, eq=False)
+class Word:
+    """What a control does with a word, or with several that differ in nothing but what they set: a row of its table.
 
+    text      as written: ``G54.1``; several words with blanks between them; ``M100..M199``: all between them too;
+              ``G: a meaning``: a word that only some controls of the family have, each with a code of its own
+    does      what it does, as the docs have it; what the message says of a word that is not simulated
     effect    on the path
     act       the method of the interpreter that executes it, without its underscore; empty: there is none
     sets      the value that the method sets; in a record of several words a tuple, one for each
@@ -50,8 +53,13 @@ class WordFacts:
     own       no definition may declare another meaning for it
     calls     with the name of a program it is a word that a definition may declare
     problem   code of the message of a word that is not simulated; empty: that of its effect
+    code      its number, of G in tenths; negative: it has none
+    row       the text of its row
     """
 
+    text: str
+    does: str = ""
+    _: KW_ONLY
     effect: Effect = Effect.PATH
     act: str = ""
     sets: Any = None
@@ -65,21 +73,6 @@ class WordFacts:
     own: bool = True
     calls: bool = False
     problem: str = ""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Word(WordFacts):
-    """A word of a control, or several that differ in nothing but what they set: a row of its table.
-
-    text   as written: ``G54.1``; of several words with blanks between them; ``M100..M199``: all between them too;
-           ``G: a meaning``: a word that only some controls of the family have, each with a code of its own
-    does   what it does, as the docs have it; what the message says of a word that is not simulated
-    code   its number, of G in tenths; negative: it has none
-    row    the text of its row
-    """
-
-    text: str
-    does: str = ""
     code: int = 0
     row: str = ""
 

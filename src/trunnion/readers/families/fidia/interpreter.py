@@ -81,19 +81,10 @@ class FidiaInterpreter(WordInterpreter[ActiveProgram]):
 
     def _scale_words(self, block: Block) -> None:
         super()._scale_words(block)
-        if words.DWELL in block.g:
-            self._dwell(block)
-
-    def _dwell(self, block: Block) -> None:
-        seconds = block.take("H")
-        if seconds is None:
-            self._note("G4 without a time HD", Severity.ERROR, "NC218")
-        elif seconds < 0.0:
-            raise BlockError("a dwell below zero", code="NC215")
-        else:
-            self.control.add_event("dwell", seconds)
-        if self._axis_words(block):
-            raise BlockError("axis words beside G4")
+        if words.DWELL in block.g:  # behind all other G words
+            self._dwell(self.table.words("G", [words.DWELL])[0], block)
+            if self._axis_words(block):
+                raise BlockError("axis words beside G4")
 
     def _call_tool(self, block: Block) -> None:
         if self._tool is not None:
@@ -123,9 +114,6 @@ class FidiaInterpreter(WordInterpreter[ActiveProgram]):
 
     def _end_plane(self, word: Word, block: Block) -> None:
         self.control.set_plane(None)
-
-    def _tcp(self, word: Word, block: Block) -> None:
-        self.control.set_tcp(word.sets)
 
     def _change_tool(self, word: Word, block: Block) -> None:
         self.control.change_tool()

@@ -13,7 +13,7 @@ OFFSET_BASE: Final = 500
 
 TABLE: Final = WordTable(
     *ISO_WORDS,
-    Word("G4", "dwell, `HD` seconds", letters="H"),
+    Word("G4", "dwell, `HD` seconds", sets="HD", letters="H"),
     Word(
         "G17 G18 G19", "working plane XY, ZX, YZ", act="plane", sets=(2, 1, 0), group="plane", letters="Q",
         values={"Q": one_of(1)},

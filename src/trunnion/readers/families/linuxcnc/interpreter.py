@@ -220,9 +220,6 @@ class LinuxcncInterpreter(CycleInterpreter):
             what = "M52 lets a signal scale the feed: not simulated; M52 P0 does not"
             self._note(what, Severity.ERROR, "NC220")
 
-    def _tcp(self, word: Word, block: Block) -> None:
-        self.control.set_tcp(word.sets)
-
     def _set_tool(self, word: Word, block: Block) -> None:
         self.control.select_tool(f"{block.take('Q') or 0:g}")
         self.control.change_tool()

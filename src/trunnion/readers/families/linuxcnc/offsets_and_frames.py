@@ -33,15 +33,6 @@ class OffsetInterpreter(OWordInterpreter):
     def _make_control(self) -> LinuxcncControl:
         return LinuxcncControl(self._machine, self._note, shortest=self._options.shortest)
 
-    def _dwell(self, word: Word, block: Block) -> None:
-        seconds = block.take("P")
-        if seconds is None:
-            self._note("G4 without a time P", Severity.ERROR, "NC218")
-        elif seconds < 0.0:
-            raise BlockError("a dwell below zero", code="NC215")
-        else:
-            self.control.add_event("dwell", seconds)
-
     # Offsets
 
     def _switch_axis_offset(self, word: Word, block: Block) -> None:

@@ -16,7 +16,7 @@ _SWITCH, _BIT, _REGISTER = one_of(0, 1), whole(0, 63), whole(0, 99999)
 #: Which code has which letters, values and group: LinuxCNC's own list, and its interpreter.
 TABLE: Final = WordTable(
     *COMMON_WORDS,
-    Word("G4", "dwell, seconds", act="dwell", group="non-modal", letters="P", when=_BEHIND),
+    Word("G4", "dwell, seconds", act="dwell", sets="P", group="non-modal", letters="P", when=_BEHIND),
     Word("G5", "a spline, taken as nothing", effect=_ERROR, group="motion", letters="XYIJPQ", moves=False),
     Word("G5.1", "a spline, taken as nothing", effect=_ERROR, group="motion", letters="XYIJ", moves=False),
     Word("G5.2", "a NURBS, taken as nothing", effect=_ERROR, group="motion", letters="XYPL", moves=False),
