@@ -87,7 +87,10 @@ _CONVERT: Final = job(
     Option("to_cl", "--to-cl", Switch(), "write a CL file", either="target!"),
     OTHER_MACHINE.but(help="write a program for this machine", either="target!"),
     Option(
-        "to_dialect", "--to-dialect", Choice(tuple(WRITTEN_DIALECTS)), "what the CL file is written in; by default clsf",
+        "to_dialect",
+        "--to-dialect",
+        Choice(tuple(WRITTEN_DIALECTS)),
+        "what the CL file is written in; by default clsf",
         own=True,
     ),
     READING,

@@ -8,8 +8,7 @@ from tests.support.reading import Runner, close
 from trunnion.errors import Severity
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.readers.control.hole_motion import CycleExecutionError
-from trunnion.readers.families.heidenhain.cycles import peck_depths
+from trunnion.readers.control.hole_motion import CycleExecutionError, peck_depths
 
 BEFORE = "TOOL CALL 1 Z S1000\nL X+3 Y+4 Z+100 R0 FMAX M3\n"
 
