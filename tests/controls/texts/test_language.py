@@ -133,9 +133,16 @@ ESCAPES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("text", ESCAPES, ids=range(len(ESCAPES)))
-def test_what_templates_cannot_do(text: str) -> None:
-    assert refused(text)
+def answer(text: str) -> str:
+    """What a template is refused with; nothing, if it is taken."""
+    try:
+        return refused(text)
+    except pytest.fail.Exception:
+        return ""
+
+
+def test_what_templates_cannot_do() -> None:
+    assert [text[:80] for text in ESCAPES if not answer(text)] == []
 
 
 def test_a_program_has_a_budget_for_all_its_texts() -> None:
