@@ -8,10 +8,7 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from tests.support.examples import DRAWS
-from tests.support.slow import SLOW
-
-#: Files and folders of the slow ones.
-PLACES = {Path(__file__).parent / name for name in SLOW}
+from tests.support.slow import is_slow
 
 # Kernels compile at their first call, and machines are busy: no test depends on time. What a random machine makes
 # impossible is left out by ``assume``, and some draws of machines leave much out. In CI a change is judged by the same
@@ -43,13 +40,13 @@ def pytest_configure(config: pytest.Config) -> None:
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
     """Do not even import the slow ones where they are left out."""
-    return True if config.getoption("markexpr") == "not slow" and collection_path in PLACES else None
+    return True if config.getoption("markexpr") == "not slow" and is_slow(collection_path) else None
 
 
 @pytest.hookimpl(trylast=True)  # Hypothesis has marked its own
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Mark the slow ones, and part those of nightly from the others."""
-    slow = {path for path in {item.path for item in items} if not PLACES.isdisjoint((path, *path.parents))}
+    slow = {path for path in {item.path for item in items} if is_slow(path)}
     for item in items:
         if item.path in slow:
             item.add_marker(pytest.mark.slow)

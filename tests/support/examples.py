@@ -11,5 +11,9 @@ DRAWS = {"trunnion": 34, "nightly": 100}
 
 def examples(count: int) -> int:
     """Of the draws that a property asks for, those that the profile gives it."""
-    share = settings().max_examples / DRAWS["nightly"]
-    return max(min(count, FEWEST), round(count * share))
+    return part_of(count, settings().max_examples)
+
+
+def part_of(count: int, percent: int) -> int:
+    """A part of some draws."""
+    return max(min(count, FEWEST), round(0.01 * count * percent))
