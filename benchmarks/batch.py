@@ -26,7 +26,6 @@ from tests.support.dask_clusters import Cluster
 
 import make_cls
 import trunnion
-from trunnion.api.observer import Observer
 from trunnion.batch import run_batch
 from trunnion.batch.cluster import DaskWorkers
 from trunnion.batch.jobs import Batch, Job
@@ -35,6 +34,7 @@ from trunnion.batch.records import Record
 from trunnion.batch.running import run_jobs
 from trunnion.batch.stores import FolderStore, Store, open_store
 from trunnion.batch.task import Action, Outcome, Status, Task
+from trunnion.jobs.observer import Observer
 
 MACHINE = "yl569"
 SETTINGS = {"title": "BATCH"}

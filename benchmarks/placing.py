@@ -11,7 +11,7 @@ from pathlib import Path
 
 import make_cls
 import trunnion
-from trunnion.api.placing import place
+from trunnion.jobs.place.placing import place
 
 
 def main() -> None:

@@ -21,10 +21,10 @@ import numpy as np
 
 import trunnion
 from simulation import CASES, path
-from trunnion.api.observer import SILENT
-from trunnion.api.simulation_data import simulation_data
-from trunnion.api.simulation_result import SimulationResult
-from trunnion.api.simulation_shares import join_shares, simulate_share
+from trunnion.jobs.observer import SILENT
+from trunnion.jobs.simulate.data import simulation_data
+from trunnion.jobs.simulate.result import SimulationResult
+from trunnion.jobs.simulate.shares import join_shares, simulate_share
 from trunnion.simulation.cutting.shares import Share
 from trunnion.simulation.meshes import save_mesh
 from trunnion.simulation.meshes.primitives import box_mesh

@@ -19,9 +19,9 @@ def main() -> None:
     with ThreadPoolExecutor(1) as executor:
         coming = read_toolpaths([source], None, False, executor)
         # As the command does, all else is imported while the file is read.
-        from trunnion.api.job import prepare
-        from trunnion.api.planning import plan_program
         from trunnion.files import atomic_file
+        from trunnion.jobs.post.planning import plan_program
+        from trunnion.jobs.post.post_job import prepare
         from trunnion.machines import load_machine
         from trunnion.output.program_writer import write_program
 

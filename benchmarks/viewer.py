@@ -16,7 +16,7 @@ from playwright.sync_api import Page, ViewportSize, sync_playwright
 
 import trunnion
 from make_cls import write
-from trunnion.api.viewing import prepare_view
+from trunnion.jobs.view.viewing import prepare_view
 from trunnion.viewer.server import view_application
 from trunnion.viewer.serving import Access, listen
 

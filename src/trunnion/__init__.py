@@ -44,52 +44,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
-    from trunnion.api.comparing import diff as diff
-    from trunnion.api.converting import ConvertResult as ConvertResult
-    from trunnion.api.converting import convert as convert
-    from trunnion.api.curves import fit_curve as fit_curve
-    from trunnion.api.curves import read_points as read_points
-    from trunnion.api.curves import write_curve_picture as write_curve_picture
-    from trunnion.api.describing import ControlDescription as ControlDescription
-    from trunnion.api.describing import describe_control as describe_control
-    from trunnion.api.describing import describe_controls as describe_controls
-    from trunnion.api.describing_cl import ClDescription as ClDescription
-    from trunnion.api.describing_cl import describe_cl as describe_cl
-    from trunnion.api.describing_machine import MachineDescription as MachineDescription
-    from trunnion.api.describing_machine import describe_machine as describe_machine
-    from trunnion.api.explaining import explain as explain
-    from trunnion.api.fitting import MachineFit as MachineFit
-    from trunnion.api.fitting import fit as fit
-    from trunnion.api.impeller_cutting import ImpellerCut as ImpellerCut
-    from trunnion.api.impeller_cutting import cut_impeller as cut_impeller
-    from trunnion.api.impellers import load_impeller as load_impeller
-    from trunnion.api.impellers import model_impeller as model_impeller
-    from trunnion.api.impellers import write_impeller_step as write_impeller_step
-    from trunnion.api.manifests import ManifestCheck as ManifestCheck
-    from trunnion.api.manifests import verify_manifest as verify_manifest
-    from trunnion.api.observer import Observer as Observer
-    from trunnion.api.placing import place as place
-    from trunnion.api.placing_plot import write_placing_plot as write_placing_plot
-    from trunnion.api.placing_post import post_placed as post_placed
-    from trunnion.api.planning import plan as plan
-    from trunnion.api.plotting import write_plot as write_plot
-    from trunnion.api.post_result import PostResult as PostResult
-    from trunnion.api.post_result import ProofFailedError as ProofFailedError
-    from trunnion.api.posting import post as post
-    from trunnion.api.project_posting import ProjectResult as ProjectResult
-    from trunnion.api.project_posting import post_project as post_project
-    from trunnion.api.reaching import Reach as Reach
-    from trunnion.api.reaching import reach as reach
-    from trunnion.api.reading import load_machine as load_machine
-    from trunnion.api.reading import read_cl as read_cl
-    from trunnion.api.reading import read_program as read_program
-    from trunnion.api.reports import write_report as write_report
-    from trunnion.api.sensitivity import Sensitivity as Sensitivity
-    from trunnion.api.sensitivity import sensitivity as sensitivity
-    from trunnion.api.simulating import simulate as simulate
-    from trunnion.api.simulation_result import SimulationResult as SimulationResult
-    from trunnion.api.verifying import verify as verify
-    from trunnion.api.viewing import write_view as write_view
+    from trunnion.capability.reach import Reach as Reach
+    from trunnion.capability.sensitivity import Sensitivity as Sensitivity
     from trunnion.errors import InputError as InputError
     from trunnion.errors import Problem as Problem
     from trunnion.errors import RefusedError as RefusedError
@@ -103,6 +59,50 @@ if TYPE_CHECKING:
     from trunnion.impeller.impeller import Impeller as Impeller
     from trunnion.impeller.model import ImpellerModel as ImpellerModel
     from trunnion.impeller.solid.making import ImpellerSolid as ImpellerSolid
+    from trunnion.jobs.capability.fitting import MachineFit as MachineFit
+    from trunnion.jobs.capability.fitting import fit as fit
+    from trunnion.jobs.capability.reaching import reach as reach
+    from trunnion.jobs.capability.sensitivity import sensitivity as sensitivity
+    from trunnion.jobs.convert.converting import ConvertResult as ConvertResult
+    from trunnion.jobs.convert.converting import convert as convert
+    from trunnion.jobs.describe.cl_files import ClDescription as ClDescription
+    from trunnion.jobs.describe.cl_files import describe_cl as describe_cl
+    from trunnion.jobs.describe.codes import explain as explain
+    from trunnion.jobs.describe.controls import ControlDescription as ControlDescription
+    from trunnion.jobs.describe.controls import describe_control as describe_control
+    from trunnion.jobs.describe.controls import describe_controls as describe_controls
+    from trunnion.jobs.describe.machines import MachineDescription as MachineDescription
+    from trunnion.jobs.describe.machines import describe_machine as describe_machine
+    from trunnion.jobs.describe.plot import write_plot as write_plot
+    from trunnion.jobs.impeller.curves import fit_curve as fit_curve
+    from trunnion.jobs.impeller.curves import read_points as read_points
+    from trunnion.jobs.impeller.curves import write_curve_picture as write_curve_picture
+    from trunnion.jobs.impeller.cutting import ImpellerCut as ImpellerCut
+    from trunnion.jobs.impeller.cutting import cut_impeller as cut_impeller
+    from trunnion.jobs.impeller.models import load_impeller as load_impeller
+    from trunnion.jobs.impeller.models import model_impeller as model_impeller
+    from trunnion.jobs.impeller.models import write_impeller_step as write_impeller_step
+    from trunnion.jobs.inputs.reading import load_machine as load_machine
+    from trunnion.jobs.inputs.reading import read_cl as read_cl
+    from trunnion.jobs.inputs.reading import read_program as read_program
+    from trunnion.jobs.observer import Observer as Observer
+    from trunnion.jobs.papers.manifests import ManifestCheck as ManifestCheck
+    from trunnion.jobs.papers.manifests import verify_manifest as verify_manifest
+    from trunnion.jobs.papers.reports import write_report as write_report
+    from trunnion.jobs.place.placing import place as place
+    from trunnion.jobs.place.plot import write_placing_plot as write_placing_plot
+    from trunnion.jobs.place.posting import post_placed as post_placed
+    from trunnion.jobs.post.planning import plan as plan
+    from trunnion.jobs.post.posting import post as post
+    from trunnion.jobs.post.result import PostResult as PostResult
+    from trunnion.jobs.post.result import ProofFailedError as ProofFailedError
+    from trunnion.jobs.project.posting import ProjectResult as ProjectResult
+    from trunnion.jobs.project.posting import post_project as post_project
+    from trunnion.jobs.simulate.result import SimulationResult as SimulationResult
+    from trunnion.jobs.simulate.simulating import simulate as simulate
+    from trunnion.jobs.verify.comparing import diff as diff
+    from trunnion.jobs.verify.verifying import verify as verify
+    from trunnion.jobs.view.viewing import write_view as write_view
     from trunnion.machines.machine import Axis as Axis
     from trunnion.machines.machine import Machine as Machine
     from trunnion.model.motion import Decision as Decision
@@ -124,75 +124,75 @@ _MODULES: Final = {
     "Axis": "machines.machine",
     "BSplineCurve": "geometry.curves",
     "Check": "verification.results",
-    "ClDescription": "api.describing_cl",
+    "ClDescription": "jobs.describe.cl_files",
     "Comparison": "verification.comparison.result",
-    "ControlDescription": "api.describing",
-    "ConvertResult": "api.converting",
+    "ControlDescription": "jobs.describe.controls",
+    "ConvertResult": "jobs.convert.converting",
     "CurveFit": "geometry.fitting",
     "Decision": "model.motion",
     "Explanation": "explanations",
     "Impeller": "impeller.impeller",
-    "ImpellerCut": "api.impeller_cutting",
+    "ImpellerCut": "jobs.impeller.cutting",
     "ImpellerModel": "impeller.model",
     "ImpellerSolid": "impeller.solid.making",
     "InputError": "errors",
     "Machine": "machines.machine",
-    "MachineDescription": "api.describing_machine",
-    "MachineFit": "api.fitting",
-    "ManifestCheck": "api.manifests",
+    "MachineDescription": "jobs.describe.machines",
+    "MachineFit": "jobs.capability.fitting",
+    "ManifestCheck": "jobs.papers.manifests",
     "Motion": "model.motion",
-    "Observer": "api.observer",
+    "Observer": "jobs.observer",
     "Operation": "model.toolpath",
     "Place": "verification.results",
     "Placement": "placing.placement",
     "Plan": "model.motion",
     "PointTable": "geometry.point_tables",
-    "PostResult": "api.post_result",
+    "PostResult": "jobs.post.result",
     "Problem": "errors",
-    "ProjectResult": "api.project_posting",
-    "ProofFailedError": "api.post_result",
-    "Reach": "api.reaching",
+    "ProjectResult": "jobs.project.posting",
+    "ProofFailedError": "jobs.post.result",
+    "Reach": "jobs.capability.reaching",
     "RefusedError": "errors",
     "Run": "model.run",
-    "Sensitivity": "api.sensitivity",
+    "Sensitivity": "jobs.capability.sensitivity",
     "Severity": "errors",
-    "SimulationResult": "api.simulation_result",
+    "SimulationResult": "jobs.simulate.result",
     "Span": "geometry.spans",
     "Toolpath": "model.toolpath",
     "TrunnionError": "errors",
     "Verification": "verification.results",
-    "convert": "api.converting",
-    "cut_impeller": "api.impeller_cutting",
-    "describe_cl": "api.describing_cl",
-    "describe_control": "api.describing",
-    "describe_controls": "api.describing",
-    "describe_machine": "api.describing_machine",
-    "diff": "api.comparing",
-    "explain": "api.explaining",
-    "fit": "api.fitting",
-    "fit_curve": "api.curves",
-    "load_impeller": "api.impellers",
-    "load_machine": "api.reading",
-    "model_impeller": "api.impellers",
-    "place": "api.placing",
-    "plan": "api.planning",
-    "post": "api.posting",
-    "post_placed": "api.placing_post",
-    "post_project": "api.project_posting",
-    "reach": "api.reaching",
-    "read_cl": "api.reading",
-    "read_points": "api.curves",
-    "read_program": "api.reading",
-    "sensitivity": "api.sensitivity",
-    "simulate": "api.simulating",
-    "verify": "api.verifying",
-    "verify_manifest": "api.manifests",
-    "write_curve_picture": "api.curves",
-    "write_impeller_step": "api.impellers",
-    "write_placing_plot": "api.placing_plot",
-    "write_plot": "api.plotting",
-    "write_report": "api.reports",
-    "write_view": "api.viewing",
+    "convert": "jobs.convert.converting",
+    "cut_impeller": "jobs.impeller.cutting",
+    "describe_cl": "jobs.describe.cl_files",
+    "describe_control": "jobs.describe.controls",
+    "describe_controls": "jobs.describe.controls",
+    "describe_machine": "jobs.describe.machines",
+    "diff": "jobs.verify.comparing",
+    "explain": "jobs.describe.codes",
+    "fit": "jobs.capability.fitting",
+    "fit_curve": "jobs.impeller.curves",
+    "load_impeller": "jobs.impeller.models",
+    "load_machine": "jobs.inputs.reading",
+    "model_impeller": "jobs.impeller.models",
+    "place": "jobs.place.placing",
+    "plan": "jobs.post.planning",
+    "post": "jobs.post.posting",
+    "post_placed": "jobs.place.posting",
+    "post_project": "jobs.project.posting",
+    "reach": "jobs.capability.reaching",
+    "read_cl": "jobs.inputs.reading",
+    "read_points": "jobs.impeller.curves",
+    "read_program": "jobs.inputs.reading",
+    "sensitivity": "jobs.capability.sensitivity",
+    "simulate": "jobs.simulate.simulating",
+    "verify": "jobs.verify.verifying",
+    "verify_manifest": "jobs.papers.manifests",
+    "write_curve_picture": "jobs.impeller.curves",
+    "write_impeller_step": "jobs.impeller.models",
+    "write_placing_plot": "jobs.place.plot",
+    "write_plot": "jobs.describe.plot",
+    "write_report": "jobs.papers.reports",
+    "write_view": "jobs.view.viewing",
 }
 
 __all__ = [

@@ -17,8 +17,6 @@ from tests.support.batches import AsTheyCome, divided_batch, run_simply, simple_
 from tests.support.dask_clusters import Cluster, needs_dask
 from tests.support.divided import write_divided, write_jobs
 from tests.support.locations import YL569
-from trunnion.api.observer import Observer
-from trunnion.api.simulation_data import simulation_data
 from trunnion.batch import Status, run_batch
 from trunnion.batch.cluster import DaskWorkers
 from trunnion.batch.dividing import SHARES
@@ -29,6 +27,8 @@ from trunnion.batch.stores import FolderStore, open_store
 from trunnion.batch.task import Action, OtherVersionError, Task
 from trunnion.batch.workers import Assignment
 from trunnion.errors import InputError, Problem
+from trunnion.jobs.observer import Observer
+from trunnion.jobs.simulate.data import simulation_data
 
 pytestmark = needs_dask
 

@@ -20,7 +20,6 @@ from tests.support.batches import (
 )
 from tests.support.dask_clusters import needs_dask
 from tests.support.divided import write_divided, write_jobs
-from trunnion.api.observer import Observer
 from trunnion.batch import Status, run_batch
 from trunnion.batch.dividing import SHARES
 from trunnion.batch.jobs_file import load_batch
@@ -30,6 +29,7 @@ from trunnion.batch.stores import FolderStore, open_store
 from trunnion.batch.task import Outcome, Task
 from trunnion.batch.work import work
 from trunnion.errors import InputError, Problem, Severity
+from trunnion.jobs.observer import Observer
 
 TEXTS = {"a/x.cls": "one", "b/x.cls": "two", "c.cls": "fail", "d.cls": "refuse"}
 

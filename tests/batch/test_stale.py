@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from tests.support.batches import InOrder, Interrupted, StoppingStore, run_simply, simple_batch, tree, write_files
-from trunnion.api.observer import Observer
 from trunnion.batch.jobs import Batch
 from trunnion.batch.keys import home_of
 from trunnion.batch.records import FOLDER, parse_record, record_name
 from trunnion.batch.stores import FolderStore
 from trunnion.errors import Problem
+from trunnion.jobs.observer import Observer
 
 TEXTS = {"a/x.cls": "one", "b.cls": "several parts", "c.cls": "fail", "d.cls": "two"}
 

@@ -15,10 +15,10 @@ from tests.support.browser import browser as browser
 from tests.support.browser import needs_browser, open_page
 from tests.support.pictures import check_picture
 from trunnion import load_machine, post
-from trunnion.api.settings import set_up_machine
 from trunnion.builder.sample import shipped_sample
 from trunnion.builder.server import builder_application
 from trunnion.builder.session import BuilderSession
+from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.machines import forward
 from trunnion.schemas import first_line
 from trunnion.viewer.serving import Access, listen

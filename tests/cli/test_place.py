@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 import trunnion
-from trunnion.api.placed_heads import stated_place
-from trunnion.api.placing_project import placed_setup
 from trunnion.cli import main
-from trunnion.model.clamping import Clamping, StatedPlace
+from trunnion.jobs.place.project import placed_setup
+from trunnion.model.clamping import Clamping
+from trunnion.model.clamping_notices import StatedPlace
+from trunnion.placing.program_heads import stated_place
 from trunnion.simulation.meshes import TriangleMesh, box_mesh, save_mesh
 
 BLADE = "tests/golden/yl569/3_blade_finish.cls"

@@ -225,8 +225,8 @@ def test_a_command_that_is_ended_leaves_nothing_half_written(name: str, tmp_path
     arguments = ["post", str(YL569 / "2_hub_rough.cls"), "--machine", "yl569", "--output", str(tmp_path / "p.mpf")]
     script = f"""
 import sys, time
-import trunnion.api.posting, trunnion.cli
-trunnion.api.posting.plan_program = lambda *_: time.sleep(600)
+import trunnion.jobs.post.posting, trunnion.cli
+trunnion.jobs.post.posting.plan_program = lambda *_: time.sleep(600)
 sys.argv[1:] = {arguments!r}
 trunnion.cli.run_and_exit()
 """

@@ -10,7 +10,7 @@ import pytest
 
 from tests.support.locations import GOLDEN, YL569
 from trunnion.cli import main
-from trunnion.cli.cl_files import read_toolpaths
+from trunnion.cli.cl_files import begin_reading
 from trunnion.errors import InputError
 
 FILES = [str(YL569 / "2_hub_rough.cls"), str(YL569 / "3_blade_finish.cls"), str(GOLDEN / "dmu65" / "corner.cls")]
@@ -51,7 +51,7 @@ def test_numba_is_imported_before_what_would_import_it_many_calls_deeper() -> No
 
 def test_toolpaths_come_in_order_and_are_not_kept() -> None:
     with ThreadPoolExecutor(1) as executor:
-        coming = read_toolpaths(FILES, None, False, executor)
+        coming = begin_reading(FILES, None, False, executor)
         (first,) = next(coming)
         assert first.file == FILES[0]
         gone = weakref.ref(first.operations[0].moves.tip)
@@ -63,7 +63,7 @@ def test_toolpaths_come_in_order_and_are_not_kept() -> None:
 
 def test_a_file_that_cannot_be_read_is_said_where_its_toolpath_is_wanted(tmp_path: Path) -> None:
     with ThreadPoolExecutor(1) as executor:
-        coming = read_toolpaths([str(tmp_path / "none.cls"), *FILES], None, False, executor)
+        coming = begin_reading([str(tmp_path / "none.cls"), *FILES], None, False, executor)
         with pytest.raises(InputError, match="file not found"):
             next(coming)
 

@@ -8,8 +8,8 @@ import pytest
 
 from tests.support.locations import YL569
 from tests.support.twins import HUB_ROUGH
-from trunnion.api.twin import users_file
 from trunnion.cli import main
+from trunnion.jobs.twin.serving import users_file
 from trunnion.twin.opcua.users import Role, read_users
 
 

@@ -170,7 +170,7 @@ def spoil(monkeypatch: pytest.MonkeyPatch, change: Callable[[bytes], bytes]) -> 
         sink.write(changed)
         return starts
 
-    monkeypatch.setattr("trunnion.api.writing.write_program", wrong)
+    monkeypatch.setattr("trunnion.jobs.post.writing.write_program", wrong)
 
 
 def without_a_block(text: bytes) -> bytes:

@@ -12,12 +12,12 @@ from typing import Any
 import pytest
 
 from tests.support.projects import OUT_OF_REACH, PROJECT, TWO, contents, operation, project
-from trunnion.api.project_posting import ProjectResult, post_into
-from trunnion.api.watching import FolderNotices
 from trunnion.cli import main
 from trunnion.cli.arguments import parse_arguments
 from trunnion.cli.process import Ended
 from trunnion.cli.watch import follow
+from trunnion.jobs.project.posting import ProjectResult, post_into
+from trunnion.jobs.project.watching import FolderNotices
 
 Capture = pytest.CaptureFixture[str]
 Step = Callable[[], object]

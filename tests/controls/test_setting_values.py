@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from trunnion.api.describing import describe_control
-from trunnion.api.job import prepare
 from trunnion.errors import InputError
+from trunnion.jobs.describe.controls import describe_control
+from trunnion.jobs.post.post_job import prepare
 from trunnion.machines import load_machine
 
 MACHINES = ["yl569", "dmu65", "matsuura_mx330", "haas_umc750", "xyzac_trt", "hs664rt"]

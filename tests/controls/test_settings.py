@@ -7,11 +7,11 @@ import pytest
 import trunnion
 from tests.support.locations import YL569
 from tests.support.settings_page import PAGE, page
-from trunnion.api.run_settings import RUN_SETTINGS
 from trunnion.controls import shipped_controls
 from trunnion.controls.definition_files import load_control_table
 from trunnion.controls.loading import load_control
 from trunnion.families import FAMILIES, load_writer
+from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
 
 #: A meaning is one or two sentences.
 _SHORTEST, _LONGEST = 15, 320

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 import trunnion
-from trunnion.api.converting import ConvertResult
 from trunnion.errors import RefusedError
+from trunnion.jobs.convert.converting import ConvertResult
 
 FANUC = """%
 O0001

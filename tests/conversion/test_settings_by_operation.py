@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 import trunnion
-from trunnion.api.converting import ConvertResult
 from trunnion.errors import RefusedError
+from trunnion.jobs.convert.converting import ConvertResult
 
 OPERATION = """TOOL PATH/{name},TOOL,B6
 TLDATA/MILL,6,3,80,0,0

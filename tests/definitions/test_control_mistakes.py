@@ -5,12 +5,12 @@ from pathlib import Path
 import pytest
 
 import trunnion
-from trunnion.api.run_settings import RUN_SETTINGS
 from trunnion.cli import main
 from trunnion.controls import load_control, shipped_controls
 from trunnion.controls.definition_files import load_control_table
 from trunnion.controls.setting_rules import SettingKind, SettingRule
 from trunnion.controls.vocabulary import PROGRAM_CHOICES, RUN_ONLY_SETTINGS, WRITER_FORMATS
+from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
 
 #: A shipped machine for each family.
 MACHINES = ("yl569", "dmu65", "matsuura_mx330", "hs664rt", "xyzac_trt")

@@ -7,12 +7,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.support.examples import examples
-from trunnion.api.definition_checks import machine_problems
 from trunnion.controls import load_control
 from trunnion.controls.definition_files import load_control_table
 from trunnion.controls.loading import shipped_controls
 from trunnion.definitions import load_draft
 from trunnion.families import load_writer
+from trunnion.jobs.describe.definition_checks import machine_problems
 from trunnion.machines import load_machine
 from trunnion.machines.loading import machine_library
 

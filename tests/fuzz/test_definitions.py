@@ -12,8 +12,8 @@ from tests.support.examples import examples
 from tests.support.fuzz import oracle
 from tests.support.fuzz.mangle import mangle
 from tests.support.projects import PROJECT, SETUPS, project
-from trunnion.api.project_file import load_project
 from trunnion.errors import InputError, Problem
+from trunnion.jobs.project.file import load_project
 
 LIBRARY = tuple(
     entry.read_bytes()

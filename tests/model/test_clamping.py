@@ -11,7 +11,8 @@ from tests.support.examples import examples
 from trunnion.arrays import Floats
 from trunnion.controls import load_control
 from trunnion.machines import load_machine
-from trunnion.model.clamping import Clamping, StatedPlace, clamped_notices, head_comments, read_place, zero_notices
+from trunnion.model.clamping import Clamping
+from trunnion.model.clamping_notices import StatedPlace, clamped_notices, head_comments, read_place, zero_notices
 
 TILTED = "PART TILTED 20 DEG FIRST, ABOUT ITS X, RIGHT-HANDED, ITS +Y SIDE UP"
 TURNED = "PART TURNED 30 DEG ABOUT Z, COUNTER-CLOCKWISE SEEN FROM ABOVE, FROM +Z"

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from tests.support.examples import examples
 from tests.support.jobs import post_job
 from tests.support.operations import moves_of, operation_of
-from trunnion.api.expectation import expectation
-from trunnion.api.job import parse_plan_options
-from trunnion.api.planning import plan_program
 from trunnion.controls import load_control
+from trunnion.jobs.post.expected_values import expectation
+from trunnion.jobs.post.planning import plan_program
+from trunnion.jobs.post.post_job import parse_plan_options
 from trunnion.machines import Machine, forward, load_machine
 from trunnion.model.toolpath import Frame, LoadTool, SpindleOn, Toolpath
 from trunnion.output.coordinates.plane_from_pose import with_plane_inside_limits

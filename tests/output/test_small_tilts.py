@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 from tests.support.examples import examples
 from tests.support.jobs import post_job
 from tests.support.operations import moves_of, operation_of, rapids_at
-from trunnion.api.expectation import expectation
-from trunnion.api.job import parse_plan_options
-from trunnion.api.planning import plan_program
 from trunnion.arrays import Floats
 from trunnion.controls import load_control
 from trunnion.errors import InputError, RefusedError
+from trunnion.jobs.post.expected_values import expectation
+from trunnion.jobs.post.planning import plan_program
+from trunnion.jobs.post.post_job import parse_plan_options
 from trunnion.machines import load_machine, shipped_machines
 from trunnion.model.motion import MachiningMode
 from trunnion.model.toolpath import LoadTool, SpindleOn, Toolpath

@@ -14,13 +14,13 @@ from hypothesis import strategies as st
 from tests.support.examples import examples
 from tests.support.locations import YL569
 from tests.support.toolpath_strategies import SAYABLE, operations
-from trunnion.api.job import parse_plan_options
 from trunnion.arrays import Floats
 from trunnion.cli import main
 from trunnion.controls import load_control
 from trunnion.controls.definition import SubprogramNaming
 from trunnion.errors import InputError, Severity
 from trunnion.files import atomic_output
+from trunnion.jobs.post.post_job import parse_plan_options
 from trunnion.machines import load_machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import (

@@ -15,11 +15,11 @@ from tests.support.jobs import post_job
 from tests.support.locations import YL569
 from tests.support.path_strategies import short_paths, smooth_paths, winding
 from tests.support.read_back import CONTROL, MACHINES, toolpath_of
-from trunnion.api.expectation import expectation
-from trunnion.api.planning import plan_program
 from trunnion.arrays import Floats
 from trunnion.cli import main
 from trunnion.errors import InputError, RefusedError
+from trunnion.jobs.post.expected_values import expectation
+from trunnion.jobs.post.planning import plan_program
 from trunnion.machines import AngleOutput, Machine
 from trunnion.model.run import Orientation, ProgrammedWord, Run
 from trunnion.model.toolpath import Moves, Toolpath

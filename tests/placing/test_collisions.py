@@ -14,6 +14,7 @@ from tests.support.placed_paths import brute_margin, path_rows
 from tests.support.u_shapes import vice
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, MachineBody, load_machine
+from trunnion.model.rotations import about_x, about_z
 from trunnion.placing.best_turn import Grid, TurnResult
 from trunnion.placing.collisions.best_clearance import Guard, NearestRow, Oriented, farthest_orientations, nearest_at
 from trunnion.placing.collisions.ceilings import Witness
@@ -30,7 +31,7 @@ from trunnion.placing.collisions.guarded_pairs import (
 from trunnion.placing.collisions.moments import moments_of
 from trunnion.placing.collisions.search import FarthestSearch
 from trunnion.placing.largest_margin import largest_margin
-from trunnion.placing.path_rows import PathRows, about_x, about_z
+from trunnion.placing.path_rows import PathRows
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.turns import TurnedPath, choices_of
 from trunnion.simulation.collisions import Body, BodyKind, machine_bodies

@@ -12,6 +12,7 @@ from tests.support.brute_clearance import box_body
 from tests.support.examples import examples
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, MachineBody, load_machine
+from trunnion.model.rotations import about_z
 from trunnion.placing.collisions.guarded_pairs import (
     Changes,
     GuardedPair,
@@ -21,7 +22,6 @@ from trunnion.placing.collisions.guarded_pairs import (
     guarded_tool,
     standing,
 )
-from trunnion.placing.path_rows import about_z
 from trunnion.simulation.collisions import BodyKind, body_pairs, fixture_body, machine_bodies, part_body
 from trunnion.simulation.collisions.bodies import tool_bodies
 from trunnion.simulation.meshes import TriangleMesh, box_mesh

@@ -8,7 +8,7 @@ import pytest
 
 import trunnion
 from tests.support.yl569_curves import curves, tips_and_angles
-from trunnion.api.turned_parts import turned_toolpaths
+from trunnion.model.clamped_toolpaths import turned_toolpaths
 
 FOLDER = Path("tests/golden/yl569")
 CONTOUR, HUB, BLADE = (FOLDER / f"{name}.cls" for name in ("1_contour_rough", "2_hub_rough", "3_blade_finish"))

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import trunnion
 from trunnion.arrays import Floats
 from trunnion.machines import Machine
-from trunnion.placing.path_rows import about_z
+from trunnion.model.rotations import about_z
 from trunnion.placing.region import TOLERANCE
 from trunnion.placing.table_limits import KEPT, ClampingArea, Standing, TableLimits
 from trunnion.placing.table_room import has_room

@@ -11,13 +11,15 @@ from hypothesis import strategies as st
 import trunnion
 from tests.support.examples import examples
 from tests.support.placed_paths import brute_margin, limited_machines, random_rows, turned_by
-from trunnion.api.placed_heads import placed_notices, stated_place, unlike_bodies, unlike_cl_files, unlike_zero
 from trunnion.arrays import Floats
 from trunnion.errors import Problem
 from trunnion.machines import Machine, load_machine
-from trunnion.model.clamping import Clamping, StatedPlace
+from trunnion.model.clamping import Clamping
+from trunnion.model.clamping_notices import StatedPlace
+from trunnion.model.rotations import about_x
 from trunnion.placing.best_turn import Grid, best_of_turn, best_orientations
-from trunnion.placing.path_rows import PathRows, about_x, turn_and_tilt
+from trunnion.placing.path_rows import PathRows
+from trunnion.placing.program_heads import placed_notices, stated_place, unlike_bodies, unlike_cl_files, unlike_zero
 from trunnion.placing.turns import TurnedPath, choices_of
 
 YL569 = load_machine("yl569")
@@ -40,10 +42,10 @@ def paths_at(machine: Machine, rows: PathRows, tilt: float) -> list[TurnedPath]:
 
 
 def test_the_tilt_comes_first_and_both_are_right_handed() -> None:
-    assert (turn_and_tilt(0.0, 90.0) @ [0.0, 1.0, 0.0]).tolist() == [0.0, 0.0, 1.0]
-    assert (turn_and_tilt(90.0, 0.0) @ [1.0, 0.0, 0.0]).tolist() == [0.0, 1.0, 0.0]
-    assert (turn_and_tilt(90.0, 90.0) @ [0.0, 1.0, 0.0]).tolist() == [0.0, 0.0, 1.0]
-    assert (turn_and_tilt(90.0, 90.0) @ [0.0, 0.0, 1.0]).tolist() == [1.0, 0.0, 0.0]  # to -Y, and on to +X
+    assert (Clamping(0.0, 90.0).rotation @ [0.0, 1.0, 0.0]).tolist() == [0.0, 0.0, 1.0]
+    assert (Clamping(90.0, 0.0).rotation @ [1.0, 0.0, 0.0]).tolist() == [0.0, 1.0, 0.0]
+    assert (Clamping(90.0, 90.0).rotation @ [0.0, 1.0, 0.0]).tolist() == [0.0, 0.0, 1.0]
+    assert (Clamping(90.0, 90.0).rotation @ [0.0, 0.0, 1.0]).tolist() == [1.0, 0.0, 0.0]  # to -Y, and on to +X
 
 
 @settings(max_examples=examples(3), deadline=None, phases=PHASES)
@@ -211,5 +213,5 @@ def test_a_zero_and_a_tool_length_other_than_those_of_the_head_are_told(tmp_path
 
 def test_a_plain_turn_of_rows_is_what_was_turned_before() -> None:
     rows = random_rows(2, 6)
-    assert np.allclose(rows.turned(turn_and_tilt(33.0, 0.0)).tip, turned_by(33.0, rows.tip))
-    assert np.allclose(rows.turned(turn_and_tilt(33.0, 21.0)).tip, turned_by(33.0, tilted_by(21.0, rows.tip)))
+    assert np.allclose(rows.turned(Clamping(33.0, 0.0).rotation).tip, turned_by(33.0, rows.tip))
+    assert np.allclose(rows.turned(Clamping(33.0, 21.0).rotation).tip, turned_by(33.0, tilted_by(21.0, rows.tip)))

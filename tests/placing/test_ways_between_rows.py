@@ -9,9 +9,10 @@ from tests.support.placed_paths import path_rows
 from trunnion.arrays import Codes, Floats
 from trunnion.machines import inverse, load_machine
 from trunnion.model.arc_extremes import ArcPaths
+from trunnion.model.rotations import about_z
 from trunnion.placing.between_rows import most_between
 from trunnion.placing.extremes import Extremes
-from trunnion.placing.path_rows import Stretch, about_z
+from trunnion.placing.path_rows import Stretch
 from trunnion.placing.rotary_angles import RotaryAngles, rotary_angles
 from trunnion.placing.slide_forms import SlideForms
 from trunnion.placing.travel_limits import CutSet

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import trunnion
-from trunnion.api.settings import set_up_machine
+from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.model.run import Run
 
 CL = (

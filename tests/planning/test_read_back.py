@@ -12,9 +12,9 @@ from tests.support.examples import examples
 from tests.support.jobs import post_job
 from tests.support.path_strategies import short_paths, smooth_paths, winding
 from tests.support.read_back import CONTROL, MACHINES, toolpath_of
-from trunnion.api.expectation import expectation
-from trunnion.api.planning import plan_program
 from trunnion.errors import InputError, RefusedError, Severity
+from trunnion.jobs.post.expected_values import expectation
+from trunnion.jobs.post.planning import plan_program
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Moves, Toolpath
 from trunnion.output.program_writer import write_program

@@ -6,10 +6,10 @@ import pytest
 
 import trunnion
 from tests.support.program_heads import HEADS
-from trunnion.api.program_warnings import program_warnings
 from trunnion.cli import main
 from trunnion.controls import load_control
 from trunnion.errors import InputError
+from trunnion.jobs.verify.program_warnings import program_warnings
 from trunnion.model.run import Run
 from trunnion.readers import known_words
 

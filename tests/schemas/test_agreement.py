@@ -13,11 +13,11 @@ from jsonschema import Draft7Validator
 
 from tests.support.locations import ROOT
 from tests.support.schemas import COMPLETE, FOLDER, KINDS, PROJECTS, questions, schema, text_of
-from trunnion.api.definition_checks import machine_problems, stand_in
 from trunnion.controls import load_control
 from trunnion.definitions import Table, load_draft
 from trunnion.definitions.source_lines import locate_values
 from trunnion.errors import InputError
+from trunnion.jobs.describe.definition_checks import machine_problems, stand_in
 from trunnion.machines.loading import machine_library
 from trunnion.readers import check_reading
 from trunnion.schemas import KINDS as NAMES

@@ -9,13 +9,13 @@ from random import Random
 from types import TracebackType
 
 from tests.support.batch_work import simple_work
-from trunnion.api.observer import SILENT, Observer
 from trunnion.batch.jobs import Batch, Job
 from trunnion.batch.records import FOLDER, Record
 from trunnion.batch.running import BatchResult, run_jobs
 from trunnion.batch.stores import FolderStore, Store
 from trunnion.batch.task import Action, Outcome, Task
 from trunnion.batch.workers import Assignment
+from trunnion.jobs.observer import SILENT, Observer
 
 
 class InOrder:

@@ -7,11 +7,11 @@ import numpy as np
 from hypothesis import strategies as st
 
 from tests.support.jobs import post_job
-from trunnion.api.expectation import Expectation, expectation
-from trunnion.api.job import parse_plan_options
-from trunnion.api.planning import plan_program
 from trunnion.controls import Control
 from trunnion.conversion import Conversion, convert, transfer_settings
+from trunnion.jobs.post.expected_values import Expectation, expectation
+from trunnion.jobs.post.planning import plan_program
+from trunnion.jobs.post.post_job import parse_plan_options
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import (

@@ -10,9 +10,9 @@ import numpy as np
 
 import trunnion
 from tests.support.simulating import HEAD, cuboid
-from trunnion.api.observer import SILENT
-from trunnion.api.simulation_data import simulation_data
-from trunnion.api.simulation_shares import join_shares, simulate_share
+from trunnion.jobs.observer import SILENT
+from trunnion.jobs.simulate.data import simulation_data
+from trunnion.jobs.simulate.shares import join_shares, simulate_share
 from trunnion.simulation.cutting.shares import Share
 from trunnion.simulation.meshes import TriangleMesh, save_mesh
 

@@ -9,11 +9,11 @@ from hypothesis import HealthCheck
 
 from tests.support.jobs import post_job
 from tests.support.machines import at_zero
-from trunnion.api.expectation import expectation
-from trunnion.api.job import parse_plan_options
-from trunnion.api.planning import plan_program
 from trunnion.cl import read_cl
 from trunnion.controls import load_control
+from trunnion.jobs.post.expected_values import expectation
+from trunnion.jobs.post.planning import plan_program
+from trunnion.jobs.post.post_job import parse_plan_options
 from trunnion.machines import Machine, load_machine
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.program_writer import write_program

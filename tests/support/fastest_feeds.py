@@ -9,11 +9,11 @@ import numpy as np
 
 import trunnion
 from tests.support.verifying import CL_FOOT, CL_HEAD
-from trunnion.api.expectation import Expectation, expectation
-from trunnion.api.fastest_feeds import with_reached_feeds
-from trunnion.api.job import prepare
-from trunnion.api.planning import plan_program
 from trunnion.cl import read_cl
+from trunnion.jobs.post.expected_values import Expectation, expectation
+from trunnion.jobs.post.fastest_feeds import with_reached_feeds
+from trunnion.jobs.post.planning import plan_program
+from trunnion.jobs.post.post_job import prepare
 from trunnion.machines import Machine, load_machine
 from trunnion.model.deviations import Deviations
 from trunnion.model.toolpath import Toolpath

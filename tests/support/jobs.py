@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
-from trunnion.api.job import PostJob
 from trunnion.controls import Control
+from trunnion.jobs.post.post_job import PostJob
 from trunnion.machines import Machine
 from trunnion.output.capabilities import control_capabilities
 from trunnion.planning import PlanOptions

@@ -13,11 +13,11 @@ from tests.support.operations import operation_of
 from tests.support.path_strategies import short_paths, smooth_paths
 from tests.support.posting import FOOT, HEAD
 from tests.support.proof import unproven
-from trunnion.api.expectation import expectation
-from trunnion.api.job import parse_plan_options
-from trunnion.api.planning import plan_program
 from trunnion.cli import main
 from trunnion.controls import Control, load_control
+from trunnion.jobs.post.expected_values import expectation
+from trunnion.jobs.post.planning import plan_program
+from trunnion.jobs.post.post_job import parse_plan_options
 from trunnion.machines import Machine, load_machine, shipped_machines
 from trunnion.model.toolpath import Arcs, LoadTool, Moves, SpindleOn, Toolpath
 from trunnion.output.program_writer import write_program

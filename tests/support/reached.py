@@ -46,7 +46,7 @@ def import_graph() -> grimp.ImportGraph:
     """Who imports whom in sources and tests, with the modules that are imported by their names."""
     graph = grimp.build_graph("trunnion", "tests", cache_dir=None)
     by_name = {("trunnion.families", module) for entry in FAMILIES.values() for module in entry if module}
-    by_name |= {("trunnion.cli.arguments", module) for module in graph.find_children("trunnion.cli")}
+    by_name |= {("trunnion.cli", module) for module in graph.find_children("trunnion.cli")}
     for importer, imported in by_name:
         if importer != imported:
             graph.add_import(importer=importer, imported=imported)

@@ -16,8 +16,8 @@ from typing import Final
 import numpy as np
 
 import trunnion
-from trunnion.api.reading import as_machine, as_run
 from trunnion.arrays import Floats
+from trunnion.jobs.inputs.reading import as_machine, as_run
 from trunnion.model.toolpath import Kind
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.stock.lattice import BUNDLE_AXES

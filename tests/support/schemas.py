@@ -15,8 +15,6 @@ from pathlib import Path
 from typing import Any, Final
 
 from tests.support.locations import DOCS, ROOT, TESTS
-from trunnion.api.definition_checks import stand_in
-from trunnion.api.project_file import read_project_table
 from trunnion.batch.jobs_file import read_batch_table
 from trunnion.controls import load_control
 from trunnion.controls.loading import control_library, shipped_controls
@@ -24,6 +22,8 @@ from trunnion.definitions import Table, load_table
 from trunnion.definitions.expected import GREATEST, Expected, Form, Question
 from trunnion.errors import InputError
 from trunnion.impeller.definition import read_impeller_table
+from trunnion.jobs.describe.definition_checks import stand_in
+from trunnion.jobs.project.file import read_project_table
 from trunnion.machines import shipped_machines
 from trunnion.machines.loading import machine_library, read_machine
 from trunnion.readers import check_reading

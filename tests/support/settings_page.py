@@ -5,7 +5,7 @@ from typing import Final
 
 import trunnion
 from tests.support.locations import DOCS
-from trunnion.api.describing import SettingDescription
+from trunnion.jobs.describe.controls import SettingDescription
 
 PAGE: Final = DOCS / "controls" / "settings.md"
 

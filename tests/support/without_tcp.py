@@ -9,10 +9,10 @@ import numpy as np
 from hypothesis import strategies as st
 
 from tests.support.machines import at_zero
-from trunnion.api.expectation import expectation
 from trunnion.arrays import Floats
 from trunnion.controls import load_control
 from trunnion.errors import Severity
+from trunnion.jobs.post.expected_values import expectation
 from trunnion.machines import Machine, load_machine, shipped_machines
 from trunnion.model.motion import Plan
 from trunnion.model.run import Run

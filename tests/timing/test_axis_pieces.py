@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from tests.support.locations import TESTS
-from trunnion.api.twin import twin_program
 from trunnion.errors import InputError
+from trunnion.jobs.twin.serving import twin_program
 from trunnion.machines import forward, load_machine
 from trunnion.model.run import Run
 from trunnion.model.subdivision import subdivide

@@ -9,7 +9,7 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from tests.support.twins import HUB_ROUGH
-from trunnion.api.twin import twin_program
+from trunnion.jobs.twin.serving import twin_program
 from trunnion.twin.mtconnect.adapter import HEARTBEAT, MTConnectAdapter
 from trunnion.twin.mtconnect.device import device_xml
 from trunnion.twin.playback import Playback

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.support.twins import BLADE_FINISH, HUB_ROUGH
-from trunnion.api.twin import twin_program
+from trunnion.jobs.twin.serving import twin_program
 from trunnion.model.run import RunEvent
 from trunnion.timing import TimedEvent, TimedRun
 from trunnion.twin.playback import MOST_ENDS, Playback, PlayState

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.support.twins import BLADE_FINISH
-from trunnion.api.twin import twin_program
+from trunnion.jobs.twin.serving import twin_program
 from trunnion.twin import running
 from trunnion.twin.playback import Playback, PlayState
 from trunnion.twin.running import Twin

@@ -8,7 +8,7 @@ from asyncua import Client, ua
 from asyncua.crypto.security_policies import SecurityPolicyBasic256Sha256
 
 from tests.support.twins import HUB_ROUGH, ServedTwin, served
-from trunnion.api.twin import add_twin_user
+from trunnion.jobs.twin.serving import add_twin_user
 from trunnion.twin.opcua.certificates import server_certificate
 
 PASSWORD = "correct horse"

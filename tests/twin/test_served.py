@@ -16,7 +16,7 @@ from asyncua import Client, ua
 
 from tests.support.locations import TESTS
 from tests.support.twins import BLADE_FINISH, ServedTwin, served
-from trunnion.api.twin import twin_program
+from trunnion.jobs.twin.serving import twin_program
 from trunnion.twin.snapshots import displayed
 
 NODE = shutil.which("node")

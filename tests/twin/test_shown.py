@@ -11,7 +11,7 @@ import pytest
 from asyncua import ua
 
 from trunnion import load_machine
-from trunnion.api.twin import twin_program
+from trunnion.jobs.twin.serving import twin_program
 from trunnion.machines import Machine
 from trunnion.machines.machine import MachineFacts
 from trunnion.twin.mtconnect.adapter import _EXECUTION

@@ -9,10 +9,10 @@ import pytest
 from tests.support.jobs import post_job
 from tests.support.pole_paths import around_pole
 from tests.support.verifying import CL_FOOT, CL_HEAD, check
-from trunnion.api.expectation import Expectation, expectation
-from trunnion.api.planning import plan_program
 from trunnion.cl import read_cl
 from trunnion.controls import load_control
+from trunnion.jobs.post.expected_values import Expectation, expectation
+from trunnion.jobs.post.planning import plan_program
 from trunnion.machines import Machine, load_machine
 from trunnion.model.deviations import Deviations
 from trunnion.model.motion import PoleStrategy

@@ -12,10 +12,10 @@ from tests.support.examples import examples
 from tests.support.jobs import post_job
 from tests.support.operations import moves_of, operation_of
 from tests.support.pole_paths import MACHINES, around_pole, passes
-from trunnion.api.expectation import expectation
-from trunnion.api.planning import plan_program
 from trunnion.controls import load_control
 from trunnion.errors import RefusedError
+from trunnion.jobs.post.expected_values import expectation
+from trunnion.jobs.post.planning import plan_program
 from trunnion.machines import Machine
 from trunnion.model.motion import PoleStrategy
 from trunnion.model.toolpath import Arcs, Kind, LoadTool, Operation, SpindleOn, Tool, Toolpath

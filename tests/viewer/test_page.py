@@ -11,7 +11,7 @@ import pytest
 
 from tests.support.locations import GOLDEN
 from trunnion import InputError, read_program, write_view
-from trunnion.api.viewing import prepare_view
+from trunnion.jobs.view.viewing import prepare_view
 from trunnion.reporting.column_encoding import decode_column
 from trunnion.viewer.motion import COUNT
 from trunnion.viewer.page import MODULES, render_view

@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 from tests.support.locations import GOLDEN
 from tests.support.stepped_slot import write_slot
 from trunnion import InputError
-from trunnion.api.viewing import prepare_view
+from trunnion.jobs.view.viewing import prepare_view
 from trunnion.simulation.replay import Replay
 from trunnion.viewer.content import ViewContent
 from trunnion.viewer.server import view_application

@@ -17,7 +17,7 @@ from tests.support.browser import browser as browser
 from tests.support.browser import needs_browser, open_file, open_page
 from tests.support.stepped_slot import CELL, write_slot
 from trunnion import InputError, write_view
-from trunnion.api.viewing import prepare_view
+from trunnion.jobs.view.viewing import prepare_view
 from trunnion.simulation.stock.surface import stock_surface
 from trunnion.viewer.content import ViewContent
 from trunnion.viewer.server import view_application

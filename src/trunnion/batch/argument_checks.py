@@ -4,12 +4,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Final
 
-from trunnion.api.arguments import check_whole
-from trunnion.api.converting import check_conversion_settings
-from trunnion.api.job import prepare
 from trunnion.batch.patterns import pattern_fault
 from trunnion.batch.task import Action
 from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.jobs.convert.converting import check_conversion_settings
+from trunnion.jobs.inputs.arguments import check_whole
+from trunnion.jobs.post.post_job import prepare
 from trunnion.machines import Machine
 from trunnion.simulation.stock.solids import check_cell, is_mesh, stock_shape
 from trunnion.simulation.tools.text import parse_tool

@@ -16,7 +16,6 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
-from trunnion.api.observer import SILENT, Observer
 from trunnion.batch.dividing import keep_share
 from trunnion.batch.keys import digest
 from trunnion.batch.records import Record, settle
@@ -25,6 +24,7 @@ from trunnion.batch.task import OtherVersionError, Outcome, Status, Task
 from trunnion.batch.workers import Assignment, died
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.extras import import_extra
+from trunnion.jobs.observer import SILENT, Observer
 from trunnion.wording import format_duration
 
 #: Where Dask's client logs.

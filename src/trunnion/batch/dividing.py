@@ -10,7 +10,6 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
-from trunnion.api.observer import Observer
 from trunnion.batch.keys import digest, key_of
 from trunnion.batch.records import FOLDER, Record
 from trunnion.batch.sealing import BrokenSealError, Seal, sealed, unsealed
@@ -18,6 +17,7 @@ from trunnion.batch.stores import Kept, Store, TakenError
 from trunnion.batch.task import NO_COSTS, SHARE_FILE, Costs, Outcome, Status, Task
 from trunnion.batch.workers import DAMAGED, Assignment, damaged
 from trunnion.errors import InputError, Problem, Severity
+from trunnion.jobs.observer import Observer
 
 #: The folder of shares within that of records.
 SHARES: Final = f"{FOLDER}/shares"

@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from trunnion.api.simulation_result import SimulationResult
+from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.model.arc_extremes import RunArcs
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath

@@ -5,10 +5,6 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import Any, Final, Literal
 
-from trunnion.api.arguments import check_choice, check_observer, check_path
-from trunnion.api.observer import SILENT, Observer
-from trunnion.api.reading import FilePath
-from trunnion.api.settings import Settings
 from trunnion.batch.cluster import DaskWorkers, Tls
 from trunnion.batch.jobs import Batch, folder_batch
 from trunnion.batch.jobs_file import load_batch
@@ -19,6 +15,10 @@ from trunnion.batch.task import Action
 from trunnion.batch.work import work
 from trunnion.batch.workers import Workers
 from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.jobs.inputs.arguments import check_choice, check_observer, check_path
+from trunnion.jobs.inputs.reading import FilePath
+from trunnion.jobs.inputs.settings import Settings
+from trunnion.jobs.observer import SILENT, Observer
 
 #: Workers of one computer.
 _MOST_WORKERS: Final = 1024

@@ -11,11 +11,6 @@ from functools import lru_cache
 from pathlib import Path, PurePosixPath
 from typing import Any, Final, NamedTuple
 
-from trunnion.api.converting import check_conversion_settings
-from trunnion.api.input_files import machine_files
-from trunnion.api.job import prepare
-from trunnion.api.project_paths import is_file
-from trunnion.api.reading import as_machine
 from trunnion.batch.argument_checks import beside_fault, check_simulation, check_tiles, check_to_cl
 from trunnion.batch.keys import home_of
 from trunnion.batch.left_out import left_out
@@ -25,6 +20,11 @@ from trunnion.batch.task import DEFINITIONS, FILES, Action
 from trunnion.controls import load_control
 from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.jobs.convert.converting import check_conversion_settings
+from trunnion.jobs.inputs.input_files import machine_files
+from trunnion.jobs.inputs.reading import as_machine
+from trunnion.jobs.post.post_job import prepare
+from trunnion.jobs.project.paths import is_file
 from trunnion.machines import Machine
 
 #: Files that a folder may have, all and those of a batch: a record of each is held while it runs.

@@ -9,8 +9,6 @@ from importlib.resources import files
 from pathlib import Path, PurePosixPath
 from typing import Any, Final, TypeAlias
 
-from trunnion.api.project_paths import ProjectPaths
-from trunnion.api.settings import as_texts
 from trunnion.batch.argument_checks import MOST_TILES, beside_fault
 from trunnion.batch.jobs import Batch, Job, folder_files, judged
 from trunnion.batch.keys import home_of
@@ -23,6 +21,8 @@ from trunnion.definitions import Table, load_table
 from trunnion.definitions.extends import is_within
 from trunnion.errors import ArgumentName, InputError, unusable_file
 from trunnion.files import name_fault
+from trunnion.jobs.inputs.settings import as_texts
+from trunnion.jobs.project.paths import ProjectPaths
 from trunnion.machines import shipped_machines
 from trunnion.simulation.stock.solids import is_mesh
 

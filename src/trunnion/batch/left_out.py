@@ -3,10 +3,10 @@
 import os
 from pathlib import Path, PurePosixPath
 
-from trunnion.api.project_paths import is_file
 from trunnion.batch.patterns import matches
 from trunnion.batch.records import FOLDER
 from trunnion.definitions.extends import is_within
+from trunnion.jobs.project.paths import is_file
 
 #: Files that are looked at.
 _MOST = 100_000

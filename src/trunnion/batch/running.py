@@ -8,8 +8,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from trunnion.api.observer import SILENT, Observer
-from trunnion.api.project_paths import is_file
 from trunnion.batch.dividing import Divisions
 from trunnion.batch.jobs import Batch, Job, Unit
 from trunnion.batch.keys import digest, key_of, program_version
@@ -32,6 +30,8 @@ from trunnion.batch.work import work
 from trunnion.batch.workers import Assignment, Workers
 from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem
+from trunnion.jobs.observer import SILENT, Observer
+from trunnion.jobs.project.paths import is_file
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -6,14 +6,14 @@ is one that somebody may run. What somebody has changed stays, and is told each 
 
 from collections.abc import Iterator, Sequence
 
-from trunnion.api.observer import Observer
-from trunnion.api.project_paths import is_file
 from trunnion.batch.dividing import SHARES, share_start
 from trunnion.batch.jobs import Batch, Unit
 from trunnion.batch.records import FOLDER, Record, known_of, parse_record, record_name
 from trunnion.batch.sealing import file_of
 from trunnion.batch.stores import Store, TakenError
 from trunnion.errors import Problem, Severity
+from trunnion.jobs.observer import Observer
+from trunnion.jobs.project.paths import is_file
 from trunnion.wording import counted
 
 #: Files that are told one by one.

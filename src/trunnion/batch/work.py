@@ -12,16 +12,6 @@ from shutil import copyfile
 from tempfile import TemporaryDirectory
 from typing import Any, Final
 
-from trunnion.api.converting import convert_beside
-from trunnion.api.observer import Observer
-from trunnion.api.paper_files import paper_files
-from trunnion.api.post_result import ProofFailedError
-from trunnion.api.posting import post_beside
-from trunnion.api.reports import write_report
-from trunnion.api.simulating import simulate
-from trunnion.api.simulation_result import SimulationResult
-from trunnion.api.simulation_shares import join_shares, simulate_share
-from trunnion.api.verifying import verify
 from trunnion.batch.figures import block_count, point_count, simulation_figures, verification_figures
 from trunnion.batch.jobs import shipped_machine
 from trunnion.batch.keys import program_version
@@ -41,6 +31,16 @@ from trunnion.batch.task import (
 from trunnion.batch.workers import damaged, hindered, hindrance, shown
 from trunnion.errors import Problem, RefusedError, Severity, TrunnionError
 from trunnion.files import output_group
+from trunnion.jobs.convert.converting import convert_beside
+from trunnion.jobs.observer import Observer
+from trunnion.jobs.papers.files import paper_files
+from trunnion.jobs.papers.reports import write_report
+from trunnion.jobs.post.posting import post_beside
+from trunnion.jobs.post.result import ProofFailedError
+from trunnion.jobs.simulate.result import SimulationResult
+from trunnion.jobs.simulate.shares import join_shares, simulate_share
+from trunnion.jobs.simulate.simulating import simulate
+from trunnion.jobs.verify.verifying import verify
 from trunnion.machines import Machine
 from trunnion.simulation.cutting.shares import DamagedShareError, Share
 from trunnion.verification import Check, Verification

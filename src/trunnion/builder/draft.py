@@ -10,8 +10,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from trunnion.api.definition_checks import machine_problems
-from trunnion.api.describing import describe_settings
 from trunnion.builder.document import FieldPath
 from trunnion.builder.fields import PAGES, Field, SettingNotes, fields_of, named_path, tables_of, value_at
 from trunnion.controls import load_control
@@ -20,6 +18,8 @@ from trunnion.definitions import LocatedValue, Table, load_draft
 from trunnion.definitions.marks import marked_values
 from trunnion.definitions.toml_text import written
 from trunnion.errors import InputError, Problem
+from trunnion.jobs.describe.controls import describe_settings
+from trunnion.jobs.describe.definition_checks import machine_problems
 from trunnion.machines import Machine
 from trunnion.machines.jog_table import jog_table
 from trunnion.machines.loading import machine_library, read_machine

@@ -11,9 +11,9 @@ from collections.abc import Sequence
 from importlib.resources import files
 from typing import Any, Final
 
-from trunnion.api.post_result import ProofFailedError
-from trunnion.api.posting import post
 from trunnion.errors import ArgumentName, Problem, Severity, TrunnionError
+from trunnion.jobs.post.posting import post
+from trunnion.jobs.post.result import ProofFailedError
 from trunnion.machines import Machine
 from trunnion.verification import Check
 

@@ -8,14 +8,11 @@ import numpy as np
 from trunnion.arrays import Codes, Flags, Floats
 from trunnion.cl.builder import CircleStatement
 from trunnion.cl.diagnostics import Diagnostics
-from trunnion.model.arcs import ARC_POINT_TOLERANCE
+from trunnion.model.arcs import ARC_POINT_TOLERANCE, swept_angles
 from trunnion.model.toolpath import Arcs, From, Kind
 
 #: How far start and end of an arc may be off its radius, mm.
 RADIUS_TOLERANCE = ARC_POINT_TOLERANCE
-
-#: An arc whose ends are as near to each other is a full circle, mm.
-_CLOSED = 1e-4
 
 #: How far an arc may turn by another angle than it says, radians: angles are rounded.
 _OFF_ANGLE = 1e-3
@@ -120,7 +117,7 @@ def _check_angles(
     start, end  (m, 3) float64, mm
     """
     said = np.radians([circle.angle for circle in circles])
-    turned = _swept_angles(arcs, start, end) + 2.0 * np.pi * arcs.full_turns
+    turned = swept_angles(arcs, start, end) + 2.0 * np.pi * arcs.full_turns
     off = np.abs(turned - said)
     for index in np.flatnonzero((off > _OFF_ANGLE) & (off * arcs.radius > 2.0 * RADIUS_TOLERANCE)).tolist():
         by, not_by = np.degrees([turned[index], said[index]]).tolist()
@@ -173,21 +170,3 @@ def distance_from_line(offset: Floats, normal: Floats) -> Floats:
     along = np.sum(offset * normal, axis=1)
     across = offset - along[:, None] * normal
     return np.asarray(np.sqrt(np.sum(across * across, axis=1)), np.float64)
-
-
-def arc_lengths(arcs: Arcs, start: Floats, end: Floats) -> Floats:
-    """Lengths of arcs and helices, (m,) mm, from ``start`` to ``end``, (m, 3) each."""
-    rise = np.einsum("ij,ij->i", end - start, arcs.normal)
-    angle = _swept_angles(arcs, start, end)
-    return np.asarray(np.hypot(arcs.radius * (angle + 2.0 * np.pi * arcs.full_turns), rise))
-
-
-def _swept_angles(arcs: Arcs, start: Floats, end: Floats) -> Floats:
-    """Angles of the last turns of arcs and helices, (m,) radians, a full one where they close."""
-    first, last = start - arcs.centre, end - arcs.centre
-    rise = np.einsum("ij,ij->i", last - first, arcs.normal)
-    across = np.einsum("ij,ij->i", np.cross(first, last), arcs.normal)
-    angle = np.arctan2(across, np.einsum("ij,ij->i", first, last) - rise * np.einsum("ij,ij->i", first, arcs.normal))
-    angle = np.mod(angle, 2.0 * np.pi)
-    closed = np.minimum(angle, 2.0 * np.pi - angle) * arcs.radius < _CLOSED
-    return np.asarray(np.where(closed, 2.0 * np.pi, angle))

@@ -11,12 +11,13 @@ from dataclasses import replace
 import numpy as np
 
 from trunnion.arrays import Codes, Flags, Floats, Lines
-from trunnion.cl.arcs import arc_lengths, arcs_of, complete_circles, report_open_ends
+from trunnion.cl.arcs import arcs_of, complete_circles, report_open_ends
 from trunnion.cl.builder import FeedChange, MoveColumns, OperationBuilder, SurfaceSpeed
 from trunnion.cl.diagnostics import MAX_LISTED, Diagnostics
 from trunnion.cl.phases import COLOUR_PHASES, fill_phases
 from trunnion.cl.tool_axes import fill_tool_axes
 from trunnion.errors import Severity
+from trunnion.model.arcs import arc_lengths
 from trunnion.model.splines import Splines
 from trunnion.model.tool_faults import tool_faults
 from trunnion.model.toolpath import Arcs, CycleOff, CycleOn, Event, Frame, From, Kind, Moves, Operation, SpindleOn, Tool

@@ -15,7 +15,8 @@ from trunnion.cl.statement import Statement, comments_of, parse
 from trunnion.cl.statements.operations import LENGTH_UNITS
 from trunnion.cl.swallowed import SwallowedStatements
 from trunnion.cl.word_classes import acts_on_machine, drives_tool, words_that_count
-from trunnion.model.clamping import Clamping, may_be_notice, read_place
+from trunnion.model.clamping import Clamping
+from trunnion.model.clamping_notices import may_be_notice, read_place
 from trunnion.model.toolpath import Frame
 
 #: Statements no longer than this are likely to come again, and their parsed form is kept; at most so many.

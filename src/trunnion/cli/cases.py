@@ -5,10 +5,10 @@ from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
-from trunnion.api.cases import Case, ChangedProgram, find_cases, posted_case
 from trunnion.cli.results import print_result, tell
 from trunnion.cli.wording import problem_line
 from trunnion.errors import InputError, RefusedError, TrunnionError
+from trunnion.jobs.project.cases import Case, ChangedProgram, find_cases, posted_case
 from trunnion.wording import counted, one_line
 
 

@@ -1,13 +1,14 @@
 """CL files of a command: files, archives and stdin; and reading them with a progress bar."""
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
+from contextlib import contextmanager
 from pathlib import Path
 from threading import Event
 from typing import BinaryIO
 
-from trunnion.cl import read_cl_files
+from trunnion.cl.watched import read_watched
 from trunnion.cli.progress import progress
 from trunnion.errors import InputError, Problem
 from trunnion.model.toolpath import Toolpath
@@ -53,7 +54,7 @@ def result_stem(file: str) -> str:
     return Path(path.stem).stem if path.suffix.lower() in _PACKED else path.stem
 
 
-def read_toolpaths(
+def begin_reading(
     files: Sequence[str],
     units: str | None,
     strict: bool,
@@ -93,17 +94,15 @@ def _tolerance(text: str) -> float | None:
 def _read(
     file: str | BinaryIO, units: str | None, dialect: str | None, strict: bool, within: float | None, scanning: Event
 ) -> list[Toolpath]:
+    @contextmanager
+    def watch(name: str, size: int, unit: str) -> Iterator[Callable[[int], None]]:
+        with progress(name, size, unit) as advance:
+
+            def tell(more: int) -> None:
+                advance(more)
+                scanning.set()
+
+            yield tell
+
     path = Path(file) if isinstance(file, str) else file
-    name, size = (path.name, path.stat().st_size if path.is_file() else 0) if isinstance(path, Path) else ("stdin", 0)
-    with progress(name, size, "B") as advance:
-        done = 0
-
-        def so_far(read: int) -> None:
-            nonlocal done
-            advance(read - done)
-            done = read
-            scanning.set()
-
-        return read_cl_files(
-            path, units=units, dialect=dialect, strict=strict, spline_tolerance=within, progress=so_far
-        )
+    return read_watched(path, watch, units=units, dialect=dialect, strict=strict, spline_tolerance=within)

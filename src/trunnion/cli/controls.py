@@ -5,14 +5,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Final
 
-from trunnion.api.describing import (
+from trunnion.cli.results import as_json, print_result
+from trunnion.jobs.describe.controls import (
     ControlDescription,
     SettingDescription,
     WordDescription,
     describe_control,
     describe_controls,
 )
-from trunnion.cli.results import as_json, print_result
 
 _INDENT: Final = "  "
 

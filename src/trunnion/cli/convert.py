@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
-from trunnion.api.converting import convert
-from trunnion.api.reading import load_machine
 from trunnion.cli.cl_files import cl_inputs, named_files, result_stem
 from trunnion.cli.results import tell
 from trunnion.cli.terminal import ConversionTerminal, check_unnamed, output_folder, output_place
 from trunnion.controls import load_control
 from trunnion.files import check_outputs
+from trunnion.jobs.convert.converting import convert
+from trunnion.jobs.inputs.reading import load_machine
 from trunnion.wording import counted
 
 #: Extensions of CL files by their dialects.

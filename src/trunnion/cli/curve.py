@@ -4,10 +4,10 @@ import argparse
 from collections.abc import Iterator
 from typing import Final
 
-from trunnion.api.curves import check_picture, fit_curve, read_points, write_curve_picture
 from trunnion.cli.results import as_json, print_result
 from trunnion.cli.terminal import Terminal
 from trunnion.geometry.fitting import CurveFit
+from trunnion.jobs.impeller.curves import check_picture, fit_curve, read_points, write_curve_picture
 from trunnion.wording import counted, one_line
 
 _DECIMALS: Final = 9

@@ -5,10 +5,6 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path, PurePath
 
-from trunnion.api.cl_statements import check_statements
-from trunnion.api.definition_checks import all_problems, machine_problems, stand_in
-from trunnion.api.describing import describe_control
-from trunnion.api.describing_machine import describe_machine
 from trunnion.cli.controls import control_lines
 from trunnion.cli.machine_list import machine_list
 from trunnion.cli.machine_text import machine_data, machine_lines
@@ -20,6 +16,10 @@ from trunnion.definitions import load_table
 from trunnion.definitions.messages import did_you_mean
 from trunnion.definitions.resolved import resolved_text
 from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.jobs.describe.controls import describe_control
+from trunnion.jobs.describe.definition_checks import all_problems, machine_problems, stand_in
+from trunnion.jobs.describe.machines import describe_machine
+from trunnion.jobs.inputs.cl_statements import check_statements
 from trunnion.machines import load_machine, shipped_machines
 from trunnion.machines.loading import machine_library
 from trunnion.readers import check_reading

@@ -2,8 +2,8 @@
 
 import argparse
 
-from trunnion.api.comparing import diff
 from trunnion.cli.results import print_result
+from trunnion.jobs.verify.comparing import diff
 from trunnion.wording import one_line
 
 

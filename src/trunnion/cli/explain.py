@@ -5,12 +5,12 @@ import textwrap
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 
-from trunnion.api.explaining import all_explanations
-from trunnion.api.explaining import explain as explain_code
 from trunnion.cli.results import as_json, print_result
 from trunnion.cli.wording import in_command_words
 from trunnion.errors import InputError, Problem
 from trunnion.explanations import SUBJECTS, Explanation
+from trunnion.jobs.describe.codes import all_explanations
+from trunnion.jobs.describe.codes import explain as explain_code
 
 _WIDTH = 100
 

@@ -6,12 +6,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from trunnion.api.fitting import AxisMargin, FitStatus, MachineFit, fit
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result
 from trunnion.cli.terminal import Terminal
 from trunnion.cli.wording import in_command_words
 from trunnion.files import atomic_file, check_outputs
+from trunnion.jobs.capability.fitting import AxisMargin, FitStatus, MachineFit, fit
 from trunnion.wording import format_duration, one_line
 
 

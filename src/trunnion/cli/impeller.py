@@ -5,14 +5,14 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
-from trunnion.api.impeller_cutting import CutStep, ImpellerCut, cut_impeller
-from trunnion.api.impellers import load_impeller, model_impeller, write_impeller_step
-from trunnion.api.simulation_data import simulation_data
 from trunnion.cli.results import as_json, print_result
 from trunnion.cli.simulate import simulation_lines
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import InputError, argument_problem
 from trunnion.impeller.impeller import Impeller
+from trunnion.jobs.impeller.cutting import CutStep, ImpellerCut, cut_impeller
+from trunnion.jobs.impeller.models import load_impeller, model_impeller, write_impeller_step
+from trunnion.jobs.simulate.data import simulation_data
 from trunnion.simulation.meshes import STEP_ENDINGS, TriangleMesh, check_mesh_name, save_mesh
 from trunnion.wording import counted, format_duration, one_line
 

@@ -5,11 +5,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Final
 
-from trunnion.api.describing_cl import ClDescription, OperationDescription, ToolDescription, Vector, describe_cl
-from trunnion.api.plotting import check_plot, write_plot
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result
 from trunnion.cli.terminal import Terminal
+from trunnion.jobs.describe.cl_files import ClDescription, OperationDescription, ToolDescription, Vector, describe_cl
+from trunnion.jobs.describe.plot import check_plot, write_plot
 from trunnion.model.toolpath import Frame
 from trunnion.wording import counted, format_duration, one_line
 

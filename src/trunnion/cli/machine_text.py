@@ -5,8 +5,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Final
 
-from trunnion.api.describing_machine import MachineDescription
 from trunnion.cli.wording import in_command_words
+from trunnion.jobs.describe.machines import MachineDescription
 from trunnion.machines import Axis, Machine
 from trunnion.machines.jog_table import AxisJog, JogTable, RotaryPose, named_direction, number_text
 from trunnion.machines.machine import Vector

@@ -5,16 +5,6 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from trunnion.api.input_files import machine_files
-from trunnion.api.placed_program import ProgramUse, other_positions
-from trunnion.api.placing import place
-from trunnion.api.placing_bodies import BodiesInput
-from trunnion.api.placing_data import placement_data
-from trunnion.api.placing_inputs import toolpaths_to_post
-from trunnion.api.placing_post import post_placed
-from trunnion.api.project_file import library_files
-from trunnion.api.reading import FilePath, ToolpathLike, load_machine
-from trunnion.api.settings import as_texts
 from trunnion.arrays import Floats
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.place_bodies import body_lines, gain_text, touch_line
@@ -22,13 +12,23 @@ from trunnion.cli.results import as_json, print_result, tell
 from trunnion.cli.terminal import Terminal, output_place
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.files import atomic_file, check_outputs
+from trunnion.jobs.inputs.input_files import machine_files
+from trunnion.jobs.inputs.reading import FilePath, ToolpathLike, load_machine
+from trunnion.jobs.inputs.settings import as_texts
+from trunnion.jobs.place.bodies import BodiesInput
+from trunnion.jobs.place.data import placement_data
+from trunnion.jobs.place.inputs import toolpaths_to_post
+from trunnion.jobs.place.placing import place
+from trunnion.jobs.place.posting import post_placed
+from trunnion.jobs.project.file import library_files
 from trunnion.model.clamping import are_one_angle, number
 from trunnion.placing.placement import AxisUse, Limit, Place, Placement, RotaryUse, TurnMargin
+from trunnion.placing.program_use import ProgramUse, other_positions
 from trunnion.placing.table_limits import KEPT
 from trunnion.wording import counted, format_duration, one_line
 
 if TYPE_CHECKING:  # imported where a project is placed
-    from trunnion.api.placing_project import PlacedSetup
+    from trunnion.jobs.place.project import PlacedSetup
 
 #: The step of the fixture angles of ``--free``, degrees.
 _FREE_STEP: Final = 15.0
@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
     read += machine_files(arguments.machine, machine)
     read += [mesh for mesh in (arguments.stock, arguments.part) if mesh is not None]
     if arguments.plot is not None:
-        from trunnion.api.placing_plot import check_placing_plot
+        from trunnion.jobs.place.plot import check_placing_plot
 
         check_placing_plot(arguments.plot, read)
     if arguments.sheet is not None and arguments.apply is None:
@@ -96,7 +96,7 @@ def run(arguments: argparse.Namespace) -> int:
         with atomic_file(arguments.json, inputs=read) as stream:
             stream.write((as_json(placement_data(found)) + "\n").encode())
     if arguments.plot is not None:
-        from trunnion.api.placing_plot import write_placing_plot
+        from trunnion.jobs.place.plot import write_placing_plot
 
         write_placing_plot(found, arguments.plot, inputs=read)
     if arguments.apply is not None and found.fits:
@@ -126,7 +126,7 @@ def _project(arguments: argparse.Namespace) -> "PlacedSetup | None":
         return None
     if len(arguments.files) > 1:
         raise InputError(Problem(projects[0], 0, "is a project, and others are named", "give it alone", code="ARG130"))
-    from trunnion.api.placing_project import placed_setup
+    from trunnion.jobs.place.project import placed_setup
 
     return placed_setup(Path(projects[0]), arguments.setup)
 

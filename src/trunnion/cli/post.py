@@ -6,18 +6,18 @@ from contextlib import contextmanager
 from itertools import chain, islice
 from pathlib import Path
 
-from trunnion.api.input_files import machine_files
-from trunnion.api.observer import Observer
-from trunnion.api.paper_files import PAPERS, paper_files
-from trunnion.api.post_result import PostResult
-from trunnion.api.posting import post_beside
-from trunnion.api.reading import load_machine
 from trunnion.cli.cl_files import named_files, result_stem
 from trunnion.cli.results import tell
 from trunnion.cli.terminal import Terminal, check_unnamed, output_folder, output_place, warn_of_old
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem, TrunnionError, argument_problem
 from trunnion.files import OutputGroup, check_outputs
+from trunnion.jobs.inputs.input_files import machine_files
+from trunnion.jobs.inputs.reading import load_machine
+from trunnion.jobs.observer import Observer
+from trunnion.jobs.papers.files import PAPERS, paper_files
+from trunnion.jobs.post.posting import post_beside
+from trunnion.jobs.post.result import PostResult
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Toolpath
 from trunnion.wording import counted

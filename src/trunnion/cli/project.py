@@ -3,12 +3,12 @@
 import argparse
 from pathlib import Path
 
-from trunnion.api.dividing import programs_of_operations
-from trunnion.api.project import Division, Project
-from trunnion.api.project_file import load_project
-from trunnion.api.project_posting import ProjectResult, post_project
 from trunnion.cli.post import old_files_told, print_dialects, print_summary
 from trunnion.cli.terminal import Terminal
+from trunnion.jobs.project.dividing import programs_of_operations
+from trunnion.jobs.project.file import load_project
+from trunnion.jobs.project.posting import ProjectResult, post_project
+from trunnion.jobs.project.project import Division, Project
 
 
 def run(arguments: argparse.Namespace) -> int:

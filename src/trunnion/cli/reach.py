@@ -6,16 +6,17 @@ from typing import Final
 
 import numpy as np
 
-from trunnion.api.input_files import machine_files
-from trunnion.api.reach_report import check_reach_plot, reach_data, write_reach_plot
-from trunnion.api.reaching import Reach, TiltReach, reach
-from trunnion.api.reaching_parts import PartReach
-from trunnion.api.reaching_paths import PathReach
-from trunnion.api.reading import load_machine
+from trunnion.capability.part_reach import PartReach
+from trunnion.capability.path_reach import PathReach
+from trunnion.capability.reach import Reach, TiltReach
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result
 from trunnion.cli.terminal import Terminal
 from trunnion.files import atomic_file, check_outputs
+from trunnion.jobs.capability.reach_report import check_reach_plot, reach_data, write_reach_plot
+from trunnion.jobs.capability.reaching import reach
+from trunnion.jobs.inputs.input_files import machine_files
+from trunnion.jobs.inputs.reading import load_machine
 from trunnion.machines.reach import ReachedVolume
 from trunnion.wording import counted, one_line
 

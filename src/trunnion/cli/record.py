@@ -4,9 +4,9 @@ import argparse
 import getpass
 import sys
 
-from trunnion.api.recording import record
 from trunnion.cli.results import print_result, tell
 from trunnion.cli.terminal import Terminal
+from trunnion.jobs.twin.recording import record
 from trunnion.wording import counted
 
 

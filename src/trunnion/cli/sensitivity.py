@@ -3,10 +3,12 @@
 import argparse
 from collections.abc import Iterator
 
-from trunnion.api.input_files import machine_files
-from trunnion.api.reading import load_machine
-from trunnion.api.sensitivity import ErrorExtent, NumberSensitivity, Sensitivity, sensitivity
-from trunnion.api.sensitivity_report import (
+from trunnion.capability.sensitivity import ErrorExtent, NumberSensitivity, Sensitivity
+from trunnion.cli.results import as_json, print_result
+from trunnion.cli.terminal import Terminal
+from trunnion.files import atomic_file, check_outputs
+from trunnion.jobs.capability.sensitivity import sensitivity
+from trunnion.jobs.capability.sensitivity_report import (
     amount_text,
     check_sensitivity_report,
     place_text,
@@ -14,9 +16,8 @@ from trunnion.api.sensitivity_report import (
     write_sensitivity_report,
     zero_text,
 )
-from trunnion.cli.results import as_json, print_result
-from trunnion.cli.terminal import Terminal
-from trunnion.files import atomic_file, check_outputs
+from trunnion.jobs.inputs.input_files import machine_files
+from trunnion.jobs.inputs.reading import load_machine
 from trunnion.wording import counted, one_line
 
 

@@ -4,22 +4,22 @@ import argparse
 from collections.abc import Iterator
 from typing import Final
 
-from trunnion.api.input_files import machine_files
-from trunnion.api.project_file import library_files, project_files
-from trunnion.api.reading import load_machine
-from trunnion.api.reports import check_report_name
-from trunnion.api.simulating import simulate
-from trunnion.api.simulation_data import simulation_data
-from trunnion.api.simulation_report import write_simulation_report
-from trunnion.api.simulation_result import NearMiss, SimulationFinding, SimulationResult
-from trunnion.api.turned_parts import is_turned
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import as_json, print_result
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import Severity
 from trunnion.files import atomic_file, check_outputs
-from trunnion.model.clamping import number
+from trunnion.jobs.inputs.input_files import machine_files
+from trunnion.jobs.inputs.reading import load_machine
+from trunnion.jobs.papers.reports import check_report_name
+from trunnion.jobs.papers.simulation_report import write_simulation_report
+from trunnion.jobs.project.file import library_files, project_files
+from trunnion.jobs.simulate.data import simulation_data
+from trunnion.jobs.simulate.result import SimulationResult
+from trunnion.jobs.simulate.simulating import simulate
+from trunnion.model.clamping import Clamping, number
 from trunnion.simulation.meshes import check_mesh_name, save_mesh
+from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.stock.surface import stock_surface
 from trunnion.wording import counted, format_duration, one_line
@@ -101,7 +101,7 @@ def simulation_lines(found: SimulationResult) -> Iterator[str]:
         if each.gouge is not None:
             yield _of_setup(each.setup) + _excess_line("missing from the part", each.gouge)
     for each in found.setups or (found,):
-        if is_turned(each.turn, each.tilt):
+        if Clamping(each.turn, each.tilt).is_turned:
             tilted = f"tilted {number(each.tilt)} degrees about X, then " if each.tilt else ""
             how = f"clamped {tilted}turned {number(each.turn)} degrees about Z"
             yield f"{_of_setup(each.setup)}places are those of the part as it is drawn; it is {how}"

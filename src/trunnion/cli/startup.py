@@ -14,12 +14,12 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 import trunnion.jit
-from trunnion.cli.cl_files import read_toolpaths
+from trunnion.cli.cl_files import begin_reading
 from trunnion.cli.post_arguments import names_project
 
 if TYPE_CHECKING:  # imported while the first CL file is read
-    from trunnion.api.observer import Observer
     from trunnion.files import OutputGroup
+    from trunnion.jobs.observer import Observer
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -40,13 +40,13 @@ def post_files(
 ) -> int:
     """Post every CL file; programs appear with those of the group, if there is one."""
     if trunnion.jit.is_first_run():  # compiling takes longer than all else: the second process should begin at once
-        from trunnion.api import kernels
+        from trunnion.jobs import kernels
 
         trunnion.jit.compile_ahead(kernels.POSTING)
     executor = ThreadPoolExecutor(1)
     try:
         given = dict(arguments.settings)
-        coming = read_toolpaths(
+        coming = begin_reading(
             arguments.files, given.get("cl_units"), arguments.strict, executor, given.get("dialect"),
             given.get("spline_tolerance", ""),
         )  # fmt: skip

@@ -7,12 +7,12 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import BinaryIO
 
-from trunnion.api.observer import Observer
 from trunnion.cli.progress import progress
 from trunnion.cli.results import tell
 from trunnion.cli.wording import in_command_words, problem_line
 from trunnion.errors import InputError, Problem
 from trunnion.files import EarlierJob, resolve_output
+from trunnion.jobs.observer import Observer
 from trunnion.model.motion import Plan
 from trunnion.verification import Verification, check_lines, place_lines, time_lines
 

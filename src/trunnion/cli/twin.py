@@ -5,12 +5,12 @@ import getpass
 import sys
 from typing import TYPE_CHECKING
 
-from trunnion.api.input_files import machine_files
-from trunnion.api.reading import load_machine
-from trunnion.api.twin import add_twin_user, is_loopback, serve_twin, write_device_xml
 from trunnion.cli.results import print_result
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.files import check_outputs
+from trunnion.jobs.inputs.input_files import machine_files
+from trunnion.jobs.inputs.reading import load_machine
+from trunnion.jobs.twin.serving import add_twin_user, is_loopback, serve_twin, write_device_xml
 
 if TYPE_CHECKING:
     from trunnion.twin.serving import TwinAddresses

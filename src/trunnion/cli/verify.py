@@ -3,16 +3,16 @@
 import argparse
 from typing import Final
 
-from trunnion.api.input_files import machine_files
-from trunnion.api.manifests import verify_manifest
-from trunnion.api.reading import load_machine
-from trunnion.api.reports import check_report, write_report
-from trunnion.api.verifying import verify
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.results import print_result, tell
 from trunnion.cli.terminal import Terminal
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Severity, argument_problem
+from trunnion.jobs.inputs.input_files import machine_files
+from trunnion.jobs.inputs.reading import load_machine
+from trunnion.jobs.papers.manifests import verify_manifest
+from trunnion.jobs.papers.reports import check_report, write_report
+from trunnion.jobs.verify.verifying import verify
 from trunnion.verification import Verification, check_lines, place_lines, time_lines
 from trunnion.wording import counted, one_line
 

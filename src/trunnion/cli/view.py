@@ -5,12 +5,6 @@ import sys
 from functools import partial
 from typing import Any
 
-from trunnion.api.input_files import machine_files
-from trunnion.api.project_file import library_files, project_files
-from trunnion.api.reading import load_machine
-from trunnion.api.recording import machine_feed
-from trunnion.api.viewing import check_view_name, prepare_view, write_view
-from trunnion.api.viewing_live import LiveMachine, machine_content
 from trunnion.cli.cl_files import cl_inputs, named_files
 from trunnion.cli.record import machine_password
 from trunnion.cli.results import print_result
@@ -18,6 +12,12 @@ from trunnion.cli.serving import announce
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import InputError, argument_problem
 from trunnion.files import check_outputs
+from trunnion.jobs.inputs.input_files import machine_files
+from trunnion.jobs.inputs.reading import load_machine
+from trunnion.jobs.project.file import library_files, project_files
+from trunnion.jobs.twin.recording import machine_feed
+from trunnion.jobs.view.live import LiveMachine, machine_content
+from trunnion.jobs.view.viewing import check_view_name, prepare_view, write_view
 from trunnion.viewer.content import ViewContent
 from trunnion.viewer.live import LiveView
 from trunnion.viewer.server import view_application

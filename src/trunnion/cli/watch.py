@@ -7,14 +7,6 @@ from datetime import datetime
 from pathlib import Path
 from typing import Protocol
 
-from trunnion.api.input_files import machine_files
-from trunnion.api.observer import Observer
-from trunnion.api.posted_simulation import simulation_files
-from trunnion.api.project import Project
-from trunnion.api.project_file import load_project, project_inputs
-from trunnion.api.project_posting import post_into
-from trunnion.api.reading import load_machine
-from trunnion.api.watching import FolderNotices, Waiting, mentioned_files, watch
 from trunnion.cli.post import files_by_target, simulation_of
 from trunnion.cli.post_arguments import names_project
 from trunnion.cli.process import Ended
@@ -26,6 +18,14 @@ from trunnion.cli.terminal import warn_of_old
 from trunnion.cli.wording import problem_line
 from trunnion.errors import InputError, Problem, RefusedError, TrunnionError
 from trunnion.files import OutputGroup, file_on_disk, output_group
+from trunnion.jobs.inputs.input_files import machine_files
+from trunnion.jobs.inputs.reading import load_machine
+from trunnion.jobs.observer import Observer
+from trunnion.jobs.project.file import load_project, project_inputs
+from trunnion.jobs.project.posting import post_into
+from trunnion.jobs.project.project import Project
+from trunnion.jobs.project.watching import FolderNotices, Waiting, mentioned_files, watch
+from trunnion.jobs.simulate.posted import simulation_files
 from trunnion.wording import counted, one_line
 
 

@@ -18,7 +18,7 @@ from trunnion.conversion.program_text import ProgramText
 from trunnion.conversion.sections import ProgramSection
 from trunnion.conversion.settings import parse_number
 from trunnion.conversion.template_matching import LinePattern, TemplatePatterns, match_lines
-from trunnion.model.clamping import head_comments, may_be_notice
+from trunnion.model.clamping_notices import head_comments, may_be_notice
 from trunnion.model.run import ProgrammedWord, Run
 
 _MM_PER_INCH = 25.4

@@ -10,7 +10,7 @@ from typing import Final
 
 from trunnion.controls.family_writer import FamilyWriter
 from trunnion.controls.vocabulary import FORCED_NOTICE, HOOKS_NOTICE
-from trunnion.model.clamping import PLACED_NOTICES
+from trunnion.model.clamping_notices import PLACED_NOTICES
 from trunnion.model.toolpath import Message, Operation, Toolpath
 
 _OF_HEADS: Final = (FORCED_NOTICE, HOOKS_NOTICE, *PLACED_NOTICES)

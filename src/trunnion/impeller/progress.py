@@ -1,4 +1,4 @@
-"""How far the work within a step has come, in the shape of ``api.observer.Observer.progress``."""
+"""How far the work within a step has come, in the shape of ``jobs.observer.Observer.progress``."""
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext

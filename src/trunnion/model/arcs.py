@@ -42,3 +42,21 @@ def with_closed_turns(operation: Operation) -> Operation:
         row, across = int(arcs.row[m]), [k for k in range(3) if k != about[m]]
         tip[row, across] = tip[row - 1, across]
     return replace(operation, moves=replace(operation.moves, tip=tip))
+
+
+def arc_lengths(arcs: Arcs, start: Floats, end: Floats) -> Floats:
+    """Lengths of arcs and helices, (m,) mm, from ``start`` to ``end``, (m, 3) each."""
+    rise = np.einsum("ij,ij->i", end - start, arcs.normal)
+    angle = swept_angles(arcs, start, end)
+    return np.asarray(np.hypot(arcs.radius * (angle + 2.0 * np.pi * arcs.full_turns), rise))
+
+
+def swept_angles(arcs: Arcs, start: Floats, end: Floats) -> Floats:
+    """Angles of the last turns of arcs and helices, (m,) radians, a full one where they close."""
+    first, last = start - arcs.centre, end - arcs.centre
+    rise = np.einsum("ij,ij->i", last - first, arcs.normal)
+    across = np.einsum("ij,ij->i", np.cross(first, last), arcs.normal)
+    angle = np.arctan2(across, np.einsum("ij,ij->i", first, last) - rise * np.einsum("ij,ij->i", first, arcs.normal))
+    angle = np.mod(angle, 2.0 * np.pi)
+    closed = np.minimum(angle, 2.0 * np.pi - angle) * arcs.radius < CLOSED_ARC
+    return np.asarray(np.where(closed, 2.0 * np.pi, angle))

@@ -138,30 +138,3 @@ def no_arcs() -> ArcPaths:
     """No arcs at all."""
     none = np.zeros((0, 3))
     return ArcPaths(none, none, none, none, np.zeros(0, np.int64))
-
-
-def about_z(degrees: float) -> Floats:
-    """(3, 3): turns vectors about Z, right-handed; exact for quarters of a turn."""
-    cos, sin = _cos_sin(degrees)
-    return np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
-
-
-def about_x(degrees: float) -> Floats:
-    """(3, 3): turns vectors about X, right-handed; exact for quarters of a turn."""
-    cos, sin = _cos_sin(degrees)
-    return np.array([[1.0, 0.0, 0.0], [0.0, cos, -sin], [0.0, sin, cos]])
-
-
-def turn_and_tilt(turn: float, tilt: float) -> Floats:
-    """(3, 3): first the tilt about X, then the turn about Z, degrees."""
-    return np.asarray(about_z(turn) @ about_x(tilt))
-
-
-def _cos_sin(degrees: float) -> tuple[float, float]:
-    """Cosine and sine; exact for quarters of a turn."""
-    quarter = round(degrees / 90.0)
-    angle = np.radians(degrees - 90.0 * quarter)
-    cos, sin = float(np.cos(angle)), float(np.sin(angle))
-    for _ in range(quarter % 4):
-        cos, sin = -sin, cos
-    return cos, sin

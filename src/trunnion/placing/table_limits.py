@@ -16,9 +16,13 @@ from trunnion.arrays import Floats
 from trunnion.machines import Machine
 from trunnion.machines.machine import Mount, Vector
 from trunnion.placing.turning import hull_points, is_upright
+from trunnion.simulation.stock.solids import StockShape
 
 #: An outline that is beyond an edge by less is on the table, mm: zeros are in thousandths.
 KEPT: Final = 1e-3
+
+#: Corners of the polygon around a round stock, which is wider than it by 0.1 mm in 10 m.
+_SIDES: Final = 720
 
 
 class TableEdge(StrEnum):
@@ -170,3 +174,23 @@ class TableLimits:
             limit = self.rim_at(far * np.array([np.cos(angle), np.sin(angle), 0.0]))
             if limit is not None:
                 yield limit
+
+
+def points_around(stock: StockShape) -> Floats:
+    """Points (k, 3) whose convex hull has the stock in it, mm."""
+    if stock.mesh is not None:
+        return stock.mesh.vertices
+    low, high = stock.low, stock.high
+    flat = _circle(0.5 * float(high[0] - low[0])) if stock.is_cylinder else _corners(low[:2], high[:2])
+    return np.concatenate([np.column_stack((flat, np.full(len(flat), z))) for z in (low[2], high[2])])
+
+
+def _corners(low: Floats, high: Floats) -> Floats:
+    return np.array([(x, y) for x in (low[0], high[0]) for y in (low[1], high[1])])
+
+
+def _circle(radius: float) -> Floats:
+    """A polygon around a circle, of which no point is beyond by more than a hundred-thousandth of the radius."""
+    angles = (np.arange(_SIDES) + 0.5) * (2.0 * np.pi / _SIDES)
+    outer = radius / float(np.cos(np.pi / _SIDES))
+    return outer * np.column_stack((np.cos(angles), np.sin(angles)))

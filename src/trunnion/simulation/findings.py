@@ -158,3 +158,8 @@ def air_cuts(run: Run, rows: RowsCut) -> Ints:
     end = rows.first + len(rows.removed)
     idle = (run.kind[rows.first : end] != Kind.RAPID) & (rows.removed <= 0.0)
     return np.flatnonzero(idle) + rows.first
+
+
+def file_of_row(run: Run, row: int) -> str:
+    """The file in which the block of a row stands."""
+    return run.files[int(run.state.file[row])]

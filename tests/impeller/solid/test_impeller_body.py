@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 
 from tests.support.example_impellers import changed
 from tests.support.examples import examples
-from trunnion.api.impellers import load_impeller
 from trunnion.arrays import Floats
 from trunnion.errors import InputError
 from trunnion.extras import import_extra
@@ -30,6 +29,7 @@ from trunnion.impeller.solid.shapes import (
     SplineSurface,
     Surface,
 )
+from trunnion.jobs.impeller.models import load_impeller
 
 BSpline = import_extra("scipy.interpolate", "impeller").BSpline
 

@@ -13,13 +13,13 @@ from hypothesis import HealthCheck, Phase, settings
 
 from tests.support.matrix.expected import REFUSED, WITHOUT_TCP
 from tests.support.matrix.paths import holes
-from trunnion.api.settings import apply_setup
 from trunnion.arrays import Floats
 from trunnion.cl import read_cl
 from trunnion.cli import main
 from trunnion.controls import Control, control_library, load_control
 from trunnion.families import FAMILIES as CONTROL_FAMILIES
 from trunnion.families import load_writer
+from trunnion.jobs.inputs.settings import apply_setup
 from trunnion.machines import Machine, load_machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import CycleOn

@@ -15,9 +15,9 @@ import pytest
 
 from tests.support.locations import ROOT
 from tests.support.twins import BLADE_FINISH, served
-from trunnion.api.twin import add_twin_user
 from trunnion.arrays import Floats, Ints
 from trunnion.cli import main
+from trunnion.jobs.twin.serving import add_twin_user
 from trunnion.model.recording import Mark, Recording
 from trunnion.twin.recording.reading import read_recording
 

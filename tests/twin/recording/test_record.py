@@ -21,8 +21,8 @@ from tests.support.locations import ROOT
 from tests.support.recordings import IMPELLER, impeller
 from tests.support.twins import BLADE_FINISH, served
 from trunnion import read_program, verify
-from trunnion.api.twin import add_twin_user
 from trunnion.cli import main
+from trunnion.jobs.twin.serving import add_twin_user
 from trunnion.model.recording import Mark, Recording
 from trunnion.twin.recording.reading import read_recording
 

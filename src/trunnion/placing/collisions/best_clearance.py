@@ -8,13 +8,13 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
+from trunnion.model.clamping import Clamping
 from trunnion.placing.best_turn import KEPT, Grid, TurnResult
 from trunnion.placing.collisions.clearance import ENOUGH, Clearance, Nearest
 from trunnion.placing.collisions.guarded_pairs import Changes, GuardedPair
 from trunnion.placing.collisions.moments import Moments, moments_of
 from trunnion.placing.collisions.search import FarthestSearch
 from trunnion.placing.largest_margin import BestPlace, largest_margin
-from trunnion.placing.path_rows import turn_and_tilt
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.travel_limits import TABLE, Cut, CutSet
 from trunnion.placing.turns import TurnedPath
@@ -91,7 +91,7 @@ class Oriented:
 
     def asked(self, moments: Moments, *changes: Changes) -> Clearance:
         """Asks pairs that something changes."""
-        turn = turn_and_tilt(self._turn, self._tilt)
+        turn = Clamping(self._turn, self._tilt).rotation
         return Clearance(self._path.machine, moments, self._guard.that(*changes), turn, self._near)
 
 

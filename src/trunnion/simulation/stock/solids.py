@@ -17,7 +17,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, argument_problem
-from trunnion.simulation.meshes import DEVIATION, TriangleMesh, load_mesh
+from trunnion.simulation.meshes import DEVIATION, TriangleMesh, box_mesh, cylinder_mesh, load_mesh
 from trunnion.simulation.stock.lattice import Lattice
 from trunnion.simulation.stock.material import Stock, rays_of_tiles
 from trunnion.simulation.stock.spans import Spans, box_spans, cylinder_spans, mesh_spans
@@ -70,6 +70,14 @@ class StockShape:
         if self.mesh is not None:
             return mesh_spans(self.mesh.vertices, self.mesh.faces, lattice, bundle)
         return cylinder_spans(lattice, bundle) if self.is_cylinder else box_spans(lattice, bundle)
+
+    def as_mesh(self) -> TriangleMesh:
+        """Its surface, mm: its mesh, or that of its box or cylinder."""
+        if self.mesh is not None:
+            return self.mesh
+        if self.is_cylinder:
+            return cylinder_mesh(float(self.high[0] - self.low[0]), float(self.low[2]), float(self.high[2]))
+        return box_mesh(self.low, self.high)
 
 
 def is_mesh(text: str) -> bool:

@@ -5,13 +5,16 @@ Out:    a ``ToolShape`` for each name. No tool is guessed: those that nothing de
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.model.toolpath import LoadTool, Tool, Toolpath
 from trunnion.simulation.tools.cl_tools import cl_tool_shape
 from trunnion.simulation.tools.library import ToolLibrary
 from trunnion.simulation.tools.profile import ToolShape
+
+#: The number of the tool with which a program cuts that calls none.
+NO_CALL: Final = "0"
 
 
 class ClTool(NamedTuple):

@@ -149,3 +149,12 @@ def _between(element: Element, start: Point, end: Point) -> Element:
 def _check_points(*points: Point) -> None:
     if not all(math.isfinite(value) for point in points for value in point) or min(point[0] for point in points) < 0.0:
         raise ValueError("a point of an outline is not finite, or beyond the tool axis")
+
+
+def cutting_width(tool: ToolShape) -> float:
+    """The greatest diameter of what cuts of a tool, mm; infinite where nothing does."""
+    points = [
+        point for section in tool.sections if section.role is Role.CUTTER
+        for element in section.outline for point in (element.start, element.end)
+    ]  # fmt: skip
+    return 2.0 * max((radius for radius, _ in points), default=float("inf"))

@@ -18,13 +18,13 @@ from tests.support.path_strategies import short_paths, smooth_paths
 from tests.support.planes import ANGLES, SHARES, reachable
 from tests.support.posting import HEAD, LEANING
 from tests.support.read_back import toolpath_of
-from trunnion.api.expectation import expectation
-from trunnion.api.job import parse_plan_options
-from trunnion.api.planning import plan_program
 from trunnion.controls import load_control
 from trunnion.controls.words import BlockNumbers
 from trunnion.conversion import convert
 from trunnion.errors import InputError, RefusedError
+from trunnion.jobs.post.expected_values import expectation
+from trunnion.jobs.post.planning import plan_program
+from trunnion.jobs.post.post_job import parse_plan_options
 from trunnion.machines import load_machine
 from trunnion.model.toolpath import LoadTool, Moves
 from trunnion.output.coordinates.euler_angles import euler_zxz_angles

@@ -17,10 +17,10 @@ from tests.support.jobs import post_job
 from tests.support.path_strategies import short_paths, smooth_paths, winding
 from tests.support.posting import HEAD, LEANING
 from tests.support.read_back import toolpath_of
-from trunnion.api.job import parse_plan_options
-from trunnion.api.planning import plan_program
 from trunnion.arrays import Floats
 from trunnion.errors import InputError, RefusedError, Severity
+from trunnion.jobs.post.planning import plan_program
+from trunnion.jobs.post.post_job import parse_plan_options
 from trunnion.machines import Machine, Mount, inverse, load_machine
 from trunnion.model.motion import MachiningMode
 from trunnion.model.run import Orientation, ProgrammedWord

@@ -17,14 +17,14 @@ from tests.support.locations import FIDIA, FIDIA_HEAD
 from tests.support.path_strategies import short_paths, smooth_paths
 from tests.support.proof import unproven
 from tests.support.read_back import toolpath_of
-from trunnion.api.expectation import expectation
-from trunnion.api.job import parse_plan_options
-from trunnion.api.planning import plan_program
 from trunnion.arrays import Floats
 from trunnion.cl import read_cl
 from trunnion.cli import main
 from trunnion.controls import load_control
 from trunnion.errors import InputError, RefusedError
+from trunnion.jobs.post.expected_values import expectation
+from trunnion.jobs.post.planning import plan_program
+from trunnion.jobs.post.post_job import parse_plan_options
 from trunnion.machines import Machine, load_machine
 from trunnion.model.toolpath import Moves, Toolpath
 from trunnion.output.capabilities import control_capabilities

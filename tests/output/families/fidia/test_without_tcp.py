@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from tests.support.matrix.expected import WITHOUT_TCP
 from tests.support.matrix.pairs import FEW, Pair, check_proven, check_refused, pair_of, posted
 from tests.support.matrix.paths import CYCLES, off_the_pole, operation, reachable, square, words
-from trunnion.api.settings import apply_setup
 from trunnion.cl import read_cl
 from trunnion.controls import load_control
+from trunnion.jobs.inputs.settings import apply_setup
 from trunnion.machines import Machine, load_machine
 from trunnion.model.feed_path import FeedPath
 from trunnion.readers import run_program

@@ -14,12 +14,12 @@ from tests.support.linuxcnc.judge import agree
 from tests.support.linuxcnc.posting import FOOT, Post
 from tests.support.linuxcnc.posting import post as post
 from tests.support.posting import CLEAR
-from trunnion.api.expectation import expectation
-from trunnion.api.job import parse_plan_options
-from trunnion.api.planning import plan_program
 from trunnion.cl import read_cl
 from trunnion.controls import load_control
 from trunnion.errors import InputError, RefusedError
+from trunnion.jobs.post.expected_values import expectation
+from trunnion.jobs.post.planning import plan_program
+from trunnion.jobs.post.post_job import parse_plan_options
 from trunnion.machines import load_machine
 from trunnion.output.program_writer import write_program
 from trunnion.readers import run_program

@@ -1,0 +1,170 @@
+"""What a machine reaches with each tilt of the tool axis."""
+
+import math
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.capability.part_reach import PartReach
+from trunnion.capability.path_reach import PathReach
+from trunnion.errors import Problem, Severity
+from trunnion.machines import Machine
+from trunnion.machines.reach import AxisPoses, PoseBodies, ReachedVolume, axis_poses, pose_bodies, reached_volumes
+
+#: Directions by which the share of the sphere is found.
+_SPREAD: Final = 40_000
+
+#: Points go to the next azimuth on arcs, so half of the way is a little more than half of the chord.
+_BENT: Final = 1.05
+
+#: Tilts that differ by less are the same, degrees.
+_SAME: Final = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class TiltReach:
+    """What is reached with one tilt of the tool axis from the workpiece's Z.
+
+    tilt       degrees
+    branches   how many rotary positions give the tool axis at each azimuth, from 0 degrees on; one azimuth where the
+               tool axis is Z itself, up or down
+    one_pose   least and greatest volume of the tips of one rotary position, mm^3, exact; None: no slide limits
+    some       volume of the points reached at some azimuth, mm^3; None: no slide limits
+    every      volume of the points reached at every azimuth
+    between    how far points of one rotary position go half-way to the next azimuth, at most, mm: bounds allow for it
+    """
+
+    tilt: float
+    branches: tuple[int, ...]
+    one_pose: tuple[float, float] | None
+    some: ReachedVolume | None
+    every: ReachedVolume | None
+    between: float
+
+    @property
+    def share(self) -> float:
+        """Share of the azimuths at which the tool axis can be had."""
+        return sum(count > 0 for count in self.branches) / len(self.branches)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reach:
+    """What a machine reaches.
+
+    machine  as it was set up, with workpiece zero and tool length if they are known
+    step     degrees between tilts, and most between azimuths
+    tilts    from 0 to 180 degrees
+    sphere   share of all directions that the tool axis can have, to some 0.001
+    part     of a part's surface; None: none was given
+    paths    of CL files
+    remarks  what was assumed
+    """
+
+    machine: Machine
+    step: float
+    tilts: tuple[TiltReach, ...]
+    sphere: float
+    part: PartReach | None
+    paths: tuple[PathReach, ...]
+    remarks: tuple[Problem, ...]
+
+    @property
+    def unjudged_slides(self) -> tuple[str, ...]:
+        """Names of the slides that part and paths are not held against: limits or places are not known."""
+        machine = self.machine
+        judged = [k for k in machine.linear if machine.is_placed(k) and machine.axes[k].has_limits]
+        return tuple(machine.names[k] for k in machine.linear if k not in judged)
+
+
+def tilts_between(step: float) -> list[float]:
+    """Tilts from 0 to 180 degrees."""
+    tilts = [step * k for k in range(math.floor(180.0 / step + _SAME) + 1)]
+    return tilts if 180.0 - tilts[-1] < _SAME else [*tilts, 180.0]
+
+
+def tool_axes_at(tilt: float, step: float) -> Floats:
+    """Tool axes of a tilt at azimuths from 0 degrees on, at most ``step`` degrees apart, (n, 3)."""
+    angle = math.radians(tilt)
+    if tilt < _SAME or 180.0 - tilt < _SAME:
+        return np.array([[0.0, 0.0, 1.0 if tilt < _SAME else -1.0]])
+    count = math.ceil(360.0 / step - _SAME)
+    azimuth = 2.0 * np.pi / count * np.arange(count)
+    across = math.sin(angle)
+    return np.column_stack((across * np.cos(azimuth), across * np.sin(azimuth), np.full(count, math.cos(angle))))
+
+
+def sphere_share(machine: Machine) -> float:
+    """Share of all directions that the tool axis can have, from directions spread evenly over the sphere."""
+    index = np.arange(_SPREAD) + 0.5
+    height, azimuth = 1.0 - 2.0 * index / _SPREAD, index * math.pi * (3.0 - math.sqrt(5.0))
+    across = np.sqrt(1.0 - height * height)
+    axes = np.column_stack((across * np.cos(azimuth), across * np.sin(azimuth), height))
+    return float((axis_poses(machine, axes).branches > 0).mean())
+
+
+def tilt_reach(machine: Machine, tilt: float, step: float) -> TiltReach:
+    """What is reached with a tilt, degrees, at azimuths at most ``step`` degrees apart."""
+    axes = tool_axes_at(tilt, step)
+    poses = axis_poses(machine, axes, step)
+    branches = tuple(poses.branches.tolist())
+    if not _has_travel(machine):
+        return TiltReach(tilt, branches, None, None, None, 0.0)
+    bodies = pose_bodies(machine, poses.rotary)
+    between = _between(poses, bodies)
+    some, every = reached_volumes(bodies, poses.direction, len(axes), between=between)
+    volumes = bodies.volume.tolist() or [0.0]
+    return TiltReach(tilt, branches, (min(volumes), max(volumes)), some, every, float(between.max(initial=0.0)))
+
+
+def _between(poses: AxisPoses, bodies: PoseBodies) -> Floats:
+    """How far the corners of each body go on the way half-way to the nearest one of the next azimuth, (k,) mm.
+
+    At a pole the next angle of the free axis is meant. Where a neighbour cannot be had the others' greatest way counts.
+    """
+    count, k = len(poses.branches), len(bodies.volume)
+    if not k:
+        return np.zeros(0)
+    if count == 1:
+        parts, closes = [np.array([row]) for row in range(k)], False
+    else:
+        groups = np.searchsorted(poses.direction, np.arange(count + 1))
+        parts, closes = [np.arange(first, end) for first, end in pairwise(groups)], True
+    ways = np.full(k, np.nan)
+    for at, own in enumerate(parts):
+        for beside in (at - 1, at + 1):
+            if not closes and not 0 <= beside < len(parts):
+                continue
+            other = parts[beside % len(parts)]
+            if len(own) and len(other):
+                apart = np.linalg.norm(bodies.corners[own][:, None] - bodies.corners[other][None], axis=3).max(axis=2)
+                ways[own] = np.fmax(ways[own], apart.min(axis=1))
+    greatest = float(np.nanmax(ways)) if np.isfinite(ways).any() else 0.0
+    return np.asarray(_BENT * 0.5 * np.where(np.isnan(ways), greatest, ways))
+
+
+def _has_travel(machine: Machine) -> bool:
+    """Whether all slides have limits."""
+    return bool(np.isfinite(machine.limits[list(machine.linear)]).all())
+
+
+def reach_remarks(machine: Machine, placed: bool) -> list[Problem]:
+    """What was assumed."""
+    found = []
+    missing = [machine.names[k] for k in machine.linear if not np.isfinite(machine.limits[k]).all()]
+    if missing:
+        what = f"no limits of {' and '.join(missing)} are stated, so there is no volume of what it reaches"
+        found.append(Problem(machine.key, 0, what, "write limits_mm into the definition", code="RCH210"))
+    if machine.tool_length is None and any(machine.depends_on_length(column) for column in machine.linear):
+        what = "the tool length is not known and counts as 0"
+        cure = "give argument tool_length=MM: what is reached with a tilted tool depends on it"
+        found.append(Problem(machine.key, 0, what, cure, code="RCH140"))
+    if placed and machine.workpiece_zero is None:
+        what = "the workpiece zero is not known, so only tool axes are judged"
+        found.append(Problem(machine.key, 0, what, "give argument zero=X,Y,Z", code="RCH130"))
+    elif placed and machine.tool_length is None:
+        what = "the tool length is not known, so slides that depend on it are not judged"
+        found.append(Problem(machine.key, 0, what, "give argument tool_length=MM", code="RCH140"))
+    return [replace(each, severity=Severity.WARNING) for each in found]

@@ -1,0 +1,1 @@
+"""What machines can: reach, sensitivity, and which one can run a job."""

@@ -1,0 +1,379 @@
+"""Which machines can run CL files or an NC program, and which of them best."""
+
+import math
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Final
+
+import numpy as np
+
+from trunnion.definitions import load_table
+from trunnion.errors import ArgumentName, InputError, Problem, Severity, TrunnionError, argument_problem
+from trunnion.jobs.convert.converting import convert
+from trunnion.jobs.describe.assumptions import assumed_places
+from trunnion.jobs.inputs.arguments import check_paths, wrong_argument
+from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_toolpaths
+from trunnion.jobs.inputs.settings import set_up_machine
+from trunnion.jobs.observer import SILENT, Observer
+from trunnion.jobs.place.placing import place, unknown_length
+from trunnion.jobs.place.posting import post_placed
+from trunnion.jobs.post.posting import post
+from trunnion.jobs.post.result import PostResult
+from trunnion.machines import Machine, shipped_machines
+from trunnion.machines.loading import is_example, machine_library
+from trunnion.machines.machine import Vector
+from trunnion.model.toolpath import Kind, Toolpath
+from trunnion.placing.placement import AxisUse, Placement
+from trunnion.verification.results import durations
+
+#: Arguments that are the same for all machines: what is wrong with one is no reason of a machine.
+_OF_ALL: Final = ("tool_length", "turns")
+
+#: Codes of a name that is no machine, and of a file that is missing.
+_NOT_THERE: Final = ("DEF110", "FIL110")
+
+#: How reasons begin that a tool without a known length leaves open.
+_LENGTH: Final = "the tool counts as 0 mm long"
+
+#: Problems of a machine that are told.
+_MOST: Final = 3
+
+
+class FitStatus(StrEnum):
+    """Whether a machine can run it; OPEN where the definition leaves open how far slides go."""
+
+    FITS = "fits"
+    OPEN = "open"
+    NOT = "does not fit"
+
+
+@dataclass(frozen=True, slots=True)
+class AxisMargin:
+    """What is left to the nearer limit of an axis, mm or degrees; infinite where there is none."""
+
+    axis: str
+    unit: str
+    margin: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MachineFit:
+    """What one machine makes of it.
+
+    key        of the definition, or as it was named where that cannot be loaded
+    status     whether it can run it
+    reasons    why not, or what is left open, in sentences
+    seconds    time of the proven program; None: there is none, or its time is not known
+    margins    of the slides at the place that was found, and of the rotary axes at feed
+    missing    how far the slides are from reaching it at the best place, mm; None where that is not the reason
+    zero_mm    workpiece zero of the best place, machine frame; None: there is no place, or it was not looked for
+    turn_deg   turn of the part there, about Z
+    """
+
+    key: str
+    status: FitStatus
+    reasons: tuple[str, ...] = ()
+    seconds: float | None = None
+    margins: tuple[AxisMargin, ...] = ()
+    missing: float | None = None
+    zero_mm: Vector | None = None
+    turn_deg: float | None = None
+
+    @property
+    def is_example(self) -> bool:
+        """Whether it is a shipped definition of no builder's machine, whose numbers are examples."""
+        return is_example(self.key)
+
+
+def fit(
+    files: Iterable[ToolpathLike] | ToolpathLike,
+    *,
+    machines: str | Iterable[MachineLike] = "all",
+    machine: MachineLike | None = None,
+    subprograms: Sequence[FilePath] = (),
+    zero: str | Iterable[float] | None = None,
+    tool_length: str | float | None = None,
+    turns: float | Sequence[float] | None = None,
+    observer: Observer = SILENT,
+) -> tuple[MachineFit, ...]:
+    """Tell which machines can run CL files or an NC program, the best first.
+
+    Parameters
+    ----------
+    files
+        CL files, which ``trunnion.post`` would make one program of; with ``machine``, one NC program.
+    machines
+        Which machines are asked: ``"all"`` shipped ones, names and files with commas between them, or a list of them.
+    machine
+        The machine that the NC program is for; it is converted into CL data first.
+    subprograms
+        Files of the subprograms that the NC program calls.
+    zero : (3,) float, mm
+        Workpiece zero of the NC program on its own machine, where it moves slides to positions of the machine.
+    tool_length
+        Of the tool, gauge point to tip, mm, on all machines; by default the greatest that the CL files state for tools
+        in the spindle. Where none is known the answer is open at best.
+    turns
+        The part is tried at every so many degrees about Z, 5 by default; or the turns themselves, as for
+        ``trunnion.place``.
+    observer
+        Receives the progress and warnings about the files.
+
+    Returns
+    -------
+    tuple of MachineFit
+        Machines that can run it by the time of the proven program, then those whose definitions leave something open,
+        then the others by what is missing, each with its reasons. In each of these, examples of machines come last.
+
+    Raises
+    ------
+    InputError
+        When a file or an argument cannot be used, or a name is no machine. What is wrong with a machine is its reason.
+    RefusedError
+        When the NC program has words that are not understood.
+
+    Notes
+    -----
+    On each machine the part is placed (``trunnion.place``), and posted there with its proof.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> hub = "tests/golden/yl569/2_hub_rough.cls"
+    >>> found = trunnion.fit(hub, machines="yl569,hs664rt", turns=[0.0], tool_length=120.0)
+    >>> [(each.key, str(each.status)) for each in found]
+    [('yl569', 'fits'), ('hs664rt', 'open')]
+    """
+    asked = _asked(machines)
+    _check_are_there(asked)
+    toolpaths = _toolpaths(files, machine, check_paths("subprograms", subprograms), zero, tool_length, observer)
+    if tool_length is None:
+        tool_length = _stated_length(toolpaths)
+    found = []
+    with observer.progress("fit", len(asked), "machines") as advance:
+        for each in asked:
+            found.append(_fit(each, toolpaths, tool_length, turns))
+            advance(1)
+    if tool_length is None and any(_LENGTH in reason for each in found for reason in each.reasons):
+        cure = "give tool_length of the longest tool"
+        observer.problems(
+            (
+                argument_problem(
+                    "tool_length", f"{_LENGTH} where slides depend on it", cure, Severity.WARNING, code="PLC210"
+                ),
+            )
+        )
+    return tuple(sorted(found, key=_rank))
+
+
+def _rank(each: MachineFit) -> tuple[int, bool, float, float]:
+    """Machines that can run it first, of them examples last; the fastest first, of like ones that with most room."""
+    order = list(FitStatus).index(each.status), each.is_example
+    if each.status is FitStatus.NOT:
+        return *order, math.inf if each.missing is None else each.missing, 0.0
+    room = min((margin.margin for margin in each.margins if margin.unit == "mm"), default=0.0)
+    return *order, math.inf if each.seconds is None else round(each.seconds, 1), -room
+
+
+def _asked(machines: str | Iterable[MachineLike]) -> list[MachineLike]:
+    """The machines that are asked, each once."""
+    if isinstance(machines, str):
+        names = shipped_machines() if machines == "all" else [name.strip() for name in machines.split(",")]
+        asked: list[MachineLike] = [name for name in dict.fromkeys(names) if name]
+    elif isinstance(machines, Iterable) and not isinstance(machines, bytes):
+        asked = list(machines)
+    else:
+        raise wrong_argument("machines", machines, "give all, or names or files of machines")
+    if not asked or not all(isinstance(each, str | os.PathLike | Machine) for each in asked):
+        raise wrong_argument("machines", machines, "give all, or names or files of machines")
+    return asked
+
+
+def _check_are_there(asked: Sequence[MachineLike]) -> None:
+    """Raise ``InputError`` with every name that is no machine and every file that is missing."""
+    problems: list[Problem] = []
+    for each in asked:
+        try:
+            as_machine(each, "machines")
+        except InputError as error:
+            named = "" if isinstance(each, Machine) else os.fspath(each)
+            problems += [one for one in error.problems if (one.file, one.line) == (named, 0) and one.code in _NOT_THERE]
+    if problems:
+        raise InputError(problems)
+
+
+def _toolpaths(
+    files: Iterable[ToolpathLike] | ToolpathLike,
+    machine: MachineLike | None,
+    subprograms: Sequence[FilePath],
+    zero: str | Iterable[float] | None,
+    tool_length: str | float | None,
+    observer: Observer,
+) -> list[Toolpath]:
+    if machine is not None:
+        given = [files] if isinstance(files, str | os.PathLike) else list(files) if isinstance(files, Iterable) else []
+        if len(given) != 1 or not isinstance(given[0], str | os.PathLike):
+            cure = "give one, or leave machine out for CL files"
+            raise InputError(argument_problem("files", "machine is for one NC program", cure, code="ARG130"))
+        converted = convert(
+            given[0],
+            machine=machine,
+            to_cl=True,
+            subprograms=subprograms,
+            zero=zero,
+            tool_length=tool_length,
+            observer=observer,
+        )
+        return [converted.toolpath]
+    if subprograms or zero is not None:
+        name = "subprograms" if subprograms else "zero"
+        cure = "name its machine with argument machine=NAME, or leave it out"
+        raise InputError(argument_problem(name, "is for an NC program", cure, code="ARG130"))
+    toolpaths = as_toolpaths(files, None, False, observer)
+    if not any(len(operation.moves) for path in toolpaths for operation in path.operations):
+        raise InputError(
+            argument_problem("files", "there is no motion in them", "give CL files that cut", code="ARG130")
+        )
+    for toolpath in toolpaths:
+        observer.problems(toolpath.remarks)
+    return toolpaths
+
+
+def _stated_length(toolpaths: Sequence[Toolpath]) -> float | None:
+    """The greatest length of a tool in the spindle, mm; None if one that moves has none."""
+    lengths = [each.tool.set_length for path in toolpaths for each in path.operations if len(each.moves)]
+    return max(lengths) if lengths and min(lengths) > 0.0 else None
+
+
+def _fit(
+    asked: MachineLike,
+    toolpaths: Sequence[Toolpath],
+    tool_length: str | float | None,
+    turns: float | Sequence[float] | None,
+) -> MachineFit:
+    """What a machine makes of it; whatever is wrong with the machine is its reason."""
+    key = asked.key if isinstance(asked, Machine) else os.fspath(asked)
+    try:
+        machine = set_up_machine(as_machine(asked, "machines"), None, tool_length)
+        if not np.isfinite(machine.limits[list(machine.linear)]).any():
+            return _without_limits(machine, toolpaths)
+        found = place(toolpaths, machine=machine, turns=turns)
+    except TrunnionError as error:
+        if any(problem.file in _OF_ALL and isinstance(problem.file, ArgumentName) for problem in error.problems):
+            raise
+        return MachineFit(key, FitStatus.NOT, _reasons(error))
+    if not found.fits:
+        return _beyond(asked, machine, found)
+    margins = tuple(AxisMargin(each.axis, "mm", each.margin_mm) for each in found.best.axes) if found.best else ()
+    # The placement and the program are let go: of a long path they are large, and there are many machines.
+    place_of = found.zero_mm, found.turn_deg
+    try:
+        posted = post_placed(found, machine=machine)
+    except TrunnionError as error:
+        return MachineFit(machine.key, FitStatus.NOT, _reasons(error), None, margins, None, *place_of)
+    reasons = _open_reasons(machine)
+    status = FitStatus.OPEN if reasons else FitStatus.FITS
+    margins += _rotary_margins(machine, posted)
+    return MachineFit(machine.key, status, reasons, _seconds(posted), margins, None, *place_of)
+
+
+def _without_limits(machine: Machine, toolpaths: Sequence[Toolpath]) -> MachineFit:
+    """On a machine whose slides have no limits only rotary axes and the control can be judged."""
+    try:
+        posted = post(toolpaths, machine=machine)
+    except TrunnionError as error:
+        return MachineFit(machine.key, FitStatus.NOT, _reasons(error))
+    margins = _rotary_margins(machine, posted)
+    return MachineFit(machine.key, FitStatus.OPEN, _open_reasons(machine), _seconds(posted), margins)
+
+
+def _open_reasons(machine: Machine) -> tuple[str, ...]:
+    names = [machine.names[k] for k in machine.linear if not machine.axes[k].has_limits]
+    limits = (f"no limits of {' and '.join(names)} are stated, so only the other axes are judged",) if names else ()
+    return limits if len(names) == len(machine.linear) else (*limits, *_length_reasons(machine))
+
+
+def _length_reasons(machine: Machine) -> tuple[str, ...]:
+    return tuple(f"{problem.what}; give its length" for problem in unknown_length(machine))
+
+
+def _beyond(asked: MachineLike, machine: Machine, found: Placement) -> MachineFit:
+    """A machine whose axes do not reach it at any place."""
+    tried = _turns_tried(found)
+    if found.best is None:
+        obstacles = tuple(dict.fromkeys(turn.obstacle for turn in found.turns if turn.obstacle))
+        return MachineFit(machine.key, FitStatus.NOT, (*obstacles[:1], tried))
+    beyond = [each for each in found.best.axes if each.margin_mm < 0.0]
+    reasons = (*map(_travel_reason, beyond), tried, *_length_reasons(machine))
+    missing = -found.best.margin_mm
+    too_small = any(_needed(each) > _travel(each) for each in beyond)
+    if not too_small and (assumed := _assumed_places(asked, machine)):
+        reasons = (f"{assumed}: with the places of the machine it may fit", *reasons)
+        return MachineFit(machine.key, FitStatus.OPEN, reasons, missing=missing)
+    margins = tuple(AxisMargin(each.axis, "mm", each.margin_mm) for each in found.best.axes)
+    return MachineFit(machine.key, FitStatus.NOT, reasons, None, margins, missing, found.zero_mm, found.turn_deg)
+
+
+def _assumed_places(asked: MachineLike, machine: Machine) -> str:
+    """Why it is not known where the axes of a machine lie; empty if its definition states it."""
+    if isinstance(asked, Machine):
+        return assumed_places(machine, None)
+    return assumed_places(machine, load_table(os.fspath(asked), machine_library(), kind="machine"))
+
+
+def _turns_tried(found: Placement) -> str:
+    """At which turns of the part it was tried, with the cure."""
+    turns = [turn.turn_deg for turn in found.turns]
+    named = f"{turns[0]:g} degrees" if len(turns) == 1 else f"{len(turns)} angles from {min(turns):g} to {max(turns):g}"
+    return f"the part was tried turned about Z by {named}: give other turns, or tilt it in its set-up"
+
+
+def _needed(use: AxisUse) -> float:
+    return use.greatest_mm - use.least_mm
+
+
+def _travel(use: AxisUse) -> float:
+    return use.high.limit_mm - use.low.limit_mm
+
+
+def _travel_reason(use: AxisUse) -> str:
+    """Why the travel of a slide is too small, with the lines."""
+    travel, needed = _travel(use), _needed(use)
+    if needed > travel:
+        return (
+            f"the travel of {use.axis}, {travel:g} mm, is {needed - travel:.3f} mm too small for what it goes from"
+            f" {use.low.file}:{use.low.line} to {use.high.file}:{use.high.line}"
+        )
+    end = use.low if use.low.limit_mm - use.least_mm > use.greatest_mm - use.high.limit_mm else use.high
+    return (
+        f"{use.axis} goes {-use.margin_mm:.3f} mm beyond its limit {end.limit_mm:g} at {end.file}:{end.line},"
+        " even where the part sits best"
+    )
+
+
+def _rotary_margins(machine: Machine, posted: PostResult) -> tuple[AxisMargin, ...]:
+    run = posted.run
+    if run is None or not (run.kind != Kind.RAPID).any():
+        return ()
+    margins = []
+    for column in machine.rotary:
+        axis, values = machine.axes[column], run.joints[run.kind != Kind.RAPID, column]
+        room = math.inf if axis.endless else min(float(values.min()) - axis.low, axis.high - float(values.max()))
+        margins.append(AxisMargin(axis.name, "deg", room))
+    return tuple(margins)
+
+
+def _seconds(posted: PostResult) -> float | None:
+    """Time of the proven program; None where nothing is known of it."""
+    if posted.verification is None:
+        return None
+    seconds, known = durations(posted.verification)
+    return float(seconds.sum()) if known.any() else None
+
+
+def _reasons(error: TrunnionError) -> tuple[str, ...]:
+    """What was wrong, in sentences; errors before warnings, and not what only sums them up."""
+    errors = [each for each in error.problems if each.severity is Severity.ERROR and each.code != "CTL940"]
+    return tuple(str(each) for each in (errors or list(error.problems))[:_MOST])

@@ -1,0 +1,186 @@
+"""Where the tool goes over a program when a number of the machine's geometry is not what its definition says."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from trunnion.capability.sensitivity import Sensitivity, program_sensitivity
+from trunnion.capability.tip_errors import joints_at_zero
+from trunnion.errors import InputError, Problem, Severity
+from trunnion.jobs.inputs.arguments import wrong_argument
+from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run, read_toolpaths
+from trunnion.jobs.inputs.settings import set_up_machine
+from trunnion.jobs.observer import SILENT
+from trunnion.machines import Machine
+from trunnion.model.run import Run
+from trunnion.wording import counted
+
+#: How far numbers are off unless it is said, mm and seconds of arc.
+DEFAULT_LENGTH: Final = 0.01
+DEFAULT_ANGLE: Final = 5.0
+
+#: The most that they may be off: derivatives tell small errors only.
+_MOST: Final = {"length": 10.0, "angle": 3600.0}
+
+
+def sensitivity(
+    nc: FilePath | Run,
+    *,
+    machine: MachineLike,
+    subprograms: Sequence[FilePath] = (),
+    zero: str | Sequence[float] | None = None,
+    tool_length: str | float | None = None,
+    length: float = DEFAULT_LENGTH,
+    angle: float = DEFAULT_ANGLE,
+    zero_at: str | Mapping[str, float] | None = "home",
+) -> Sensitivity:
+    """Tell how far the tip is off over a program for each geometry number of the machine that is not true.
+
+    Parameters
+    ----------
+    nc
+        The program: a path, or its run (``trunnion.read_program``), which keeps the machine that it was read for.
+    machine
+        The machine that runs it: a name, a path or a ``Machine``.
+    subprograms
+        Files of the subprograms that it calls. No others are opened.
+    zero : (3,) float, mm
+        Workpiece zero on the machine. The errors of directions, and on tables those of points, depend on it.
+    tool_length
+        From the gauge point of the spindle to the tip, mm.
+    length
+        How far points, lengths and zeros are off, mm.
+    angle
+        How far directions and displayed angles are off, seconds of arc.
+    zero_at
+        Where the rotary axes stood when the workpiece zero was set by the tool or a probe: ``home``, or their values in
+        degrees, such as ``"C=0,B=30"`` or a mapping. What the error is there is then in the zero, and only the rest of
+        it is at the tip. ``none`` or None: nothing was set.
+
+    Returns
+    -------
+    Sensitivity
+        Each number with its largest error over the program and the place of it, the worst first.
+
+    Raises
+    ------
+    InputError
+        When a file or an argument cannot be used, or the program has no motion at feed.
+
+    Notes
+    -----
+    The control works out axis values with the numbers of the definition, and the iron has others: the tip is off by the
+    derivative of the forward map with respect to the number, times its error. Motions are judged at their ends, and
+    within arcs and turns at least every 5 degrees.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> file = "tests/golden/yl569/3_blade_finish.expected.mpf"
+    >>> found = trunnion.sensitivity(file, machine="yl569", zero=(0, 0, 100), tool_length=120)
+    >>> found.numbers[0].number.name
+    'gauge point X'
+    """
+    _check_amount("length", length)
+    _check_amount("angle", angle)
+    run = as_run(nc, set_up_machine(as_machine(machine), zero, tool_length), subprograms)
+    found = program_sensitivity(run, _zero_pose(run.machine, zero_at), length, angle, tuple(_remarks(run)))
+    if not found.motions:
+        raise InputError(_without_cuts(run))
+    return found
+
+
+def _without_cuts(run: Run) -> Problem:
+    """Why there is nothing to judge: no cut, or a CL file in place of a program."""
+    name = run.files[0] if run.files else "nc"
+    if run.errors and _is_cl_file(name):
+        return Problem(name, 0, "is a CL file, and no NC program", "post it, and give the program", code="RCH115")
+    return Problem(name, 0, "has no motion at feed", "give a program that cuts", code="RCH110")
+
+
+def _is_cl_file(name: str) -> bool:
+    try:
+        found = read_toolpaths(name, None, False, SILENT)
+    except InputError:
+        return False
+    return any(len(operation.moves) for toolpath in found for operation in toolpath.operations)
+
+
+def _check_amount(name: str, value: object) -> None:
+    """Refuse how far numbers are off unless it is a small amount."""
+    if isinstance(value, int | float) and not isinstance(value, bool) and 0.0 < value <= _MOST[name]:
+        return
+    raise wrong_argument(name, value, f"give a number above 0, and at most {_MOST[name]:g}")
+
+
+def _remarks(run: Run) -> list[Problem]:
+    """What was assumed."""
+    machine, file = run.machine, run.files[0] if run.files else "nc"
+    found = []
+    if run.errors:
+        what = f"{counted(len(run.errors), 'place')} not understood, so motions may be wrong"
+        found.append(Problem(file, run.errors[0].line, what, "verify the program first", code="RCH120"))
+    if machine.workpiece_zero is None:
+        what = "the workpiece zero is not known and counts as the zero of the machine"
+        found.append(
+            Problem(file, 0, what, "give argument zero=X,Y,Z: errors of directions depend on it", code="RCH130")
+        )
+    if machine.tool_length is None:
+        what = "the tool length is not known and counts as 0"
+        found.append(
+            Problem(
+                file, 0, what, "give argument tool_length=MM: the longer the tool, the larger its errors", code="RCH140"
+            )
+        )
+    return [replace(each, severity=Severity.WARNING) for each in found]
+
+
+def _zero_pose(machine: Machine, zero_at: str | Mapping[str, float] | None) -> dict[str, float] | None:
+    """Where the rotary axes stood when the zero was set, degrees by names; None: nothing was set.
+
+    Raises
+    ------
+    InputError
+        If it names something else than rotary axes, or no angles, or the slides cannot reach the zero there.
+    """
+    pose = _stated_pose(machine, zero_at)
+    if pose is not None and np.isnan(joints_at_zero(machine, pose)).any():
+        text = ",".join(f"{name}={value:g}" for name, value in pose.items())
+        raise wrong_argument("zero_at", text, "give another pose: the slides cannot reach the zero in this one")
+    return pose
+
+
+def _stated_pose(machine: Machine, zero_at: str | Mapping[str, float] | None) -> dict[str, float] | None:
+    names = [machine.names[k] for k in machine.rotary]
+    home = {name: machine.axis(name).home for name in names}
+    if zero_at is None or zero_at == "none":
+        return None
+    if zero_at == "home":
+        return home
+    cure = f"give home, none, or angles such as {','.join(f'{name}=0' for name in names)}"
+    if isinstance(zero_at, str):
+        parts = [part.partition("=") for part in zero_at.split(",")]
+        given: Mapping[str, object] = {name.strip(): value for name, _, value in parts}
+    elif isinstance(zero_at, Mapping):
+        given = zero_at
+    else:
+        raise wrong_argument("zero_at", zero_at, cure)
+    for name in given:
+        if name not in names:
+            raise wrong_argument(
+                "zero_at", str(zero_at), f"{name or 'no name'} is no rotary axis of the machine; {cure}"
+            )
+    try:
+        pose = home | {name: float(str(value)) for name, value in given.items()}
+    except ValueError:
+        raise wrong_argument("zero_at", str(zero_at), cure) from None
+    if not all(abs(value) < 1e5 for value in pose.values()):  # NaN is none either
+        raise wrong_argument("zero_at", str(zero_at), cure)
+    for name, value in pose.items():
+        axis = machine.axis(name)
+        if not axis.low <= value <= axis.high:
+            limits = f"{name} goes from {axis.low:g} to {axis.high:g} degrees"
+            raise wrong_argument("zero_at", str(zero_at), f"{limits}; give an angle within them")
+    return pose

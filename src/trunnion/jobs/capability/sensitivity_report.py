@@ -1,0 +1,186 @@
+"""A sensitivity as a page and as data.
+
+In:     ``Sensitivity``.
+Out:    ``SensitivityContent`` with its curves, or plain data.
+"""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from trunnion.arrays import Floats, Ints, Lines
+from trunnion.capability.sensitivity import ErrorExtent, NumberSensitivity, Sensitivity, errors_over
+from trunnion.files import OutputPlace, atomic_file, check_outputs
+from trunnion.jobs.inputs.reading import FilePath
+from trunnion.jobs.targets import check_output_name
+from trunnion.model.run import Run
+from trunnion.reporting.plot_series import Curve, Plot, PlotSeries, SingleFloats
+from trunnion.reporting.sensitivity_page import ErrorCells, NumberRow, SensitivityContent, render_sensitivity_page
+from trunnion.reporting.text import clean
+
+#: Numbers whose errors are drawn: further ones matter less than all of these.
+_DRAWN: Final = 12
+
+_DECIMALS: Final = 9
+
+#: What is printed as zero, mm.
+_NONE: Final = 5e-6
+
+
+def check_sensitivity_report(file: FilePath, inputs: Iterable[FilePath]) -> OutputPlace:
+    """The place of a report; raises ``InputError`` if it cannot be written, or is one of the files that are read."""
+    place = check_output_name("report", file, (".html",), "this report is a page")
+    check_outputs([file], inputs)
+    return place
+
+
+def write_sensitivity_report(found: Sensitivity, file: FilePath, inputs: Iterable[FilePath] = ()) -> None:
+    """Write a sensitivity as a page that works offline, with the errors of the worst numbers over the program.
+
+    Raises
+    ------
+    InputError
+        When the name does not end in ``.html``, the file cannot be written, or it is one of ``inputs``.
+    """
+    read = list(inputs)
+    with atomic_file(check_sensitivity_report(file, read), inputs=read) as sink:
+        sink.writelines(render_sensitivity_page(_content(found), _series(found)))
+
+
+def sensitivity_data(found: Sensitivity) -> dict[str, object]:
+    """A sensitivity as data."""
+    return {
+        "schema": 1,
+        "program": found.run.files[0],
+        "machine": found.run.machine.key,
+        "motions": found.motions,
+        "zero_at_deg": None if found.zero_at is None else dict(found.zero_at),
+        "numbers": [_number_data(each) for each in found.numbers],
+        "without_effect": [number.name for number in found.idle],
+        "remarks": [
+            {"file": r.file, "line": r.line, "what": r.what, "cure": r.cure, "code": r.code} for r in found.remarks
+        ],
+    }
+
+
+def amount_text(each: NumberSensitivity) -> str:
+    """How far a number is off, in words."""
+    return f"{each.amount:g}″" if each.number.is_angle else f"{each.amount:g} mm"
+
+
+def place_text(extent: ErrorExtent, run: Run) -> str:
+    """The block of the largest error as programmers call it; empty where there is none."""
+    place = extent.place
+    if extent.largest < _NONE:
+        return ""
+    block = f"N{place.block} (line {place.line})" if place.block >= 0 else f"line {place.line}"
+    return block if place.file == run.files[0] else f"{Path(place.file).name} {block}"
+
+
+def zero_text(pose: Mapping[str, float] | None) -> str:
+    """Where the zero was set, in words."""
+    return "not set" if pose is None else "at " + " ".join(f"{name}{value:g}" for name, value in pose.items())
+
+
+def _number_data(each: NumberSensitivity) -> dict[str, object]:
+    return {
+        "number": each.number.name,
+        "axis": each.number.axis,
+        "component": each.number.component,
+        "key": each.number.key,
+        "off_by": each.amount,
+        "unit": "arcsec" if each.number.is_angle else "mm",
+        "tip": _extent_data(each.tip),
+        "with_zero_set": None if each.zeroed is None else _extent_data(each.zeroed),
+        "axis_deg": round(each.axis_deg, _DECIMALS),
+    }
+
+
+def _extent_data(extent: ErrorExtent) -> dict[str, object]:
+    place = extent.place
+    return {
+        "largest_mm": round(extent.largest, _DECIMALS),
+        "rms_mm": round(extent.rms, _DECIMALS),
+        "file": place.file,
+        "line": place.line,
+        "block": None if place.block < 0 else place.block,
+    }
+
+
+def _content(found: Sensitivity) -> SensitivityContent:
+    run, machine = found.run, found.run.machine
+    zero = machine.workpiece_zero
+    length = machine.tool_length
+    facts = [
+        ("Machine", clean(machine.name)),
+        ("Motions at feed", str(found.motions)),
+        ("Zero set with rotary axes", clean(zero_text(found.zero_at))),
+        ("Workpiece zero", "not known" if zero is None else " ".join(f"{part:g}" for part in zero) + " mm"),
+        ("Tool length", "not known" if length is None else f"{length:g} mm"),
+    ]
+    rows = [
+        NumberRow(
+            clean(each.number.name),
+            amount_text(each),
+            _cells(each.tip, run),
+            None if each.zeroed is None else _cells(each.zeroed, run),
+            each.axis_deg,
+        )
+        for each in found.numbers
+    ]
+    idle = ", ".join(number.name for number in found.idle)
+    notes = [clean(f"{remark.what}; {remark.cure}") for remark in found.remarks]
+    notes += [clean(f"Without effect, so left out: {idle}.")] if idle else []
+    return SensitivityContent(clean(Path(run.files[0]).name), facts, rows, notes)
+
+
+def _cells(extent: ErrorExtent, run: Run) -> ErrorCells:
+    return ErrorCells(extent.largest, extent.rms, clean(place_text(extent, run)))
+
+
+def _series(found: Sensitivity) -> PlotSeries:
+    """The errors of the worst numbers, one point a motion at feed and one before the first."""
+    drawn = found.numbers[:_DRAWN]
+    rows, errors = errors_over(found, [each.number for each in drawn])
+    run = found.run
+    lines = {
+        "block": _whole(run.line, rows, 0),
+        "number": _whole(run.block_number, rows, -1),
+        "cl": np.zeros(len(rows) + 1, np.int32),
+    }
+    if np.any(run.file):
+        lines["file"] = _whole(run.file, rows, 0)
+    plots = [
+        Plot(clean(each.number.name), "µm", (Curve(f"error{k}", amount_text(each)),)) for k, each in enumerate(drawn)
+    ]
+    left = "" if found.zero_at is None else " with the zero set"
+    return PlotSeries(
+        seconds=np.concatenate(([0.0], np.ones(len(rows)))).astype(np.float32),
+        values={f"error{k}": _micrometres(errors[:, k]) for k in range(len(drawn))},
+        lines=lines,
+        plots=tuple(plots),
+        files=tuple(clean(Path(file).name) for file in run.files),
+        tool_changes=tuple(
+            (int(np.searchsorted(rows, event.before_row)), clean(str(event.value or "")))
+            for event in run.events
+            if event.kind == "tool_change"
+        ),
+        timed=False,
+        title=f"Tip error{left} over the motions at feed, of the worst {len(drawn)} numbers",
+    )
+
+
+def _micrometres(errors: Floats) -> SingleFloats:
+    """A column in micrometres with a point before it, finite throughout."""
+    column = np.concatenate((errors[:1], errors)) * 1e3
+    column[~np.isfinite(column)] = 0.0
+    return column.astype(np.float32)
+
+
+def _whole(column: NDArray[np.integer], rows: Ints, before: int) -> Lines:
+    """A column of rows as int32 with a point before it; numbers that do not fit become -1."""
+    chosen = np.asarray(column)[rows].astype(np.int64)
+    return np.concatenate(([before], np.where(np.abs(chosen) < 2**31, chosen, -1))).astype(np.int32)

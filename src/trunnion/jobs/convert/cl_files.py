@@ -1,0 +1,86 @@
+"""Conversion of a toolpath into a CL file, which is read back and compared before it appears."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import BinaryIO, Final
+
+from trunnion.cl import DIALECTS
+from trunnion.cl.read_back import read_back_problems
+from trunnion.cl.writers import WRITERS
+from trunnion.errors import InputError, Problem, RefusedError, argument_problem, merge_repeated
+from trunnion.jobs.inputs.reading import read_cl
+from trunnion.jobs.inputs.settings import Settings, as_texts
+from trunnion.jobs.observer import Observer
+from trunnion.jobs.targets import Target
+from trunnion.model.clamping_notices import clamped_notices
+from trunnion.model.toolpath import Toolpath
+
+#: Settings of a conversion from CL file to CL file, and what they may be.
+_SETTINGS: Final[Mapping[str, tuple[str, ...]]] = {
+    "cl_units": ("mm", "inch"),
+    "dialect": tuple(DIALECTS),
+    "units": ("mm", "inch"),
+}
+
+_INCH: Final = 25.4
+
+
+def write_and_prove(
+    toolpath: Toolpath, target: Target, dialect: str, *, inch: bool = False, comments: Sequence[str] = ()
+) -> tuple[Problem, ...]:
+    """Write a CL file and read it back; return what the dialect cannot say.
+
+    Raises
+    ------
+    InputError
+        If the dialect has no words for a motion, a tool or a cycle.
+    RefusedError
+        If what was written says anything else than the toolpath.
+    """
+    writer = WRITERS[dialect](toolpath, inch=inch)
+    writer.write(target.files.main, comments)
+    target.files.flush()
+    if problems := read_back_problems(writer.toolpath, target.files.path, dialect):
+        raise RefusedError(problems)
+    return merge_repeated(writer.remarks)
+
+
+def convert_cl(
+    path: Path | BinaryIO, target: Target, dialect: str, settings: Settings | None, observer: Observer
+) -> tuple[Toolpath, tuple[Problem, ...]]:
+    """Read a CL file or stream of any dialect, and write it in another one; return the toolpath and all warnings."""
+    texts = _checked(settings)
+    try:
+        toolpath = read_cl(path, units=texts.get("cl_units"), dialect=texts.get("dialect"), observer=observer)
+    except InputError as error:
+        if "not a CL file" not in error.problems[0].what:
+            raise
+        hint = argument_problem(
+            "machine", "is missing, so that the file is read as a CL file", "give it for an NC program", code="CNV110"
+        )
+        raise InputError((*error.problems, hint)) from None
+    observer.problems(toolpath.remarks)
+    inch = texts["units"] == "inch" if "units" in texts else toolpath.unit == _INCH
+    clamped = () if toolpath.clamping is None else tuple(clamped_notices(toolpath.clamping))
+    remarks = write_and_prove(toolpath, target, dialect, inch=inch, comments=clamped)
+    observer.problems(remarks)
+    return toolpath, (*toolpath.remarks, *remarks)
+
+
+def _checked(settings: Settings | None) -> dict[str, str]:
+    """The settings as texts."""
+    texts = as_texts(settings)
+    problems = [
+        argument_problem(
+            "settings", f"{key} has no meaning between two CL files", f"leave it out, or write {allowed}", code="CNV111"
+        )
+        for allowed in [" or ".join(_SETTINGS)]
+        for key in texts.keys() - _SETTINGS.keys()
+    ]
+    for key, choices in _SETTINGS.items():
+        if texts.get(key, choices[0]) not in choices:
+            cure = f"write {' or '.join(f'{key}={choice}' for choice in choices)}"
+            problems.append(argument_problem("settings", f"{key} is {texts[key]!r}", cure, code="CNV111"))
+    if problems:
+        raise InputError(problems)
+    return texts

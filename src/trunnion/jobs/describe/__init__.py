@@ -1,0 +1,1 @@
+"""Machines, controls, CL files and codes of messages in words."""

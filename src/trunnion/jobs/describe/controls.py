@@ -1,0 +1,314 @@
+"""What the definition of a control means, as records: what it can do, its words, its texts and its settings."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from trunnion.controls import Control, load_control, shipped_controls
+from trunnion.controls.definition_files import is_control_file, load_control_table
+from trunnion.controls.setting_rules import SettingKind
+from trunnion.controls.vocabulary import (
+    PROGRAM_MEANINGS,
+    SUBPROGRAM_TEMPLATES,
+    SURFACE_NORMAL_WORDS,
+    TEMPLATE_ORDER,
+    TOOL_VECTOR_WORDS,
+    UNKNOWN_FEED,
+)
+from trunnion.errors import InputError
+from trunnion.families import FAMILIES, load_reader
+from trunnion.jobs.inputs.arguments import check_path
+from trunnion.jobs.inputs.reading import FilePath, load_machine
+from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
+from trunnion.model.motion import MachiningMode
+from trunnion.model.toolpath import Sense
+from trunnion.planning.holes.cycles import Cycle, HoleCycleError, HoleMethod, SpindleState, UnsupportedCycleError
+
+#: What F counts without TCP while rotary axes turn.
+_FEEDS: Final = {
+    "inverse_time": "inverse time (G93)",
+    "all_axes": "the path of all axes, a degree as a millimetre",
+    "slides": "the path of the slides",
+}
+
+
+#: A value that no setting with a form of its own can have: what is said of it tells the form.
+_IMPOSSIBLE: Final = "?"
+
+
+@dataclass(frozen=True, slots=True)
+class SettingDescription:
+    """A setting, for people.
+
+    name           as it is written
+    meaning        what it changes, in sentences; empty if its definition does not say it
+    default        what holds where it is not given
+    allowed        what it may be, in words
+    by_operation   operations of one program can have different values
+    """
+
+    name: str
+    meaning: str
+    default: str
+    allowed: str
+    by_operation: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class WordDescription:
+    """A word of motion blocks.
+
+    name      its key in the definition
+    letter    what is printed before the number; for rotary axes, what follows their name
+    decimals  most digits after the point in five-axis and three-axis operations; None: it has no number
+    modal     left out of a block while it would print the same
+    """
+
+    name: str
+    letter: str
+    decimals: tuple[int, int] | None
+    modal: bool
+
+
+@dataclass(frozen=True, slots=True)
+class TemplateDescription:
+    """A text of a program: its name and its lines, with ``{field}`` where a value is printed."""
+
+    name: str
+    lines: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ControlDescription:
+    """What a control's definition means.
+
+    key           name of the shipped definition, or the file
+    name          of the control
+    family        whose writer and reader it has
+    description   a sentence about it; may be empty
+    extension     of its program files
+    abilities     what it can do, and what it cannot, in sentences
+    words         of motion blocks, in their order
+    texts         templates in the order in which a program has them
+    settings      its own
+    run_settings  those that every control has
+    """
+
+    key: str
+    name: str
+    family: str
+    description: str
+    extension: str
+    abilities: tuple[str, ...]
+    words: tuple[WordDescription, ...]
+    texts: tuple[TemplateDescription, ...]
+    settings: tuple[SettingDescription, ...]
+    run_settings: tuple[SettingDescription, ...]
+
+
+def describe_control(control: FilePath) -> ControlDescription:
+    """Describe what the definition of a control means.
+
+    Parameters
+    ----------
+    control
+        The name of a shipped control, such as ``"sinumerik_840d"``; that of a shipped machine, whose control is meant;
+        or the path of a ``.toml`` file that defines a control or a machine.
+
+    Returns
+    -------
+    ControlDescription
+        What it can do, its words, its texts, and every setting with default, allowed values and meaning.
+
+    Raises
+    ------
+    InputError
+        With every mistake of the definition, each at its file and line.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> control = trunnion.describe_control("sinumerik_840d")
+    >>> next(setting.default for setting in control.settings if setting.name == "work_offset")
+    'G54'
+    """
+    name = str(check_path("control", control))
+    return _describe(name, load_any_control(name))
+
+
+def describe_controls() -> tuple[ControlDescription, ...]:
+    """Describe every shipped control.
+
+    Returns
+    -------
+    tuple of ControlDescription
+        In the order of their names.
+
+    Raises
+    ------
+    InputError
+        If a shipped definition has been damaged.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> [control.key for control in trunnion.describe_controls()][:2]
+    ['fanuc_31i', 'fanuc_31i_basic']
+    """
+    return tuple(describe_control(key) for key in shipped_controls())
+
+
+def main_texts(control: Control) -> tuple[TemplateDescription, ...]:
+    """Return the texts that a program with one tool has in any machining mode, by the control's own settings."""
+    suffixes = {control.template_suffix(mode, {}) for mode in MachiningMode} - {""}
+    starts = ("approach", "plane_on", "next_plane", "operation_end")
+    wanted = {f"{start}_{suffix}" for start in starts for suffix in suffixes}
+    wanted |= {"program_start", "operation_start", "tool_change", "spindle_on", "program_end"}
+    names = sorted((name for name in control.templates if name in wanted), key=_template_rank)
+    return tuple(TemplateDescription(name, control.templates[name].lines) for name in names)
+
+
+def load_any_control(name: str) -> Control:
+    """Return the control of a shipped control or machine, or of a file that defines one of them.
+
+    Raises
+    ------
+    InputError
+        With every mistake of the definition.
+    """
+    is_file = name.endswith(".toml")
+    if not is_file and name not in shipped_controls():
+        try:
+            return load_control(load_machine(name).control)
+        except InputError:
+            return load_control(load_control_table(name))  # names the controls that there are
+    if is_file and not is_control_file(Path(name)):
+        return load_control(load_machine(name).control)
+    return load_control(load_control_table(name))
+
+
+def _describe(key: str, control: Control) -> ControlDescription:
+    words = tuple(
+        WordDescription(
+            word.name,
+            word.letter + word.closing,
+            None if word.bare else _decimals(control, word.format),
+            word.modal,
+        )
+        for word in control.words
+    )
+    names = sorted(control.templates, key=_template_rank)
+    return ControlDescription(
+        key=key,
+        name=control.name,
+        family=control.family_name,
+        description=control.description,
+        extension=control.extension,
+        abilities=tuple(_abilities(control)),
+        words=words,
+        texts=tuple(TemplateDescription(name, control.templates[name].lines) for name in names),
+        settings=describe_settings(control),
+        run_settings=tuple(setting for setting in run_settings() if setting.name not in control.settings),
+    )
+
+
+def describe_settings(control: Control) -> tuple[SettingDescription, ...]:
+    """Return the settings of a control that have an effect."""
+    return tuple(_control_setting(control, name) for name in control.settings if control.has_effect(name))
+
+
+def run_settings() -> tuple[SettingDescription, ...]:
+    """Return the settings that every control has."""
+    return tuple(
+        SettingDescription(key, setting.meaning, setting.default, setting.allowed, key == "mode")
+        for key, setting in RUN_SETTINGS.items()
+    )
+
+
+def _decimals(control: Control, number_format: str) -> tuple[int, int]:
+    pair = control.formats[number_format]
+    return pair.five_axis.decimals, pair.three_axis.decimals
+
+
+def _template_rank(name: str) -> int:
+    return next((rank for rank, start in enumerate(TEMPLATE_ORDER) if name.startswith(start)), len(TEMPLATE_ORDER))
+
+
+def _control_setting(control: Control, name: str) -> SettingDescription:
+    rule = control.setting_rule(name)
+    own_cures = dict(control.family.validate_settings({**control.settings, name: _IMPOSSIBLE}))
+    allowed = own_cures.get(name, rule.cure()).removeprefix("write ")
+    if name == "work_offset" and FAMILIES[control.family_name].reader:
+        allowed = load_reader(control.family_name).work_offsets.form
+    elif rule.kind is SettingKind.TOOL and control.setting_cure(name, "NAME") is None:
+        allowed = "the number of a tool, such as 5, or its name"
+    default = control.settings[name] or _method_default(control, name) or "none"
+    return SettingDescription(
+        name,
+        control.setting_meanings.get(name) or PROGRAM_MEANINGS.get(name, ""),
+        default,
+        allowed,
+        control.differs_by_operation(name),
+    )
+
+
+def _method_default(control: Control, name: str) -> str:
+    rules = control.method_defaults.get(name, ())
+    told = [f"{value} for {part}" if part else f"else {value}" for part, value in rules]
+    return f"by the machining method: {', '.join(told)}" if told else ""
+
+
+def _abilities(control: Control) -> list[str]:
+    """What a control can do with its own settings, and what it cannot, in sentences."""
+    modes = control.modes({})
+    has = {mode: "yes" if mode in modes else "no" for mode in MachiningMode}
+    planes = [
+        name.replace("_", ".") for name in control.family.PLANE_COMMANDS if f"approach_{name}" in control.templates
+    ]
+    feed = _FEEDS.get(control.feed_without_tcp, "")
+    without = f"yes, F is {feed}" if has[MachiningMode.WITHOUT_TCP] == "yes" else "no"
+    if control.feed_without_tcp == UNKNOWN_FEED:
+        without = "no: what F counts there is not known"
+    arcs = control.arcs
+    about = "about Z of the plane only" if arcs.only_about_z else "about X, Y and Z"
+    word_names = {word.name for word in control.words}
+    return [
+        f"three-axis: {has[MachiningMode.THREE_AXIS]}",
+        f"tilted planes: {', '.join(planes) if planes else has[MachiningMode.TILTED]}",
+        f"TCP: {has[MachiningMode.TCP]}",
+        f"five axes without TCP: {without}",
+        f"tool axis as a vector: {_yes(set(TOOL_VECTOR_WORDS) <= word_names)}",
+        f"surface normals: {_yes(set(SURFACE_NORMAL_WORDS) <= word_names)}",
+        f"circles: {about}, by {'radius where that is safe' if arcs.by_radius else 'centre'}; helices: "
+        f"{_yes(arcs.helices)}; several turns in a block: {_yes(arcs.multi_turn)}",
+        *_cycles(control),
+        f"coolant: {', '.join(word for word in control.coolant if word != 'OFF') or 'none'}",
+        f"subprograms: {_yes(all(name in control.templates for name in SUBPROGRAM_TEMPLATES))}",
+    ]
+
+
+def _yes(answer: bool) -> str:
+    return "yes" if answer else "no"
+
+
+def _cycles(control: Control) -> list[str]:
+    """The hole-making cycles that a control has words for, those that become motion, and those that are refused."""
+    outcomes = {method: _outcome(control, method) for method in HoleMethod}
+    kinds = dict.fromkeys(kind for kind, _ in outcomes.values())
+    return [
+        f"{kind}: " + "; ".join(f"CYCLE/{method}{why}" for method, (each, why) in outcomes.items() if each == kind)
+        for kind in kinds
+    ]
+
+
+def _outcome(control: Control, method: HoleMethod) -> tuple[str, str]:
+    """What becomes of a hole with the control's own settings, and why."""
+    hole = Cycle(method, 2.0, 20.0, 10.0, (5.0, 0.0, 0.0), 0.0, False, 1.0, True, 0.0)
+    spindle, formats = SpindleState(1000.0, Sense.CLW), control.number_formats(three_axis=True)
+    try:
+        control.family.cycle_call(hole, 0.0, spindle, control.settings, formats)
+    except UnsupportedCycleError as error:
+        return "no cycle, so that motion makes the hole if it can", f" ({error.what})"
+    except HoleCycleError as error:
+        return "refused without the settings or words that it needs", f" ({error.what}; {error.cure})"
+    return "cycles", ""

@@ -1,0 +1,68 @@
+"""What the definition of a machine means, for a person beside the machine."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from trunnion.controls import load_control
+from trunnion.definitions import load_table
+from trunnion.jobs.describe.assumptions import assumptions
+from trunnion.jobs.describe.controls import TemplateDescription, main_texts
+from trunnion.jobs.inputs.reading import MachineLike, as_machine
+from trunnion.machines import Machine
+from trunnion.machines.jog_table import JogTable, jog_table
+from trunnion.machines.loading import machine_library
+
+
+@dataclass(frozen=True, slots=True)
+class MachineDescription:
+    """What a machine's definition means.
+
+    machine  as the definition has it
+    jogs     where tool and table go when its axes are jogged, and where the tool points
+    control  name of its control
+    texts    those of its control that a program with one tool has, in their order
+    assumed  what its definition leaves open, marks as not measured, or has from another machine, in sentences
+    """
+
+    machine: Machine
+    jogs: JogTable
+    control: str
+    texts: tuple[TemplateDescription, ...]
+    assumed: tuple[str, ...] = ()
+
+
+def describe_machine(machine: MachineLike) -> MachineDescription:
+    """Describe what the definition of a machine means, to be compared with the machine itself.
+
+    Parameters
+    ----------
+    machine
+        The name of a shipped machine, the path of a ``.toml`` file, or a ``Machine``.
+
+    Returns
+    -------
+    MachineDescription
+        For each axis where tool and table go as it is jogged; the tool axis at rotary positions that can be checked by
+        hand; rotation centres, limits and home; the texts of its control; and what is assumed.
+
+    Raises
+    ------
+    InputError
+        With every mistake of the definition, each at its file and line.
+
+    Notes
+    -----
+    Computed apart from what programs are written and read by.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> jogs = trunnion.describe_machine("dmu65").jogs
+    >>> jogs.axes[1].iron
+    'the table turns 10° clockwise seen from +X; its -Y edge goes to +Z, its +Y edge to -Z'
+    """
+    found = as_machine(machine)
+    control = load_control(found.control)
+    table = load_table(machine, machine_library(), kind="machine") if isinstance(machine, str | Path) else None
+    assumed = assumptions(found, table)
+    return MachineDescription(found, jog_table(found), control.name, main_texts(control), assumed)

@@ -1,0 +1,56 @@
+"""The path of CL files in space, as a page."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from trunnion.files import OutputPlace, atomic_file, check_outputs, file_on_disk
+from trunnion.jobs.describe.cl_files import ClDescription
+from trunnion.jobs.inputs.arguments import wrong_argument
+from trunnion.jobs.inputs.reading import FilePath
+from trunnion.jobs.targets import check_output_name
+from trunnion.model.frames import into_frame
+from trunnion.model.toolpath import Frame
+from trunnion.reporting.path_page import render_path_page
+from trunnion.reporting.path_series import collect_paths
+
+
+def check_plot(file: FilePath, inputs: Iterable[FilePath]) -> OutputPlace:
+    """The place of a page; raises ``InputError`` if it cannot be written, or is one of the files that are read."""
+    place = check_output_name("plot", file, (".html",), "the path is drawn on a page")
+    check_outputs([file], inputs)
+    return place
+
+
+def write_plot(description: ClDescription, plot: FilePath) -> None:
+    """Draw the path of CL files in space, by operation, on a page that works offline.
+
+    Parameters
+    ----------
+    description
+        Of ``trunnion.describe_cl``.
+    plot
+        The page, ``.html``. An older file is replaced when the new one is complete.
+
+    Raises
+    ------
+    InputError
+        When the name ends otherwise, the file cannot be written, or it is one of the CL files.
+
+    Notes
+    -----
+    All operations are drawn in the coordinate system of the first one. Files whose coordinate systems cannot be put
+    together are drawn as their numbers say.
+    """
+    if not isinstance(description, ClDescription):
+        raise wrong_argument("description", description, "give the result of trunnion.describe_cl")
+    names = [file.file for file in description.files]
+    inputs = list(map(file_on_disk, names))
+    place = check_plot(plot, inputs)
+    operations = [operation for toolpath in description.toolpaths for operation in toolpath.operations]
+    first = next((operation.frame for operation in operations if len(operation.moves)), Frame())
+    paths, tolerance = collect_paths(
+        (f"{about.kind}; {about.points} points, {about.arcs} arcs, {about.holes} holes", into_frame(operation, first))
+        for about, operation in zip(description.operations, operations, strict=True)
+    )
+    with atomic_file(place, inputs=inputs) as sink:
+        sink.writelines(render_path_page(", ".join(Path(file).name for file in names), paths, tolerance))

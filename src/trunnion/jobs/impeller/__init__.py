@@ -1,0 +1,1 @@
+"""Impellers and curves from measured points."""

@@ -1,0 +1,75 @@
+"""Types and values of arguments: what cannot be used is an ``InputError`` that names the argument, before any work."""
+
+import os
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import BinaryIO, TypeGuard, TypeVar
+
+from trunnion.errors import InputError, argument_problem
+from trunnion.jobs.observer import Observer
+
+_Choice = TypeVar("_Choice", bound=str)
+
+
+def wrong_argument(name: str, value: object, cure: str) -> InputError:
+    """The error for an argument of a type or value that cannot be used."""
+    shown = repr(value) if isinstance(value, str | int | float | bytes | tuple | None) else f"a {type(value).__name__}"
+    return InputError(argument_problem(name, f"is {shown}", cure, code="ARG140"))
+
+
+def check_path(name: str, value: object) -> Path:
+    """A path; errors name the argument."""
+    if isinstance(value, str | os.PathLike) and isinstance(text := os.fspath(value), str) and text and "\0" not in text:
+        return Path(text)
+    raise wrong_argument(name, value, "give the path of a file")
+
+
+def is_stream(value: object) -> TypeGuard[BinaryIO]:
+    """Whether something can be read as a stream."""
+    return hasattr(value, "read") and not isinstance(value, str | os.PathLike)
+
+
+def check_paths(name: str, values: object) -> list[Path]:
+    """Paths in a list; a text alone is none, for its letters would be taken for paths."""
+    if isinstance(values, str | bytes | os.PathLike) or not isinstance(values, Iterable):
+        raise wrong_argument(name, values, "give a list of paths")
+    return [check_path(name, value) for value in values]
+
+
+def check_choice(name: str, value: object, choices: Sequence[_Choice]) -> _Choice:
+    """One of some words."""
+    for choice in choices:
+        if value == choice:
+            return choice
+    raise wrong_argument(name, value, f"give {' or '.join(map(repr, choices))}")
+
+
+def check_whole(name: str, value: object, least: int) -> int:
+    """A whole number, also as text."""
+    text = str(value) if isinstance(value, str | int) and not isinstance(value, bool) else ""
+    if text.isascii() and text.isdecimal() and int(text) >= least:
+        return int(text)
+    raise wrong_argument(name, value, f"give a whole number of at least {least}")
+
+
+def check_observer(value: object) -> None:
+    """Refuse what is no ``Observer``."""
+    if not isinstance(value, Observer):
+        raise wrong_argument("observer", value, "give a trunnion.Observer, or leave it out")
+
+
+def checked_angles(turn: object, tilt: object) -> tuple[float, float]:
+    """Turn and tilt as arguments, checked, in whole thousandths of a degree; None is 0.
+
+    Raises
+    ------
+    InputError
+        If one is no number from -360 to 360.
+    """
+    found = []
+    for name, value in (("turn", turn), ("tilt", tilt)):
+        value = 0.0 if value is None else value
+        if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= 360.0:
+            raise wrong_argument(name, value, "give degrees, -360 to 360")
+        found.append(round(float(value), 3) + 0.0)
+    return found[0], found[1]

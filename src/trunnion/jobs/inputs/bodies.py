@@ -1,0 +1,93 @@
+"""Bodies that jobs are given: meshes with their names, and tools from texts, libraries and CL files."""
+
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from trunnion.errors import Problem
+from trunnion.jobs.inputs.arguments import check_choice, check_path, check_paths, wrong_argument
+from trunnion.jobs.inputs.reading import FilePath
+from trunnion.model.toolpath import Toolpath
+from trunnion.simulation.meshes import DEVIATION, TriangleMesh, load_mesh
+from trunnion.simulation.tools.choice import ClTool, choose_tools, tools_of_toolpaths
+from trunnion.simulation.tools.library import ToolLibrary, read_tools
+from trunnion.simulation.tools.profile import ToolShape
+from trunnion.simulation.tools.text import parse_tool
+
+MeshLike: TypeAlias = str | Path | TriangleMesh
+
+
+def listed(name: str, values: Any, record: type) -> list[Any]:
+    """One or several texts, paths or records; errors name the argument."""
+    single = (str, os.PathLike, record)
+    if isinstance(values, single):
+        return [values]
+    found = list(values) if isinstance(values, Iterable) else [None]
+    if not all(isinstance(value, single) for value in found):
+        raise wrong_argument(name, values, f"give a text, a path, a {record.__name__}, or a list of them")
+    return found
+
+
+def read_mesh(mesh: MeshLike, name: str, remarks: list[Problem], deviation: float = DEVIATION) -> TriangleMesh:
+    """A mesh as it is given, or of a file, with its name; remarks get what is odd about it."""
+    if isinstance(mesh, TriangleMesh):
+        return mesh.named(name)
+    check_path(name, mesh)
+    return load_mesh(mesh, name=name, closed=True, deviation=deviation, warn=remarks.append)
+
+
+def fixture_names(fixtures: Sequence[MeshLike]) -> list[str]:
+    """What findings call fixtures: by their files, and by their numbers where these are the same or there is none."""
+    files = ["" if isinstance(each, TriangleMesh) else Path(each).name for each in fixtures]
+    alone = [name and files.count(name) == 1 for name in files]
+    return [
+        f"fixture {name}" if is_alone else f"fixture {k} {name}".rstrip()
+        for k, (name, is_alone) in enumerate(zip(files, alone, strict=True), 1)
+    ]
+
+
+def fixture_meshes(fixtures: Any, remarks: list[Problem], deviation: float = DEVIATION) -> tuple[TriangleMesh, ...]:
+    """The meshes of fixtures, with their names."""
+    given: list[MeshLike] = listed("fixtures", fixtures, TriangleMesh)
+    named = zip(given, fixture_names(given), strict=True)
+    return tuple(read_mesh(fixture, name, remarks, deviation) for fixture, name in named)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class KnownTools:
+    """The tools of which something says the form: stated ones, those of libraries, and those of CL files."""
+
+    stated: Sequence[ToolShape]
+    libraries: Sequence[ToolLibrary]
+    of_cl_files: Sequence[ClTool]
+
+    def choose(self, called: Iterable[str]) -> dict[str, ToolShape]:
+        """The body of each tool that a program calls, by the word of the program.
+
+        Raises
+        ------
+        InputError
+            If nothing describes a tool, or nothing settles its form; with all of them.
+        """
+        return choose_tools(called, self.stated, self.libraries, self.of_cl_files)
+
+
+def known_tools(
+    tools: Any, libraries: Sequence[FilePath], unit: str | None, toolpaths: Iterable[Toolpath]
+) -> KnownTools:
+    """Read tools that are stated, and libraries, in ``unit`` where a library states none.
+
+    Raises
+    ------
+    InputError
+        If a text is no tool, or a library cannot be used.
+    """
+    if unit is not None:
+        check_choice("unit", unit, ("mm", "inch"))
+    read = [read_tools(path, unit or "") for path in check_paths("libraries", libraries)]
+    diameters = {number: wide for library in reversed(read) for number, wide in library.diameters.items()}
+    given = listed("tools", tools, ToolShape)
+    stated = [tool if isinstance(tool, ToolShape) else parse_tool(tool, diameters) for tool in given]
+    return KnownTools(stated, read, tools_of_toolpaths(toolpaths))

@@ -1,0 +1,308 @@
+"""Inputs of the public API: CL files, machines and programs, by their names or already read."""
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import fields
+from pathlib import Path
+from typing import BinaryIO, Final, TypeAlias
+
+from trunnion import machines, readers
+from trunnion.cl import DIALECTS, not_one_file, other_system
+from trunnion.cl.watched import read_watched
+from trunnion.controls.definition_files import is_control_file
+from trunnion.controls.loading import control_library
+from trunnion.definitions import resolve_extends
+from trunnion.errors import InputError, Problem
+from trunnion.jobs.inputs.arguments import (
+    check_choice,
+    check_observer,
+    check_path,
+    check_paths,
+    is_stream,
+    wrong_argument,
+)
+from trunnion.jobs.inputs.cl_statements import check_statements
+from trunnion.jobs.observer import SILENT, Observer
+from trunnion.machines import Machine
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Toolpath
+
+#: A path as text or as a ``Path``.
+FilePath: TypeAlias = str | os.PathLike[str]
+
+#: A shipped machine by its name, a definition by its path, or a machine that is already loaded.
+MachineLike: TypeAlias = str | os.PathLike[str] | Machine
+
+#: A CL file by its path, packed or not; a binary stream of one; or a CL file that is already read.
+ToolpathLike: TypeAlias = FilePath | BinaryIO | Toolpath
+
+#: Fields of a ``Machine`` that do not say how it moves: its names, its setup, and its control, which is a table.
+_NO_CONTENT: Final = {
+    "key",
+    "name",
+    "description",
+    "files",
+    "workpiece_zero",
+    "tool_length",
+    "control",
+    "cl_words",
+    "bodies",
+}
+
+
+def read_cl(
+    path: FilePath | BinaryIO,
+    *,
+    units: str | None = None,
+    dialect: str | None = None,
+    strict: bool = False,
+    spline_tolerance: float | None = None,
+    observer: Observer = SILENT,
+) -> Toolpath:
+    """Read a CL file: NX CLSF, CATIA APTSOURCE, Creo NCL, SolidWorks CAM APT or other APT CL data.
+
+    Parameters
+    ----------
+    path
+        The file; it may be packed by gzip or bzip2, be the only CL file of a ZIP archive, or be a binary stream.
+    units
+        Length unit of the file, ``"mm"`` or ``"inch"``; by default the file decides.
+    dialect
+        ``"clsf"``, ``"catia"``, ``"ncl"``, ``"solidworks"``, ``"clt"``, ``"fusion"``
+        or ``"apt"``; by default the content of the file decides.
+    strict
+        Raise an error for an unknown statement instead of keeping it with a remark.
+    spline_tolerance
+        How far the points that splines (NURBS) become may leave them between each other, 0.0001 to 1 mm; by default
+        the smaller of INTOL and OUTTOL, at most 0.01 mm, and 0.001 mm without them.
+    observer
+        Receives the progress, in bytes.
+
+    Returns
+    -------
+    Toolpath
+        Operations with their points as columns, mm and unit vectors, each in its own coordinate system. ``remarks`` has
+        the warnings.
+
+    Raises
+    ------
+    InputError
+        With every problem found, if the file cannot be used, or is an archive of several.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> toolpath = trunnion.read_cl("tests/golden/yl569/2_hub_rough.cls")
+    >>> toolpath.operations[0].moves.tip.shape
+    (23, 3)
+    """
+    toolpaths = _read(path, units, dialect, strict, spline_tolerance, observer, "path")
+    if len(toolpaths) > 1:
+        raise not_one_file(toolpaths[0].file, len(toolpaths))
+    return toolpaths[0]
+
+
+def _read(
+    cl: object,
+    units: str | None,
+    dialect: str | None,
+    strict: bool,
+    spline_tolerance: float | None,
+    observer: Observer,
+    argument: str,
+) -> list[Toolpath]:
+    """The toolpaths of a CL file, a stream or an archive; errors name the argument."""
+    path = cl if is_stream(cl) else check_path(argument, cl)
+    check_observer(observer)
+    if units is not None:
+        check_choice("units", units.lower() if isinstance(units, str) else units, ("mm", "inch"))
+    if dialect is not None:
+        check_choice("dialect", dialect, tuple(DIALECTS))
+    if spline_tolerance is not None and not _is_spline_tolerance(spline_tolerance):
+        raise wrong_argument("spline_tolerance", spline_tolerance, "give a number from 0.0001 to 1")
+    return read_watched(
+        path, observer.progress, units=units, dialect=dialect, strict=strict, spline_tolerance=spline_tolerance
+    )
+
+
+def _is_spline_tolerance(value: object) -> bool:
+    """Whether splines may become points within this, mm."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and 1e-4 <= value <= 1.0
+
+
+def load_machine(machine: FilePath) -> Machine:
+    """Load the definition of a machine.
+
+    Parameters
+    ----------
+    machine
+        The name of a shipped machine, such as ``"yl569"`` (``trunnion machines`` lists them), or the path of a
+        ``.toml`` file.
+
+    Returns
+    -------
+    Machine
+        Its axes from the workpiece to the tool, with their limits in mm and degrees.
+
+    Raises
+    ------
+    InputError
+        With every mistake of the definition, each at its file and line.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> [axis.name for axis in trunnion.load_machine("yl569").axes]
+    ['C', 'B', 'X', 'Y', 'Z']
+    """
+    path = str(check_path("machine", machine))
+    try:
+        return machines.load_machine(path)
+    except InputError:
+        if not (path.endswith(".toml") and is_control_file(Path(path))):
+            raise
+        cure = "give a machine whose [control] extends it"
+        raise InputError(Problem(path, 0, "defines a control, not a machine", cure, code="DEF140")) from None
+
+
+def read_program(nc: FilePath, *, machine: MachineLike, subprograms: Sequence[FilePath] = ()) -> Run:
+    """Read an NC program as the control of a machine does, and run it.
+
+    Parameters
+    ----------
+    nc
+        The program.
+    machine
+        The machine that runs it: a name, a path or a ``Machine``.
+    subprograms
+        Files of the subprograms that it calls. No others are opened.
+
+    Returns
+    -------
+    Run
+        One row a motion, in columns: ``tip`` (n, 3) mm and ``axis`` (n, 3) unit vectors in the workpiece frame,
+        ``joints`` (n, 5) mm and degrees, ``feed``, ``tool``, ``spindle`` and more; ``events`` between the rows, and
+        ``diagnostics``: words that are unknown or not acted upon.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, or if no reader knows the control.
+
+    Notes
+    -----
+    The readers are written from the manuals of the controls and share no code with the writers.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> run = trunnion.read_program("tests/golden/yl569/2_hub_rough.expected.mpf", machine="yl569")
+    >>> run.tip.shape, run.diagnostics
+    ((30, 3), ())
+    """
+    program, others = check_path("nc", nc), check_paths("subprograms", subprograms)
+    return readers.run_program(program, as_machine(machine), subprograms=others)
+
+
+def as_run(
+    nc: FilePath | Run,
+    machine: Machine,
+    subprograms: Sequence[FilePath] = (),
+    names: tuple[str, str] = ("nc", "subprograms"),
+) -> Run:
+    """The run of a program; one that has already been read must have been read for this machine, set up as it is.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or a run is of another machine, workpiece zero or tool length: its positions were
+        computed with those that it has.
+    """
+    others = check_paths(names[1], subprograms)
+    if not isinstance(nc, Run):
+        return read_program(check_path(names[0], nc), machine=machine, subprograms=others)
+    if subprograms:
+        raise InputError(
+            Problem(nc.files[0], 0, "has already been read", "give the subprograms to read_program", code="ARG170")
+        )
+    own = nc.machine
+    if not _are_defined_alike(own, machine):
+        what = f"was read for {own.key}, whose definition differs from that of {machine.key} here"
+        raise InputError(
+            Problem(nc.files[0], 0, what, "give the path of the program, or the machine that ran it", code="ARG170")
+        )
+    given = ((machine.workpiece_zero, own.workpiece_zero), (machine.tool_length, own.tool_length))
+    if any(new is not None and new != old for new, old in given):
+        what = "has already been read with another workpiece zero or tool length"
+        raise InputError(Problem(nc.files[0], 0, what, "give the path of the program", code="ARG170"))
+    return nc
+
+
+def _are_defined_alike(one: Machine, other: Machine) -> bool:
+    """Whether two definitions say the same of machine and control; names and setup may differ."""
+    content = (field.name for field in fields(Machine) if field.name not in _NO_CONTENT)
+    return all(getattr(one, name) == getattr(other, name) for name in content) and _control(one) == _control(other)
+
+
+def _control(machine: Machine) -> dict[str, object]:
+    return resolve_extends(machine.control.unread_copy(), control_library()).to_dict()
+
+
+def as_machine(machine: MachineLike, argument: str = "machine") -> Machine:
+    """The machine itself, loaded if it is named; errors name the argument."""
+    loaded = machine if isinstance(machine, Machine) else load_machine(check_path(argument, machine))
+    readers.check_reading(loaded)
+    check_statements(loaded)
+    return loaded
+
+
+def as_toolpaths(
+    cl: ToolpathLike | Iterable[ToolpathLike],
+    units: str | None,
+    strict: bool,
+    observer: Observer,
+    dialect: str | None = None,
+    spline_tolerance: float | None = None,
+) -> list[Toolpath]:
+    """The toolpaths of one program, as ``read_toolpaths`` has them.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be used, or the points of two files are in different coordinate systems.
+    """
+    toolpaths = read_toolpaths(cl, units, strict, observer, dialect, spline_tolerance)
+    if problem := other_system(toolpaths):
+        raise InputError(problem)
+    return toolpaths
+
+
+def read_toolpaths(
+    cl: ToolpathLike | Iterable[ToolpathLike],
+    units: str | None,
+    strict: bool,
+    observer: Observer,
+    dialect: str | None = None,
+    spline_tolerance: float | None = None,
+) -> list[Toolpath]:
+    """Toolpaths in their order, read if they are named; how, is said as for ``read_cl``.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be used.
+    """
+    if isinstance(cl, str | os.PathLike | Toolpath) or is_stream(cl):
+        cl = [cl]
+    if isinstance(cl, bytes | Mapping) or not isinstance(cl, Iterable):
+        raise wrong_argument("cl", cl, "give CL files: a path, a Toolpath, or a list of them")
+    check_observer(observer)
+    return [
+        toolpath
+        for each in cl
+        for toolpath in (
+            [each]
+            if isinstance(each, Toolpath)
+            else _read(each, units, dialect, strict, spline_tolerance, observer, "cl")
+        )
+    ]

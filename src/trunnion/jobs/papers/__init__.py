@@ -1,0 +1,1 @@
+"""What goes with a program: reports, setup sheet, listing and manifest."""

@@ -1,0 +1,1 @@
+"""Where on the table a part may sit."""

@@ -1,0 +1,184 @@
+"""The bodies that a part is placed among: those of the machine, tools, and what is clamped with the part."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Final, Literal
+
+from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.jobs.inputs.bodies import MeshLike, fixture_meshes, known_tools, read_mesh
+from trunnion.jobs.inputs.reading import FilePath
+from trunnion.jobs.place.inputs import PlacedInput
+from trunnion.machines import Machine
+from trunnion.placing.collisions.best_clearance import Guard
+from trunnion.placing.collisions.guarded_pairs import (
+    Changes,
+    Guarded,
+    guarded_machine,
+    guarded_on_part,
+    guarded_pairs,
+    guarded_tool,
+)
+from trunnion.simulation.collisions import BodyKind, machine_bodies
+from trunnion.simulation.meshes import TriangleMesh
+from trunnion.simulation.stock.solids import stock_shape
+from trunnion.simulation.tools.choice import NO_CALL, tools_of_toolpaths
+from trunnion.simulation.tools.profile import ToolShape
+
+#: Tools whose lengths differ by less are as long, mm.
+_LIKE_LENGTH: Final = 1e-6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BodiesInput:
+    """Bodies as ``trunnion.place`` takes them."""
+
+    fixtures: MeshLike | Iterable[MeshLike] = ()
+    part: MeshLike | None = None
+    stock: MeshLike | None = None
+    tools: str | ToolShape | Iterable[str | ToolShape] = ()
+    libraries: Sequence[FilePath] = ()
+    unit: Literal["mm", "inch"] | None = None
+
+    @property
+    def are_given(self) -> bool:
+        """Whether there are any but stock and part, which are asked for the table, too."""
+        several = (self.fixtures, self.tools, self.libraries)
+        return any(not isinstance(each, tuple | list) or len(each) > 0 for each in several)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlacedBodies:
+    """What was read: the pairs that are kept apart, the machine with the length of its longest tool, and warnings."""
+
+    guard: Guard
+    machine: Machine
+    problems: tuple[Problem, ...]
+
+
+def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine, *, is_needed: bool = True) -> PlacedBodies:
+    """Read the bodies that a path is placed among; where they are not needed, a warning says that none could meet.
+
+    Raises
+    ------
+    InputError
+        If a mesh or a tool cannot be used, or the length of a tool is not known and bodies of the machine are to be
+        kept apart; or if they are needed, and no two could meet.
+    """
+    problems: list[Problem] = []
+    carried = list(_carried(given, problems))
+    bodies = guarded_machine(machine_bodies(machine, problems.append))
+    tools = _tools(given, placed, problems)
+    lengths = _lengths(placed, tools, machine, is_asked=bool(bodies))
+    for number, shape in tools.items():
+        bodies += guarded_tool(shape, machine, placed.tools[number] or NO_CALL, lengths.get(number, 0.0), number)
+    pairs = guarded_pairs(machine, [*bodies, *carried])
+    could_meet = any(pair.weight == 1.0 or pair.changes is Changes.PLACE for pair in pairs.kept)
+    if not could_meet:
+        problems.append(_none_could_meet(machine, is_needed=is_needed))
+        if is_needed:
+            raise InputError(problems[-1])
+    guard = Guard(pairs.kept if could_meet else (), placed.tool, lengths, pairs.left_out)
+    if could_meet and not guard.is_changed:
+        what = "no place and no turn changes how far the tool is from what is clamped with the part"
+        cure = "state the bodies of the machine ([[body]]) to have them kept apart"
+        problems.append(argument_problem("goal", what, cure, Severity.WARNING, code="PLC270"))
+    problems += _other_lengths(placed, lengths, machine)
+    if machine.tool_length is None and lengths:
+        machine = replace(machine, tool_length=max(lengths.values()))
+    return PlacedBodies(guard, machine, tuple(dict.fromkeys(problems)))
+
+
+def _none_could_meet(machine: Machine, *, is_needed: bool) -> Problem:
+    """What is missing where there are no two bodies to be kept apart."""
+    name, severity = ("goal", Severity.ERROR) if is_needed else ("tools", Severity.WARNING)
+    if machine.bodies and not machine.spindle_point_is_stated:
+        what = (
+            f"{machine.key} has no spindle.gauge_point_mm, so that its spindle and tools are not kept apart from the"
+            " rest of the machine, and nothing else could meet"
+        )
+        cure = "enter where the spindle nose stands with the slides at zero, or give tools, fixtures and part"
+    else:
+        what = f"{machine.key} and the arguments have no two bodies that could meet"
+        cure = "state bodies of the machine ([[body]]), or give fixtures, part, stock and tools"
+    return argument_problem(name, what, cure, severity, code="PLC190")
+
+
+def _carried(given: BodiesInput, problems: list[Problem]) -> Iterable[Guarded]:
+    """What is clamped with the part."""
+    for fixture in fixture_meshes(given.fixtures, problems):
+        yield guarded_on_part(fixture, BodyKind.FIXTURE)
+    if given.part is not None:
+        yield guarded_on_part(read_mesh(given.part, "part", problems), BodyKind.PART)
+    if given.stock is not None:
+        mesh = stock_mesh(given.stock, problems).named("stock")
+        yield guarded_on_part(mesh, BodyKind.PART, is_stock=True)
+
+
+def stock_mesh(stock: MeshLike, problems: list[Problem]) -> TriangleMesh:
+    """A stock as a mesh, mm; warnings are added to the problems.
+
+    Raises
+    ------
+    InputError
+        If a mesh cannot be used, or the text of a stock is none.
+    """
+    return stock_shape(stock, problems.append).as_mesh()
+
+
+def _tools(given: BodiesInput, placed: PlacedInput, problems: list[Problem]) -> dict[int, ToolShape]:
+    """The bodies of the tools that are called, by their number in ``placed.tools``; one without a form is told."""
+    known = known_tools(given.tools, given.libraries, given.unit, placed.toolpaths)
+    found: dict[int, ToolShape] = {}
+    for number in placed.used_tools:
+        called = placed.tools[number] or NO_CALL
+        try:
+            found[number] = known.choose([called])[called]
+        except InputError as error:
+            if placed.tools[number] and (known.stated or known.libraries):
+                raise
+            first = error.problems[0]
+            what = f"tool {called} is not kept apart from anything: {first.what}"
+            problems.append(Problem(first.file, first.line, what, first.cure, Severity.WARNING, code="PLC280"))
+    return found
+
+
+def _lengths(
+    placed: PlacedInput, tools: Mapping[int, ToolShape], machine: Machine, *, is_asked: bool
+) -> dict[int, float]:
+    """Lengths of the tools, gauge point to tip, mm, by their number; those that nobody states are left out."""
+    lengths = {}
+    for number in placed.used_tools:
+        length = (tools[number].length if number in tools else 0.0) or machine.tool_length
+        if length:
+            lengths[number] = length
+        elif is_asked:
+            what = f"the length of tool {placed.tools[number] or NO_CALL} is not known, from its tip to the gauge point"
+            cure = "give it: the bodies of the machine stand so far above the part"
+            raise InputError(argument_problem("tool_length", what, cure, code="SIM310"))
+    return lengths
+
+
+def stated_lengths(placed: PlacedInput) -> dict[int, float]:
+    """Lengths of the tools in the spindle as the CL files state them, mm, by their number in ``placed.tools``.
+
+    Empty unless each tool has one, and only one.
+    """
+    of_call: dict[str, set[float]] = {}
+    for each in tools_of_toolpaths(placed.toolpaths):
+        called = each.tool.name if each.number is None else str(each.number)
+        of_call.setdefault(called, set()).add(each.tool.set_length)
+    found = {number: of_call.get(placed.tools[number], {0.0}) for number in placed.used_tools}
+    if any(len(lengths) > 1 or 0.0 in lengths for lengths in found.values()):
+        return {}
+    return {number: max(lengths) for number, lengths in found.items()}
+
+
+def _other_lengths(placed: PlacedInput, lengths: Mapping[int, float], machine: Machine) -> Iterable[Problem]:
+    """A warning where tools have other lengths than the one that is stated for all, which programs are checked with."""
+    stated = machine.tool_length
+    other = {} if stated is None else {k: own for k, own in lengths.items() if abs(own - stated) > _LIKE_LENGTH}
+    if other:
+        tools = ", ".join(f"{placed.tools[k] or NO_CALL} of {own:g} mm" for k, own in other.items())
+        what = f"says {stated:g} mm, and places are sought with the lengths of the tools: {tools}"
+        cure = "post and check with each tool's own length: with another one slides stand elsewhere"
+        yield argument_problem("tool_length", what, cure, Severity.WARNING, code="PLC290")

@@ -1,0 +1,164 @@
+"""Where on the table a part may sit: the feasible places of its workpiece zero, and the best of them."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Final, Literal
+
+import numpy as np
+
+from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.jobs.inputs.arguments import check_choice, check_observer, check_paths
+from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine
+from trunnion.jobs.inputs.settings import Settings, as_texts, set_up_machine
+from trunnion.jobs.observer import SILENT, Observer
+from trunnion.jobs.place.bodies import BodiesInput, read_bodies, stated_lengths
+from trunnion.jobs.place.inputs import read_input
+from trunnion.jobs.place.orientations import orientations
+from trunnion.jobs.place.table import standing_on
+from trunnion.machines import Machine
+from trunnion.model.clamped_toolpaths import clamped_after
+from trunnion.placing.body_distances import touch_warnings
+from trunnion.placing.collisions.moments import lengths_of
+from trunnion.placing.goals import Goal
+from trunnion.placing.place_search import PlaceSearch
+from trunnion.placing.placement import Placement
+from trunnion.simulation.meshes import TriangleMesh
+from trunnion.simulation.tools.profile import ToolShape
+
+#: The step of turns at which bodies are kept apart, degrees: each of them is a search of its own.
+_COLLISION_TURNS: Final = 15.0
+
+
+GOALS: Final = tuple(str(goal) for goal in Goal)
+
+
+def place(
+    files: Iterable[ToolpathLike] | ToolpathLike,
+    *,
+    machine: MachineLike,
+    goal: str = "margin",
+    turns: float | Sequence[float] | None = None,
+    tilts: float | Sequence[float] = (),
+    zero: str | Iterable[float] | None = None,
+    tool_length: str | float | None = None,
+    settings: Settings | None = None,
+    subprograms: Sequence[FilePath] = (),
+    stock: str | Path | TriangleMesh | None = None,
+    part: str | Path | TriangleMesh | None = None,
+    fixtures: str | Path | TriangleMesh | Iterable[str | Path | TriangleMesh] = (),
+    tools: str | ToolShape | Iterable[str | ToolShape] = (),
+    libraries: Sequence[FilePath] = (),
+    unit: Literal["mm", "inch"] | None = None,
+    observer: Observer = SILENT,
+) -> Placement:
+    """Find where on the table a part may sit, and where it sits best.
+
+    Parameters
+    ----------
+    files
+        CL files, which ``trunnion.post`` would make one program of, or NC programs: all must fit at one place.
+    machine
+        A name, a path or a ``Machine``.
+    goal
+        What the best place is best for: ``"margin"``, the distance of the slides to their limits; or the least
+        ``"rotary"`` or ``"slides"`` travel, ``"time"``, or ``"overspeed"``, fewest rows whose feed the
+        axes do not reach; or ``"collisions"``, the largest least distance between bodies of the spindle's side and
+        those of the table's. Places with these goals keep a margin of 1 mm where they can.
+    turns
+        The part is tried at every so many degrees about Z, and more finely around the best; or the turns themselves.
+        By default each 5 degrees, with several tilts or the goal ``"collisions"`` each 15.
+    tilts
+        Before it is turned the part is tilted about X of the program's coordinate system, right-handed, as by a fixture
+        with that angle: at every so many degrees from -90 to 90, and more finely around the best; or the tilts
+        themselves. By default it is not tilted.
+    zero : (3,) float, mm
+        The present place of the workpiece zero; by default that of the definition.
+    tool_length
+        Of the tool, gauge point to tip, mm; by default that of the definition, or of each tool its own where the CL
+        files state all of them, or 0.
+    settings
+        Of CL files, as ``trunnion.post`` takes them.
+    subprograms
+        Files of the subprograms that NC programs call.
+    stock, part
+        As ``trunnion.simulate`` has them: all of them, seen from above, is to be on the table that the definition
+        states. With the goal ``"collisions"`` they are bodies, too.
+    fixtures, tools, libraries, unit
+        Bodies besides those of the machine, as ``trunnion.simulate`` takes them: as the part is drawn. Fixtures are
+        tilted and turned with it. With any of them the least distance at the best place is told with every goal.
+    observer
+        Receives the progress and warnings.
+
+    Returns
+    -------
+    Placement
+        ``fits``, ``zero_mm``, ``turn_deg``, ``tilt_deg``, ``margin_mm``, ``limits``, the ``region`` of all
+        places, and more.
+
+    Raises
+    ------
+    InputError
+        When a file or an argument cannot be used, or no slide has limits.
+    RefusedError
+        When no plan of the CL files is possible, or a program has words that are not understood.
+
+    Notes
+    -----
+    docs/placing.md says what is proven, and of which motions.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> found = trunnion.place("tests/golden/yl569/2_hub_rough.cls", machine="yl569", turns=[0.0])
+    >>> found.fits, found.best.axes[1].axis
+    (True, 'Y')
+    """
+    check_observer(observer)
+    goal = check_choice("goal", goal, GOALS)
+    grid = orientations(_COLLISION_TURNS if turns is None and goal == Goal.COLLISIONS else turns, tilts)
+    texts = as_texts(settings)
+    zero = texts.pop("zero", None) if zero is None else zero
+    tool_length = texts.get("tool_length") if tool_length is None else tool_length
+    loaded = set_up_machine(as_machine(machine), zero, tool_length)
+    if not np.isfinite(loaded.limits[list(loaded.linear)]).any():
+        what = f"no slide of {loaded.key} has limits: the part may sit anywhere"
+        raise InputError(argument_problem("machine", what, "state limits_mm of its axes", code="PLC130"))
+    tilts_by_size = tuple(sorted(grid.tilts.tolist(), key=abs))
+    remarks: list[Problem] = []
+    standing = standing_on(loaded, stock, part, remarks)
+    given = read_input(files, loaded, texts, check_paths("subprograms", subprograms), observer, tilts_by_size)
+    for tilt in tilts_by_size:  # what could not be said in the head of a program is told before it is searched
+        clamped_after(given.clamping, (0.0, tilt), given.rows.stretches[0].file)
+    bodies = None
+    among = BodiesInput(fixtures, part, stock, tools, libraries, unit)
+    if goal == Goal.COLLISIONS or among.are_given:
+        bodies = read_bodies(among, given, loaded, is_needed=goal == Goal.COLLISIONS)
+        loaded, remarks = bodies.machine, [*remarks, *bodies.problems]
+        given = replace(given, rows=replace(given.rows, length=lengths_of(bodies.guard.lengths, given.tool)))
+    elif loaded.tool_length is None and (own := stated_lengths(given)):
+        loaded = replace(loaded, tool_length=max(own.values()))
+        given = replace(given, rows=replace(given.rows, length=lengths_of(own, given.tool)))
+    problems = [*given.problems, *unknown_length(loaded), *dict.fromkeys(remarks)]
+    observer.problems(problems)
+    search = PlaceSearch(loaded, given.rows, Goal(goal), grid, standing, None if bodies is None else bodies.guard)
+    with observer.progress("placing", len(grid), "turns") as advance:
+        found = search.find(advance)
+    found = replace(found, problems=tuple(problems), toolpaths=given.toolpaths, clamping=given.clamping)
+    if bodies is None or goal == Goal.COLLISIONS:
+        return found
+    touching = touch_warnings(found)
+    observer.problems(touching)
+    return replace(found, problems=(*found.problems, *touching))
+
+
+def unknown_length(machine: Machine) -> list[Problem]:
+    """A warning where places depend on a tool length that nobody has stated."""
+    if machine.tool_length is not None or not any(machine.depends_on_length(k) for k in machine.linear):
+        return []
+    names = ", ".join(machine.axes[k].name for k in machine.linear if machine.depends_on_length(k))
+    what, cure = (
+        f"the tool counts as 0 mm long, and places depend on its length ({names})",
+        "give the length of the tool",
+    )
+    return [argument_problem("tool_length", what, cure, Severity.WARNING, code="PLC210")]

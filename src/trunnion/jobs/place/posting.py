@@ -1,0 +1,69 @@
+"""A part at the place that was found: its CL files are posted turned, with the workpiece zero there."""
+
+from trunnion.errors import InputError, Problem
+from trunnion.jobs.inputs.reading import FilePath, MachineLike
+from trunnion.jobs.inputs.settings import Settings, as_texts
+from trunnion.jobs.observer import SILENT, Observer
+from trunnion.jobs.papers.files import paper_files
+from trunnion.jobs.place.inputs import nc_program_stays
+from trunnion.jobs.post.posting import post_beside
+from trunnion.jobs.post.result import PostResult
+from trunnion.jobs.targets import OutputLike
+from trunnion.placing.placement import Placement
+
+
+def post_placed(
+    found: Placement,
+    *,
+    machine: MachineLike,
+    output: OutputLike = None,
+    settings: Settings | None = None,
+    sheet: FilePath | None = None,
+    observer: Observer = SILENT,
+) -> PostResult:
+    """Post the CL files of a placement with its best place.
+
+    Parameters
+    ----------
+    found
+        Of CL files. Where its best place is tilted or turned, so is the toolpath: first about X, then about Z of the
+        program's coordinate system. Comments in the head of the program say so, and where the workpiece zero is.
+    machine
+        As ``trunnion.place`` had it.
+    output, settings, sheet, observer
+        As ``trunnion.post`` takes them; the setting ``zero`` is that of the place, and ``tool_length`` by default that
+        of the placement.
+
+    Returns
+    -------
+    PostResult
+        The proven program: its slides keep their limits with the workpiece zero there.
+
+    Raises
+    ------
+    InputError
+        When it is a placement of NC programs, or something cannot be used.
+    RefusedError
+        When the program must not run.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> found = trunnion.place("tests/golden/yl569/2_hub_rough.cls", machine="yl569")
+    >>> trunnion.post_placed(found, machine="yl569").passed
+    True
+    """
+    if not found.toolpaths:
+        raise InputError(nc_program_stays(found.files[0]))
+    if found.best is None or not found.fits:
+        raise InputError(Problem(found.files[0], 0, "the part fits nowhere", "see what limits it", code="PLC150"))
+    texts = as_texts(settings)
+    if found.tool_length_mm is not None:
+        texts.setdefault("tool_length", str(found.tool_length_mm))
+    best = found.best
+    return post_beside(
+        found.toolpaths, (),
+        machine=machine, output=output, settings={**texts, "zero": best.zero_mm}, strict=False, force=False,
+        explain=False, papers=paper_files(None, sheet, None, None, output), columns=True, subprograms=(),
+        turn=best.turn_deg, tilt=best.tilt_deg, is_placed=True, observer=observer,
+    )  # fmt: skip

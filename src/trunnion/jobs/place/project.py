@@ -1,0 +1,85 @@
+"""A set-up of a project as it is placed."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.jobs.inputs.arguments import checked_angles
+from trunnion.jobs.inputs.bodies import MeshLike, read_mesh
+from trunnion.jobs.inputs.reading import FilePath
+from trunnion.jobs.inputs.settings import SettingValue
+from trunnion.jobs.place.bodies import BodiesInput, stock_mesh
+from trunnion.jobs.project.file import load_project, project_inputs
+from trunnion.jobs.project.project import PostedSetup, Project
+from trunnion.jobs.simulate.setups import SimulationInput
+from trunnion.model.clamping import Clamping
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlacedSetup:
+    """What a project states of the part that is placed; all as ``trunnion.place`` takes it.
+
+    read      all files that the project leads to, none of which may be written over
+    problems  warnings: what of it does not count here
+    bodies    stock, part, fixtures and tools, as they lie in the workpiece frame of the set-up; the stock as it is
+              before the first one
+    """
+
+    files: tuple[str, ...]
+    machine: str
+    settings: Mapping[str, SettingValue]
+    read: tuple[FilePath, ...]
+    problems: tuple[Problem, ...] = ()
+    bodies: BodiesInput = field(default_factory=BodiesInput)
+
+
+def placed_setup(project: Path, name: str | None = None) -> PlacedSetup:
+    """The CL files, the machine, the settings of a set-up, the zero among them, and what is clamped and cuts there.
+
+    Raises
+    ------
+    InputError
+        If the project cannot be read, has hooks, or it is not clear which set-up is meant.
+    """
+    loaded = load_project(project)
+    if loaded.hooks:
+        what, cure = "has hooks, which would change its CL files", "give the CL files that are to be placed"
+        raise InputError(Problem(str(project), 0, what, cure, code="PLC160"))
+    setup = _setup(loaded, project, name)
+    settings = dict(setup.settings)
+    angles, problems = checked_angles(setup.turn, setup.tilt), list[Problem]()
+    if Clamping(*angles).is_turned and settings.pop("zero", None) is not None:
+        what = f"its zero is that of the part {Clamping(*angles)}, and it is placed as drawn: it has no present zero"
+        cure = "give the zero too, if there is one for the part as it is drawn"
+        problems.append(Problem(str(project), 0, what, cure, Severity.WARNING, code="PLC330"))
+    bodies = _bodies(loaded.simulation, loaded.posted.index(setup), problems)
+    return PlacedSetup(setup.cl, setup.machine, settings, tuple(project_inputs(loaded)), tuple(problems), bodies)
+
+
+def _bodies(given: SimulationInput, number: int, problems: list[Problem]) -> BodiesInput:
+    """What stands on the table in a set-up of a project: as poses have brought it there, not yet turned."""
+    own = given.setups[number]
+    stock: MeshLike | None = given.stock or None
+    part: MeshLike | None = None
+    for k, setup in enumerate(given.setups[: number + 1]):
+        pose = setup.pose if k else None
+        if pose is not None:
+            stock = None if stock is None else stock_mesh(stock, problems).moved(pose.matrix)
+            part = None if part is None else read_mesh(part, "part", problems).moved(pose.matrix)
+        part = part if setup.part is None else setup.part
+    unit: Literal["mm", "inch"] | None = "mm" if own.unit == "mm" else "inch" if own.unit == "inch" else None
+    return BodiesInput(tuple(own.fixtures), part, stock, tuple(own.tools), own.libraries, unit)
+
+
+def _setup(loaded: Project, project: Path, name: str | None) -> PostedSetup:
+    """The set-up of a name, or the only one."""
+    found = [each for each in loaded.setups if name is None or each.name == name]
+    if len(found) == 1:
+        return found[0]
+    names = ", ".join(each.name for each in loaded.setups)
+    if name is None:
+        what, cure = f"has {len(found)} set-ups that post CL files", f"name one with setup: {names}"
+        raise InputError(Problem(str(project), 0, what, cure, code="PLC170"))
+    raise InputError(argument_problem("setup", f"is {name!r}", f"write one of {names}", code="PLC170"))

@@ -1,0 +1,1 @@
+"""CL files to an NC program with its proof."""

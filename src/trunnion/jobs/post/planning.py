@@ -1,0 +1,230 @@
+"""Planning: toolpaths to motions on a machine, before any text is written."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+
+from trunnion import planning, readers
+from trunnion.controls.vocabulary import FORCED_NOTICE, INCH
+from trunnion.errors import InputError, Problem, RefusedError, Severity, argument_problem, merge_repeated
+from trunnion.jobs.inputs.arguments import check_observer
+from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
+from trunnion.jobs.inputs.reading import MachineLike, ToolpathLike, as_machine, as_toolpaths
+from trunnion.jobs.inputs.settings import Settings, check_operation_names, number_setting
+from trunnion.jobs.observer import SILENT, Observer
+from trunnion.jobs.post.inserts import insert_problems
+from trunnion.jobs.post.post_job import PostJob, prepare
+from trunnion.model.motion import Plan
+from trunnion.model.toolpath import Toolpath
+from trunnion.output.place_texts import with_place_texts
+from trunnion.output.program import Program
+from trunnion.output.validation import check_program
+from trunnion.output.validation.tools import tool_conflicts
+from trunnion.planning.retracts.tool_retract import with_tool_retract
+
+
+def plan(
+    cl: ToolpathLike | Iterable[ToolpathLike],
+    *,
+    machine: MachineLike,
+    settings: Settings | None = None,
+    strict: bool = False,
+    explain: bool = True,
+    observer: Observer = SILENT,
+) -> Plan:
+    """Plan the motion of a machine for one or more CL files.
+
+    Parameters
+    ----------
+    cl
+        CL files in the order in which they are cut: paths (of archives too), binary streams, or toolpaths that are
+        already read.
+    machine
+        A name, a path or a ``Machine``.
+    settings
+        As ``trunnion.post`` takes them.
+    strict
+        Raise an error for unknown CL statements even if the definition says what becomes of them.
+    explain
+        Record why the axes are planned as they are (``Plan.decisions``).
+    observer
+        Receives the progress and warnings about the CL files.
+
+    Returns
+    -------
+    Plan
+        ``motions``, one for each operation or part of one: ``rotary`` (n, 2) float64, positions of the rotary axes in
+        degrees in the order of ``machine.rotary``; ``operation.moves.tip`` (n, 3) float64, mm, in the program's
+        coordinate system. ``problems`` of severity error mean that the program must not run.
+
+    Raises
+    ------
+    InputError
+        When a file or a setting cannot be used.
+    RefusedError
+        When no plan is possible: no pose of the machine gives a tool axis, or an operation cannot be made in its mode.
+
+    Notes
+    -----
+    Poses are chosen for a whole operation by dynamic programming over branches and turns; docs/planning.md.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> planned = trunnion.plan("tests/golden/yl569/2_hub_rough.cls", machine="yl569")
+    >>> planned.motions[0].rotary.shape
+    (23, 2)
+    """
+    check_observer(observer)
+    job = prepare(as_machine(machine), settings, explain=explain)
+    toolpaths = load_toolpaths(cl, job, strict, observer)
+    return _planned(toolpaths, job)
+
+
+def load_toolpaths(
+    cl: ToolpathLike | Iterable[ToolpathLike],
+    job: PostJob,
+    strict: bool,
+    observer: Observer,
+    changed: Callable[[list[Toolpath]], list[Toolpath]] = list,
+) -> list[Toolpath]:
+    """The toolpaths of a post, with surface normals if the program has them; their remarks are reported.
+
+    ``changed`` returns what becomes of them once they are read.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be used, or there is none.
+    """
+    toolpaths = as_toolpaths(
+        cl,
+        job.settings.get("cl_units"),
+        strict,
+        observer,
+        job.settings.get("dialect"),
+        number_setting(job.settings, "spline_tolerance"),
+    )
+    if job.control.units == INCH:
+        _check_units_of(toolpaths)
+    if not toolpaths:
+        raise InputError(argument_problem("cl", "there is no CL file", "give at least one", code="ARG130"))
+    if job.has_normals:
+        from trunnion.cl.surface_normals import with_normals
+
+        toolpaths = [with_normals(toolpath) for toolpath in toolpaths]
+    toolpaths = replace_unknown_statements(changed(toolpaths), job.control, job.machine)
+    for toolpath in toolpaths:
+        observer.problems(toolpath.remarks)
+    return toolpaths
+
+
+def _check_units_of(toolpaths: Iterable[Toolpath]) -> None:
+    """Raise ``InputError`` for a CL file that would be taken for one in mm while the program counts in inches."""
+    what, cure = "nothing says whether it is in mm or inches", "write setting cl_units=mm or setting cl_units=inch"
+    unknown = [
+        Problem(toolpath.file, 0, what, cure, code="CL410") for toolpath in toolpaths if not toolpath.states_unit
+    ]
+    if unknown:
+        raise InputError(unknown)
+
+
+def _planned(toolpaths: Sequence[Toolpath], job: PostJob) -> Plan:
+    """The plan, with the margin to limits and the retracts that the job asks for."""
+    machine, chord_tolerance = job.planned_machine, job.control.arcs.chord_tolerance
+    found = planning.plan(toolpaths, machine, chord_tolerance, job.options, job.capabilities)
+    distance = number_setting(job.settings, "tool_retract")
+    if not distance:
+        return found
+    return replace(found, motions=tuple(with_tool_retract(motion, distance) for motion in found.motions))
+
+
+def _settings_of_twins(own: Mapping[str, object], cut: Sequence[tuple[str, str]]) -> list[Problem]:
+    """Warnings of settings for one operation by a name that several have."""
+    names = [name for _, name in cut]
+    cure = "rename one of them in the CL file if it must not have it"
+    return [
+        Problem(
+            file,
+            0,
+            f"{names.count(name)} operations are called {name}: all have its settings",
+            cure,
+            Severity.WARNING,
+            code="ARG270",
+        )
+        for name, file in {name: file for file, name in reversed(cut) if name in own}.items()
+        if names.count(name) > 1
+    ]
+
+
+def plan_program(
+    toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer = SILENT
+) -> tuple[Program, Plan, list[Problem]]:
+    """Plan a program and check that it can be written, and may.
+
+    Returns
+    -------
+    program
+        With a notice in its head for each problem that ``force`` overrules.
+    plan
+        Its motions and decisions.
+    problems
+        Warnings about program and plan, and what ``force`` overrules; they have been reported.
+
+    Raises
+    ------
+    InputError
+        When the control cannot be told what the toolpaths ask for.
+    RefusedError
+        When the program must not run and ``force`` is off.
+    """
+    cut = [
+        (toolpath.file, operation.name)
+        for toolpath in toolpaths
+        for operation in toolpath.operations
+        if len(operation.moves)
+    ]
+    check_operation_names(job.own_settings, job.settings, [name for _, name in cut])
+    observer.problems(_settings_of_twins(job.own_settings, cut))
+    planned = _planned(toolpaths, job)
+    planned = replace(planned, decisions=(*job.decisions, *planned.decisions))
+    observer.planned(planned)
+    file = toolpaths[0].file
+    program = Program(job.machine, job.control, planned.motions, job.printed, file, own_settings=job.own_settings)
+    program = with_place_texts(program)
+    problems = new_problems(program, observer)
+    unproven = _missing_reader(job)
+    by_register = readers.can_read(job.machine) and readers.reader_of(job.machine).uses_length_numbers
+    conflicts = tool_conflicts(program, uses_length_numbers=by_register)
+    found = [*merge_repeated(planned.problems), *conflicts, *insert_problems(program)]
+    blocking = [problem for problem in found if problem.severity is Severity.ERROR] + unproven
+    if blocking and not job.force:
+        refused = Problem(file, 0, "no program is written", job.forcing, code="CTL940")
+        raise RefusedError((*found, *unproven, refused))
+    observer.problems(found)
+    notices = [f"{FORCED_NOTICE}, written by --force: {problem.what}" for problem in blocking]
+    return replace(program, notices=[*job.notices, *notices]), planned, [*problems, *found]
+
+
+def new_problems(program: Program, observer: Observer, known: Sequence[Problem] = ()) -> list[Problem]:
+    """Warnings about a program that are not known yet; they have been reported, also where there are errors.
+
+    Raises
+    ------
+    InputError
+        When the control cannot be told what the program says.
+    """
+    problems = [problem for problem in merge_repeated(check_program(program)) if problem not in known]
+    errors = [problem for problem in problems if problem.severity is Severity.ERROR]
+    found = [problem for problem in problems if problem not in errors]
+    observer.problems(found)
+    if errors:
+        raise InputError(sorted(errors, key=lambda problem: (problem.file, problem.line)))
+    return found
+
+
+def _missing_reader(job: PostJob) -> list[Problem]:
+    """Why nothing can prove a program for this machine; empty where its control has a reader."""
+    if readers.can_read(job.machine):
+        return []
+    what = f"programs for {job.control.name} cannot be read back yet: nothing proves this one"
+    return [Problem(job.machine.key, 0, what, code="CTL920")]

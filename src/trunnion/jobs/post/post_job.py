@@ -1,0 +1,302 @@
+"""A post before its first CL file is read: machine, control and options, made of its settings."""
+
+import math
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from trunnion.controls import Control, load_control
+from trunnion.controls.inches import in_units
+from trunnion.controls.vocabulary import MM, PROGRAM_CHOICES
+from trunnion.errors import InputError, argument_problem
+from trunnion.files import OutputFiles
+from trunnion.jobs.inputs.run_settings import RUN_SETTINGS
+from trunnion.jobs.inputs.settings import (
+    Settings,
+    apply_setup,
+    as_texts,
+    check_settings,
+    number_setting,
+    split_by_operation,
+    with_limit_margin,
+)
+from trunnion.jobs.papers.files import PaperFiles
+from trunnion.machines import Machine
+from trunnion.model.clamping import Clamping
+from trunnion.model.motion import Decision, MachiningMode, PoleStrategy
+from trunnion.output.capabilities import control_capabilities
+from trunnion.output.subprograms import SubprogramOutput
+from trunnion.planning import Clearance, ClearanceSurface, ControlCapabilities, PlanOptions
+from trunnion.readers import check_reading
+
+if TYPE_CHECKING:  # imported where a program is simulated
+    from trunnion.jobs.simulate.setups import SimulationInput
+
+#: Values of the setting ``mode``.
+_MODES: Final = {
+    "auto": None,
+    "three-axis": MachiningMode.THREE_AXIS,
+    "tilted": MachiningMode.TILTED,
+    "tcp": MachiningMode.TCP,
+}
+
+#: What a refusal says of ``force``.
+FORCING: Final = "force=True writes it"
+
+#: What gives subprograms other numbers.
+_OTHER_NUMBERS: Final = "begin with another number by setting first_number=2001"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PostJob:
+    """How a program is posted.
+
+    machine       with its workpiece zero and tool length
+    control       with or without block numbers
+    capabilities  of the control with the settings
+    options       of the planner
+    settings      all of them, as text
+    own_settings  those of single operations, by their names
+    force         write a program that must not run, with notices in its head
+    papers        where its papers go
+    columns       work out the columns of the verification
+    beside        files of subprograms that exist already and that templates call
+    simulation    stock and all else that the program is simulated with; None: it is not; and the files of that
+    notices       comments for the head of the program
+    clamping      how the part is clamped
+    decisions     what was decided before planning, for reports
+    forcing       what a refusal says of ``force``; empty where it cannot be asked for
+    """
+
+    machine: Machine
+    control: Control
+    capabilities: ControlCapabilities
+    options: PlanOptions
+    settings: Mapping[str, str]
+    force: bool = False
+    papers: PaperFiles = field(default_factory=PaperFiles)
+    columns: bool = False
+    own_settings: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    beside: tuple[Path, ...] = ()
+    simulation: "SimulationInput | None" = None
+    simulation_files: tuple[str | os.PathLike[str], ...] = ()
+    notices: tuple[str, ...] = ()
+    clamping: Clamping = field(default_factory=Clamping)
+    decisions: tuple[Decision, ...] = ()
+    forcing: str = FORCING
+
+    @property
+    def printed(self) -> dict[str, str]:
+        """The settings that templates print."""
+        return {key: value for key, value in self.settings.items() if key not in RUN_SETTINGS or key in PROGRAM_CHOICES}
+
+    @property
+    def encoding(self) -> str:
+        """What names and texts of the program are written in."""
+        return self.settings.get("encoding") or self.control.settings.get("encoding") or "utf-8"
+
+    @property
+    def planned_machine(self) -> Machine:
+        """The machine with the margin to its limits that the planner keeps."""
+        return with_limit_margin(self.machine, self.settings)
+
+    @property
+    def has_normals(self) -> bool:
+        """Whether the program states surface normals."""
+        return {**self.control.settings, **self.settings}.get("normals") == "contact"
+
+    def subprograms(self, files: OutputFiles, path: Path | None) -> SubprogramOutput | None:
+        """How the program is divided into files; None: it is a single file.
+
+        Parameters
+        ----------
+        files
+            Takes the subprograms.
+        path
+            Of the main program; None: it is not written to a file.
+
+        Raises
+        ------
+        InputError
+            If the control has no subprograms, there is no folder for them, or the settings contradict each other.
+        """
+        size = number_setting(self.settings, "split")
+        if self.settings.get("programs", "one") == "one":
+            if size is not None:
+                cure = "write programs=operations too"
+                raise InputError(
+                    argument_problem("settings", "split divides subprograms, and there are none", cure, code="ARG240")
+                )
+            return None
+        if self.control.subprograms is None:
+            what = f"programs is operations, and {self.control.name} has no words for subprograms here"
+            raise InputError(argument_problem("settings", what, "leave it out", code="ARG250"))
+        if path is None:
+            cure = "name a file or a folder, or write setting programs=one"
+            raise InputError(
+                argument_problem("output", "a program of several files needs a place for them", cure, code="FIL210")
+            )
+        numbered = self.control.subprograms.first_number is not None
+        open_file = partial(files.add_file, other_name=_OTHER_NUMBERS) if numbered else files.add_file
+        return SubprogramOutput(path.stem, open_file, None if size is None else int(size))
+
+
+def prepare(
+    machine: Machine,
+    settings: Settings | None = None,
+    *,
+    force: bool = False,
+    explain: bool = False,
+    papers: PaperFiles | None = None,
+    columns: bool = False,
+) -> PostJob:
+    """Check the settings of a post, and make the job of it.
+
+    Raises
+    ------
+    InputError
+        With every setting that the control does not have or that makes no sense.
+    """
+    control = load_control(machine.control)
+    check_reading(machine)
+    texts = as_texts(settings)
+    control = in_units(control, texts.get("units") or control.settings.get("units", MM))
+    texts, own = split_by_operation(texts, control, machine)
+    check_settings(texts, control, machine)
+    control = _with_numbers(control, texts.get("numbers"))
+    control = _with_first_number(control, texts)
+    machine = apply_setup(machine, texts)
+    papers = papers or PaperFiles()
+    options = parse_plan_options(texts, control, explain or papers.report is not None)
+    capabilities = control_capabilities(control, texts)
+    return PostJob(machine, control, capabilities, options, texts, force, papers, columns or papers.need_columns, own)
+
+
+def _with_numbers(control: Control, asked: str | None) -> Control:
+    """The control with the setting ``numbers``; None: as its definition says.
+
+    Raises
+    ------
+    InputError
+        If operations alone are to have numbers, and the control needs one before each block.
+    """
+    numbers = control.block_numbers
+    if asked == "operations" and not numbers.letter:
+        cure = "leave it out: its numbers have no letter, and stand before every block"
+        raise InputError(
+            argument_problem("settings", f"numbers is operations, and {control.name} has no such", cure, code="ARG250")
+        )
+    if asked is None or (asked == "on" and not numbers.letter):
+        return control
+    every = numbers.every if asked == "off" else 1
+    changed = replace(numbers, numbered=asked != "off", every=every, at_operations=asked == "operations")
+    return replace(control, block_numbers=changed)
+
+
+def _with_first_number(control: Control, settings: Mapping[str, str]) -> Control:
+    """The control with the setting ``first_number``.
+
+    Raises
+    ------
+    InputError
+        If it is no whole number, or if there are no subprograms with numbers.
+    """
+    first = number_setting(settings, "first_number")
+    if first is None:
+        return control
+    naming = control.subprograms
+    if naming is None or naming.first_number is None or settings.get("programs") != "operations":
+        why = f"{control.name} names its subprograms" if naming and not naming.first_number else "there are none"
+        what = "first_number is that of subprograms that have numbers"
+        raise InputError(
+            argument_problem(
+                "settings", f"{what}: {why}", "leave it out, or write programs=operations too", code="ARG240"
+            )
+        )
+    if first != int(first):
+        raise InputError(
+            argument_problem(
+                "settings", f"first_number is {settings['first_number']!r}", "write a whole number", code="ARG220"
+            )
+        )
+    return replace(control, subprograms=replace(naming, first_number=int(first)))
+
+
+def parse_plan_options(settings: Mapping[str, str], control: Control, explain: bool = False) -> PlanOptions:
+    """The options of the planner, of settings that ``check_settings`` has checked.
+
+    Raises
+    ------
+    InputError
+        If a number is none or out of range, or the settings contradict the control or each other.
+    """
+    tcp = settings.get("tcp", "on" if control.tcp else "off") == "on"
+    if tcp and not control.tcp:
+        raise InputError(
+            argument_problem(
+                "settings", "tcp is on, and the machine's control has none", "write tcp=off", code="ARG250"
+            )
+        )
+    mode, mode_by_operation = _mode_setting(settings.get("mode", "auto"), tcp)
+    numbers = {key: number_setting(settings, key) for key in ("pole_angle", "tip_tolerance", "axis_tolerance")}
+    fastest, limit = settings.get("feed") == "fastest", number_setting(settings, "feed_limit")
+    lower_feed = settings.get("lower_feed", "no") == "yes"
+    if limit is not None and not fastest:
+        raise InputError(
+            argument_problem("settings", "feed_limit is for feed=fastest only", "write feed=fastest too", code="ARG220")
+        )
+    if fastest and lower_feed:
+        what = "lower_feed is yes, and feed=fastest keeps all axes within their speeds"
+        raise InputError(argument_problem("settings", what, "leave lower_feed out", code="ARG220"))
+    known: dict[str, Any] = {key: value for key, value in numbers.items() if value is not None}
+    if "clearance" in settings:
+        known["clearance"] = _parse_clearance(settings["clearance"])
+    return PlanOptions(
+        allow_rewinds=settings.get("rewind", "insert") == "insert",
+        explain=explain,
+        mode=mode,
+        mode_by_operation=mode_by_operation,
+        pole_strategy=PoleStrategy(settings.get("pole", "off")),
+        absolute_frame=settings.get("frame", "first") == "absolute",
+        lower_feed=lower_feed,
+        fastest_feed=fastest,
+        feed_limit=limit,
+        tcp=tcp,
+        holes_as_motion=settings.get("cycles", "on") == "off",
+        default_axis_tolerance=control.axis_tolerance,
+        **known,
+    )
+
+
+def _mode_setting(text: str, tcp: bool) -> tuple[MachiningMode | None, dict[str, MachiningMode | None]]:
+    """The setting ``mode``: that of all operations, and those of some by their names, such as ``auto,SIDES:tcp``."""
+    known = {word: mode for word, mode in _MODES.items() if tcp or mode is not MachiningMode.TCP}
+    every, own = "auto", dict[str, MachiningMode | None]()
+    for entry in text.split(","):
+        name, _, word = entry.rpartition(":")
+        if word not in known:
+            what = "mode is tcp, and there is no TCP" if word == "tcp" else f"mode is {text!r}"
+            cure = f"write one of {', '.join(known)}; OPERATION:WORD says it of one operation"
+            raise InputError(argument_problem("settings", what, cure, code="ARG220"))
+        if name:
+            own[name] = known[word]
+        else:
+            every = word
+    return known[every], own
+
+
+def _parse_clearance(text: str) -> Clearance:
+    """The setting ``clearance``."""
+    kind, _, length = text.rpartition(":")
+    try:
+        surface, value = ClearanceSurface(kind or ClearanceSurface.DISTANCE), float(length)
+    except ValueError:
+        surface, value = ClearanceSurface.DISTANCE, math.nan
+    least = -10000.0 if surface is ClearanceSurface.PLANE else 0.1
+    if least <= value <= 10000.0:
+        return Clearance(value, surface)
+    cure = RUN_SETTINGS["clearance"].cure("clearance")
+    raise InputError(argument_problem("settings", f"clearance is {text!r}", cure, code="ARG220"))

@@ -1,0 +1,91 @@
+"""Places in a program that is not written, told so that its user finds them: by the names that its files would have,
+and where the text of a template of theirs stands, by the template and its line in the definition.
+
+In:     errors and findings with places in the hidden files in which a program is made.
+Out:    the same, as they are told.
+"""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+
+from trunnion.controls import Control
+from trunnion.errors import InputError, Problem
+from trunnion.jobs.targets import Target
+from trunnion.model.template_passage import TemplatePassage
+from trunnion.verification import Check, Place, Verification
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ProgramPlaces:
+    """What is known of the places of a program.
+
+    passages  takes where texts of templates stand while it is written
+    """
+
+    target: Target
+    passages: list[TemplatePassage] = field(default_factory=list)
+
+    @contextmanager
+    def told(self, control: Control) -> Iterator[None]:
+        """Tell what a reader cannot follow by the names of the files, and by the template that has written it."""
+        try:
+            yield
+        except InputError as error:
+            raise InputError([self._told(problem, control) for problem in error.problems]) from error
+
+    def _told(self, problem: Problem, control: Control) -> Problem:
+        files = self.target.files
+        beside = {str(path): path.name for path in files.other_paths}
+        if problem.file == str(files.path):
+            return self._by_template(replace(problem, file=self.target.name), "", control)
+        if problem.file in beside:
+            name = beside[problem.file]
+            return self._by_template(replace(problem, file=name), name, control)
+        return problem
+
+    def _by_template(self, problem: Problem, file: str, control: Control) -> Problem:
+        written = self._written_by(file, problem.line, control)
+        return replace(problem, what=f"{problem.what} ({written})") if written else problem
+
+    def explained(self, verification: Verification, control: Control) -> Verification:
+        """Findings of checks that failed, with the template that has written their blocks."""
+        if not self.passages:
+            return verification
+        checks = tuple(check if check.passed else self._checked(check, control) for check in verification.checks)
+        return replace(verification, checks=checks)
+
+    def _checked(self, check: Check, control: Control) -> Check:
+        return replace(check, places=tuple(self._place(place, control) for place in check.places))
+
+    def _place(self, place: Place, control: Control) -> Place:
+        written = self._written_by(place.nc_file, place.nc_line, control)
+        return replace(place, text=f"{place.text} ({written})") if written else place
+
+    def _written_by(self, file: str, line: int, control: Control) -> str:
+        for passage in self.passages:
+            text = passage.text_at(file, line)
+            if text is not None:
+                return f"{text.strip()}: written by {_named(passage, control)}"
+        return ""
+
+    def cause(self, checks: Sequence[Check], control: Control) -> str:
+        """Which template is likely to have made checks fail, in words; empty if none of the user's is near."""
+        places = [place for check in checks if not check.passed for place in check.places if place.nc_line]
+        for place in places:
+            for passage in self.passages:
+                if passage.text_at(place.nc_file, place.nc_line) is not None:
+                    return f"{place.block_name} is written by {_named(passage, control)}"
+        if not places:
+            return ""
+        first = min(places, key=lambda each: (each.nc_file, each.nc_line))
+        above = [each for each in self.passages if each.file == first.nc_file and each.line < first.nc_line]
+        if not above:
+            return ""
+        nearest = max(above, key=lambda each: each.line)
+        return f"the last text of a template above {first.block_name} is that of {_named(nearest, control)}"
+
+
+def _named(passage: TemplatePassage, control: Control) -> str:
+    file, line = control.templates[passage.template].place_of(0)
+    return f"template {passage.template} ({file}:{line})"

@@ -1,0 +1,107 @@
+"""What posting gives back."""
+
+import io
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from trunnion.errors import InputError, Problem, RefusedError, Severity
+from trunnion.jobs.inputs.reading import FilePath
+from trunnion.jobs.papers.reports import write_post_report
+from trunnion.jobs.targets import written_text
+from trunnion.model.motion import Decision, Motion, Plan
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Toolpath
+from trunnion.verification import Check, Verification
+from trunnion.wording import counted
+
+if TYPE_CHECKING:  # imported where a program is simulated
+    from trunnion.jobs.simulate.result import SimulationResult
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class PostResult:
+    """A program that was posted.
+
+    toolpaths     what it was made from
+    plan          motions on the machine, decisions, problems
+    verification  what the proof found; None: no reader knows the control, and nothing is proven (only with ``force``)
+    problems      warnings about CL files, plan and program, and what ``force`` overruled
+    output        file of the program; None: it was not written to a file
+    subprograms   files of its subprograms
+    simulation    what it cuts and hits; None: it was not simulated
+    encoding      of its files
+    """
+
+    toolpaths: tuple[Toolpath, ...]
+    plan: Plan
+    verification: Verification | None
+    problems: tuple[Problem, ...]
+    output: Path | None = None
+    subprograms: tuple[Path, ...] = ()
+    simulation: "SimulationResult | None" = None
+    encoding: str = "utf-8"
+    _memory: io.BytesIO | None = None
+
+    def __repr__(self) -> str:
+        """Return what matters in a notebook: the columns would fill pages."""
+        rows = "not run" if self.run is None else counted(len(self.run), "motion")
+        place = "" if self.output is None else f", output={str(self.output)!r}"
+        return f"PostResult(passed={self.passed}, {rows}{place})"
+
+    @property
+    def passed(self) -> bool:
+        """Whether the program is proven and may run."""
+        overruled = any(problem.severity is Severity.ERROR for problem in self.problems)
+        return self.verification is not None and self.verification.passed and not overruled
+
+    @property
+    def checks(self) -> tuple[Check, ...]:
+        """The questions that were put to the program, and their answers; none where nothing is proven."""
+        return () if self.verification is None else self.verification.checks
+
+    @property
+    def run(self) -> Run | None:
+        """The program as it was read back and run: one row a motion, in columns."""
+        return None if self.verification is None else self.verification.run
+
+    @property
+    def motions(self) -> tuple[Motion, ...]:
+        """The operations on the machine, as they were planned."""
+        return self.plan.motions
+
+    @property
+    def decisions(self) -> tuple[Decision, ...]:
+        """Why the axes were planned as they are."""
+        return self.plan.decisions
+
+    @property
+    def text(self) -> str | None:
+        """The program, from its file where it has one; None where it went to a stream."""
+        return written_text(self.output, self._memory, self.encoding)
+
+    def write_report(self, file: FilePath) -> None:
+        """Write a report of the proof: a page that works offline (``.html``), or data (``.json``).
+
+        Raises
+        ------
+        InputError
+            When the name ends otherwise, nothing was proven, the program was posted without columns, or the file cannot
+            be written.
+        """
+        if self.verification is None:
+            raise InputError(
+                Problem(str(file), 0, "nothing was proven", "post for a control that has a reader", code="CTL920")
+            )
+        write_post_report(self.verification, file, self.decisions, self.simulation)
+
+
+class ProofFailedError(RefusedError):
+    """The program was written and read back, and does not do what its CL files ask for.
+
+    ``result`` has the verification with its checks, and writes its report; ``passed`` is False, and there is no file.
+    """
+
+    def __init__(self, problem: Problem, result: PostResult) -> None:
+        super().__init__(problem)
+        self.result = result

@@ -1,0 +1,76 @@
+"""Settings in a project: read from its tables, and what is wrong with them told where it states them."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import Any, Final
+
+from trunnion.definitions import Table
+from trunnion.errors import ArgumentName, InputError, Problem
+from trunnion.jobs.inputs.settings import Settings, SettingValue, as_texts
+from trunnion.jobs.project.project import PostedSetup
+
+#: Settings that a table may have.
+_MOST_SETTINGS: Final = 500
+
+#: Settings that have a key of their own, which the simulation reads too.
+_OWN_KEYS: Final = {"zero": "zero_mm", "tool_length": "tool_length_mm", "programs": "divide"}
+
+
+def read_settings(table: Table) -> tuple[dict[str, SettingValue], dict[str, tuple[str, int, str]]]:
+    """Settings that a table states, in its own keys and in its table ``settings``; and where."""
+    own = table.table("settings")
+    found: dict[str, Any] = {}
+    places = {"settings": (*table.location("settings" if "settings" in table else ""), own.path)}
+    own.names()  # the control chooses them: each is known or told below
+    stated = own.to_dict()
+    if len(stated) > _MOST_SETTINGS:
+        table.add_problem("settings", f"has {len(stated)} keys", f"no control has more than {_MOST_SETTINGS}")
+        stated = {}
+    for name, value in stated.items():
+        if key := _OWN_KEYS.get(name):
+            own.add_problem(name, f"is said by the key {key}", f"write {key} beside the table of settings")
+            continue
+        try:
+            as_texts({name: value})  # type: ignore[dict-item]  # of any type: that is what is judged
+        except InputError as error:
+            own.problems.extend(
+                replace(each, file=own.location(name)[0], line=own.location(name)[1]) for each in error.problems
+            )
+            continue
+        found[name], places[name] = value, (*own.location(name), own.key_path(name))
+    own.mark_read(*own.keys())
+    for name, key in (("zero", "zero_mm"), ("tool_length", "tool_length_mm"), ("work_offset", "work_offset")):
+        if key not in table:
+            continue
+        if name in found:
+            own.add_problem(name, f"is said by the key {key} too", "write one of them")
+        value = table.to_dict()[key]
+        if isinstance(value, str | float | int | list):  # anything else is a mistake that is told already
+            found[name], places[name] = value, (*table.location(key), table.key_path(key))
+    return found, places
+
+
+@contextmanager
+def told_in_project(setup: PostedSetup, given: Settings) -> Iterator[None]:
+    """Tell problems with settings where the project states them; those that are ``given`` otherwise as they are."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError([_in_project(problem, setup, given) for problem in error.problems]) from None
+
+
+def _in_project(problem: Problem, setup: PostedSetup, given: Settings) -> Problem:
+    if not isinstance(problem.file, ArgumentName) or problem.file != "settings":
+        return problem
+    name = problem.what.partition(" ")[0]
+    if name in given:
+        return problem
+    what = problem.what.replace("programs is operations", 'programs is "subprograms"')  # the words of divide
+    cure = problem.cure.replace("programs=operations", 'divide = "subprograms"')
+    problem = replace(problem, what=what, cure=cure)
+    if name in setup.places:
+        file, line, key = setup.places[name]
+        return replace(problem, file=file, line=line, what=f"{key}{problem.what.removeprefix(name)}")
+    file, line, key = setup.places["settings"]
+    return replace(problem, file=file, line=line, what=f"{key}: {problem.what}")

@@ -1,0 +1,1 @@
+"""Cut stock with NC programs."""

@@ -1,0 +1,234 @@
+"""The simulation of a program while it is posted: what it finds becomes checks of the proof.
+
+In:     what ``trunnion.post`` was given as ``simulation``, the run of the program and its toolpaths.
+Out:    the result of the simulation, and its checks.
+"""
+
+import math
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Final, TypeAlias
+
+from trunnion.definitions.messages import did_you_mean
+from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.jobs.inputs.arguments import check_path, checked_angles
+from trunnion.jobs.inputs.reading import FilePath, as_machine
+from trunnion.jobs.observer import Observer
+from trunnion.jobs.post.writing import named_run
+from trunnion.jobs.project.file import is_project, library_files, project_files, read_project
+from trunnion.jobs.simulate.result import SimulationResult
+from trunnion.jobs.simulate.setups import SetupInput, SimulationInput
+from trunnion.jobs.simulate.steps import simulate_setups
+from trunnion.machines import Machine
+from trunnion.model.clamping import Clamping, are_one_angle, number
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Toolpath
+from trunnion.simulation.findings import What
+from trunnion.simulation.meshes import TriangleMesh, load_mesh
+from trunnion.simulation.setup_findings import SimulationFinding
+from trunnion.simulation.stock.solids import is_mesh, stock_shape
+from trunnion.simulation.turned_parts import as_clamped
+from trunnion.verification import Check, Place
+from trunnion.wording import counted
+
+#: Arguments of ``simulate`` by their names, or the path of a project file.
+SimulationLike: TypeAlias = Mapping[str, Any] | FilePath
+
+#: Those of the whole simulation, and those of its set-up.
+_WHOLE: Final = ("stock", "cell", "accuracy", "near")
+_OF_SETUP: Final = ("part", "fixtures", "tools", "libraries", "unit")
+
+#: Places that a check keeps.
+_MOST_PLACES: Final = 50
+
+
+def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput:
+    """What is to be simulated; programs, and how the part is clamped, are not known yet.
+
+    Raises
+    ------
+    InputError
+        If it names what is none, the project has several set-ups or is for another machine, or has no stock.
+    """
+    project = given.get("project") if isinstance(given, Mapping) else given
+    stated = {name: value for name, value in given.items() if name != "project"} if isinstance(given, Mapping) else {}
+    for name in stated:
+        if name not in (*_WHOLE, *_OF_SETUP):
+            names = ("project", *_WHOLE, *_OF_SETUP)
+            cure = did_you_mean(name, names) or f"known here: {', '.join(names)}"
+            raise InputError(argument_problem("simulation", f"has no {name!r}", cure, code="SIM110"))
+    stated = {name: value for name, value in stated.items() if value is not None and value != () and value != []}
+    if project is None:
+        base = SimulationInput("", [SetupInput((), machine)])
+    else:
+        base = _of_project(check_path("simulation", project), machine, stated)
+    own = {name: stated[name] for name in _OF_SETUP if name in stated}
+    setup = replace(base.setups[0], machine=machine, **own)
+    found = replace(base, setups=[setup], **{name: stated[name] for name in _WHOLE if name in stated})
+    if not found.stock:
+        raise InputError(
+            argument_problem("stock", "is missing", "give it, or a project file that states it", code="SIM110")
+        )
+    if isinstance(found.stock, str) and not is_mesh(found.stock):
+        stock_shape(found.stock)  # what cannot be is told before any work
+    return found
+
+
+def simulated_as_clamped(given: SimulationInput, clamping: Clamping) -> SimulationInput:
+    """What is simulated with a part that is clamped so.
+
+    Raises
+    ------
+    InputError
+        If a project states that it is clamped otherwise.
+    """
+    setup = given.setups[0]
+    for name, angle in (("turn", clamping.turn), ("tilt", clamping.tilt)):
+        wanted = getattr(setup, name)
+        if wanted is not None and not are_one_angle(wanted, angle):
+            file, line, key = setup.places[name]
+            what = f"{key} is {number(wanted)}, and the part of the post is clamped at {number(angle)} degrees"
+            raise InputError(Problem(file, line, what, f"give the {name} {number(wanted)}", code="SIM113"))
+    return replace(given, setups=[replace(setup, turn=clamping.turn, tilt=clamping.tilt)])
+
+
+def simulated_bodies(given: SimulationInput) -> Iterator[tuple[str, TriangleMesh]]:
+    """Yield what the program is simulated with: ``stock``, ``part`` and ``fixture``, each with its mesh as clamped.
+
+    Meshes are read again, and nothing is told of them: the simulation has done it.
+    """
+    turn = Clamping(*checked_angles(given.setups[0].turn, given.setups[0].tilt)).rotation
+    for kind, mesh in _drawn_bodies(given):
+        yield kind, as_clamped(mesh, turn)
+
+
+def _drawn_bodies(given: SimulationInput) -> Iterator[tuple[str, TriangleMesh]]:
+    setup = given.setups[0]
+    yield "stock", stock_shape(given.stock).as_mesh()
+    for kind, meshes in (("part", [] if setup.part is None else [setup.part]), ("fixture", setup.fixtures)):
+        for mesh in meshes:
+            yield kind, mesh if isinstance(mesh, TriangleMesh) else load_mesh(mesh)
+
+
+def _of_project(path: Path, machine: Machine, stated: Mapping[str, Any]) -> SimulationInput:
+    """A project, whose programs are not looked at: the one that is posted is simulated."""
+    if not is_project(path):
+        cure = "give the path of a project (.toml)"
+        raise InputError(Problem(str(path), 0, "is no project of a simulation", cure, code="SIM112"))
+    found = read_project(path, ("nc", "machine", *stated))
+    if len(found.setups) > 1:
+        what, cure = f"has {len(found.setups)} set-ups, and one program is posted", "write a project of this one set-up"
+        raise InputError(Problem(str(path), 0, what, cure, code="SIM112"))
+    setup = found.setups[0]
+    if setup.machine and as_machine(setup.machine).key != machine.key:
+        file, line, key = setup.places["machine"]
+        what = f"{key} is {as_machine(setup.machine).key}, and the program is posted for {machine.key}"
+        raise InputError(Problem(file, line, what, "post it for the machine of the project", code="SIM113"))
+    for name, own in (("zero", machine.workpiece_zero), ("tool_length", machine.tool_length)):
+        wanted = getattr(setup, name)
+        if wanted is not None and wanted != own:
+            file, line, key = setup.places[name]
+            value = ",".join(f"{number:g}" for number in wanted) if isinstance(wanted, tuple) else f"{wanted:g}"
+            what = f"{key} is {value}, and the post has {'none' if own is None else 'another one'}"
+            raise InputError(Problem(file, line, what, f"give setting {name}={value}", code="SIM113"))
+    if setup.until is not None:
+        file, line, key = found.places["until"]
+        what = f"{key} is {setup.until}, and the program that is posted is simulated as a whole"
+        raise InputError(Problem(file, line, what, "leave it out", code="SIM113"))
+    return replace(found, setups=[replace(setup, zero=None, tool_length=None)])
+
+
+def simulation_files(given: SimulationLike) -> list[FilePath]:
+    """The files that a simulation reads, none of which may be written over."""
+    project = given.get("project") if isinstance(given, Mapping) else given
+    named = [] if project is None else [project, *project_files([project], ("nc",))]
+    if isinstance(given, Mapping):
+        for name in ("stock", "part", "fixtures", "libraries"):
+            value = given.get(name)
+            several = [value] if isinstance(value, str | os.PathLike) or not isinstance(value, Iterable) else value
+            files = [each for each in several if isinstance(each, str | os.PathLike)]
+            named += library_files(files) if name == "libraries" else files
+    return named
+
+
+def simulate_posted(
+    given: SimulationInput, run: Run | None, name: str, toolpaths: Sequence[Toolpath], observer: Observer
+) -> SimulationResult:
+    """Simulate the program that was posted; ``name`` is what messages call it, as its file has no name yet.
+
+    Raises
+    ------
+    InputError
+        If nobody reads it, a file cannot be used, or nothing says the form of a tool.
+    """
+    if run is None:
+        what = "nobody reads programs of this control, and what is not read cannot be simulated"
+        raise InputError(argument_problem("simulation", what, "leave it out", code="SIM115"))
+    setup = replace(
+        given.setups[0], programs=(named_run(run, name),), machine=run.machine, cl=toolpaths, cl_is_turned=True
+    )
+    return simulate_setups(replace(given, setups=[setup]), observer)
+
+
+def simulation_checks(found: SimulationResult) -> tuple[Check, ...]:
+    """The questions that a simulation answers, as checks of a proof."""
+    of_removal = [each for each in found.findings if each.kind not in (What.BODY, What.GOUGE)]
+    hits = [each for each in found.findings if each.kind == What.BODY]
+    broken = [remark for remark in found.remarks if remark.severity is Severity.ERROR]
+    checks = [
+        _check(found, "removal", "what takes material away", of_removal, broken),
+        _check(found, "collision", "what touches", hits, ()),
+    ]
+    if found.gouge is not None:
+        gouges = [each for each in found.findings if each.kind == What.GOUGE]
+        checks.append(_gouge_check(found, gouges))
+    return tuple(checks)
+
+
+def _check(
+    found: SimulationResult,
+    key: str,
+    title: str,
+    findings: Sequence[SimulationFinding],
+    broken: Sequence[Problem],
+) -> Check:
+    passed = not findings and not broken
+    deepest = max((each.depth for each in findings), default=None)
+    if findings:
+        worst = max(findings, key=lambda each: each.depth)
+        summary = f"{counted(len(findings), 'finding')}, the deepest {worst.depth:.3f} mm: {_words(worst)}"
+    elif broken:
+        summary = broken[0].what
+    elif key == "removal":
+        summary = f"{found.removed:.0f} mm³ removed by turning cutters at feed, and by nothing else"
+    elif found.pairs:
+        summary = f"nothing touches of {counted(found.pairs, 'pair')} of bodies that were checked"
+    else:
+        summary = "nothing was checked: there are neither fixtures, nor zero and tool length for the machine's bodies"
+    places = (*_places(findings), *(Place(each.line, -1, math.nan, each.what, code=each.code) for each in broken))
+    return Check(key, title, passed, summary, deepest, 0.0 if key == "collision" else found.limit, "mm", places)
+
+
+def _gouge_check(found: SimulationResult, findings: Sequence[SimulationFinding]) -> Check:
+    assert found.gouge is not None
+    largest = found.gouge.largest
+    passed = not findings and largest <= found.limit
+    summary = f"missing from the part: {largest:.3f} mm at most, {found.gouge.volume:.2f} mm³"
+    if findings:
+        worst = max(findings, key=lambda each: each.depth)
+        summary += f", by line {worst.line}; {counted(len(findings), 'gouge')}"
+    places = tuple(_places(findings))
+    return Check("gouge", "the design against the stock", passed, summary, largest, found.limit, "mm", places)
+
+
+def _places(findings: Sequence[SimulationFinding]) -> Iterator[Place]:
+    for each in sorted(findings, key=lambda finding: -finding.depth)[:_MOST_PLACES]:
+        x, y, z = each.place
+        text = f"{_words(each)}, {each.depth:.3f} mm deep at X{x:.3f} Y{y:.3f} Z{z:.3f}"
+        yield Place(each.line, each.block, each.depth, text, each.cl_file, each.cl_line if each.cl_file else 0)
+
+
+def _words(finding: SimulationFinding) -> str:
+    return f"{finding.kind}: {finding.between[0]}, {finding.between[1]}"

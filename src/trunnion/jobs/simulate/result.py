@@ -1,0 +1,127 @@
+"""What a simulation found, as a record for scripts, data and reports."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+from trunnion.errors import Problem, Severity
+from trunnion.jobs.inputs.reading import FilePath
+from trunnion.simulation.setup_findings import AirCut, NearMiss, SimulatedOperation, SimulationFinding, setup_findings
+from trunnion.simulation.simulator import Simulation
+from trunnion.simulation.steps import CutSetup
+from trunnion.simulation.stock.deviation import Excess
+
+#: Air cuts that are told, the longest ones.
+_MOST_AIR: Final = 20
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SimulationResult:
+    """What a simulation found.
+
+    programs   files, in their order
+    machine    its key; of several set-ups their keys
+    cell       width of the cells along X, Y and Z, mm
+    accuracy   how far motions and tools are off at most, mm; across a ray another 0.41 cells
+    limit      what is no deeper than this is not told, mm
+    removed    mm³ of the stock
+    operations consecutive blocks with one tool, ``SimulatedOperation``
+    findings   what must not be, ``SimulationFinding``; in the data they are ``collisions``
+    near       bodies that come near each other, ``NearMiss``
+    air        the longest air cuts, ``AirCut``
+    left       what the stock has beyond the part; None without a part. ``volume`` in mm³, ``largest`` in mm, places,
+               each ``at`` (mm) and its ``thickness``
+    gouge      what of the part is missing; None without a part. Both are those of the last set-up
+    remarks    what was not simulated, or was taken for granted
+    seconds    of computing
+    simulation  that of the last set-up: ``simulation.stock`` is the finished stock
+    setup      its name, where this is one of several
+    setups     the results of each, where there are several
+    pairs      of bodies that were checked against each other, of all programs
+    turn, tilt of the part as it is clamped, degrees; all places are those of the part as it is drawn. Of several
+               set-ups those of the last one
+    """
+
+    programs: tuple[str, ...]
+    machine: str
+    cell: tuple[float, float, float]
+    accuracy: float
+    limit: float
+    removed: float
+    operations: tuple[SimulatedOperation, ...]
+    findings: tuple[SimulationFinding, ...]
+    near: tuple[NearMiss, ...]
+    air: tuple[AirCut, ...]
+    left: Excess | None
+    gouge: Excess | None
+    remarks: tuple[Problem, ...]
+    seconds: float
+    simulation: Simulation
+    setup: str = ""
+    setups: tuple["SimulationResult", ...] = ()
+    pairs: int = 0
+    turn: float = 0.0
+    tilt: float = 0.0
+
+    @property
+    def passed(self) -> bool:
+        """Whether nothing was found that must not be: no finding, no gouge, no program that breaks off."""
+        if self.setups:
+            return all(each.passed for each in self.setups)
+        broken = any(remark.severity is Severity.ERROR for remark in self.remarks)
+        gouged = self.gouge is not None and self.gouge.largest > self.limit
+        return not self.findings and not gouged and not broken
+
+    def write_report(self, file: FilePath) -> None:
+        """Write a report: a page that works offline (``.html``), or data (``.json``).
+
+        Raises
+        ------
+        InputError
+            When the name ends otherwise, the file cannot be written, or it is one of the programs.
+        """
+        from trunnion.jobs.papers.simulation_report import write_simulation_report
+
+        write_simulation_report(self, file)
+
+
+def make_result(cut: CutSetup) -> SimulationResult:
+    """The result of a set-up."""
+    found, own, jobs = cut.simulation, setup_findings(cut), cut.jobs
+    x, y, z = found.stock.lattice.cell.tolist()
+    return SimulationResult(
+        tuple(job.run.files[0] for job in jobs), cut.setup.machine.key, (x, y, z),
+        found.setup.tolerance + found.error, found.setup.limit, found.start_volume - found.stock.volume,
+        own.operations, own.findings, own.near, _longest(own.air),
+        found.left, found.gouge, cut.remarks, found.seconds, found, cut.setup.name, pairs=cut.pairs,
+        turn=cut.setup.clamping.turn, tilt=cut.setup.clamping.tilt,
+    )  # fmt: skip
+
+
+def join_results(results: Sequence[SimulationResult]) -> SimulationResult:
+    """The results of set-ups in their order as one; a single one stays as it is."""
+    last = results[-1]
+    if len(results) == 1:
+        return last
+    return replace(
+        last,
+        programs=tuple(program for each in results for program in each.programs),
+        machine=", ".join(dict.fromkeys(each.machine for each in results)),
+        cell=max((each.cell for each in results), key=max),
+        accuracy=max(each.accuracy for each in results),
+        limit=max(each.limit for each in results),
+        removed=sum(each.removed for each in results),
+        operations=tuple(one for each in results for one in each.operations),
+        findings=tuple(one for each in results for one in each.findings),
+        near=tuple(one for each in results for one in each.near),
+        air=_longest([one for each in results for one in each.air]),
+        remarks=tuple(one for each in results for one in each.remarks),
+        seconds=sum(each.seconds for each in results),
+        setup="",
+        setups=tuple(results),
+        pairs=sum(each.pairs for each in results),
+    )
+
+
+def _longest(air: Iterable[AirCut]) -> tuple[AirCut, ...]:
+    return tuple(sorted(air, key=lambda each: -each.length)[:_MOST_AIR])

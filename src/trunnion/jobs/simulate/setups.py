@@ -1,0 +1,197 @@
+"""What is simulated, as arguments or a project file state it, and what is read for it.
+
+In:     ``SimulationInput``: stock and set-ups by names of files, texts and numbers.
+Out:    ``PreparedSetup`` records: runs, bodies of tools, meshes.
+Units:  mm, degrees.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Final, TypeAlias
+
+import numpy as np
+
+from trunnion import readers
+from trunnion.errors import ArgumentName, InputError, Problem, Severity, argument_problem
+from trunnion.jobs.inputs.arguments import check_paths, checked_angles, wrong_argument
+from trunnion.jobs.inputs.bodies import KnownTools, fixture_meshes, known_tools, listed, read_mesh
+from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine, as_run, as_toolpaths
+from trunnion.jobs.inputs.settings import set_up_machine, work_offset_setting
+from trunnion.jobs.observer import Observer
+from trunnion.jobs.verify.verifying import rapid_feed_of
+from trunnion.machines import Machine
+from trunnion.model.clamped_toolpaths import toolpaths_clamped
+from trunnion.model.clamping import Clamping
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
+from trunnion.placing.program_heads import unlike_bodies
+from trunnion.simulation.meshes import DEVIATION, TriangleMesh
+from trunnion.simulation.prepared_setup import PreparedSetup
+from trunnion.simulation.stock.turning import Pose
+from trunnion.simulation.tools.choice import NO_CALL
+from trunnion.simulation.tools.profile import ToolShape
+from trunnion.verification import restore_rapids
+from trunnion.wording import counted
+
+#: Argument -> file, line and key of a project that states it.
+Places: TypeAlias = Mapping[str, tuple[str, int, str]]
+
+#: Fewer errors do not say that a file is no program of the machine.
+_FEW_ERRORS: Final = 5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SetupInput:
+    """One set-up: the stock as it is clamped, and what runs there. The rest as ``trunnion.simulate`` has it.
+
+    name         for findings; empty where there is one set-up only
+    pose         where the last set-up's workpiece frame lies in this one's; None: where it was
+    part         None: that of the last set-up, where it lies now
+    work_offset  in which the programs must cut; None: in any
+    turn, tilt   how the part is clamped, degrees; None: as it is drawn. Stock, part and fixtures are given as drawn
+    cl_is_turned  CL files, which are toolpaths, are turned already
+    places       where a project file states arguments
+    """
+
+    programs: Sequence[FilePath | Run]
+    machine: MachineLike
+    name: str = ""
+    pose: Pose | None = None
+    part: str | Path | TriangleMesh | None = None
+    fixtures: Sequence[str | Path | TriangleMesh] = ()
+    work_offset: str | None = None
+    tools: Iterable[str | ToolShape] = ()
+    libraries: Sequence[FilePath] = ()
+    unit: str | None = None
+    cl: ToolpathLike | Iterable[ToolpathLike] = ()
+    subprograms: Sequence[FilePath] = ()
+    zero: str | Iterable[float] | None = None
+    tool_length: str | float | None = None
+    until: str | int | None = None
+    turn: float | None = None
+    tilt: float | None = None
+    cl_is_turned: bool = False
+    places: Places = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SimulationInput:
+    """Stock, and the set-ups in which it is cut one after another; the rest as ``trunnion.simulate`` has it."""
+
+    stock: str | Path | TriangleMesh
+    setups: Sequence[SetupInput]
+    cell: float | None = None
+    accuracy: float | None = None
+    near: float | None = None
+    stop_at: str | None = None
+    threads: int | None = None
+    places: Places = field(default_factory=dict)
+
+
+def prepare_setup(
+    given: SetupInput, remarks: list[Problem], observer: Observer, deviation: float = DEVIATION
+) -> PreparedSetup:
+    """Read all that a set-up needs; facets of exact surfaces are off them by ``deviation`` at most, mm.
+
+    Raises
+    ------
+    InputError
+        When a file or an argument cannot be used, or nothing says the form of a tool.
+    """
+    machine = as_machine(given.machine)
+    readers.reader_of(machine)
+    machine = set_up_machine(machine, given.zero, given.tool_length)
+    angles = checked_angles(given.turn, given.tilt)
+    part = None if given.part is None else read_mesh(given.part, "part", remarks, deviation)
+    fixtures = fixture_meshes(given.fixtures, remarks, deviation)
+    programs: list[FilePath | Run] = listed("nc", given.programs, Run)
+    if not programs:
+        raise wrong_argument("nc", given.programs, "give an NC program")
+    others, rapid_feed = check_paths("subprograms", given.subprograms), rapid_feed_of(machine)
+    runs = tuple(restore_rapids(as_run(program, machine, others), rapid_feed) for program in programs)
+    _check_programs(runs, machine)
+    remarks += _without_motion(runs)
+    for program in programs:
+        if not isinstance(program, Run):
+            remarks += unlike_bodies(Path(program), Clamping(*angles), machine)
+    toolpaths = as_toolpaths(given.cl, None, False, observer)
+    if not given.cl_is_turned:
+        toolpaths = toolpaths_clamped(toolpaths, *angles)
+    tools = _tools(runs, known_tools(given.tools, given.libraries, given.unit, toolpaths))
+    if given.work_offset is not None:
+        remarks += _other_offsets(runs, given.work_offset, machine)
+    return PreparedSetup(
+        machine, runs, tools, part, fixtures, toolpaths, Clamping(*angles), given.name, given.pose or Pose(),
+        given.until,
+    )  # fmt: skip
+
+
+@contextmanager
+def told_with_places(places: Places, setup: str = "") -> Iterator[None]:
+    """Tell problems with arguments at the places where a project states them, with the set-up that has them."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError([with_place(problem, places, setup) for problem in error.problems]) from None
+
+
+def with_place(problem: Problem, places: Places, setup: str = "") -> Problem:
+    """A problem with an argument where a project states it; any other as it is."""
+    if not isinstance(problem.file, ArgumentName) or problem.file not in places:
+        return problem
+    file, line, key = places[problem.file]
+    of_setup = f"{setup}: " if setup else ""
+    return replace(problem, file=file, line=line, what=f"{of_setup}{key}: {problem.what}")
+
+
+def _tools(runs: Sequence[Run], known: KnownTools) -> dict[str, ToolShape]:
+    """The bodies of the tools with which the programs move at feed or at rapid."""
+    called = [run.tools[int(index)] for run in runs for index in run.state.tool.distinct()]
+    in_spindle = any(tool.number == int(NO_CALL) for tool in known.stated)
+    if in_spindle or any(_cuts_without_call(run) for run in runs):
+        called.append(NO_CALL)
+        if not in_spindle:
+            what, cure = "the program cuts before it calls a tool", "state the one that is in the spindle: 0=ball:10"
+            raise InputError(argument_problem("tools", what, cure, code="SIM150"))
+    found = known.choose(called)
+    return found | ({"": found[NO_CALL]} if NO_CALL in found else {})
+
+
+def _cuts_without_call(run: Run) -> bool:
+    """Whether a program moves at feed before it calls a tool: the operator has put one in."""
+    rows = np.concatenate([run.state.tool.rows_with(index) for index, name in enumerate(run.tools) if not name])
+    return bool((run.kind[rows] != Kind.RAPID).any())
+
+
+def _check_programs(runs: Sequence[Run], machine: Machine) -> None:
+    """Refuse what is no program of the machine: more lines of it are not understood than it has motions."""
+    for run in runs:
+        wrong = sorted({(each.file, each.line): each for each in run.errors}.items())
+        if len(wrong) > max(_FEW_ERRORS, len(run)):
+            (file, line), first = wrong[0]
+            what = f"{first.text}; {counted(len(wrong), 'line')} of it not understood"
+            raise InputError(Problem(file, line, what, f"is this a program of {machine.key}?", code="SIM140"))
+
+
+def _without_motion(runs: Sequence[Run]) -> list[Problem]:
+    """Programs that move nothing: an error where none of a set-up does, for then nothing was simulated."""
+    severity = Severity.WARNING if any(len(run) for run in runs) else Severity.ERROR
+    what, cure = "there is no motion in it: nothing was simulated", "give the program that moves the tool"
+    return [Problem(run.files[0], 0, what, cure, severity, code="SIM148") for run in runs if not len(run)]
+
+
+def _other_offsets(runs: Sequence[Run], wanted: str, machine: Machine) -> list[Problem]:
+    """Errors where programs cut in another work offset than that of their set-up."""
+    offset = work_offset_setting(wanted, machine)
+    found = []
+    for run in runs:
+        rows = np.flatnonzero((run.kind != Kind.RAPID) & ~run.machine_frame & (run.work_offset != offset))
+        if len(rows):
+            row = int(rows[0])
+            other = int(run.work_offset[row])
+            name = run.work_offset_name(other) if other else "no work offset"
+            what, cure = f"cuts in {name}, and the set-up is in {wanted}", "select the set-up's own work offset"
+            found.append(Problem(run.files[int(run.file[row])], int(run.line[row]), what, cure, code="SIM141"))
+    return found

@@ -1,0 +1,183 @@
+"""Simulation of NC programs: what they leave of the stock, what they hit, and the part that comes out."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Final, Literal
+
+from trunnion.errors import InputError, argument_problem
+from trunnion.jobs.inputs.arguments import check_observer
+from trunnion.jobs.inputs.bodies import listed
+from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike
+from trunnion.jobs.observer import SILENT, Observer
+from trunnion.jobs.project.file import is_project, read_project
+from trunnion.jobs.simulate.result import SimulationResult
+from trunnion.jobs.simulate.setups import Places, SetupInput, SimulationInput
+from trunnion.jobs.simulate.steps import simulate_setups
+from trunnion.model.run import Run
+from trunnion.simulation.meshes import TriangleMesh
+from trunnion.simulation.tools.profile import ToolShape
+
+#: Arguments that differ from set-up to set-up.
+_OF_ONE_SETUP: Final = ("part", "fixtures", "subprograms", "zero", "tool_length", "turn", "tilt")
+
+
+def simulate(
+    nc: FilePath | Run | Iterable[FilePath | Run],
+    *,
+    machine: MachineLike | None = None,
+    stock: str | Path | TriangleMesh | None = None,
+    part: str | Path | TriangleMesh | None = None,
+    fixtures: Iterable[str | Path | TriangleMesh] = (),
+    near: float | None = None,
+    tools: Iterable[str | ToolShape] = (),
+    libraries: Sequence[FilePath] = (),
+    unit: Literal["mm", "inch"] | None = None,
+    cl: ToolpathLike | Iterable[ToolpathLike] = (),
+    subprograms: Sequence[FilePath] = (),
+    cell: float | None = None,
+    accuracy: float | None = None,
+    stop_at: Literal["none", "first"] | None = None,
+    until: str | int | None = None,
+    zero: str | Iterable[float] | None = None,
+    tool_length: str | float | None = None,
+    turn: float | None = None,
+    tilt: float | None = None,
+    threads: int | None = None,
+    observer: Observer = SILENT,
+) -> SimulationResult:
+    """Cut stock with NC programs as the control runs them, and find what they must not do.
+
+    Parameters
+    ----------
+    nc
+        A program or several, in the order in which they cut the same stock: paths, or their runs. Or one project file
+        (``.toml``; docs/projects.md), which has programs, stock and all others; what is given here stands in place of
+        it.
+    machine
+        The machine that runs them: a name, a path or a ``Machine``. Only a project may leave it out, and ``stock``.
+    stock
+        ``"box:X,Y,Z[,x0,y0,z0]"`` with its sizes and its lowest corner (0,0,0 by default), ``"cylinder:D,H[,z0]"``
+        standing on Z = z0 (0 by default) about X0 Y0, mm in the workpiece frame, or a closed mesh.
+    part
+        The design, a closed mesh in the workpiece frame.
+    fixtures
+        Meshes in the workpiece frame, which nothing may touch. They, the part and the bodies of the machine are checked
+        against each other and against the tool; the machine's only where ``zero`` and the tools' lengths are known.
+    near
+        Distance in mm from which on bodies are told that do not touch; by default only those that do.
+    tools
+        Tools as text, such as ``"3=ball:10,length=60,flutes=20"``, or as bodies; they come first.
+    libraries
+        Tool libraries, for tools that ``tools`` does not have.
+    unit
+        Length unit of LinuxCNC's tool tables, which state none.
+    cl
+        CL files, for tools that neither has.
+    subprograms
+        Files of the subprograms that the programs call. No others are opened.
+    cell
+        Width of the cells, mm; by default the 200th part of the stock's longest side, and at most half of the narrowest
+        tool.
+    accuracy
+        How far motions may be off, mm; by default a tenth of a cell.
+    stop_at
+        ``"first"``: end after the block of the first finding.
+    until
+        N number of the block before which the last program ends.
+    zero, tool_length
+        As for ``verify``: without both, machine positions (G53, M91) are taken as retracts along the tool axis.
+    turn, tilt
+        Of the part, degrees, where it is clamped otherwise than it is drawn, as for ``verify``. Stock, part and
+        fixtures are given as they are drawn, and so are all places that are told; CL files are turned.
+    threads
+        How many; by default as many as there are processors. The result is the same.
+    observer
+        Receives progress and warnings.
+
+    Returns
+    -------
+    SimulationResult
+        ``passed``; ``findings``, ``left`` and ``gouge``, ``operations``, and the stock in ``simulation``.
+
+    Raises
+    ------
+    InputError
+        When a file or an argument cannot be used, or nothing says the form of a tool.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> found = trunnion.simulate(
+    ...     "tests/golden/yl569/2_hub_rough.expected.mpf", machine="yl569",
+    ...     stock="box:80,40,40,-10,-20,-40", tools=["2=ball:8,length=80,flutes=40"], cell=1.0,
+    ... )
+    >>> [(operation.tool, round(operation.removed / 1000.0)) for operation in found.operations]
+    [('2', 2)]
+    """
+    check_observer(observer)
+    whole: dict[str, Any] = {
+        "stock": stock, "cell": cell, "accuracy": accuracy, "near": near, "stop_at": stop_at, "threads": threads,
+    }  # fmt: skip
+    own: dict[str, Any] = {
+        "machine": machine, "part": part, "fixtures": fixtures, "tools": tools, "libraries": libraries, "unit": unit,
+        "cl": cl, "subprograms": subprograms, "zero": zero, "tool_length": tool_length, "turn": turn, "tilt": tilt,
+    }  # fmt: skip
+    return simulate_setups(as_simulation_input(nc, whole, own, until), observer)
+
+
+def as_simulation_input(
+    nc: FilePath | Run | Iterable[FilePath | Run],
+    whole: Mapping[str, Any],
+    own: Mapping[str, Any],
+    until: str | int | None = None,
+) -> SimulationInput:
+    """What is simulated: arguments of ``simulate`` by their names, those of the whole and those of each set-up.
+
+    Raises
+    ------
+    InputError
+        If they contradict each other, or what a project would state is missing.
+    """
+    programs = listed("nc", nc, Run)
+    project = next((Path(each) for each in programs if not isinstance(each, Run) and is_project(Path(each))), None)
+    if project is not None:
+        if len(programs) > 1:
+            what, cure = f"{project} is a project, and stands beside other programs", "give it alone"
+            raise InputError(argument_problem("nc", what, cure, code="SIM111"))
+        given = [name for name, value in {**whole, **own}.items() if not _is_left_out(value)]
+        return _overruled(read_project(project, given), whole, own, until)
+    for name in ("machine", "stock"):
+        if {**whole, **own}.get(name) is None:
+            raise InputError(
+                argument_problem(name, "is missing", "give it, or a project file that states it", code="SIM110")
+            )
+    setup = SetupInput(programs=programs, until=until, **own)
+    return SimulationInput(setups=[setup], **whole)
+
+
+def _overruled(
+    project: SimulationInput, whole: Mapping[str, Any], own: Mapping[str, Any], until: str | int | None
+) -> SimulationInput:
+    """A project with what was given in its place."""
+    stated = {name: value for name, value in own.items() if not _is_left_out(value)}
+    several = [name for name in _OF_ONE_SETUP if name in stated and len(project.setups) > 1]
+    if several:
+        what, cure = "would be that of all set-ups of the project", "state it in the project"
+        raise InputError([argument_problem(name, what, cure, code="SIM111") for name in several])
+    last: dict[str, Any] = {} if until is None else {"until": until}
+    setups = [
+        replace(each, **stated, **(last if each is project.setups[-1] else {}), places=_without(each.places, stated))
+        for each in project.setups
+    ]
+    over = {name: value for name, value in whole.items() if value is not None}
+    return replace(project, setups=setups, places=_without(project.places, over | stated), **over)
+
+
+def _is_left_out(value: object) -> bool:
+    return value is None or (isinstance(value, list | tuple) and not value)
+
+
+def _without(places: Places, names: Iterable[str]) -> Places:
+    """The places of arguments that were not given otherwise."""
+    return {name: place for name, place in places.items() if name not in names}

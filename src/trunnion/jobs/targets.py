@@ -1,0 +1,107 @@
+"""Where a result goes: to a file, to a stream, or into memory."""
+
+import io
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import BinaryIO, TypeAlias
+
+from trunnion.errors import InputError, Problem
+from trunnion.files import OutputFiles, OutputGroup, OutputPlace, atomic_output, check_stream, resolve_output
+from trunnion.jobs.inputs.arguments import check_path
+
+#: A file by its path, a stream that takes bytes, or None: the result keeps the text.
+OutputLike: TypeAlias = str | os.PathLike[str] | BinaryIO | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Target:
+    """A result that is being written; nothing of it appears before the block of ``open_target`` has ended.
+
+    files   takes what is written
+    name    what messages call it
+    path    of the file; None: it is no file, or a device
+    memory  takes the text where there is no other place; None: there is
+    papers  places of its report and of other files about it, by what they are
+    """
+
+    files: OutputFiles
+    name: str = "the program"
+    path: Path | None = None
+    memory: io.BytesIO | None = None
+    papers: Mapping[str, OutputPlace] = field(default_factory=dict)
+
+    @property
+    def subprograms(self) -> tuple[Path, ...]:
+        """The files beside the first, once the block has ended."""
+        return tuple(self.path.with_name(file.name) for file in self.files.other_paths) if self.path else ()
+
+
+def check_output_name(argument: str, file: object, endings: Sequence[str], what: str) -> OutputPlace:
+    """The place of an output whose name tells its form, which is found out before any work; ``what`` says why it is so.
+
+    Raises
+    ------
+    InputError
+        If its name ends otherwise, or it cannot be written.
+    """
+    place = resolve_output(check_path(argument, file))
+    if Path(place.name).suffix.lower() not in endings:
+        raise InputError(Problem(place.name, 0, what, f"let its name end in {' or '.join(endings)}", code="FIL260"))
+    return place
+
+
+@contextmanager
+def open_target(
+    place: OutputLike,
+    *,
+    papers: Mapping[str, str | os.PathLike[str] | None] | None = None,
+    inputs: Iterable[str | os.PathLike[str]] = (),
+    group: OutputGroup | None = None,
+) -> Iterator[Target]:
+    """Open the place of a result.
+
+    Parameters
+    ----------
+    place
+        Of the result.
+    papers
+        Files about it by what they are (``report``), which appear with it; None: there is no such file.
+    inputs
+        Files that are read: none of them is written over.
+    group
+        Of jobs whose files appear together; None: the files of this one appear when the block ends.
+
+    Raises
+    ------
+    InputError
+        When a file cannot be written; this is found out before anything is computed.
+    """
+    beside = {what: resolve_output(file) for what, file in (papers or {}).items() if file is not None}
+    if group is not None:
+        assert isinstance(place, str | os.PathLike), "streams take one result alone"
+        found = resolve_output(place)
+        with group.open(found, papers=beside.values(), inputs=inputs) as files:
+            yield Target(files, found.name, Path(place), papers=beside)
+        return
+    if isinstance(place, str | os.PathLike):
+        found = resolve_output(place)
+        path = None if found.is_stream else Path(place)
+        with atomic_output(found, papers=beside.values(), inputs=inputs, is_job=True) as files:
+            yield Target(files, found.name, path, papers=beside)
+        return
+    memory = io.BytesIO() if place is None else None
+    stream: BinaryIO | None = memory if place is None else place
+    assert stream is not None
+    check_stream(stream, "output")
+    with atomic_output(stream, papers=beside.values(), inputs=inputs) as files:
+        yield Target(files, memory=memory, papers=beside)
+
+
+def written_text(path: Path | None, memory: io.BytesIO | None, encoding: str = "utf-8") -> str | None:
+    """What was written to a file or into memory; None where it went to a stream."""
+    if memory is not None:
+        return memory.getvalue().decode(encoding)
+    return None if path is None else path.read_bytes().decode(encoding)

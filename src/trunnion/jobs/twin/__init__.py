@@ -1,0 +1,1 @@
+"""A program as a running machine, and recordings of machines."""

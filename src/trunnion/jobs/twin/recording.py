@@ -1,0 +1,187 @@
+"""Recordings of machines: made by an OPC UA client, and read."""
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+from urllib.parse import urlsplit
+
+from trunnion.errors import InputError, Problem, argument_problem
+from trunnion.extras import import_extra
+from trunnion.jobs.inputs.arguments import check_observer, check_path, wrong_argument
+from trunnion.jobs.inputs.reading import FilePath
+from trunnion.jobs.observer import SILENT, Observer
+from trunnion.jobs.targets import check_output_name
+from trunnion.model.recording import Recording
+from trunnion.twin.limits import LONGEST_RATE, SHORTEST_RATE
+from trunnion.twin.recording.files import check_is_new
+from trunnion.twin.recording.nodes import load_nodes
+from trunnion.twin.recording.reading import read_recording as read_file
+from trunnion.user_cache import user_data
+
+if TYPE_CHECKING:
+    from trunnion.twin.recording.feed import MachineFeed
+    from trunnion.twin.recording.recorder import RecordingSummary
+
+_SUFFIXES: Final = (".csv", ".parquet")
+
+
+def _ignore(_names: tuple[str, ...]) -> None:
+    """Nobody asked what is recorded."""
+
+
+def record(
+    address: str,
+    *,
+    output: FilePath,
+    nodes: FilePath = "cnc",
+    seconds: float | None = None,
+    rate: float = 20.0,
+    secure: bool = False,
+    trust: str = "",
+    user: str = "",
+    password: str = "",
+    ready: Callable[[tuple[str, ...]], None] = _ignore,
+    observer: Observer = SILENT,
+) -> "RecordingSummary":
+    """Record what a machine, or a twin, shows by OPC UA, until the time is over or Ctrl-C.
+
+    Parameters
+    ----------
+    address
+        Of its server, ``opc.tcp://HOST:PORT/…``.
+    output
+        The file, ``.csv`` or ``.parquet``. One that exists is never written over.
+    nodes
+        What is recorded: ``"cnc"``, ``"sinumerik"``, ``"heidenhain"``, or a file (.toml).
+    seconds
+        How long; None: until Ctrl-C.
+    rate
+        Milliseconds between two looks of the server at its variables, 5 to 60000.
+    secure
+        Sign and encrypt; the certificate of the client is made on first use.
+    trust
+        Fingerprint (SHA-1) of the server's certificate; needed with ``secure``.
+    user, password
+        Empty: anonymous. A password is sent on a secure channel alone.
+    ready
+        Is called with the names of the columns when recording begins.
+    observer
+        Is told when the connection breaks and when it is there again.
+
+    Raises
+    ------
+    InputError
+        When an argument cannot be used, the machine cannot be connected to, the file exists or cannot be written, or
+        the extra ``twin`` is not installed.
+    """
+    check_observer(observer)
+    place = check_output_name("output", output, _SUFFIXES, "a recording is CSV or Parquet")
+    check_is_new(place)
+    if seconds is not None and not 0.0 < _number("seconds", seconds) < math.inf:
+        raise wrong_argument("seconds", seconds, "give a number above 0, or None: until Ctrl-C")
+    if place.path.suffix.lower() == ".parquet":
+        import_extra("pyarrow.parquet", "twin")
+    feed = machine_feed(
+        address, nodes=nodes, rate=rate, secure=secure, trust=trust, user=user, password=password, observer=observer
+    )
+    from trunnion.twin.recording.recorder import record as record_feed
+
+    return record_feed(feed, place, seconds, ready)
+
+
+def machine_feed(
+    address: str,
+    *,
+    nodes: FilePath = "cnc",
+    rate: float = 20.0,
+    secure: bool = False,
+    trust: str = "",
+    user: str = "",
+    password: str = "",
+    observer: Observer = SILENT,
+) -> "MachineFeed":
+    """A machine that can be listened to; arguments as for ``record``.
+
+    Raises
+    ------
+    InputError
+        When an argument cannot be used, or the extra ``twin`` is not installed.
+    """
+    check_address(address)
+    if not SHORTEST_RATE <= _number("rate", rate) <= LONGEST_RATE:
+        raise wrong_argument("rate", rate, "give milliseconds from 5 to 60000")
+    if user and not secure:
+        raise InputError(
+            argument_problem("user", "needs a channel that is encrypted", "add secure=True", code="TWN210")
+        )
+    listed = load_nodes(check_path("nodes", nodes))
+    import_extra("asyncua", "twin")
+    from trunnion.twin.recording.client import Access
+    from trunnion.twin.recording.feed import MachineFeed
+
+    access = Access(address, _folder() if secure else None, trust, user, password)
+    return MachineFeed(access, listed, rate, lambda problem: observer.problems([problem]))
+
+
+def check_address(address: object) -> None:
+    """Refuse what is no address of an OPC UA server, and one with a password in it.
+
+    Raises
+    ------
+    InputError
+        If it is none.
+    """
+    cure = "write opc.tcp://HOST:PORT/…, as the server names it"
+    try:
+        parts = urlsplit(address) if isinstance(address, str) else None
+        usable = parts is not None and parts.scheme == "opc.tcp" and bool(parts.hostname) and (parts.port or 1) > 0
+    except ValueError:
+        parts, usable = None, False
+    if parts is None or not usable:
+        raise wrong_argument("address", address, cure)
+    if "@" in parts.netloc:
+        raise InputError(
+            argument_problem(
+                "address", "has a user in it", "give the user with argument user=NAME, and no password", code="TWN210"
+            )
+        )
+
+
+def read_recording(file: FilePath) -> Recording:
+    """Read a recording of a machine, CSV or Parquet.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be used, or with its mistakes.
+    """
+    return read_file(check_path("file", file))
+
+
+def as_recording(recorded: object) -> Recording:
+    """A recording, or that of a file.
+
+    Raises
+    ------
+    InputError
+        If it is neither.
+    """
+    return recorded if isinstance(recorded, Recording) else read_file(check_path("recorded", recorded))
+
+
+def _folder() -> Path:
+    folder = user_data()
+    if folder is None:
+        raise InputError(
+            Problem(
+                "trunnion", 0, "you have no folder for data", "set HOME, or record without secure=True", code="TWN120"
+            )
+        )
+    return folder / "trunnion" / "twin"
+
+
+def _number(name: str, value: object) -> float:
+    if isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
+        return float(value)
+    raise wrong_argument(name, value, "give a number")

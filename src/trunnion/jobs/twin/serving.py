@@ -1,0 +1,247 @@
+"""The twin of a machine: a program that runs in time, for OPC UA and MTConnect clients."""
+
+import ipaddress
+import math
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from trunnion.cl import is_cl_file
+from trunnion.encoding import decode
+from trunnion.errors import InputError, Problem, RefusedError
+from trunnion.extras import import_extra
+from trunnion.files import atomic_file
+from trunnion.jobs.inputs.arguments import check_path, check_paths, wrong_argument
+from trunnion.jobs.inputs.input_files import machine_files
+from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run
+from trunnion.jobs.inputs.settings import set_up_machine
+from trunnion.jobs.targets import check_output_name
+from trunnion.jobs.verify.verifying import rapid_feed_of
+from trunnion.model.run import Run
+from trunnion.timing import time_run
+from trunnion.twin.limits import FASTEST, LONGEST_RATE, SHORTEST_RATE, SLOWEST
+from trunnion.twin.mtconnect.device import device_xml
+from trunnion.twin.playback import Playback
+from trunnion.twin.ports import listen
+from trunnion.twin.snapshots import TwinProgram
+from trunnion.user_cache import user_data
+from trunnion.verification import restore_rapids
+
+if TYPE_CHECKING:
+    from trunnion.twin.opcua.server import Security
+    from trunnion.twin.serving import TwinAddresses
+
+#: Ports where clients look first.
+OPCUA_PORT: Final = 4840
+MTCONNECT_PORT: Final = 7878
+
+
+def _ignore(_addresses: object) -> None:
+    """Nobody asked where it is served."""
+
+
+def serve_twin(
+    nc: FilePath | Run,
+    *,
+    machine: MachineLike,
+    subprograms: Sequence[FilePath] = (),
+    zero: str | Sequence[float] | None = None,
+    tool_length: str | float | None = None,
+    speed: float | None = 1.0,
+    loop: bool = False,
+    rate: float = 20.0,
+    hold: bool = False,
+    host: str = "127.0.0.1",
+    port: int = OPCUA_PORT,
+    adapter_port: int | None = MTCONNECT_PORT,
+    users: FilePath | None = None,
+    ready: "Callable[[TwinAddresses], None]" = _ignore,
+) -> None:
+    """Serve an NC program as the machine that runs it, by OPC UA and MTConnect, until Ctrl-C.
+
+    Parameters
+    ----------
+    nc
+        The program, or its run.
+    machine
+        The machine that runs it: a name, a path or a ``Machine``.
+    subprograms
+        Files of the subprograms that it calls. No others are opened.
+    zero, tool_length
+        As for ``verify``. Without them slides count from the workpiece zero, and no travel of theirs is watched.
+    speed
+        Times real time, 0.1 to 1000; None: as fast as clients can follow.
+    loop
+        The program starts anew when it has ended.
+    rate
+        Milliseconds between two samples, 5 to 60000; every end of a block is told besides.
+    hold
+        The program waits for a client to start it.
+    host
+        An address of this computer. On another than its own (127.0.0.1) clients need a user of ``users``, and channels
+        are encrypted; MTConnect stays on this computer.
+    port, adapter_port
+        Ports of OPC UA and MTConnect; 0: a free one. ``adapter_port`` None: no MTConnect.
+    users
+        File of users; None: that in the user's folder.
+    ready
+        Is called with the addresses when clients can connect.
+
+    Raises
+    ------
+    InputError
+        When a file or an argument cannot be used, a port is taken, or the extra ``twin`` is not installed.
+    RefusedError
+        When the program has errors: a machine would not run it.
+    """
+    import_extra("asyncua", "twin")
+    from trunnion.twin.serving import Ports, run_until_ended, serve_program
+
+    if speed is not None and not SLOWEST <= _number("speed", speed) <= FASTEST:
+        raise wrong_argument("speed", speed, "give a number from 0.1 to 1000, or None: as fast as clients can follow")
+    if not SHORTEST_RATE <= _number("rate", rate) <= LONGEST_RATE:
+        raise wrong_argument("rate", rate, "give milliseconds from 5 to 60000")
+    security = None if is_loopback(host) else _security(users)
+    with ExitStack() as closing:
+        served = closing.enter_context(listen("OPC UA", host, port, "port"))
+        adapter = None
+        if adapter_port is not None:
+            adapter = closing.enter_context(listen("MTConnect", "127.0.0.1", adapter_port, "adapter_port"))
+        program = twin_program(nc, machine=machine, subprograms=subprograms, zero=zero, tool_length=tool_length)
+        playback = Playback(program.timed, speed=speed, loop=loop)
+        ports = Ports(host, served, adapter)
+        run_until_ended(
+            lambda: serve_program(
+                program, playback, ports, period=rate / 1000.0, security=security, started=not hold, ready=ready
+            )
+        )
+
+
+def write_device_xml(
+    nc: FilePath | Run,
+    *,
+    machine: MachineLike,
+    output: FilePath,
+    subprograms: Sequence[FilePath] = (),
+    zero: str | Sequence[float] | None = None,
+    tool_length: str | float | None = None,
+) -> None:
+    """Write the device model of a twin for an MTConnect agent.
+
+    Parameters
+    ----------
+    nc, machine, subprograms, zero, tool_length
+        As for ``serve_twin``: they say in which coordinates slides are told.
+    output
+        The file, ``.xml``. An older one is replaced when the new one is complete.
+
+    Raises
+    ------
+    InputError
+        When a file or an argument cannot be used.
+    RefusedError
+        When the program has errors.
+    """
+    place = check_output_name("output", output, (".xml",), "a device model is XML")
+    program = twin_program(nc, machine=machine, subprograms=subprograms, zero=zero, tool_length=tool_length)
+    read = [*program.run.files, *machine_files(machine, program.run.machine)]
+    with atomic_file(place, inputs=read) as sink:
+        sink.write(device_xml(program).encode())
+
+
+def twin_program(
+    nc: FilePath | Run,
+    *,
+    machine: MachineLike,
+    subprograms: Sequence[FilePath] = (),
+    zero: str | Sequence[float] | None = None,
+    tool_length: str | float | None = None,
+) -> TwinProgram:
+    """Read a program, run it, and give it its times; arguments as for ``serve_twin``.
+
+    Raises
+    ------
+    InputError
+        When a file or an argument cannot be used.
+    RefusedError
+        When the program has errors.
+    """
+    placed = set_up_machine(as_machine(machine), zero, tool_length)
+    if not isinstance(nc, Run) and is_cl_file(path := check_path("nc", nc)):
+        what, cure = "is a CL file, and a control runs programs", "post it first with trunnion post"
+        raise InputError(Problem(str(path), 0, what, cure, code="TWN110"))
+    run = restore_rapids(as_run(nc, placed, check_paths("subprograms", subprograms)), rapid_feed_of(placed))
+    if run.errors:
+        raise RefusedError(
+            [
+                Problem(each.file, each.line, each.text, "the twin runs no program with errors", code=each.code)
+                for each in run.errors
+            ]
+        )
+    if not len(run):
+        raise InputError(Problem(run.files[0], 0, "moves nothing", "give a program with motions", code="TWN111"))
+    return TwinProgram(time_run(run), [decode(Path(file).read_bytes(), run.encoding) for file in run.files])
+
+
+def is_loopback(host: str) -> bool:
+    """Whether only programs of this computer reach an address."""
+    try:
+        return host == "localhost" or ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return False
+
+
+def users_file(users: FilePath | None = None) -> Path:
+    """The file of users: the given one, or that in the user's folder.
+
+    Raises
+    ------
+    InputError
+        If none is given, and the user has no folder.
+    """
+    if users is not None:
+        return check_path("users", users)
+    return _folder() / "users"
+
+
+def add_twin_user(name: str, password: str, *, operator: bool = True, users: FilePath | None = None) -> Path:
+    """Add a user to the file of users, who operates a twin or only looks; returns the file.
+
+    Raises
+    ------
+    InputError
+        If name or password cannot be taken, or the file cannot be written.
+    """
+    from trunnion.twin.opcua.users import Role, write_user
+
+    path = users_file(users)
+    write_user(path, name, Role.OPERATOR if operator else Role.VIEWER, password)
+    return path
+
+
+def _folder() -> Path:
+    folder = user_data()
+    if folder is None:
+        raise InputError(
+            Problem("trunnion", 0, "you have no folder for data", "name a file with argument users=FILE", code="TWN120")
+        )
+    return folder / "trunnion" / "twin"
+
+
+def _security(users: FilePath | None) -> "Security":
+    from trunnion.twin.opcua.server import Security
+    from trunnion.twin.opcua.users import read_users
+
+    path = users_file(users)
+    found = read_users(path)
+    if not len(found):
+        cure = "add one with argument add_user=NAME"
+        raise InputError(Problem(str(path), 0, "has no user, and other computers need one", cure, code="TWN132"))
+    return Security(found, _folder())
+
+
+def _number(name: str, value: object) -> float:
+    if isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value):
+        return float(value)
+    raise wrong_argument(name, value, "give a number")

@@ -1,0 +1,1 @@
+"""An NC program against its CL files, a recording, or another program."""

@@ -1,0 +1,83 @@
+"""Comparison of two NC programs by what they make the tool do."""
+
+from collections.abc import Sequence
+from typing import Final
+
+from trunnion import readers
+from trunnion.jit import compile_ahead
+from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run
+from trunnion.jobs.inputs.settings import check_tolerance
+from trunnion.jobs.verify.verifying import rapid_feed_of
+from trunnion.machines import Machine
+from trunnion.model.run import Run
+from trunnion.verification import restore_rapids
+from trunnion.verification.comparison import Comparison, compare
+
+#: How far tips may be apart, mm: the last digit of most programs; and that of programs in inches.
+_DEFAULT_TOLERANCE: Final = 0.001
+_INCH_TOLERANCE: Final = 0.0026
+
+
+def diff(
+    first: FilePath | Run,
+    second: FilePath | Run,
+    *,
+    machine: MachineLike,
+    to_machine: MachineLike | None = None,
+    subprograms: Sequence[FilePath] = (),
+    to_subprograms: Sequence[FilePath] = (),
+    tolerance: float = _DEFAULT_TOLERANCE,
+    path: bool = False,
+) -> Comparison:
+    """Compare what two NC programs make the tool do, whatever their words.
+
+    Parameters
+    ----------
+    first, second
+        Programs: paths, or their runs (``trunnion.read_program``).
+    machine
+        The machine that runs the first program.
+    to_machine
+        The machine that runs the second one, if it is another.
+    subprograms, to_subprograms
+        Files of the subprograms that each program calls. No others are opened.
+    tolerance
+        How far tips may be apart, mm, and tool axes, degrees. The default is 0.0026 mm for tips if one of the programs
+        is in inches: their last digit is 0.0001 inch.
+    path
+        Compare where the tool goes, and whether at rapid, but not feed, spindle, tool and coolant.
+
+    Returns
+    -------
+    Comparison
+        ``same``; the first and the worst difference, with the blocks of both programs.
+
+    Raises
+    ------
+    InputError
+        When a file or an argument cannot be used, or no reader knows a control.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> program = "tests/golden/yl569/2_hub_rough.expected.mpf"
+    >>> trunnion.diff(program, program, machine="yl569").same
+    True
+    """
+    check_tolerance("tolerance", tolerance)
+    one = as_machine(machine)
+    two = one if to_machine is None else as_machine(to_machine, "to_machine")
+    for each in (one, two):
+        readers.reader_of(each)
+    compile_ahead(readers.KERNELS)
+    runs = (
+        _run(first, one, subprograms, ("first", "subprograms")),
+        _run(second, two, to_subprograms, ("second", "to_subprograms")),
+    )
+    coarse = tolerance == _DEFAULT_TOLERANCE and any(run.state.inches.values.any() for run in runs)
+    return compare(*runs, _INCH_TOLERANCE if coarse else tolerance, axis_tolerance=tolerance, path=path)
+
+
+def _run(program: FilePath | Run, machine: Machine, subprograms: Sequence[FilePath], names: tuple[str, str]) -> Run:
+    """The run of a program, with lines at the feed of rapids as rapids."""
+    return restore_rapids(as_run(program, machine, subprograms, names), rapid_feed_of(machine))

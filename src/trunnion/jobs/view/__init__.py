@@ -1,0 +1,1 @@
+"""A program on its machine as a page."""

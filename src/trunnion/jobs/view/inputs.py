@@ -1,0 +1,186 @@
+"""What a view can show: an NC program, CL files that are posted for it, or a set-up of a project.
+
+In:     files by their names.
+Out:    a program that has been run and verified, with its text; the arguments that a project states.
+"""
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Final
+
+from trunnion.cl import is_cl_file
+from trunnion.cl.sources import cl_sources
+from trunnion.controls import load_control
+from trunnion.encoding import decode
+from trunnion.errors import InputError, Problem, Severity
+from trunnion.jobs.inputs.arguments import checked_angles, is_stream
+from trunnion.jobs.inputs.reading import ToolpathLike, as_run, as_toolpaths
+from trunnion.jobs.inputs.settings import Settings
+from trunnion.jobs.observer import Observer
+from trunnion.jobs.post.posting import post
+from trunnion.jobs.project.file import read_project
+from trunnion.jobs.simulate.setups import SetupInput
+from trunnion.jobs.verify.verifying import rapid_feed_of, verify
+from trunnion.machines import Machine
+from trunnion.model.clamped_toolpaths import stated_clamping
+from trunnion.model.clamping import Clamping
+from trunnion.model.toolpath import Toolpath
+from trunnion.placing.program_heads import stated_place
+from trunnion.verification import Verification, restore_rapids
+
+#: Arguments of a view that a set-up of a project states; and those of the project as a whole.
+_OF_SETUP: Final = (
+    "machine",
+    "cl",
+    "subprograms",
+    "part",
+    "fixtures",
+    "tools",
+    "libraries",
+    "unit",
+    "zero",
+    "tool_length",
+)
+_OF_PROJECT: Final = ("cell", "accuracy", "near")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ViewedProgram:
+    """A program that is shown.
+
+    verification  of its run, with columns
+    texts         of its files, in the order of the run's
+    toolpaths     what it was made from, as far as that is known
+    cl_texts      of the CL files among them, by the names that operations have for them
+    """
+
+    verification: Verification
+    texts: tuple[str, ...]
+    toolpaths: Sequence[Toolpath]
+    cl_texts: Mapping[str, str]
+
+
+def view_program(
+    files: Sequence[Path],
+    machine: Machine,
+    *,
+    cl: ToolpathLike | Iterable[ToolpathLike],
+    subprograms: Sequence[Path],
+    settings: Settings | None,
+    observer: Observer,
+) -> ViewedProgram:
+    """Read and verify a program, or post CL files as one, also where it must not run: its head then says why.
+
+    Raises
+    ------
+    InputError
+        When a file cannot be used, no reader knows the control, or CL files and NC programs stand together.
+    """
+    are_cl = [is_cl_file(file) for file in files]
+    if any(are_cl):
+        if not all(are_cl):
+            other = files[are_cl.index(False)]
+            raise InputError(
+                Problem(str(other), 0, "is no CL file, as others here are", "view them one by one", code="PAG112")
+            )
+        return _posted(files, machine, settings, subprograms, observer)
+    if settings:
+        what, cure = (
+            "is an NC program, to which settings of posting mean nothing",
+            "leave them out, or give the CL file",
+        )
+        raise InputError(Problem(str(files[0]), 0, what, cure, code="PAG111"))
+    others = [*files[1:], *subprograms]
+    run = restore_rapids(as_run(files[0], machine, others), rapid_feed_of(machine))
+    unused = [file for file in files[1:] if str(file) not in run.files]
+    if unused:
+        what = f"is not called by {files[0].name}, and one program is shown"
+        raise InputError(Problem(str(unused[0]), 0, what, "view it alone", code="PAG113"))
+    toolpaths = as_toolpaths(cl, None, False, observer)
+    verification = verify(run, machine=machine, cl=toolpaths, observer=observer)
+    texts = tuple(decode(Path(file).read_bytes(), run.encoding) for file in run.files)
+    return ViewedProgram(verification, texts, toolpaths, _cl_texts(cl))
+
+
+def bodies_not_clamped_so(file: Path, toolpaths: Sequence[Toolpath]) -> list[Problem]:
+    """A warning where a program is for a part that is clamped turned: a view shows bodies as they are given."""
+    stated = stated_clamping(toolpaths) if is_cl_file(file) else stated_place(file).clamping
+    if stated is None or stated.is_as_drawn:
+        return []
+    what = f"it says that the part is {stated}, and a view shows stock, part and fixtures as they are given"
+    return [Problem(str(file), 0, what, "give them as they are clamped", Severity.WARNING, code="PAG116")]
+
+
+def _posted(
+    files: Sequence[Path], machine: Machine, settings: Settings | None, beside: Sequence[Path], observer: Observer
+) -> ViewedProgram:
+    result = post(files, machine=machine, settings=settings, force=True, subprograms=beside, observer=observer)
+    text = result.text
+    if result.verification is None or text is None:
+        what, cure = "no reader knows the control, so that its motion is not known", "view it on another machine"
+        raise InputError(Problem(str(files[0]), 0, what, cure, code="PAG114"))
+    name = f"{files[0].stem}{load_control(machine.control).extension}"
+    run = result.verification.run
+    verification = replace(result.verification, program=name, run=replace(run, files=(name, *run.files[1:])))
+    more = tuple(decode(Path(file).read_bytes(), run.encoding) for file in run.files[1:])
+    return ViewedProgram(verification, (text, *more), result.toolpaths, _cl_texts(files))
+
+
+def _cl_texts(cl: ToolpathLike | Iterable[ToolpathLike]) -> dict[str, str]:
+    """The texts of CL files that are named, also of those in archives; a stream has been read and has none."""
+    named = [cl] if isinstance(cl, str | os.PathLike | Toolpath) or is_stream(cl) else cl
+    paths = [Path(each) for each in named if isinstance(each, str | os.PathLike)]
+    return {source.name: decode(source.open().read()) for path in paths for source in cl_sources(path)}
+
+
+def of_project(path: Path, setup: str | None, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the arguments of a view that a project states for one of its set-ups, with those that are given instead.
+
+    Parameters
+    ----------
+    path
+        The project.
+    setup
+        Name or number of the set-up, from 1; None: the only one.
+    given
+        Arguments of ``trunnion.write_view``; empty ones are not given.
+
+    Raises
+    ------
+    InputError
+        If the project cannot be read, or does not have the set-up, or it has several programs.
+    """
+    stated = {name: value for name, value in given.items() if value not in (None, (), [], "")}
+    project = read_project(path, tuple(stated))
+    chosen, number = _setup(path, project.setups, setup)
+    programs = list(chosen.programs)
+    if Clamping(*checked_angles(chosen.turn, chosen.tilt)).is_turned:
+        what = f"has a part that is clamped turned{f' in {chosen.name}' if chosen.name else ''}, and a view turns none"
+        cure = "view the program itself, with bodies as they are clamped"
+        raise InputError(Problem(str(path), 0, what, cure, code="PAG115"))
+    if len(programs) != 1:
+        what = f"has {len(programs)} programs in its set-up{f' {chosen.name}' if chosen.name else ''}"
+        raise InputError(
+            Problem(str(path), 0, f"{what}, and a view shows one", "view the program itself", code="PAG112")
+        )
+    found = {name: getattr(chosen, name) for name in _OF_SETUP} | {name: getattr(project, name) for name in _OF_PROJECT}
+    if number:  # what an earlier set-up leaves is known to the simulation of all of them only
+        found |= dict.fromkeys((*_OF_PROJECT, "stock"))
+    else:
+        found["stock"] = project.stock or None
+    return {**found, **stated, "nc": programs}
+
+
+def _setup(path: Path, setups: Sequence[SetupInput], wanted: str | None) -> tuple[SetupInput, int]:
+    names = [each.name or str(number) for number, each in enumerate(setups, 1)]
+    if wanted is None and len(setups) > 1:
+        cure = f"choose one of {', '.join(names)}"
+        raise InputError(Problem(str(path), 0, f"has {len(setups)} set-ups, and a view shows one", cure, code="PAG112"))
+    for number, (each, name) in enumerate(zip(setups, names, strict=True)):
+        if wanted in (None, name, str(number + 1)):
+            return each, number
+    raise InputError(
+        Problem(str(path), 0, f'has no set-up "{wanted}"', f"choose one of {', '.join(names)}", code="PAG112")
+    )

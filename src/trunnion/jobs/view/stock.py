@@ -1,0 +1,121 @@
+"""The simulation of a program that is shown: its stock, and what it finds, become part of the page.
+
+In:     the arguments of ``trunnion.simulate`` that a view has, and the run.
+Out:    ``ViewContent`` with stock, deviations and findings.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.jobs.observer import Observer
+from trunnion.jobs.simulate.posted import simulate_posted, simulation_checks, simulation_input
+from trunnion.jobs.simulate.result import SimulationResult
+from trunnion.jobs.simulate.setups import SimulationInput
+from trunnion.machines import Machine
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Toolpath
+from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
+from trunnion.simulation.tools.profile import cutting_width
+from trunnion.viewer.content import ViewContent
+from trunnion.viewer.stock import StockView
+
+#: Arguments that mean nothing without stock.
+_OF_STOCK: Final = ("near", "cell", "accuracy")
+
+#: Findings that a page shows of each kind at most, the deepest; near misses: the nearest.
+_MOST: Final = 200
+
+
+def view_simulation(machine: Machine, **given: Any) -> SimulationInput | None:
+    """What is to be simulated, before any work; None without stock.
+
+    Raises
+    ------
+    InputError
+        If an argument needs stock and there is none, or says nothing.
+    """
+    if given["stock"] is not None:
+        return simulation_input(given, machine)
+    alone = [name for name in _OF_STOCK if given[name] is not None]
+    if alone:
+        raise InputError(
+            [argument_problem(name, "belongs to a simulation", "give stock as well", code="PAG111") for name in alone]
+        )
+    return None
+
+
+def with_stock(
+    content: ViewContent, given: SimulationInput, run: Run, toolpaths: Sequence[Toolpath], observer: Observer
+) -> ViewContent:
+    """Simulate a program and add what comes out to what its page shows.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be used, nothing says the form of a tool, or the stock is too large for a picture.
+    """
+    found = simulate_posted(given, run, run.files[0], toolpaths, observer)
+    (job,) = found.simulation.jobs
+    widths = [cutting_width(job.tools[name]) for name in _cutting(run) if name in job.tools]
+    stock = StockView(found.simulation, min(widths, default=math.inf))
+    warnings = [_short(each) for each in found.remarks if each.severity is not Severity.ERROR]
+    warnings += [f"{kind}: {_MOST} of {count} are shown" for kind, count in _counts(found) if count > _MOST]
+    checks = [
+        {"key": one.key, "passed": one.passed, "summary": one.summary} for one in simulation_checks(found)
+    ]  # fmt: skip
+    scene = {
+        **content.scene,
+        "findings": [*content.scene["findings"], *_findings(found, run)],
+        "checks": [*content.scene["checks"], *checks],
+        "stock": {**stock.scene(), "remarks": warnings},
+    }
+    return replace(content, scene=scene, columns={**content.columns, **stock.columns()}, stock=stock)
+
+
+def _cutting(run: Run) -> set[str]:
+    """The tools of a run by their names."""
+    return {run.tools[int(index)] for index in run.state.tool.distinct()}
+
+
+def _counts(found: SimulationResult) -> Iterator[tuple[str, int]]:
+    """How many findings there are of each kind, and near misses."""
+    yield from Counter(one.kind for one in found.findings).items()
+    yield "near", len(found.near)
+
+
+def _findings(found: SimulationResult, run: Run) -> Iterator[dict[str, Any]]:
+    """What the simulation found, with its rows and places; errors that have no row stand at the first one."""
+    files = {Path(file).name: number for number, file in enumerate(run.files)}
+    for each in found.remarks:
+        if each.severity is Severity.ERROR:
+            here = np.flatnonzero((run.line >= each.line) & (run.file == files.get(Path(each.file).name, -1)))
+            yield _mark(run, "simulation", int(here[0]) if len(here) else 0, _short(each), None)
+    shown = Counter[str]()
+    for one in sorted(found.findings, key=lambda finding: -finding.depth):
+        shown[one.kind] += 1
+        if shown[one.kind] <= _MOST:
+            yield _mark(run, one.kind, one.row, f"{one.kind}: {_between(one)}, {one.depth:.3f} mm deep", one.place)
+    for miss in sorted(found.near, key=lambda miss: miss.distance)[:_MOST]:
+        yield _mark(run, "near", miss.row, f"near: {_between(miss)}, {miss.distance:.3f} mm apart", miss.place)
+
+
+def _short(problem: Problem) -> str:
+    """A problem without the folder of its file."""
+    return str(replace(problem, file=Path(problem.file).name))
+
+
+def _between(one: SimulationFinding | NearMiss) -> str:
+    x, y, z = one.place
+    return f"{' and '.join(one.between)} at X{x:.3f} Y{y:.3f} Z{z:.3f}"
+
+
+def _mark(run: Run, kind: str, row: int, text: str, place: tuple[float, float, float] | None) -> dict[str, Any]:
+    file, line = (int(run.file[row]), int(run.line[row])) if len(run) else (0, 0)
+    return {"kind": kind, "row": row, "line": line, "file": file, "text": text, "place": place}

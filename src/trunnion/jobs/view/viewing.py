@@ -1,0 +1,221 @@
+"""A program on its machine, as a page for a browser."""
+
+import os
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+from trunnion.errors import InputError, argument_problem
+from trunnion.files import OutputPlace, atomic_file
+from trunnion.jobs.inputs.arguments import check_path, check_paths
+from trunnion.jobs.inputs.bodies import KnownTools, known_tools
+from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine
+from trunnion.jobs.inputs.settings import Settings, set_up_machine
+from trunnion.jobs.observer import SILENT, Observer
+from trunnion.jobs.project.file import is_project
+from trunnion.jobs.targets import check_output_name
+from trunnion.jobs.view.inputs import bodies_not_clamped_so, of_project, view_program
+from trunnion.jobs.view.stock import view_simulation, with_stock
+from trunnion.model.run import Run
+from trunnion.simulation.meshes import load_mesh
+from trunnion.simulation.tools.choice import NO_CALL
+from trunnion.simulation.tools.profile import ToolShape
+from trunnion.verification.comparison import align
+from trunnion.viewer.content import ViewContent, side_by_side, view_content
+from trunnion.viewer.page import render_view
+
+
+def check_view_name(file: FilePath) -> OutputPlace:
+    """The place of a page, which is found out before any work.
+
+    Raises
+    ------
+    InputError
+        If its name ends otherwise, or it cannot be written.
+    """
+    return check_output_name("output", file, (".html",), "the view is a page")
+
+
+def prepare_view(
+    nc: FilePath | Sequence[FilePath],
+    *,
+    machine: MachineLike | None = None,
+    against: FilePath | Sequence[FilePath] | None = None,
+    against_machine: MachineLike | None = None,
+    setup: str | None = None,
+    settings: Settings | None = None,
+    cl: ToolpathLike | Iterable[ToolpathLike] = (),
+    subprograms: Sequence[FilePath] = (),
+    stock: FilePath | None = None,
+    part: FilePath | None = None,
+    fixtures: Sequence[FilePath] = (),
+    tools: Iterable[str] = (),
+    libraries: Sequence[FilePath] = (),
+    unit: Literal["mm", "inch"] | None = None,
+    near: float | None = None,
+    cell: float | None = None,
+    accuracy: float | None = None,
+    zero: str | Iterable[float] | None = None,
+    tool_length: str | float | None = None,
+    observer: Observer = SILENT,
+) -> ViewContent:
+    """Read a program, run and verify it, and put together what a page shows; arguments as ``write_view``.
+
+    Raises
+    ------
+    InputError
+        When a file or an argument cannot be used, or no reader knows the control.
+    """
+    given: dict[str, Any] = {
+        "machine": machine, "cl": cl, "subprograms": subprograms, "stock": stock, "part": part, "fixtures": fixtures,
+        "tools": tools, "libraries": libraries, "unit": unit, "near": near, "cell": cell, "accuracy": accuracy,
+        "zero": zero, "tool_length": tool_length,
+    }  # fmt: skip
+    files = [check_path("nc", nc)] if isinstance(nc, str | os.PathLike) else check_paths("nc", nc)
+    if files and is_project(files[0]):
+        given = of_project(files[0], setup, given)
+        files = check_paths("nc", given.pop("nc"))
+    elif setup is not None:
+        raise InputError(
+            argument_problem("setup", "belongs to a project", "leave it out, or give the project", code="PAG111")
+        )
+    content, run = _prepared(files, settings, observer, **given)
+    if against is None:
+        if against_machine is not None:
+            raise InputError(
+                argument_problem("against_machine", "belongs to a second program", "name that, too", code="PAG111")
+            )
+        return content
+    alone = isinstance(against, str | os.PathLike)
+    beside = [check_path("against", against)] if alone else check_paths("against", against)
+    other = given | dict.fromkeys(("stock", "near", "cell", "accuracy")) | {"cl": (), "subprograms": ()}
+    if against_machine is not None:  # where the part lies is not the same there
+        other |= {"machine": against_machine, "zero": None, "tool_length": None}
+    second, other_run = _prepared(beside, settings, observer, **other)
+    return side_by_side(content, second, align(run, other_run))
+
+
+def _prepared(
+    files: Sequence[Path], settings: Settings | None, observer: Observer, **given: Any
+) -> tuple[ViewContent, Run]:
+    """Put together what a page shows of one program, when no project states arguments any more; and its run."""
+    if not files:
+        raise InputError(argument_problem("nc", "is empty", "name a program, CL files or a project", code="PAG110"))
+    if given["machine"] is None:
+        raise InputError(
+            argument_problem("machine", "is missing", "say on which machine the program runs", code="PAG110")
+        )
+    placed = set_up_machine(as_machine(given["machine"]), given["zero"], given["tool_length"])
+    of_stock = ("stock", "part", "fixtures", "tools", "libraries", "unit", "near", "cell", "accuracy")
+    simulated = view_simulation(placed, **{name: given[name] for name in of_stock})
+    others = check_paths("subprograms", given["subprograms"])
+    viewed = view_program(files, placed, cl=given["cl"], subprograms=others, settings=settings, observer=observer)
+    if any(given[name] for name in ("stock", "part", "fixtures")):
+        observer.problems(bodies_not_clamped_so(files[0], viewed.toolpaths))
+    fixtures = check_paths("fixtures", given["fixtures"])
+    around = [load_mesh(mesh, name=f"fixture {k}") for k, mesh in enumerate(fixtures, 1)]
+    design = None if given["part"] is None else load_mesh(check_path("part", given["part"]), name="part")
+    run = viewed.verification.run
+    bodies = _shown_tools(run, known_tools(given["tools"], given["libraries"], given["unit"], viewed.toolpaths))
+    content = view_content(viewed.verification, viewed.texts, viewed.cl_texts, bodies, design, around, viewed.toolpaths)
+    if simulated is not None:
+        content = with_stock(content, simulated, run, viewed.toolpaths, observer)
+    return content, run
+
+
+def write_view(
+    nc: FilePath | Sequence[FilePath],
+    *,
+    output: FilePath,
+    machine: MachineLike | None = None,
+    against: FilePath | Sequence[FilePath] | None = None,
+    against_machine: MachineLike | None = None,
+    setup: str | None = None,
+    settings: Settings | None = None,
+    cl: ToolpathLike | Iterable[ToolpathLike] = (),
+    subprograms: Sequence[FilePath] = (),
+    stock: FilePath | None = None,
+    part: FilePath | None = None,
+    fixtures: Sequence[FilePath] = (),
+    tools: Iterable[str] = (),
+    libraries: Sequence[FilePath] = (),
+    unit: Literal["mm", "inch"] | None = None,
+    near: float | None = None,
+    cell: float | None = None,
+    accuracy: float | None = None,
+    zero: str | Iterable[float] | None = None,
+    tool_length: str | float | None = None,
+    observer: Observer = SILENT,
+) -> None:
+    """Show an NC program on its machine, block by block, on a page that works offline.
+
+    Parameters
+    ----------
+    nc
+        The program, also with the files of its subprograms behind it; or CL files, which are posted as one program,
+        also where it must not run; or a project (.toml), which states the arguments that are not given here.
+    output
+        The page, ``.html``. An older file is replaced when the new one is complete.
+    machine
+        The machine that runs it: a name, a path or a ``Machine``. Only a project may state it instead.
+    against, against_machine
+        A second program, or CL files, which go along the same tool path beside the first, and the machine that runs
+        it if it is another. What differs is marked, as ``trunnion.diff`` compares programs.
+    setup
+        Name or number of a project's set-up, if it has several.
+    settings
+        For CL files, as for ``post``.
+    cl
+        Its CL files: the page then names the CL line of each block, and what the proof finds.
+    subprograms
+        Files of the subprograms that it calls. No others are opened.
+    stock, near, cell, accuracy
+        As for ``simulate``: the page then shows the stock as it is cut, how far it is from ``part`` in the end, and
+        what the simulation finds. Without ``stock`` nothing is simulated.
+    part, fixtures
+        Meshes in the workpiece frame.
+    tools, libraries, unit
+        Tools as ``simulate`` has them. Without ``stock``, one whose form nothing states is drawn as a needle.
+    zero, tool_length
+        As for ``verify``. Without a zero, the part is drawn at the machine's zero.
+    observer
+        Receives progress and warnings.
+
+    Raises
+    ------
+    InputError
+        When a file or an argument cannot be used, or no reader knows the control.
+
+    Examples
+    --------
+    >>> import trunnion
+    >>> trunnion.write_view("tests/golden/yl569/2_hub_rough.expected.mpf", machine="yl569", output="view.html")
+    """
+    place = check_view_name(output)
+    content = prepare_view(
+        nc, machine=machine, against=against, against_machine=against_machine, setup=setup, settings=settings, cl=cl,
+        subprograms=subprograms, stock=stock, part=part,
+        fixtures=fixtures, tools=tools, libraries=libraries, unit=unit, near=near, cell=cell, accuracy=accuracy,
+        zero=zero, tool_length=tool_length, observer=observer,
+    )  # fmt: skip
+    if content.stock is not None:
+        with observer.progress("states of the stock", len(content.stock.page_states), "states") as tell:
+            content.stock.packed(tell)
+    with atomic_file(place, inputs=_shown_files(content)) as sink:
+        sink.writelines(render_view(content, embedded=True))
+
+
+def _shown_files(content: ViewContent) -> list[Path]:
+    scenes = (content.scene, content.scene.get("against", {}))
+    return [Path(file) for scene in scenes for file in scene.get("files", ())]
+
+
+def _shown_tools(run: Run, known: KnownTools) -> dict[str, ToolShape]:
+    """The bodies of the tools whose form something states."""
+    found: dict[str, ToolShape] = {}
+    for name in run.tools:
+        try:
+            found[name] = known.choose([name or NO_CALL])[name or NO_CALL]
+        except InputError:
+            continue  # drawn as a needle, which the page says
+    return found

@@ -1,0 +1,125 @@
+"""What the head of a program says of a part that is clamped otherwise than it is drawn, and of its zero.
+
+The head is what stands before the first block that does something. What it says is held against what is given wherever
+the program is compared or simulated.
+"""
+
+import math
+from pathlib import Path
+from typing import Final
+
+from trunnion.errors import Problem, Severity
+from trunnion.machines import Machine
+from trunnion.machines.machine import Vector
+from trunnion.model.clamping import SAME, Clamping, are_one_angle, number
+from trunnion.model.clamping_notices import StatedPlace, clamped_notices, head_comments, read_place, zero_notices
+
+#: So much of a program is its head at most, bytes.
+_HEAD: Final = 1 << 16
+
+
+def placed_notices(clamping: Clamping, zero: Vector | None = None, tool_length: float | None = None) -> tuple[str, ...]:
+    """Comments for the head of a program: how the part is clamped, and where its zero (3,) is, mm.
+
+    ``tool_length`` is the one that the slides are planned with, mm; None: none was stated, and 0 was taken.
+    """
+    return (*clamped_notices(clamping), *([] if zero is None else zero_notices(zero, tool_length)))
+
+
+def stated_place(program: Path) -> StatedPlace:
+    """What the head of a program states of its part; nothing where it cannot be read twice, as what a pipe holds."""
+    if not program.is_file():
+        return StatedPlace()
+    try:
+        with program.open("rb") as stream:
+            head = stream.read(_HEAD).decode("latin-1")
+    except OSError:
+        return StatedPlace()
+    return read_place(list(head_comments(enumerate(head.splitlines(), 1))))
+
+
+def damaged_notices(program: Path, stated: StatedPlace) -> list[Problem]:
+    """Warnings of notices that are not as they were written, or that contradict each other."""
+    cure = "compare it with the setup sheet or post it again: how the part is clamped, or where, is not known"
+    return [Problem(str(program), line, what, cure, Severity.WARNING, code="PLC250") for line, what in stated.faults]
+
+
+def unlike_cl_files(
+    program: Path, given: Clamping, clamped: Clamping, of_cl: Clamping | None, machine: Machine
+) -> list[Problem]:
+    """Warnings for who compares a program with CL files where its head says otherwise how its part is clamped.
+
+    Parameters
+    ----------
+    given
+        Turn and tilt by which the CL files are turned before they are compared.
+    clamped
+        How the part is clamped then: as the CL files state, and turned by what is given.
+    of_cl
+        What the CL files state; None: nothing.
+    machine
+        Where its zero and tool length are known, those of the head are held against them.
+    """
+    stated = stated_place(program)
+    found = _unlike_zero(program, stated, machine)
+    if stated.clamping is not None and not stated.clamping.is_like(clamped):
+        told = "" if of_cl is None else f"; the CL file states that it is {of_cl}"
+        cure = _cure_of_comparison(stated.clamping, of_cl or Clamping())
+        what = f"its head says that the part is {stated.clamping}{told}"
+        if of_cl is not None and not (are_one_angle(given.turn, 0.0) and are_one_angle(given.tilt, 0.0)):
+            what += f", and what is given makes that {clamped}"
+        found.insert(0, Problem(str(program), 0, what, cure, Severity.WARNING, code="PLC220"))
+    return found
+
+
+def _cure_of_comparison(stated: Clamping, of_cl: Clamping) -> str:
+    """Which angles bring the CL files to how the part is clamped, if any do."""
+    turn, tilt = (stated.turn - of_cl.turn) % 360.0, stated.tilt - of_cl.tilt
+    reached = of_cl.then(turn, tilt)
+    if reached is None or not reached.is_like(stated):
+        turn = stated.turn
+        reached = of_cl.then(turn, tilt)
+    if reached is None or not reached.is_like(stated):
+        return "no turn and tilt lead from one to the other: compare with the CL files that it was made from"
+    return f"give {_told(turn, tilt)}, so that the CL files are turned before they are compared"
+
+
+def unlike_bodies(program: Path, given: Clamping, machine: Machine) -> list[Problem]:
+    """Warnings for who simulates a program with bodies as they are drawn, which are clamped as it is ``given``."""
+    stated = stated_place(program)
+    found = _unlike_zero(program, stated, machine)
+    if stated.clamping is not None and not stated.clamping.is_like(given):
+        told = _told(stated.clamping.turn, stated.clamping.tilt)
+        cure = f"give {told}, so that stock, part and fixtures are turned; or give them as they are clamped"
+        what = f"its head says that the part is {stated.clamping}"
+        found.insert(0, Problem(str(program), 0, what, cure, Severity.WARNING, code="PLC230"))
+    return found
+
+
+def unlike_zero(program: Path, machine: Machine) -> list[Problem]:
+    """Warnings where a head is damaged, or where the machine has another zero or tool length than it states."""
+    return _unlike_zero(program, stated_place(program), machine)
+
+
+def _unlike_zero(program: Path, stated: StatedPlace, machine: Machine) -> list[Problem]:
+    found, said = damaged_notices(program, stated), []
+    zero, length = machine.workpiece_zero, machine.tool_length
+    if stated.zero is not None and zero is not None and math.dist(stated.zero, zero) >= SAME:
+        said.append(f"the workpiece zero is at {','.join(map(number, stated.zero))}")
+    if stated.tool_length is not None and length is not None and abs(stated.tool_length - length) >= SAME:
+        said.append(f"its zero holds for a tool length of {number(stated.tool_length)} mm")
+    if not said:
+        return found
+    given = [*([] if zero is None else [f"zero {','.join(map(number, zero))}"])]
+    given += [] if length is None else [f"tool length {number(length)}"]
+    what = f"its head says that {' and that '.join(said)}, and the slides are judged with {' and '.join(given)}"
+    cure = "give those of the head, or make sure that the program keeps the limits there as well"
+    return [*found, Problem(str(program), 0, what, cure, Severity.WARNING, code="PLC240")]
+
+
+def _told(turn: float, tilt: float) -> str:
+    """The angles, as somebody is told to give them."""
+    if are_one_angle(turn, 0.0) and are_one_angle(tilt, 0.0):
+        return "no turn and no tilt"
+    tilted = "" if are_one_angle(tilt, 0.0) else f" and the tilt {number(tilt)}"
+    return f"the turn {number(turn % 360.0)}{tilted}"

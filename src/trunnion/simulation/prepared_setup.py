@@ -1,0 +1,90 @@
+"""A set-up that has been read, and what of it is cut."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from trunnion.arrays import Floats
+from trunnion.errors import InputError, argument_problem
+from trunnion.machines import Machine
+from trunnion.model.clamping import Clamping
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Toolpath
+from trunnion.simulation.meshes import TriangleMesh
+from trunnion.simulation.simulator import Job
+from trunnion.simulation.stock.turning import Pose
+from trunnion.simulation.tool_deltas import as_the_tool_goes
+from trunnion.simulation.tools.profile import ToolShape
+from trunnion.simulation.turned_parts import run_of_drawn_part
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PreparedSetup:
+    """A set-up that has been read: its machine, runs, tools by their names in programs, and meshes as they are drawn.
+
+    toolpaths  of the part as it is clamped
+    clamping   how the part is clamped
+    name       for findings; empty where there is one set-up only
+    pose       where the last set-up's workpiece frame lies in this one's
+    until      N number of the block of the last program before which the simulation ends; None: at its end
+    """
+
+    machine: Machine
+    runs: tuple[Run, ...]
+    tools: dict[str, ToolShape]
+    part: TriangleMesh | None
+    fixtures: tuple[TriangleMesh, ...]
+    toolpaths: list[Toolpath]
+    clamping: Clamping = field(default_factory=Clamping)
+    name: str = ""
+    pose: Pose = field(default_factory=Pose)
+    until: str | int | None = None
+
+    @property
+    def turn(self) -> Floats | None:
+        """What turns the part as it is drawn to how it is clamped, (3, 3); None: it is clamped as drawn."""
+        return self.clamping.rotation if self.clamping.is_turned else None
+
+    def clamped_runs(self) -> list[Run]:
+        """The runs on the machine, where the part is as it is clamped."""
+        return [as_the_tool_goes(run)[0] for run in self.runs]
+
+    def jobs(self) -> list[Job]:
+        """The programs as far as they are simulated, about the part as it is drawn.
+
+        Raises
+        ------
+        InputError
+            If the last program has no block ``until``.
+        """
+        turn, clamped = self.turn, self.clamped_runs()
+        runs = clamped if turn is None else [run_of_drawn_part(run, turn) for run in clamped]
+        return [_job(run, self.tools, self.until if run is runs[-1] else None) for run in runs]
+
+
+def _job(run: Run, shapes: dict[str, ToolShape], until: str | int | None) -> Job:
+    end, why = len(run), ""
+    errors = sorted(run.errors, key=lambda each: each.line)
+    if errors:
+        first = errors[0]
+        number = run.files.index(first.file) if first.file in run.files else 0
+        later = np.flatnonzero((run.file == number) & (run.line >= first.line))
+        end = int(later[0]) if len(later) else len(run)
+        why = f"line {first.line}: {first.text}; it is cut up to there"
+    if until is not None:
+        row = _row_of_block(run, until)
+        if row < end:
+            end, why = row, ""
+    return Job(run, shapes, end, why)
+
+
+def _row_of_block(run: Run, until: str | int) -> int:
+    text = str(until).strip().upper().removeprefix("N")
+    number = int(text) if text.isascii() and text.isdecimal() and len(text) < 10 else -1
+    own = np.flatnonzero((run.block_number >= number) & (run.file == 0)) if number >= 0 else np.zeros(0, np.int64)
+    # A block without motion is followed by the next number, not by what runs next: subprograms may stand behind it.
+    rows = own[run.block_number[own] == run.block_number[own].min()] if len(own) else own
+    if not len(rows):
+        cure = "give the N number of a block of the last program"
+        raise InputError(argument_problem("until", f"{run.files[0]} has no block {until}", cure, code="SIM114"))
+    return int(rows[0])

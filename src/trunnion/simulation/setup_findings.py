@@ -1,0 +1,275 @@
+"""What a simulation found, as records for scripts and data."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from typing import Any, Final, TypeVar
+
+import numpy as np
+
+from trunnion.arrays import Floats, Lines
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Kind
+from trunnion.simulation.collisions import Collision
+from trunnion.simulation.findings import Finding, What, file_of_row
+from trunnion.simulation.moments import reached
+from trunnion.simulation.simulator import Job, OperationCut, row_runs, tip_lengths
+from trunnion.simulation.steps import CutSetup
+from trunnion.simulation.tools.choice import NO_CALL
+from trunnion.simulation.tools.profile import Role
+from trunnion.verification import Verification
+from trunnion.verification import verify as verify_run
+
+
+@dataclass(frozen=True, slots=True)
+class SimulationFinding:
+    """One thing that is wrong.
+
+    kind      ``rapid through stock``, ``gouge``, ``cuts with the spindle off``, ``shank into stock``,
+              ``holder into stock`` or ``collision``
+    between   names of two bodies
+    file      program
+    line      of its worst block in it, from 1
+    block     N number of that block, -1 where it has none
+    last_line, last_block  of the last block of the run of blocks that do it
+    cl_line   line of the CL file that the block comes from; 0 where it is not known
+    cl_file   that file
+    seconds   when, from the beginning of the program
+    depth     how deep, mm
+    place     where, workpiece frame, mm
+    setup     name of the set-up; empty where there is only one
+    row       of the worst block in the run of its program
+    """
+
+    kind: str
+    between: tuple[str, str]
+    file: str
+    line: int
+    block: int
+    last_line: int
+    last_block: int
+    cl_line: int
+    seconds: float
+    depth: float
+    place: tuple[float, float, float]
+    cl_file: str = ""
+    setup: str = ""
+    row: int = -1
+
+
+@dataclass(frozen=True, slots=True)
+class NearMiss:
+    """Two bodies that come near each other: where nearest, and how near, mm; the rest as in ``SimulationFinding``."""
+
+    between: tuple[str, str]
+    file: str
+    line: int
+    block: int
+    last_line: int
+    last_block: int
+    seconds: float
+    distance: float
+    place: tuple[float, float, float]
+    setup: str = ""
+    row: int = -1
+
+
+@dataclass(frozen=True, slots=True)
+class AirCut:
+    """Blocks at feed that take nothing away: file, first and last line and N number, and the way of the tip in mm."""
+
+    file: str
+    line: int
+    block: int
+    last_line: int
+    last_block: int
+    length: float
+    setup: str = ""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BlockRemoval:
+    """What each block removed that removed anything.
+
+    line     (n,) of each block in its own file
+    removed  (n,) mm³ of the stock
+    rate     (n,) mm³/min, at the programmed feeds; NaN where the block takes no time
+    """
+
+    line: Lines
+    removed: Floats
+    rate: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatedOperation:
+    """Consecutive blocks with one tool.
+
+    file      of the first block: the program, or a subprogram
+    line      of the first block
+    last_line of the last block, in its own file
+    removed   mm³ of the stock
+    gouged    mm³ of the design
+    seconds   at the programmed feeds
+    air       mm at feed in which nothing was removed
+    findings  their number
+    blocks    volume removed by block and minute
+    """
+
+    file: str
+    tool: str
+    line: int
+    last_line: int
+    removed: float
+    gouged: float
+    seconds: float
+    air: float
+    findings: int
+    blocks: BlockRemoval = field(compare=False, repr=False)
+    setup: str = ""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SetupFindings:
+    """What was found in a set-up: what must not be, what comes near, operations with one tool, and all air cuts."""
+
+    findings: tuple[SimulationFinding, ...]
+    near: tuple[NearMiss, ...]
+    operations: tuple[SimulatedOperation, ...]
+    air: tuple[AirCut, ...]
+
+
+_Named = TypeVar("_Named", SimulationFinding, NearMiss, AirCut, SimulatedOperation)
+
+#: The part of the tool that does what is wrong; all others are the cutter's.
+_ROLES: Final = {What.SHANK: (Role.SHANK,), What.HOLDER: (Role.HOLDER,), What.NEAR: (Role.SHANK, Role.HOLDER)}
+
+
+def setup_findings(cut: CutSetup) -> SetupFindings:
+    """Records of what programs have cut, hit and come near to in a set-up, with their blocks and times."""
+    found, jobs, touched, setup = cut.simulation, cut.jobs, cut.touched, cut.setup.name
+    # Runs are taken as they were read; their rows are those of the jobs.
+    verified = [verify_run(run, cut.setup.toolpaths if len(jobs) == 1 else ()) for run in cut.setup.runs[: len(jobs)]]
+    slack = 0.5 * float(found.stock.lattice.cell.max())
+    seconds = [np.cumsum(each.seconds) for each in verified]
+    lengths = [tip_lengths(job.run) for job in jobs]
+    findings, operations, air = list[SimulationFinding](), list[SimulatedOperation](), list[AirCut]()
+    misses = list[NearMiss]()
+    for one in found.operations:
+        run, at = jobs[one.job].run, seconds[one.job]
+        for finding in one.findings:
+            findings.append(_finding(verified[one.job], finding, _moment(jobs[one.job], finding, at, slack)))
+        for finding in one.near:
+            misses.append(_near_stock(run, finding, _moment(jobs[one.job], finding, at, slack + finding.depth)))
+        idle = list(_air(run, one, lengths[one.job]))
+        air += idle
+        seconds_taken = float(at[one.end - 1]) - (float(at[one.first - 1]) if one.first else 0.0)
+        lines = int(run.line[one.first]), int(run.line[one.end - 1])
+        air_length = sum(each.length for each in idle)
+        own = [each for each in touched[one.job] if not each.is_near and one.first <= each.worst_row < one.end]
+        count, blocks = len(one.findings) + len(own), _blocks(run, one, at)
+        operations.append(_operation(run, one, seconds_taken, lines, air_length, count, blocks))
+    for number, collisions in enumerate(touched):
+        run, at = jobs[number].run, seconds[number]
+        hits = [each for each in collisions if not each.is_near]
+        for each in hits:
+            finding = _of_collision(each)
+            findings.append(_finding(verified[number], finding, _moment(jobs[number], finding, at, slack)))
+        misses += (_near_miss(run, each, at) for each in collisions if each.is_near)
+    return SetupFindings(_named(findings, setup), _named(misses, setup), _named(operations, setup), _named(air, setup))
+
+
+def _named(found: Iterable[_Named], setup: str) -> tuple[_Named, ...]:
+    """Records with the name of their set-up."""
+    return tuple(replace(each, setup=setup) for each in found) if setup else tuple(found)
+
+
+def _operation(
+    run: Run,
+    one: OperationCut,
+    seconds: float,
+    lines: tuple[int, int],
+    air: float,
+    count: int,
+    blocks: BlockRemoval,
+) -> SimulatedOperation:
+    tool, removed = one.tool or NO_CALL, float(one.removed.sum())
+    file = run.files[int(run.file[one.first])]  # line 21 may be that of a subprogram
+    return SimulatedOperation(file, tool, *lines, removed, one.gouged, seconds, air, count, blocks)
+
+
+def _blocks(run: Run, one: OperationCut, at: Floats) -> BlockRemoval:
+    """What each block of an operation removed; ``at`` are seconds at the ends of the run's rows.
+
+    Rows that follow each other in one line are a block: a cycle, or an arc in pieces.
+    """
+    lines = run.line[one.first : one.end]
+    starts = np.flatnonzero(np.diff(lines, prepend=lines[:1] - 1))
+    removed = np.add.reduceat(one.removed, starts)
+    ends = one.first + np.append(starts[1:], len(lines)) - 1
+    before = one.first + starts - 1
+    minutes = (at[ends] - np.where(before >= 0, at[np.maximum(before, 0)], 0.0)) / 60.0
+    rate = np.divide(removed, minutes, out=np.full(len(removed), np.nan), where=minutes > 0.0)
+    kept = removed > 0.0
+    return BlockRemoval(lines[starts][kept], removed[kept], rate[kept])
+
+
+def _moment(job: Job, finding: Finding, seconds: Floats, slack: float) -> float:
+    """When something is found, seconds from the start of the program; ``seconds`` are those at the ends of rows."""
+    row, fraction = finding.worst, finding.fraction
+    if math.isnan(fraction):
+        shape = job.tools.get(job.run.tools[int(job.run.state.tool[row])])
+        roles = _ROLES.get(finding.what, (Role.CUTTER,))
+        fraction = 1.0 if shape is None else reached(job.run, row, shape, roles, finding.place, slack)
+    return _at_fraction(seconds, row, fraction)
+
+
+def _at_fraction(seconds: Floats, row: int, fraction: float) -> float:
+    begin = float(seconds[row - 1]) if row else 0.0
+    return begin + fraction * (float(seconds[row]) - begin)
+
+
+def _finding(verified: Verification, finding: Finding, seconds: float) -> SimulationFinding:
+    run, row, last = verified.run, finding.worst, finding.rows[1]
+    x, y, z = finding.place
+    cl_line = int(verified.cl_line[row]) if len(verified.cl_line) else 0
+    cl_file = next((each.cl_file for each in verified.operations if each.first <= row < each.end), "")
+    return SimulationFinding(
+        str(finding.what), finding.between, file_of_row(run, row), int(run.line[row]), int(run.block_number[row]),
+        int(run.line[last]), int(run.block_number[last]), cl_line, seconds, finding.depth, (x, y, z),
+        cl_file if cl_line else "", row=row,
+    )  # fmt: skip
+
+
+def _of_collision(each: Collision) -> Finding:
+    rows = each.row, each.last_row
+    return Finding(What.BODY, each.between, rows, each.worst_row, each.depth_mm, each.place, each.worst_fraction)
+
+
+def _near_stock(run: Run, each: Finding, seconds: float) -> NearMiss:
+    row, last = each.worst, each.rows[1]
+    return NearMiss(
+        each.between, file_of_row(run, row), int(run.line[row]), int(run.block_number[row]), int(run.line[last]),
+        int(run.block_number[last]), seconds, each.depth, each.place, row=row,
+    )  # fmt: skip
+
+
+def _near_miss(run: Run, each: Collision, seconds: Any) -> NearMiss:
+    row, last = each.worst_row, each.last_row
+    return NearMiss(
+        each.between, file_of_row(run, row), int(run.line[row]), int(run.block_number[row]), int(run.line[last]),
+        int(run.block_number[last]), _at_fraction(seconds, row, each.worst_fraction), each.distance_mm, each.place,
+        row=row,
+    )  # fmt: skip
+
+
+def _air(run: Run, one: OperationCut, lengths: Any) -> Iterable[AirCut]:
+    rows = np.concatenate(one.air) if one.air else np.zeros(0, np.int64)
+    rows = rows[run.kind[rows] != Kind.RAPID]
+    for first, last in row_runs(rows):
+        length = float(lengths[first : last + 1].sum())
+        if length > 0.0:
+            numbers = int(run.block_number[first]), int(run.block_number[last])
+            yield AirCut(
+                file_of_row(run, first), int(run.line[first]), numbers[0], int(run.line[last]), numbers[1], length
+            )

@@ -1,0 +1,236 @@
+"""Set-ups that are simulated one after another: the stock that one leaves is that of the next."""
+
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+from trunnion.errors import Problem, Severity
+from trunnion.simulation.collisions import Body, Collision, check_collisions, fixture_body, machine_bodies, part_body
+from trunnion.simulation.cutting.shares import JoinedShares, Share
+from trunnion.simulation.meshes import TriangleMesh
+from trunnion.simulation.prepared_setup import PreparedSetup
+from trunnion.simulation.remarks import of_setup, part_remarks, simulation_remarks
+from trunnion.simulation.simulator import Job, Setup, Simulation, cut_share, simulate
+from trunnion.simulation.stock.solids import StockShape
+from trunnion.simulation.stock.turning import turned_stock
+from trunnion.simulation.tool_deltas import as_the_tool_goes
+from trunnion.simulation.turned_parts import as_clamped, places_of_drawing
+
+
+class Watcher(Protocol):
+    """Receives progress and remarks while stock is cut."""
+
+    def problems(self, problems: Sequence[Problem]) -> None:
+        """Remarks, as they are found."""
+
+    def progress(self, stage: str, total: int, unit: str) -> AbstractContextManager[Callable[[int], None]]:
+        """Accompany a stage: gives a function that is called with how many more units are done."""
+
+
+@dataclass(frozen=True, slots=True)
+class CuttingOptions:
+    """How stock is cut.
+
+    cell       width of the cells, mm
+    tolerance  how far motions may be off, mm
+    near       distance that counts as near, mm; 0: none
+    stops_at_first  the simulation ends at the first finding
+    threads    None: as many as there are processors
+    """
+
+    cell: float
+    tolerance: float
+    near: float = 0.0
+    stops_at_first: bool = False
+    threads: int | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CutSetup:
+    """What cutting in a set-up came to.
+
+    setup       as it was read
+    simulation  of its programs
+    jobs        the programs as far as they were simulated
+    touched     what bodies did in each of them
+    remarks     what was not simulated, or was taken for granted
+    pairs       of bodies that were checked against each other
+    """
+
+    setup: PreparedSetup
+    simulation: Simulation
+    jobs: Sequence[Job]
+    touched: Sequence[Sequence[Collision]]
+    remarks: tuple[Problem, ...]
+    pairs: int
+
+
+class SetupSteps:
+    """Cuts stock in set-ups, each time what the last one has left."""
+
+    def __init__(self, options: CuttingOptions, watcher: Watcher, shares: JoinedShares | None) -> None:
+        self._options, self._watcher, self._shares = options, watcher, shares
+        self._part: TriangleMesh | None = None
+        #: How far turns may have moved the surface of the stock, mm.
+        self._slack = 0.0
+        self._left: Simulation | None = None
+        #: What is odd about machines, which is told once, whatever runs on them.
+        self._of_machines: list[Problem] = []
+
+    def follow(self, own: PreparedSetup, shape: StockShape, remarks: list[Problem]) -> CutSetup:
+        """Cut the stock in a set-up; ``shape`` is the first one's."""
+        pose, cell = own.pose, self._options.cell
+        if self._left is not None:
+            shape = StockShape.of_kept(*turned_stock(self._left.stock, pose, cell))
+            self._part = None if self._part is None else self._part.moved(pose.matrix)
+            if not pose.keeps_rays:
+                self._slack += cell
+                what = f"is turned through its surface: it may be {0.5 * cell:.4g} mm off, and what is thinner"
+                what += f" than a cell of {cell:g} mm may be lost"
+                remarks.append(
+                    Problem("stock", 0, what, "turn it by quarters to lose nothing", Severity.WARNING, code="SIM134")
+                )
+        self._part = own.part or self._part
+        result = self._simulated(own, self._setup(shape, self._part), self._part, remarks)
+        self._left = result.simulation
+        return result
+
+    def share(self, own: PreparedSetup, shape: StockShape, share: Share, remarks: list[Problem]) -> bytes:
+        """Cut some tiles of the stock in the only set-up."""
+        self._watcher.problems(remarks)
+        jobs, setup = own.jobs(), self._setup(shape, own.part)
+        with self._watcher.progress("cutting", sum(job.end for job in jobs), "blocks") as tell:
+            return cut_share(setup, jobs, share, threads=self._options.threads, progress=_told_once(tell))
+
+    def _setup(self, shape: StockShape, part: TriangleMesh | None) -> Setup:
+        design = None if part is None else StockShape(part.bounds[0], part.bounds[1], mesh=part)
+        return Setup(shape, design, self._options.cell, self._options.tolerance, self._options.near)
+
+    def _simulated(
+        self, own: PreparedSetup, setup: Setup, part: TriangleMesh | None, remarks: list[Problem]
+    ) -> CutSetup:
+        options, name, turn = self._options, own.name, own.turn
+        clamped, jobs = own.clamped_runs(), own.jobs()
+        runs = [job.run for job in jobs]
+        remarks += simulation_remarks(setup, runs, own.tools)
+        remarks += [problem for run in own.runs for problem in as_the_tool_goes(run)[1]]
+        remarks += [Problem(job.run.files[0], 0, job.broken_off, code="SIM142") for job in jobs if job.broken_off]
+        self._watcher.problems(of_setup(remarks, name))
+        told = len(remarks)
+        solid, around = part, own.fixtures
+        if turn is not None:
+            solid = None if part is None else as_clamped(part, turn)
+            around = tuple(as_clamped(mesh, turn) for mesh in around)
+        machines = list[Problem]()
+        bodies = [
+            _bodies(replace(job, run=run), number, solid, around, remarks, machines)
+            for number, (job, run) in enumerate(zip(jobs, clamped, strict=True))
+        ]
+        machines = [each for each in dict.fromkeys(machines) if each not in self._of_machines]
+        self._of_machines += machines
+        self._watcher.problems(machines)
+        pairs: list[int] = []
+
+        def touching(jobs: Sequence[Job], tell: Callable[[int], None] | None = None) -> list[list[Collision]]:
+            """What touches on the machine, where the part is as it is clamped; places are those of the drawing."""
+            found = [
+                _collisions(replace(job, run=run), each, options.near, tell)
+                for job, run, each in zip(jobs, clamped, bodies, strict=False)
+            ]
+            return found if turn is None else [places_of_drawing(each, turn) for each in found]
+
+        touched = touching(jobs, pairs.append)
+        if options.stops_at_first:
+            jobs = _up_to_first_hit(jobs, touched)
+        found = self._cut(setup, jobs)
+        remarks += part_remarks(setup, found.lacking, self._slack, is_later=self._left is not None)
+        if found.leaks:
+            what = f"{found.leaks} of {found.stock.lattice.ray_count} rays pass a hole in it, and were left empty"
+            remarks.append(Problem("part", 0, what, "close the mesh", Severity.WARNING, code="SIM214"))
+        if found.start_volume - found.stock.volume <= 0.0:
+            what, cure = "takes nothing from the stock", "check the place of the stock, and the tools"
+            remarks.append(Problem(runs[0].files[0], 0, what, cure, Severity.WARNING, code="SIM133"))
+        self._watcher.problems(of_setup(remarks[told:], name))
+        if options.stops_at_first:
+            jobs = _until_stop(jobs, found)
+            touched = touching(jobs)
+        return CutSetup(own, found, jobs, touched, (*of_setup(remarks, name), *machines), sum(pairs))
+
+    def _cut(self, setup: Setup, jobs: Sequence[Job]) -> Simulation:
+        """Cut the stock, with progress."""
+        with self._watcher.progress("cutting", sum(job.end for job in jobs), "blocks") as tell:
+            return simulate(
+                setup, jobs, stop_at_first=self._options.stops_at_first, threads=self._options.threads,
+                shares=self._shares, progress=_told_once(tell),
+            )  # fmt: skip
+
+
+def _told_once(tell: Callable[[int], None]) -> Callable[[int, int], None]:
+    """What tells of rows that are done, each of them once."""
+    done = 0
+
+    def progress(rows: int, _: int) -> None:
+        nonlocal done
+        if rows > done:
+            tell(rows - done)
+            done = rows
+
+    return progress
+
+
+def _up_to_first_hit(jobs: Sequence[Job], touched: Sequence[Sequence[Collision]]) -> list[Job]:
+    """The jobs as far as the row in which bodies first touch."""
+    kept = []
+    for job, collisions in zip(jobs, touched, strict=True):
+        first = min((each.row for each in collisions if not each.is_near), default=None)
+        kept.append(job if first is None else replace(job, end=first + 1))
+        if first is not None:
+            break
+    return kept
+
+
+def _until_stop(jobs: Sequence[Job], found: Simulation) -> list[Job]:
+    """The jobs as far as they were simulated."""
+    if found.stopped is None:
+        return list(jobs)
+    last, row = found.stopped
+    return [*jobs[:last], replace(jobs[last], end=row + 1)]
+
+
+def _bodies(
+    job: Job,
+    number: int,
+    part: TriangleMesh | None,
+    fixtures: Sequence[TriangleMesh],
+    remarks: list[Problem],
+    of_machine: list[Problem],
+) -> list[Body]:
+    """What a tool can hit while a program runs, and what the machine may hit with it."""
+    machine = job.run.machine
+    bodies = [fixture_body(mesh, machine) for mesh in fixtures]
+    if fixtures and part is not None:
+        bodies.append(part_body(part, machine))
+    if machine.workpiece_zero is not None and _lengths_known(job):
+        bodies += machine_bodies(machine, of_machine.append)
+    elif number == 0 and machine.bodies:
+        what = "the bodies of the machine are not checked: workpiece zero and tool lengths are not known"
+        cure = "give the workpiece zero, and the tool length or a tool with its holder"
+        remarks.append(Problem(job.run.files[0], 0, what, cure, Severity.WARNING, code="SIM310"))
+    return bodies
+
+
+def _collisions(
+    job: Job, bodies: Sequence[Body], near: float, pairs_told: Callable[[int], None] | None = None
+) -> list[Collision]:
+    """What touches, or comes near, while a program runs as far as it is simulated."""
+    if not bodies:
+        return []
+    return check_collisions(job.run, bodies, job.tools, near=near, end=job.end, pairs_told=pairs_told)
+
+
+def _lengths_known(job: Job) -> bool:
+    """Whether the length of every tool that the program calls is known, from its tip to the gauge point."""
+    used = [job.run.tools[int(index)] for index in job.run.state.tool.distinct()]
+    known = job.run.machine.tool_length is not None
+    return all(known or job.tools[name].length for name in used if name in job.tools)
