@@ -66,7 +66,7 @@ def run_disturbed(cluster: Cluster, batch: Batch, folder: Path, place: str) -> B
     return run_jobs(
         batch,
         store,
-        lambda _: DaskWorkers(cluster.address, simple_work, writing=store.worker_url),
+        lambda _: DaskWorkers(cluster.address, simple_work, writing=store.worker_url, patience=600.0),
         Disturber(9, disturb),
     )
 
@@ -156,14 +156,12 @@ def test_a_scheduler_without_workers_is_told_and_left_in_the_end(
     monkeypatch.setattr("trunnion.batch.cluster.time", clock)
     write_files(tmp_path / "in", {"x.cls": "one"})
     listener = Listener()
-    with Cluster(tmp_path, 0) as cluster:
-        monkeypatch.setattr("trunnion.batch.cluster._ATTEMPT", 30.0)  # until the scheduler is there
-        with pytest.raises(InputError, match="BAT240"):
-            run_jobs(
-                simple_batch(tmp_path / "in"),
-                FolderStore(tmp_path / "out"),
-                lambda _: DaskWorkers(cluster.address, simple_work, wait=2.5, observer=listener),
-            )
+    with Cluster(tmp_path, 0) as cluster, pytest.raises(InputError, match="BAT240"):
+        run_jobs(
+            simple_batch(tmp_path / "in"),
+            FolderStore(tmp_path / "out"),
+            lambda _: DaskWorkers(cluster.address, simple_work, wait=2.5, observer=listener),
+        )
     assert listener.codes == ["BAT240"]
 
 

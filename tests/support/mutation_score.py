@@ -121,9 +121,9 @@ def rounds(files: list[str]) -> Iterator[list[str]]:
 
 
 def draw_mutants(folder: Path, count: int, rng: random.Random) -> list[Mutant]:
-    """Mutants of the modules in a folder, as many of each kind."""
+    """Mutants of the modules in a folder, or of one module, as many of each kind."""
     places = dict[str, list[Mutant]]()
-    for file in sorted(folder.rglob("*.py")):
+    for file in sorted(folder.rglob("*.py")) or [folder]:
         for mutant in mutants_of(file):
             places.setdefault(mutant.kind, []).append(mutant)
     for each in places.values():
@@ -149,7 +149,7 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=300)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--seconds", type=float, default=300.0, help="time of one mutant")
-    parser.add_argument("--under", default="", help="folder of the sources to draw from, such as planning")
+    parser.add_argument("--under", default="", help="where to draw from, such as planning or arrays.py")
     arguments = parser.parse_args()
     drawn = draw_mutants(ROOT / "src" / "trunnion" / arguments.under, arguments.count, random.Random(arguments.seed))
     print(f"{len(drawn)} mutants, seed {arguments.seed}", flush=True)
