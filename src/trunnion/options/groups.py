@@ -65,6 +65,20 @@ FEED: Final = Option(
     "feed", "--feed", Choice(FEEDS), "fastest: of each block what the axes reach, within the feed of the CL file"
 )
 
+#: Options of a post that are settings of the same name: declared here, and read as settings where they act.
+POSTING: Final = Group(
+    "limits of a post",
+    (
+        Option(
+            "max_tilt",
+            "--max-tilt",
+            angle("a tilt", 0.0, 180.0, "30"),
+            "refuse operations whose tool axis leans more than this from Z of the program",
+            setting="max_tilt",
+        ),
+    ),
+)
+
 ZERO: Final = Option("zero", "--zero", Text("X,Y,Z"), "the workpiece zero on the machine, mm", key="zero_mm")
 
 TOOL_LENGTH: Final = Option(
