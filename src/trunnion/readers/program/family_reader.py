@@ -46,8 +46,3 @@ class FamilyReader:
     smoothing: re.Pattern[str] | None = None
     lost_smoothing: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     check_reading: Callable[[Machine], object] = no_reading
-
-
-def g_words(tenths: frozenset[int]) -> frozenset[str]:
-    """Return G words for codes in tenths: 541 is G54.1."""
-    return frozenset(f"G{code / 10:g}" for code in tenths)
