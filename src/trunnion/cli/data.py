@@ -9,9 +9,9 @@ from typing import Any
 from trunnion.batch.running import BatchResult
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.jobs.convert.converting import ConvertResult
-from trunnion.jobs.papers.manifests import ManifestCheck
-from trunnion.jobs.papers.reports import add_report
+from trunnion.jobs.post.papers.manifests import ManifestCheck
 from trunnion.jobs.post.result import PostResult
+from trunnion.jobs.verify.reports import add_report
 from trunnion.machines import Machine
 from trunnion.verification import Verification
 from trunnion.verification.comparison.result import Comparison
