@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from trunnion.cli.cl_files import result_stem
-from trunnion.cli.data import conversion_data
 from trunnion.cli.results import show, tell
 from trunnion.cli.terminal import ConversionTerminal, check_unnamed, output_folder, output_place
 from trunnion.cli.terminal_text import warning_line
@@ -45,7 +44,7 @@ def run(given: Given) -> int:
         rows = sum(len(operation.moves) for operation in operations)
         tell(f"{target}: {counted(rows, 'point')}, {counted(len(operations), 'operation')}")
     if given.json is not None:
-        show(given, lambda: conversion_data(converted), ())
+        show(given, lambda: converted, ())
     return 0 if converted.passed else 1
 
 
