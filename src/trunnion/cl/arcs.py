@@ -23,7 +23,7 @@ _NORMAL_TOLERANCE = 0.01
 
 
 def complete_circles(circles: list[CircleStatement], kind: Codes, diagnostics: Diagnostics) -> list[CircleStatement]:
-    """Return the circles that have an end point; ``kind`` (n,) tells which rows are rapids."""
+    """Return the circles that have an end point; ``kind`` (n,) gives the rows that are rapids."""
     if circles and circles[-1].row >= len(kind):
         diagnostics.error(circles[-1].line, Wording("CL560", "circle_without_goto"))
         circles = circles[:-1]
@@ -106,7 +106,7 @@ def _check(
 def _check_angles(
     arcs: Arcs, circles: Sequence[CircleStatement], start: Floats, end: Floats, diagnostics: Diagnostics
 ) -> None:
-    """Report arcs that turn by another angle than their statement says, as about a normal that points the wrong way.
+    """Report arcs whose angle is not that of their statement, such as arcs about a normal that points the wrong way.
 
     start, end  (m, 3) float64, mm
     """
@@ -124,7 +124,7 @@ def report_open_ends(
     """Report an operation in which each arc is followed by a line to another point of its circle, ahead of it.
 
     Some systems write several points of an arc, and others only its end. One arc whose next line leaves the circle
-    tells that each point is an end.
+    shows that each point is an end.
     """
     may_go_on = {circle.row: circle.line for circle in circles if circle.may_go_on}
     lines = []

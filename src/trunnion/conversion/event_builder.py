@@ -36,6 +36,7 @@ class EventBuilder:
     phase_comments   comments that name phases, in capitals, and are no messages
     coolants         M number -> CL word
     template_lines   lines written from templates: every program of the control has their comments and messages
+    smoothing        as ``FamilyReader.lost_smoothing``
     """
 
     def __init__(
@@ -44,6 +45,7 @@ class EventBuilder:
         phase_comments: Collection[str],
         coolants: Mapping[int, str],
         template_lines: Collection[int],
+        smoothing: Mapping[str, tuple[str, str]],
         warn: Warnings,
     ) -> None:
         self.tool = ""
@@ -51,6 +53,7 @@ class EventBuilder:
         self._phase_comments = phase_comments
         self._coolants = coolants
         self._template_lines = template_lines
+        self._smoothing = smoothing
         self._warn = warn
         self._rpm = 0.0
         self._sense: Sense | None = None
@@ -169,10 +172,9 @@ class EventBuilder:
                 self._warn(line, Wording("CNV173", "length_radius_tool"), event.file)
             case "delta":
                 self._warn.refuse(line, Wording("CNV173", "dl_dr_tool"), event.file)
-            case "cycle32":
-                self._warn(line, Wording("CNV140", "cycle_32_not"), event.file)
-            case "cycle832":
-                self._warn(line, Wording("CNV140", "cycle832_not_carried"))
+            case kind if kind in self._smoothing:
+                name, cure = self._smoothing[kind]
+                self._warn(line, Wording("CNV140", "not_carried_over", name=name, cure=cure), event.file)
 
 
 def _one_line(text: str) -> str:

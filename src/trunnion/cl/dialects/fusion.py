@@ -1,6 +1,6 @@
 """APT exports of Autodesk Fusion and HSMWorks.
 
-Their posts write the points of a tilted operation in the coordinates of its plane, and say nothing of the plane.
+Their posts write the points of a tilted operation in the coordinates of its plane, and do not state the plane.
 """
 
 from typing import Final
@@ -18,7 +18,7 @@ _POST: Final = "output the NC program by the CAM system's post, or CL data with 
 
 
 def _partno(state: ReaderState, statement: Statement) -> None:
-    """The name of the part, in quotation marks; and what nothing in the file tells."""
+    """Set the name of the part, and warn of tilted operations, which the file may not show."""
     state.diagnostics.remark(state.line, Wording("CL460", "some_revisions_export"))
     operations.partno(state, statement._replace(text=statement.text.strip("'")))
 

@@ -14,8 +14,8 @@ from trunnion.messages import Wording
 
 def nurbs(state: ReaderState, statement: Statement) -> None:
     """Begin a spline in the last point."""
-    state.spline = None
-    state.spline_reported = True  # until it is certain that this one can be read
+    splines = state.own(motion.SplineState)
+    splines.spline, splines.is_refused = None, True  # until it is certain that this one can be read
     if not state.in_operation:
         raise StatementError(Wording("CL350", "nurbs_outside_any"))
     if statement.values:
@@ -27,30 +27,31 @@ def nurbs(state: ReaderState, statement: Statement) -> None:
         raise StatementError(Wording("CL580", "rapid_before_nurbs"))
     if motion.current_tip(state) is None:
         raise StatementError(Wording("CL510", "nurbs_without_point"))
-    state.spline_reported = False
-    state.spline = SplineStatement(state.operation_row, state.line)
-    state.builder.splines.append(state.spline)
+    splines.spline, splines.is_refused = SplineStatement(state.operation_row, state.line), False
+    state.builder.splines.append(splines.spline)
 
 
 def knot(state: ReaderState, statement: Statement) -> None:
     """Add knots to the spline that has begun."""
-    if state.spline_reported:
+    splines = state.own(motion.SplineState)
+    if splines.is_refused:
         return
-    if state.spline is None or state.spline.points:
+    if splines.spline is None or splines.spline.points:
         raise StatementError(Wording("CL600", "knot_without_nurbs"))
-    state.spline.knots += _numbers(state, statement)
+    splines.spline.knots += _numbers(state, statement)
 
 
 def cntrl(state: ReaderState, statement: Statement) -> None:
     """Add a control point, in a row of its own until the spline is evaluated."""
-    if state.spline_reported:
+    splines = state.own(motion.SplineState)
+    if splines.is_refused:
         return
     if len(statement.values) == 6:
         _give_up(state)
         raise StatementError(Wording("CL600", "cntrl_tool_axis"))
     values = _numbers(state, statement, 3)
     motion.write_row(state, values)
-    spline = state.spline
+    spline = splines.spline
     if spline is None or state.operation_row != spline.row + spline.points:
         _give_up(state)
         raise StatementError(Wording("CL600", "cntrl_follows_neither"))
@@ -68,7 +69,8 @@ def _numbers(state: ReaderState, statement: Statement, *counts: int) -> tuple[fl
 
 def _give_up(state: ReaderState) -> None:
     """Report no more of a spline that an error has named."""
-    state.spline_reported = True
-    if state.spline is not None:
-        state.builder.splines.remove(state.spline)
-        state.spline = None
+    splines = state.own(motion.SplineState)
+    splines.is_refused = True
+    if splines.spline is not None:
+        state.builder.splines.remove(splines.spline)
+        splines.spline = None

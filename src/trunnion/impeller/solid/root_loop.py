@@ -25,6 +25,7 @@ from trunnion.impeller.solid.shapes import SplineSurface
 from trunnion.impeller.solid.splines import surface_through
 from trunnion.impeller.solid.turned import profile_parameters
 from trunnion.messages import Wording
+from trunnion.wording import position
 
 #: Parts of a loop.
 PARTS: Final = 6
@@ -181,10 +182,8 @@ def _heights(impeller: Impeller, blade: Blade, stations: Stations, fillet: Fille
     over = gap(fillet.v)
     k = int(over.argmax())
     if over[k] >= 0.0:
-        x, y, z = fillet.centre[k] + impeller.definition.fillet * fillet.to_blade[k]
-        raise InputError(
-            Problem(impeller.definition.file, 0, Wording("IMP420", "fillet_reaches_shroud", x=x, y=y, z=z))
-        )
+        place = position(fillet.centre[k] + impeller.definition.fillet * fillet.to_blade[k])
+        raise InputError(Problem(impeller.definition.file, 0, Wording("IMP420", "fillet_reaches_shroud", place=place)))
     return crossings(gap, fillet.v, np.full(len(over), blade.high))
 
 

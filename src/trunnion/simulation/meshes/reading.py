@@ -23,6 +23,7 @@ from trunnion.simulation.meshes.stl import read_stl
 from trunnion.simulation.meshes.three_mf import read_three_mf
 from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
 from trunnion.simulation.meshes.trimesh_formats import read_by_trimesh
+from trunnion.wording import position
 
 #: Larger files are refused unread, bytes.
 MAX_BYTES: Final = 1_000_000_000
@@ -241,7 +242,7 @@ def _problems(mesh: TriangleMesh, findings: MeshFindings, label: str, guessed: b
                     "SIM214",
                     "leaks_edges_surface",
                     open_edges=findings.open_edges,
-                    places=tuple(f"X{x:.3f} Y{y:.3f} Z{z:.3f}" for x, y, z in findings.places),
+                    places=tuple(map(position, findings.places)),
                 ),
                 severity=severity,
             )
