@@ -29,11 +29,11 @@ import trunnion
 from trunnion.batch import run_batch
 from trunnion.batch.cluster import DaskWorkers
 from trunnion.batch.jobs import Batch, Job
-from trunnion.batch.keys import program_version
 from trunnion.batch.records import Record
+from trunnion.batch.result_keys import program_version
 from trunnion.batch.running import run_jobs
 from trunnion.batch.stores import FolderStore, Store, open_store
-from trunnion.batch.task import Action, Outcome, Status, Task
+from trunnion.batch.worker_task import Action, Outcome, Status, Task
 from trunnion.jobs.observer import Observer
 
 MACHINE = "yl569"
@@ -206,9 +206,9 @@ def wait_for(cluster: Cluster) -> None:
 
 def _import(_: int) -> float:
     used = time.process_time()
-    import trunnion.batch.work
+    import trunnion.batch.processing
 
-    assert trunnion.batch.work
+    assert trunnion.batch.processing
     return time.process_time() - used
 
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from trunnion.batch.jobs import Job, folder_files
 from trunnion.batch.patterns import matches, pattern_fault
 from trunnion.batch.places import units_of
-from trunnion.batch.task import Action
+from trunnion.batch.worker_task import Action
 from trunnion.errors import InputError
 from trunnion.files import name_fault
 

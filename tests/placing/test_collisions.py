@@ -16,8 +16,8 @@ from trunnion.machines import Machine, MachineBody, load_machine
 from trunnion.model.rotations import about_x, about_z
 from trunnion.placing.best_turn import Grid, TurnResult
 from trunnion.placing.collisions.best_clearance import Guard, NearestRow, Oriented, farthest_orientations, nearest_at
-from trunnion.placing.collisions.ceilings import Witness
 from trunnion.placing.collisions.clearance import ENOUGH, Clearance
+from trunnion.placing.collisions.distance_planes import Witness
 from trunnion.placing.collisions.guarded_pairs import (
     Changes,
     Guarded,
@@ -27,7 +27,7 @@ from trunnion.placing.collisions.guarded_pairs import (
     guarded_pairs,
     guarded_tool,
 )
-from trunnion.placing.collisions.moments import moments_of
+from trunnion.placing.collisions.path_samples import moments_of
 from trunnion.placing.collisions.search import FarthestSearch
 from trunnion.placing.largest_margin import largest_margin
 from trunnion.placing.path_rows import PathRows

@@ -10,11 +10,11 @@ from trunnion.arrays import Codes, Floats
 from trunnion.machines import inverse, load_machine
 from trunnion.model.arc_extremes import ArcPaths
 from trunnion.model.rotations import about_z
+from trunnion.placing.axis_equations import SlideForms
 from trunnion.placing.between_rows import most_between
 from trunnion.placing.extremes import Extremes
 from trunnion.placing.path_rows import Stretch
 from trunnion.placing.rotary_angles import RotaryAngles, rotary_angles
-from trunnion.placing.slide_forms import SlideForms
 from trunnion.placing.travel_limits import CutSet
 from trunnion.placing.turns import Choice, TurnedPath, path_forms
 

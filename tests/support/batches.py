@@ -13,7 +13,7 @@ from trunnion.batch.jobs import Batch, Job
 from trunnion.batch.records import FOLDER, Record
 from trunnion.batch.running import BatchResult, run_jobs
 from trunnion.batch.stores import FolderStore, Store
-from trunnion.batch.task import Action, Outcome, Task
+from trunnion.batch.worker_task import Action, Outcome, Task
 from trunnion.batch.workers import Assignment
 from trunnion.jobs.observer import SILENT, Observer
 

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
     from trunnion.batch.cluster import Tls as Tls
-    from trunnion.batch.front import run_batch as run_batch
+    from trunnion.batch.run_batch import run_batch as run_batch
     from trunnion.batch.running import BatchResult as BatchResult
-    from trunnion.batch.task import Status as Status
+    from trunnion.batch.worker_task import Status as Status
 
 #: Public name -> its module.
 _MODULES: Final = {"BatchResult": "running", "Status": "task", "Tls": "cluster", "run_batch": "front"}

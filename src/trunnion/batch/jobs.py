@@ -12,11 +12,11 @@ from pathlib import Path, PurePosixPath
 from typing import Any, Final, NamedTuple
 
 from trunnion.batch.argument_checks import beside_fault, check_simulation, check_tiles, check_to_cl
-from trunnion.batch.keys import home_of
-from trunnion.batch.left_out import left_out
 from trunnion.batch.patterns import matches
 from trunnion.batch.records import FOLDER
-from trunnion.batch.task import DEFINITIONS, FILES, Action
+from trunnion.batch.result_keys import home_of
+from trunnion.batch.unmatched_patterns import left_out
+from trunnion.batch.worker_task import DEFINITIONS, FILES, Action
 from trunnion.controls import load_control
 from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem, argument_problem

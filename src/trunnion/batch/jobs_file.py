@@ -11,10 +11,10 @@ from typing import Any, Final, TypeAlias
 
 from trunnion.batch.argument_checks import MOST_TILES, beside_fault
 from trunnion.batch.jobs import Batch, Job, folder_files, judged
-from trunnion.batch.keys import home_of
-from trunnion.batch.left_out import left_out
 from trunnion.batch.patterns import matches, pattern_fault
-from trunnion.batch.task import Action
+from trunnion.batch.result_keys import home_of
+from trunnion.batch.unmatched_patterns import left_out
+from trunnion.batch.worker_task import Action
 from trunnion.cl import DIALECTS
 from trunnion.cl.writers import WRITERS
 from trunnion.definitions import Table, load_table

@@ -12,8 +12,8 @@ from pathlib import PurePosixPath
 from typing import Final
 
 from trunnion.batch.jobs import NOTED, Job, Unit
-from trunnion.batch.keys import digest
-from trunnion.batch.task import Action
+from trunnion.batch.result_keys import digest
+from trunnion.batch.worker_task import Action
 from trunnion.errors import InputError, Problem
 from trunnion.files import name_fault
 

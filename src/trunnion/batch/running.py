@@ -8,11 +8,12 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from trunnion.batch.dividing import Divisions
+from trunnion.batch.divided_files import Divisions
 from trunnion.batch.jobs import Batch, Job, Unit
-from trunnion.batch.keys import digest, key_of, program_version
 from trunnion.batch.local import LocalWorkers
+from trunnion.batch.obsolete_results import remove_stale, remove_stale_shares
 from trunnion.batch.places import units_of
+from trunnion.batch.processing import work
 from trunnion.batch.records import (
     Record,
     check_store,
@@ -22,11 +23,10 @@ from trunnion.batch.records import (
     record_name,
     settle,
 )
-from trunnion.batch.stale import remove_stale, remove_stale_shares
+from trunnion.batch.result_keys import digest, key_of, program_version
 from trunnion.batch.stores import Store
-from trunnion.batch.task import FILES, Outcome, Status, Task
-from trunnion.batch.warned import Warned, WarningTally
-from trunnion.batch.work import work
+from trunnion.batch.warning_counts import Warned, WarningTally
+from trunnion.batch.worker_task import FILES, Outcome, Status, Task
 from trunnion.batch.workers import Assignment, Workers
 from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem

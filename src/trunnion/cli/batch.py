@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Final
 
 from trunnion.batch.cluster import Tls
-from trunnion.batch.front import run_batch
 from trunnion.batch.records import Record
+from trunnion.batch.run_batch import run_batch
 from trunnion.batch.running import BatchResult
-from trunnion.batch.task import Status
+from trunnion.batch.worker_task import Status
 from trunnion.cli.progress import progress, progress_lines
 from trunnion.cli.results import print_result, tell
 from trunnion.cli.terminal import Terminal

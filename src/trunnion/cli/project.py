@@ -5,8 +5,8 @@ from pathlib import Path
 
 from trunnion.cli.post import old_files_told, print_dialects, print_summary
 from trunnion.cli.terminal import Terminal
-from trunnion.jobs.project.dividing import programs_of_operations
 from trunnion.jobs.project.file import load_project
+from trunnion.jobs.project.operation_programs import programs_of_operations
 from trunnion.jobs.project.posting import ProjectResult, post_project
 from trunnion.jobs.project.project import Division, Project
 

@@ -36,7 +36,7 @@ from trunnion.controls.vocabulary import (
 )
 from trunnion.controls.words import BlockNumbers, NumberFormat
 from trunnion.definitions import LocatedValue, Table, definition_names, resolve_extends
-from trunnion.definitions.twin_keys import report_twins, statement_form
+from trunnion.definitions.duplicate_keys import report_twins, statement_form
 from trunnion.errors import InputError, Problem
 from trunnion.families import FAMILIES, load_writer
 from trunnion.model.axis_tolerance import AxisTolerance

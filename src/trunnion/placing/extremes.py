@@ -14,7 +14,7 @@ import numpy as np
 
 from trunnion.arrays import Floats, Floats2, Floats3, Ints2
 from trunnion.jit import kernel
-from trunnion.placing.slide_forms import SlideForms
+from trunnion.placing.axis_equations import SlideForms
 
 #: Samples of a block.
 _BLOCK: Final = 64

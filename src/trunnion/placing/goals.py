@@ -18,8 +18,8 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Floats2, Floats3
 from trunnion.jit import kernel
 from trunnion.machines import Machine
+from trunnion.placing.axis_equations import slide_forms
 from trunnion.placing.path_rows import PathRows
-from trunnion.placing.slide_forms import slide_forms
 
 
 class Goal(StrEnum):

@@ -7,8 +7,8 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.machines import Machine
+from trunnion.placing.axis_equations import slide_forms
 from trunnion.placing.path_rows import PathRows
-from trunnion.placing.slide_forms import slide_forms
 from trunnion.timing import CORNER_TOLERANCE, AxisDynamics, Path, piece_seconds
 
 

@@ -18,8 +18,8 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.extras import import_extra
 from trunnion.machines import Machine, kinematic_parameters
 from trunnion.machines.machine import Axis
+from trunnion.placing.axis_equations import SlideForms
 from trunnion.placing.path_rows import PathRows
-from trunnion.placing.slide_forms import SlideForms
 
 #: Sine of the angle within which an axis is parallel to Z.
 _PARALLEL: Final = 1e-12

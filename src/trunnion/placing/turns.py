@@ -10,11 +10,11 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Machine
 from trunnion.model.rotations import about_z
+from trunnion.placing.axis_equations import SlideForms, slide_forms
 from trunnion.placing.extremes import Extremes
 from trunnion.placing.moving_samples import arc_samples, turning_samples
 from trunnion.placing.path_rows import PathRows
 from trunnion.placing.rotary_angles import Obstacle, RotaryAngles, rotary_angles
-from trunnion.placing.slide_forms import SlideForms, slide_forms
 from trunnion.placing.table_limits import Standing
 from trunnion.placing.table_room import has_room
 from trunnion.placing.travel_limits import CutSet, slide_limits

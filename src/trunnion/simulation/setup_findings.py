@@ -11,8 +11,8 @@ from trunnion.arrays import Floats, Lines
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.simulation.collisions import Collision
+from trunnion.simulation.contact_times import reached
 from trunnion.simulation.findings import Finding, What, file_of_row
-from trunnion.simulation.moments import reached
 from trunnion.simulation.simulator import Job, OperationCut, row_runs, tip_lengths
 from trunnion.simulation.steps import CutSetup
 from trunnion.simulation.tools.choice import NO_CALL

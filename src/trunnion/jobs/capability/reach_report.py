@@ -14,7 +14,7 @@ from trunnion.capability.part_reach import PartReach
 from trunnion.capability.reach import Reach, TiltReach
 from trunnion.files import OutputPlace, atomic_file, check_outputs
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.targets import check_output_name
+from trunnion.jobs.result_output import check_output_name
 from trunnion.machines.reach import ReachedVolume
 from trunnion.reporting.reach_picture import ReachPicture, TiltOfPicture, reach_picture
 from trunnion.reporting.text import clean

@@ -8,7 +8,7 @@ from typing import Final
 from trunnion.errors import InputError, Problem
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.papers.reports import check_report_name
-from trunnion.jobs.targets import check_output_name
+from trunnion.jobs.result_output import check_output_name
 
 
 @dataclass(frozen=True, slots=True)

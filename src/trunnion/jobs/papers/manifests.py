@@ -28,7 +28,7 @@ from trunnion.reporting.text import clean, finite_or_none
 from trunnion.verification import Verification, durations
 
 if TYPE_CHECKING:
-    from trunnion.jobs.targets import Target
+    from trunnion.jobs.result_output import Target
 
 #: Version of the schema. It rises when programs that read older files would be misled.
 SCHEMA: Final = 1

@@ -17,7 +17,7 @@ from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.papers.reports import add_report
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.result import PostResult
-from trunnion.jobs.targets import Target
+from trunnion.jobs.result_output import Target
 from trunnion.output.program import Program
 from trunnion.verification import Verification
 

@@ -19,7 +19,7 @@ from trunnion.jobs.place.table import standing_on
 from trunnion.machines import Machine
 from trunnion.model.clamped_toolpaths import clamped_after
 from trunnion.placing.body_distances import touch_warnings
-from trunnion.placing.collisions.moments import lengths_of
+from trunnion.placing.collisions.path_samples import lengths_of
 from trunnion.placing.goals import Goal
 from trunnion.placing.place_search import PlaceSearch
 from trunnion.placing.placement import Placement

@@ -8,7 +8,7 @@ from trunnion.jobs.papers.files import paper_files
 from trunnion.jobs.place.inputs import nc_program_stays
 from trunnion.jobs.post.posting import post_beside
 from trunnion.jobs.post.result import PostResult
-from trunnion.jobs.targets import OutputLike
+from trunnion.jobs.result_output import OutputLike
 from trunnion.placing.placement import Placement
 
 

@@ -27,7 +27,7 @@ from trunnion.jobs.papers.files import PaperFiles, paper_files
 from trunnion.jobs.papers.reports import write_refusal
 from trunnion.jobs.papers.writing import PostPapers, post_papers
 from trunnion.jobs.post.expected_values import Expectation, expectation
-from trunnion.jobs.post.forcing import Proof, Untold, write_forced
+from trunnion.jobs.post.forced_program import Proof, Untold, write_forced
 from trunnion.jobs.post.left_over_files import left_over
 from trunnion.jobs.post.machining_times import new_time_token, operation_times, prints_times, write_times
 from trunnion.jobs.post.planning import load_toolpaths, new_problems, plan_program
@@ -35,7 +35,7 @@ from trunnion.jobs.post.post_job import FORCING, PostJob, prepare
 from trunnion.jobs.post.program_places import ProgramPlaces
 from trunnion.jobs.post.result import PostResult, ProofFailedError
 from trunnion.jobs.post.writing import named_verification, read_back_while_writing, write
-from trunnion.jobs.targets import OutputLike, Target, open_target
+from trunnion.jobs.result_output import OutputLike, Target, open_target
 from trunnion.jobs.verify.program_warnings import program_warnings, stated_words
 from trunnion.model.clamped_toolpaths import clamped_after, stated_clamping, turned_toolpaths
 from trunnion.model.operation_start import OperationStart

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.papers.reports import write_post_report
-from trunnion.jobs.targets import written_text
+from trunnion.jobs.result_output import written_text
 from trunnion.model.motion import Decision, Motion, Plan
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath

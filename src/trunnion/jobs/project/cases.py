@@ -20,8 +20,8 @@ from trunnion.jobs.papers.files import NO_PAPERS
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.writing import named_run
 from trunnion.jobs.project.case_papers import StalePaper, stale_papers
-from trunnion.jobs.project.dividing import programs_of_operations
 from trunnion.jobs.project.file import load_project, project_inputs
+from trunnion.jobs.project.operation_programs import programs_of_operations
 from trunnion.jobs.project.posting import ProjectResult, check_within, files_of, post_into
 from trunnion.jobs.project.project import Division, PostedSetup, Project
 from trunnion.jobs.project.text_difference import TextDifference, text_difference

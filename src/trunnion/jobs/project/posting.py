@@ -25,9 +25,9 @@ from trunnion.jobs.post.post_job import prepare
 from trunnion.jobs.post.posting import post_beside
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.project.checks import SetupFindings, check_project
-from trunnion.jobs.project.dividing import check_tools, operation_programs, programs_of_operations
 from trunnion.jobs.project.file import load_project, project_inputs, told_by_keys
 from trunnion.jobs.project.left_over_setups import left_over_setups, remember_setups
+from trunnion.jobs.project.operation_programs import check_tools, operation_programs, programs_of_operations
 from trunnion.jobs.project.project import Division, PostedSetup, Project
 from trunnion.jobs.project.settings import told_in_project
 from trunnion.machines import Machine

@@ -16,7 +16,7 @@ from trunnion.jobs.inputs.arguments import check_path, check_paths, wrong_argume
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run
 from trunnion.jobs.inputs.settings import set_up_machine
-from trunnion.jobs.targets import check_output_name
+from trunnion.jobs.result_output import check_output_name
 from trunnion.jobs.verify.verifying import rapid_feed_of
 from trunnion.model.run import Run
 from trunnion.timing import time_run

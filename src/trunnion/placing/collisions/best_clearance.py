@@ -12,7 +12,7 @@ from trunnion.model.clamping import Clamping
 from trunnion.placing.best_turn import KEPT, Grid, TurnResult
 from trunnion.placing.collisions.clearance import ENOUGH, Clearance, Nearest
 from trunnion.placing.collisions.guarded_pairs import Changes, GuardedPair
-from trunnion.placing.collisions.moments import Moments, moments_of
+from trunnion.placing.collisions.path_samples import Moments, moments_of
 from trunnion.placing.collisions.search import FarthestSearch
 from trunnion.placing.largest_margin import BestPlace, largest_margin
 from trunnion.placing.rotary_angles import Obstacle

@@ -11,8 +11,8 @@ from trunnion.arrays import Floats, Ints
 from trunnion.machines import Machine
 from trunnion.machines.links import link_chain
 from trunnion.placing.collisions.guarded_pairs import Guarded, GuardedPair, piece_pairs
-from trunnion.placing.collisions.moments import Moments
 from trunnion.placing.collisions.nearest_moment import Course, course_pose, nearest_moment
+from trunnion.placing.collisions.path_samples import Moments
 from trunnion.placing.collisions.surfaces import SurfaceGap, SurfacePair
 from trunnion.simulation.collisions.clearance import joint_senses, motion_bounds
 from trunnion.simulation.collisions.hull_pieces import HullPiece

@@ -11,7 +11,7 @@ from functools import lru_cache
 from typing import Final
 
 from trunnion.definitions import Table
-from trunnion.definitions.twin_keys import report_twins
+from trunnion.definitions.duplicate_keys import report_twins
 from trunnion.machines import Machine
 from trunnion.readers.control.virtual_control import VirtualControl
 from trunnion.readers.program.settings import control_of

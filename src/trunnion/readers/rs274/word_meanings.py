@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.definitions import Table
-from trunnion.definitions.twin_keys import report_twins
+from trunnion.definitions.duplicate_keys import report_twins
 from trunnion.readers.program.known_words import plain_code
 from trunnion.readers.program.settings import UNKNOWN
 from trunnion.readers.rs274.block import Block, g_code_text

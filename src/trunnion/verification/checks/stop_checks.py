@@ -11,8 +11,8 @@ import numpy as np
 
 from trunnion.model.run import Run, RunEvent
 from trunnion.model.toolpath import Coolant, Dwell, Stop
-from trunnion.verification.checks.restarts import Restarts
-from trunnion.verification.checks.turns_at_the_part import stands_away
+from trunnion.verification.checks.restated_modes import Restarts
+from trunnion.verification.checks.rotary_moves_at_part import stands_away
 from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.results import Check, Place

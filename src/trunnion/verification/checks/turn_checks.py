@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.model.run import Run, RunEvent
-from trunnion.verification.checks.turns_at_the_part import STILL, turn_flags, turns_at_the_part
+from trunnion.verification.checks.rotary_moves_at_part import STILL, turn_flags, turns_at_the_part
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
 from trunnion.verification.kinematics.positioning_moves import (
     ROTARY_WORDS,

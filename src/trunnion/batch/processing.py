@@ -12,11 +12,11 @@ from shutil import copyfile
 from tempfile import TemporaryDirectory
 from typing import Any, Final
 
-from trunnion.batch.figures import block_count, point_count, simulation_figures, verification_figures
 from trunnion.batch.jobs import shipped_machine
-from trunnion.batch.keys import program_version
-from trunnion.batch.sealing import BrokenSealError, unsealed_all
-from trunnion.batch.task import (
+from trunnion.batch.result_keys import program_version
+from trunnion.batch.share_seals import BrokenSealError, unsealed_all
+from trunnion.batch.summary_figures import block_count, point_count, simulation_figures, verification_figures
+from trunnion.batch.worker_task import (
     DEFINITIONS,
     FILES,
     MOST_PROBLEMS,

@@ -6,10 +6,10 @@ is one that somebody may run. What somebody has changed stays, and is told each 
 
 from collections.abc import Iterator, Sequence
 
-from trunnion.batch.dividing import SHARES, share_start
+from trunnion.batch.divided_files import SHARES, share_start
 from trunnion.batch.jobs import Batch, Unit
 from trunnion.batch.records import FOLDER, Record, known_of, parse_record, record_name
-from trunnion.batch.sealing import file_of
+from trunnion.batch.share_seals import file_of
 from trunnion.batch.stores import Store, TakenError
 from trunnion.errors import Problem, Severity
 from trunnion.jobs.observer import Observer

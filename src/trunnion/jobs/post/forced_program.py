@@ -14,7 +14,7 @@ from trunnion.controls.vocabulary import FORCED_NOTICE
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.writing import write
-from trunnion.jobs.targets import Target
+from trunnion.jobs.result_output import Target
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 from trunnion.output.program import Program

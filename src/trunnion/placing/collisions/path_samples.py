@@ -15,9 +15,9 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Machine
 from trunnion.model.subdivision import arc_frames, circle_points
+from trunnion.placing.axis_equations import slide_forms
 from trunnion.placing.moving_samples import turning_samples
 from trunnion.placing.path_rows import PathRows
-from trunnion.placing.slide_forms import slide_forms
 
 #: How far chords of arcs are off them, mm.
 CHORD: Final = 0.01

@@ -16,6 +16,7 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import SAFE_DISTANCE, Machine, Mount, SweptPart, turn_clearance, turns_part_alone
 from trunnion.model.run import Run
 from trunnion.verification.context import MAX_PLACES, Context
+from trunnion.verification.kinematics.cut_extent import worked_part
 from trunnion.verification.kinematics.home_tolerance import home_tolerance
 from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.kinematics.positioning_moves import (
@@ -23,7 +24,6 @@ from trunnion.verification.kinematics.positioning_moves import (
     only_positions_rotary_axes,
     rotary_positioning_flags,
 )
-from trunnion.verification.kinematics.worked_part import worked_part
 from trunnion.verification.results import Place
 from trunnion.verification.row_ranges import chunk_bounds
 
