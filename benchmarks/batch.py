@@ -28,7 +28,7 @@ import make_cls
 import trunnion
 from trunnion.batch import run_batch
 from trunnion.batch.cluster import DaskWorkers
-from trunnion.batch.jobs import Batch, Job
+from trunnion.batch.jobs import Batch, BatchJob
 from trunnion.batch.records import Record
 from trunnion.batch.result_keys import program_version
 from trunnion.batch.running import run_jobs
@@ -215,7 +215,7 @@ def _import(_: int) -> float:
 def costs(folder: Path, count: int) -> None:
     """What a file costs besides its work: the client alone, and by the scheduler."""
     files = sorted(each.relative_to(folder / "in").as_posix() for each in (folder / "in").rglob("*.cls"))
-    batch = Batch(folder / "in", [Job("job", Action.POST, files, {"machine": MACHINE}, extension=".mpf")])
+    batch = Batch(folder / "in", [BatchJob("job", Action.POST, files, {"machine": MACHINE}, extension=".mpf")])
     with timed("client alone: read, checksum, write", count):
         run_simply(batch, FolderStore(folder / "client"))
     with Cluster(folder, 2) as cluster:

@@ -1,7 +1,7 @@
 """The jobs of a batch: which files, and what is done with each.
 
 In:     a file of jobs (``jobs_file.py``) or a folder.
-Out:    a ``Batch`` of ``Job`` records, and its ``Unit`` records, one for each file, in order.
+Out:    a ``Batch`` of ``BatchJob`` records, and its ``Unit`` records, one for each file, in order.
 """
 
 import os
@@ -41,7 +41,7 @@ NOTED: Final = {Action.VERIFY: ".verification", Action.SIMULATE: ".simulation"}
 
 
 @dataclass(frozen=True, slots=True)
-class Job:
+class BatchJob:
     """Files with which the same is done.
 
     files      names beside the jobs, in order
@@ -81,7 +81,7 @@ class Batch:
     """
 
     folder: Path
-    jobs: Sequence[Job]
+    jobs: Sequence[BatchJob]
     results: Path | None = None
     home: str = ""
     is_whole: bool = False
@@ -171,7 +171,7 @@ def folder_batch(
         what += next((f"; {why}" for why in reasons if why), "")
         cure = "name them by a pattern of files, such as '**/*.nc'"
         raise InputError(Problem(str(folder), 0, what, cure, code="BAT120"))
-    job = Job(str(action), action, files, said, shared, beside, "", extensions.written, report, tiles)
+    job = BatchJob(str(action), action, files, said, shared, beside, "", extensions.written, report, tiles)
     return Batch(folder, [job], home=home_of(folder))
 
 

@@ -9,7 +9,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from trunnion.batch.divided_files import Divisions
-from trunnion.batch.jobs import Batch, Job, Unit
+from trunnion.batch.jobs import Batch, BatchJob, Unit
 from trunnion.batch.local import LocalWorkers
 from trunnion.batch.obsolete_results import remove_stale, remove_stale_shares
 from trunnion.batch.places import units_of
@@ -25,7 +25,7 @@ from trunnion.batch.records import (
 )
 from trunnion.batch.result_keys import digest, key_of, program_version
 from trunnion.batch.stores import Store
-from trunnion.batch.warning_counts import Warned, WarningTally
+from trunnion.batch.warning_counts import CountedWarning, WarningCounter
 from trunnion.batch.worker_task import FILES, Outcome, Status, Task
 from trunnion.batch.workers import Assignment, Workers
 from trunnion.definitions.extends import is_within
@@ -55,7 +55,7 @@ class BatchResult:
     failed: Sequence[int] = field(repr=False)
     jobs: Sequence[str] = ()
     new: Sequence[int] = field(default=(), repr=False)
-    warned: Sequence[Warned] = ()
+    warned: Sequence[CountedWarning] = ()
 
     @property
     def passed(self) -> bool:
@@ -131,7 +131,7 @@ class _Tally:
     def __init__(self, steps: Sequence[int], advance: Callable[[int], None]) -> None:
         self.counts = Counter[Status]()
         self.failed: list[int] = []
-        self.warnings = WarningTally()
+        self.warnings = WarningCounter()
         self._left = list(steps)
         self._advance = advance
 
@@ -213,7 +213,7 @@ class _Pending:
             self._store.write(record_name(record.place), record_bytes(renamed))
 
 
-def task_of(folder: Path, job: Job, unit: Unit, shared: Mapping[str, bytes]) -> Task:
+def task_of(folder: Path, job: BatchJob, unit: Unit, shared: Mapping[str, bytes]) -> Task:
     """The task of a unit, with the content of its files as it is now; what goes with it and is missing is left out.
 
     Raises

@@ -20,7 +20,7 @@ from trunnion.model.run import Run
 
 
 @dataclass(frozen=True, slots=True)
-class ProgramPlace:
+class BlockPlace:
     """The block of a motion: ``line`` of ``file`` from 1, ``block`` its N number, -1 where it has none."""
 
     file: str
@@ -39,7 +39,7 @@ class ErrorExtent:
 
     largest: float
     rms: float
-    place: ProgramPlace
+    place: BlockPlace
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,5 +175,5 @@ class _Extent:
 
     def result(self, run: Run, count: int) -> ErrorExtent:
         row = self._row
-        place = ProgramPlace(run.files[run.state.file[row]], int(run.lines[row]), int(run.block_numbers[row]))
+        place = BlockPlace(run.files[run.state.file[row]], int(run.lines[row]), int(run.block_numbers[row]))
         return ErrorExtent(math.sqrt(max(self._largest, 0.0)), math.sqrt(self._squares / count), place)

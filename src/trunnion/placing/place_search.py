@@ -16,7 +16,7 @@ from trunnion.placing.body_distances import standing_at, with_bodies, with_dista
 from trunnion.placing.collisions.best_clearance import Guard, farthest_orientations
 from trunnion.placing.goals import Goal, PlaceCost, rotary_travel
 from trunnion.placing.path_rows import PathRows
-from trunnion.placing.placement import Place, Placement, TurnMargin
+from trunnion.placing.placement import PartPlace, Placement, TurnMargin
 from trunnion.placing.planned_time import planned_seconds
 from trunnion.placing.region import Region, region_of
 from trunnion.placing.rotary_angles import Obstacle
@@ -134,7 +134,7 @@ def _first_guess(machine: Machine) -> Floats:
     return np.array(machine.axes[machine.rotary[0]].point)
 
 
-def _between(path: TurnedPath, found: Place) -> float:
+def _between(path: TurnedPath, found: PartPlace) -> float:
     """How far slides may go beyond their samples at a place, mm."""
     angles = path.angles_at(found.turn_deg)
     assert not isinstance(angles, Obstacle)
@@ -142,7 +142,7 @@ def _between(path: TurnedPath, found: Place) -> float:
     return most_between(path.machine, rows, angles.positions, np.array(found.zero_mm))
 
 
-def _with_value(place: Place, path: TurnedPath | None, goal: Goal) -> Place:
+def _with_value(place: PartPlace, path: TurnedPath | None, goal: Goal) -> PartPlace:
     """A place with the value of the goal."""
     angles = None if path is None else path.angles_at(place.turn_deg)
     if path is None or isinstance(angles, Obstacle) or angles is None:
@@ -160,7 +160,7 @@ def _with_value(place: Place, path: TurnedPath | None, goal: Goal) -> Place:
     return replace(place, value=PlaceCost.of(goal, path.machine, rows, positions).value(np.array(place.zero_mm)))
 
 
-def _present(machine: Machine, rows: PathRows, paths: Sequence[TurnedPath], goal: Goal) -> Place | None:
+def _present(machine: Machine, rows: PathRows, paths: Sequence[TurnedPath], goal: Goal) -> PartPlace | None:
     """The place that the machine has been given; None if it has none, or rotary axes do not reach the path there."""
     if machine.workpiece_zero is None:
         return None

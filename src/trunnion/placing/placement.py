@@ -88,7 +88,7 @@ class BodyDistance:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class PartPlace:
     """A place of the part, and what it leaves the slides.
 
     zero_mm    of the workpiece, machine frame, all axes at zero
@@ -129,7 +129,7 @@ class TurnMargin:
     margin_mm  the largest one of any place; None: some row is out of reach of the rotary axes, or the table is too
                small, as ``obstacle`` says
     zero_mm    the best place there
-    value      of the goal there, as in ``Place``
+    value      of the goal there, as in ``PartPlace``
     is_asked   it is one of those that were asked for; else it was tried between them, around the best
     table_is_too_small  that is the obstacle
     """
@@ -175,9 +175,9 @@ class Placement:
     machine: str
     files: tuple[str, ...]
     goal: str
-    best: Place | None
+    best: PartPlace | None
     limits: tuple[Limit, ...]
-    present: Place | None
+    present: PartPlace | None
     turns: tuple[TurnMargin, ...]
     between_mm: float = 0.0
     problems: tuple[Problem, ...] = ()

@@ -129,7 +129,7 @@ def _where(setup: str, file: str, line: int, block: int = -1, last_line: int = 0
 def _state(found: SimulationResult) -> StockState:
     """The stock that a set-up has left, in pictures and numbers."""
     simulated = found.simulation
-    stock, part = simulated.stock, simulated.setup.part
+    stock, part = simulated.stock, simulated.model.part
     lattice = stock.lattice
     design = None
     if part is not None:

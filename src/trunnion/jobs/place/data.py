@@ -8,7 +8,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.model.clamping import clamping_data
-from trunnion.placing.placement import AxisUse, BodyDistance, Limit, Place, Placement
+from trunnion.placing.placement import AxisUse, BodyDistance, Limit, PartPlace, Placement
 
 _DECIMALS: Final = 6
 
@@ -68,7 +68,7 @@ def placement_data(found: Placement) -> dict[str, object]:
     }
 
 
-def _place(place: Place) -> dict[str, object]:
+def _place(place: PartPlace) -> dict[str, object]:
     return {
         "zero_mm": [_number(value) for value in place.zero_mm],
         "turn_deg": _number(place.turn_deg),

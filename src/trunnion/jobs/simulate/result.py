@@ -87,11 +87,11 @@ class SimulationResult:
 
 def make_result(cut: CutSetup) -> SimulationResult:
     """The result of a set-up."""
-    found, own, jobs = cut.simulation, setup_findings(cut), cut.jobs
+    found, own, programs = cut.simulation, setup_findings(cut), cut.programs
     x, y, z = found.stock.lattice.cell.tolist()
     return SimulationResult(
-        tuple(job.run.files[0] for job in jobs), cut.setup.machine.key, (x, y, z),
-        found.setup.tolerance + found.error, found.setup.limit, found.start_volume - found.stock.volume,
+        tuple(program.run.files[0] for program in programs), cut.setup.machine.key, (x, y, z),
+        found.model.tolerance + found.error, found.model.limit, found.start_volume - found.stock.volume,
         own.operations, own.findings, own.near, _longest(own.air),
         found.left, found.gouge, cut.remarks, found.seconds, found, cut.setup.name, pairs=cut.pairs,
         turn=cut.setup.clamping.turn, tilt=cut.setup.clamping.tilt,
