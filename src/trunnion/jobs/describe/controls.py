@@ -164,7 +164,7 @@ def main_texts(control: Control) -> tuple[TemplateDescription, ...]:
     starts = ("approach", "plane_on", "next_plane", "operation_end")
     wanted = {f"{start}_{suffix}" for start in starts for suffix in suffixes}
     wanted |= {"program_start", "operation_start", "tool_change", "spindle_on", "program_end"}
-    names = sorted(wanted & control.templates.keys(), key=_template_rank)
+    names = sorted((name for name in control.templates if name in wanted), key=_template_rank)
     return tuple(TemplateDescription(name, control.templates[name].lines) for name in names)
 
 
