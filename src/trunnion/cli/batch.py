@@ -8,9 +8,9 @@ from itertools import islice
 from pathlib import Path
 from typing import Final
 
+from trunnion.batch.batch_run import run_batch
 from trunnion.batch.cluster import Tls
 from trunnion.batch.records import Record
-from trunnion.batch.run_batch import run_batch
 from trunnion.batch.running import BatchResult
 from trunnion.batch.worker_task import Status
 from trunnion.cli.progress import progress, progress_lines

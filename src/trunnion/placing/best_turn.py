@@ -154,18 +154,6 @@ class Grid:
         return turn, float(self.tilts[1] - self.tilts[0]) if self.refines_tilts and len(self.tilts) > 1 else 0.0
 
 
-def best_turns(
-    paths: Sequence[TurnedPath],
-    turns: Floats,
-    advance: Callable[[int], None],
-    *,
-    refine: bool,
-    goal: Goal = Goal.MARGIN,
-) -> tuple[list[TurnResult], TurnResult]:
-    """What each turn (k,) allows, in their order and refined about the best; and the best of all."""
-    return best_orientations(lambda _: paths, Grid(turns, refines_turns=refine), advance, goal=goal)
-
-
 def best_orientations(
     paths_at: Callable[[float], Sequence[TurnedPath]],
     grid: Grid,
