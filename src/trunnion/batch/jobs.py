@@ -15,7 +15,7 @@ from trunnion.batch.argument_checks import beside_fault, check_simulation, check
 from trunnion.batch.patterns import matches
 from trunnion.batch.records import FOLDER
 from trunnion.batch.result_keys import home_of
-from trunnion.batch.unmatched_patterns import left_out
+from trunnion.batch.unmatched_patterns import unmatched
 from trunnion.batch.worker_task import DEFINITIONS, FILES, Action
 from trunnion.controls import load_control
 from trunnion.definitions.extends import is_within
@@ -167,7 +167,7 @@ def folder_batch(
     ]  # fmt: skip
     if not files:
         what = f"has no files that match {', '.join(patterns)}" if patterns else f"has no files {', '.join(sought)}"
-        reasons = (left_out(folder, each, results) for each in patterns or [f"**/*{each}" for each in sought])
+        reasons = (unmatched(folder, each, results) for each in patterns or [f"**/*{each}" for each in sought])
         what += next((f"; {why}" for why in reasons if why), "")
         cure = "name them by a pattern of files, such as '**/*.nc'"
         raise InputError(Problem(str(folder), 0, what, cure, code="BAT120"))

@@ -13,7 +13,7 @@ from trunnion.batch.argument_checks import MOST_TILES, beside_fault
 from trunnion.batch.jobs import Batch, BatchJob, folder_files, judged
 from trunnion.batch.patterns import matches, pattern_fault
 from trunnion.batch.result_keys import home_of
-from trunnion.batch.unmatched_patterns import left_out
+from trunnion.batch.unmatched_patterns import unmatched
 from trunnion.batch.worker_task import Action
 from trunnion.cl import DIALECTS
 from trunnion.cl.writers import WRITERS
@@ -315,7 +315,7 @@ def _inputs(table: Table, names: Collection[str], path: Path, results: Path) -> 
             continue
         matched = [name for name in names if matches(name, pattern)]
         if not matched:
-            why = left_out(path.parent, pattern, results)
+            why = unmatched(path.parent, pattern, results)
             if not why and matches(path.name, pattern):
                 why = f"{path.name} is the file of jobs itself"
             what = f'"{pattern[:100]}" matches no file' + (f"; {why}" if why else "")

@@ -11,7 +11,7 @@ from typing import Any
 from trunnion.batch.divided_files import Divisions
 from trunnion.batch.jobs import Batch, BatchJob, Unit
 from trunnion.batch.local import LocalWorkers
-from trunnion.batch.obsolete_results import remove_stale, remove_stale_shares
+from trunnion.batch.obsolete_results import remove_obsolete, remove_obsolete_shares
 from trunnion.batch.places import units_of
 from trunnion.batch.processing import work
 from trunnion.batch.records import (
@@ -97,8 +97,8 @@ def run_jobs(
     """
     units = units_of(batch.jobs)
     check_store(store)
-    remove_stale(batch, units, store, observer)
-    remove_stale_shares(batch, units, store, observer)
+    remove_obsolete(batch, units, store, observer)
+    remove_obsolete_shares(batch, units, store, observer)
     steps = [batch.jobs[unit.job].tasks for unit in units]
     is_divided, new = sum(steps) > len(units), list[int]()
     with observer.progress("batch", sum(steps), "tasks" if is_divided else "files") as advance:

@@ -18,7 +18,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Floats2, Floats3
 from trunnion.jit import kernel
 from trunnion.machines import Machine
-from trunnion.placing.axis_equations import slide_forms
+from trunnion.placing.axis_equations import axis_equations
 from trunnion.placing.path_rows import PathRows
 
 
@@ -70,7 +70,7 @@ class PlaceCost:
     @staticmethod
     def of(goal: Goal, machine: Machine, rows: PathRows, positions: Floats) -> "PlaceCost":
         """Of rows as the part is turned; ``machine`` without a workpiece zero, ``positions`` (n, 2) degrees."""
-        normals, offsets, _ = slide_forms(machine, rows.tip, positions, rows.length)
+        normals, offsets, _ = axis_equations(machine, rows.tip, positions, rows.length)
         steps = np.abs(np.diff(positions, axis=0, prepend=positions[:1]))
         turning = np.zeros(len(rows))
         for k, column in enumerate(machine.rotary):

@@ -7,7 +7,7 @@ import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.machines import Machine
-from trunnion.placing.axis_equations import slide_forms
+from trunnion.placing.axis_equations import axis_equations
 from trunnion.placing.path_rows import PathRows
 from trunnion.timing import CORNER_TOLERANCE, AxisDynamics, Path, piece_seconds
 
@@ -17,7 +17,7 @@ def planned_seconds(machine: Machine, rows: PathRows, positions: Floats, zero: F
 
     ``machine`` is without a workpiece zero; ``positions`` (n, 2) are those of the rotary axes, degrees.
     """
-    normals, offsets, _ = slide_forms(machine, rows.tip, positions, rows.length)
+    normals, offsets, _ = axis_equations(machine, rows.tip, positions, rows.length)
     joints = np.empty((len(rows), 5))
     joints[:, list(machine.linear)] = normals @ zero + offsets
     joints[:, list(machine.rotary)] = positions

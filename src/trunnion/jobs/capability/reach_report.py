@@ -53,7 +53,7 @@ def reach_data(found: Reach) -> dict[str, Any]:
         "tool_length_mm": machine.tool_length,
         "step_deg": found.step,
         "sphere_share": round(found.sphere, 6),
-        "slides_not_judged": list(found.unjudged_slides),
+        "slides_not_judged": list(found.unjudged_axes),
         "tilts": [_tilt_data(each) for each in found.tilts],
         "part": None if found.part is None else _part_data(found.part),
         "files": [

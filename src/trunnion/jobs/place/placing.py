@@ -61,7 +61,7 @@ def place(
     machine
         A name, a path or a ``Machine``.
     goal
-        What the best place is best for: ``"margin"``, the distance of the slides to their limits; or the least
+        What the best place is best for: ``"margin"``, the distance of the linear axes to their limits; or the least
         ``"rotary"`` or ``"slides"`` travel, ``"time"``, or ``"overspeed"``, fewest rows whose feed the
         axes do not reach; or ``"collisions"``, the largest least distance between bodies of the spindle's side and
         those of the table's. Places with these goals keep a margin of 1 mm where they can.
@@ -99,7 +99,7 @@ def place(
     Raises
     ------
     InputError
-        When a file or an argument cannot be used, or no slide has limits.
+        When a file or an argument cannot be used, or no linear axis has limits.
     RefusedError
         When no plan of the CL files is possible, or a program has words that are not understood.
 

@@ -37,7 +37,7 @@ def post_placed(
     Returns
     -------
     PostResult
-        The proven program: its slides keep their limits with the workpiece zero there.
+        The proven program: its linear axes keep their limits with the workpiece zero there.
 
     Raises
     ------
