@@ -162,7 +162,7 @@ class Placement:
     present   the place of the definition or of the arguments; None: neither states one
     turns     what each turn allows, in order; those of the grid and those around the best
     between_mm  how far linear axes may go beyond that between rows where rotary axes turn
-    problems  warnings
+    remarks   what was assumed, or cannot be judged
     toolpaths  of CL files; empty for NC programs
     clamping  how the part is clamped, as the files state; turns and tilts come after that. None: they state nothing
     tool_length_mm    of the tool that linear axes keep their limits with; None: it is not known
@@ -180,7 +180,7 @@ class Placement:
     present: PartPlace | None
     turns: tuple[TurnMargin, ...]
     between_mm: float = 0.0
-    problems: tuple[Problem, ...] = ()
+    remarks: tuple[Problem, ...] = ()
     toolpaths: tuple[Toolpath, ...] = ()
     clamping: Clamping | None = None
     tool_length_mm: float | None = None
@@ -190,6 +190,11 @@ class Placement:
     table: ClampingArea | None = None
     _find_region: Callable[[], Region | None] = field(default=lambda: None, repr=False)
     _margin_at: Callable[[Floats, float, float], float] = field(default=lambda *_: np.nan, repr=False)
+
+    @property
+    def problems(self) -> tuple[Problem, ...]:
+        """The name of ``remarks`` before, which goes with the next version."""
+        return self.remarks
 
     @property
     def region(self) -> Region | None:

@@ -64,7 +64,7 @@ def placement_data(found: Placement) -> dict[str, object]:
         "nearest_anywhere": _nearest(found.nearest_anywhere),
         "most_distance_mm": None if found.most_distance_mm is None else _number(found.most_distance_mm),
         "left_out": [list(names) for names in found.left_out],
-        "remarks": [asdict(each) | {"severity": str(each.severity)} for each in found.problems],
+        "remarks": [asdict(each) | {"severity": str(each.severity)} for each in found.remarks],
     }
 
 

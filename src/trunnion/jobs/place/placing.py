@@ -144,12 +144,12 @@ def place(
     search = PlaceSearch(loaded, given.rows, Goal(goal), grid, standing, None if bodies is None else bodies.guard)
     with observer.progress("placing", len(grid), "turns") as advance:
         found = search.find(advance)
-    found = replace(found, problems=tuple(problems), toolpaths=given.toolpaths, clamping=given.clamping)
+    found = replace(found, remarks=tuple(problems), toolpaths=given.toolpaths, clamping=given.clamping)
     if bodies is None or goal == Goal.COLLISIONS:
         return found
     touching = touch_warnings(found)
     observer.problems(touching)
-    return replace(found, problems=(*found.problems, *touching))
+    return replace(found, remarks=(*found.remarks, *touching))
 
 
 def unknown_length(machine: Machine) -> list[Problem]:
