@@ -9,11 +9,10 @@ from hypothesis import strategies as st
 
 from tests.support.placed_paths import best_turns, random_rows
 from trunnion.machines import Machine, inverse, load_machine
-from trunnion.placing.goals import Goal, PlaceCost, rotary_travel
+from trunnion.placing.goals import Goal, PlaceCost, planned_seconds, rotary_travel
 from trunnion.placing.largest_margin import largest_margin
 from trunnion.placing.least_cost import least_cost
 from trunnion.placing.path_rows import PathRows, Stretch
-from trunnion.placing.planned_time import planned_seconds
 from trunnion.placing.rotary_angles import RotaryAngles, rotary_angles
 from trunnion.placing.travel_limits import CutSet
 from trunnion.placing.turns import Choice, TurnedPath

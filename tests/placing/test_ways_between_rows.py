@@ -11,8 +11,8 @@ from trunnion.machines import inverse, load_machine
 from trunnion.model.arc_extremes import ArcPaths
 from trunnion.model.rotations import about_z
 from trunnion.placing.axis_equations import AxisEquations
-from trunnion.placing.between_rows import most_between
 from trunnion.placing.extremes import Extremes
+from trunnion.placing.moving_samples import most_between
 from trunnion.placing.path_rows import Stretch
 from trunnion.placing.rotary_angles import RotaryAngles, rotary_angles
 from trunnion.placing.travel_limits import CutSet

@@ -13,10 +13,9 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.machines import Machine
 from trunnion.model.rotations import about_z
-from trunnion.placing.goals import OF_PLACE, Goal, PlaceCost, rotary_travel
+from trunnion.placing.goals import OF_PLACE, Goal, PlaceCost, planned_seconds, rotary_travel
 from trunnion.placing.largest_margin import BestPlace, largest_margin
 from trunnion.placing.least_cost import least_cost
-from trunnion.placing.planned_time import planned_seconds
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.travel_limits import CutSet
 from trunnion.placing.turns import Choice, TurnedPath

@@ -11,13 +11,12 @@ from trunnion.arrays import Floats
 from trunnion.machines import Machine
 from trunnion.model.rotations import about_x, about_z
 from trunnion.placing.best_turn import Grid, TurnResult, best_orientations
-from trunnion.placing.between_rows import most_between
 from trunnion.placing.body_distances import standing_at, with_bodies, with_distance
 from trunnion.placing.collisions.best_clearance import Guard, farthest_orientations
-from trunnion.placing.goals import Goal, PlaceCost, rotary_travel
+from trunnion.placing.goals import Goal, PlaceCost, planned_seconds, rotary_travel
+from trunnion.placing.moving_samples import most_between
 from trunnion.placing.path_rows import PathRows
 from trunnion.placing.placement import PartPlace, Placement, TurnMargin
-from trunnion.placing.planned_time import planned_seconds
 from trunnion.placing.region import Region, region_of
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.table_limits import ClampingArea, Standing
