@@ -1,6 +1,7 @@
 """Parts of sentences that messages of all layers share, and names of any origin in them."""
 
 import re
+from collections.abc import Iterable
 from typing import Final
 
 #: Characters that a terminal obeys, that turn the order of a line round, or that no file can hold.
@@ -22,6 +23,13 @@ def printable(text: str) -> str:
 def one_line(text: str) -> str:
     """Return a text as a part of a line: printable, and with blanks for tabs and line ends."""
     return text if text.isprintable() else _LINES.sub(" ", printable(text))
+
+
+def nearest_word(word: str, known: Iterable[str]) -> str:
+    """The known word that resembles an unknown one; empty if none does."""
+    from difflib import get_close_matches  # a command line without mistakes does without it
+
+    return next(iter(get_close_matches(word, list(known), n=1, cutoff=0.6)), "")
 
 
 def counted(count: int, thing: str) -> str:

@@ -8,11 +8,11 @@ import pytest
 from tests.support.apt_heads import HEADS
 from tests.support.cl_reading import Fail, Read
 from trunnion.cl.dialects import DIALECTS, recognize_dialect
-from trunnion.cli.argument_values import DIALECTS as LISTED
 from trunnion.model.toolpath import (
     Operation,
     UnknownStatement,
 )
+from trunnion.options.words import DIALECTS as LISTED
 
 
 @pytest.mark.parametrize("dialect", HEADS)

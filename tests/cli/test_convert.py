@@ -276,7 +276,7 @@ def test_several_files_become_one_or_several_as_it_is_set(tmp_path: Path, capfd:
     assert main(["post", cl, "--machine", "yl569", "--output", str(several), *given]) == 0
     capfd.readouterr()
     parts = sorted(str(path) for path in tmp_path.glob("*.spf"))
-    convert = ["convert", str(several), "--with", *parts, "--machine", "yl569", "--to-machine", "yl569"]
+    convert = ["convert", str(several), "--subprograms", *parts, "--machine", "yl569", "--to-machine", "yl569"]
     assert main([*convert, "--output", str(again)]) == 0
     assert "2 files become one program; --set programs=operations" in capfd.readouterr().err
     assert "A3=" in again.read_text(encoding="utf-8")

@@ -368,5 +368,5 @@ def test_programs_are_compared_with_the_subprograms_that_are_named(
     sub = tmp_path / "BLADE.SPF"
     sub.write_text(TEXT.replace("M30", "M17"), encoding="utf-8")
     text = 'EXTCALL("BLADE")\nM30\n'
-    assert diff(capfd, tmp_path, text, PROGRAM, "--to-with", str(sub))[0] == 0
-    assert diff(capfd, tmp_path, text, PROGRAM, "--with", str(sub))[0] == 1
+    assert diff(capfd, tmp_path, text, PROGRAM, "--to-subprograms", str(sub))[0] == 0
+    assert diff(capfd, tmp_path, text, PROGRAM, "--subprograms", str(sub))[0] == 1

@@ -14,12 +14,12 @@ import pytest
 
 import trunnion
 from trunnion.cli import main
-from trunnion.cli.arguments import SCHEMAS
 from trunnion.controls.loading import with_control
 from trunnion.definitions import Table, load_table
 from trunnion.definitions.value_marks import marked_values
 from trunnion.machines import Machine, load_machine, shipped_machines
 from trunnion.machines.loading import machine_library
+from trunnion.options.words import SCHEMAS
 from trunnion.schemas import KINDS, file_name, first_line, put_beside, schema_text
 
 Capture = pytest.CaptureFixture[str]

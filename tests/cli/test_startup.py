@@ -18,26 +18,35 @@ FILES = [str(YL569 / "2_hub_rough.cls"), str(YL569 / "3_blade_finish.cls"), str(
 
 def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> None:
     script = (
-        "import sys\nfrom trunnion.cli.arguments import parse_arguments\n"
-        "parse_arguments(['post', 'a.cls', '--machine', 'yl569'])\n"
+        "import sys\nfrom trunnion.cli.parser import parse\n"
+        "parse(['post', 'a.cls', '--machine', 'yl569'])\n"
         "print(*(name for name in sys.modules if name in ('numpy', 'numba') or name.startswith('trunnion.')))"
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert set(done.stdout.split()) == {
         "trunnion.cli",
-        "trunnion.cli.argument_values",
-        "trunnion.cli.arguments",
-        "trunnion.cli.batch_arguments",
-        "trunnion.cli.capability_arguments",
-        "trunnion.cli.place_arguments",
-        "trunnion.cli.post_arguments",
+        "trunnion.cli.help_texts",
+        "trunnion.cli.parser",
+        "trunnion.cli.post_mistakes",
         "trunnion.cli.process",
-        "trunnion.cli.stock_arguments",
-        "trunnion.cli.twin_arguments",
-        "trunnion.cli.verify_arguments",
+        "trunnion.cli.terminal_text",
         "trunnion.errors",
-        "trunnion.twin",
-        "trunnion.twin.limits",
+        "trunnion.jobs",
+        "trunnion.jobs.declarations",
+        "trunnion.jobs.declarations.automate",
+        "trunnion.jobs.declarations.first",
+        "trunnion.jobs.declarations.impellers",
+        "trunnion.jobs.declarations.make",
+        "trunnion.jobs.declarations.prove",
+        "trunnion.jobs.declarations.see",
+        "trunnion.jobs.job",
+        "trunnion.jobs.registry",
+        "trunnion.options",
+        "trunnion.options.groups",
+        "trunnion.options.kinds",
+        "trunnion.options.limits",
+        "trunnion.options.option",
+        "trunnion.options.words",
         "trunnion.wording",
     }
 

@@ -7,7 +7,7 @@ import pytest
 
 from tests.support.locations import DOCS, YL569
 from trunnion.cli import main
-from trunnion.cli.arguments import parse_arguments
+from trunnion.cli.parser import parse
 from trunnion.controls.loading import shipped_controls
 
 PROGRAM = str(YL569 / "2_hub_rough.expected.mpf")
@@ -31,7 +31,7 @@ def error_of(command: list[str], capsys: pytest.CaptureFixture[str]) -> str:
     ("more", "said"),
     [
         (["--cl", "a.cls", "b.cls"], "trunnion verify: error: 'b.cls' is one argument too many; repeat an option"),
-        (["--strict"], "trunnion verify: error: --strict is no option of this command; trunnion verify --help"),
+        (["--accept"], "trunnion verify: error: --accept is no option of this command; trunnion test has it; trunnion"),
         (["--edge", "x"], "'x' is not a cutting edge; write its D number, such as 1"),
     ],
     ids=["two values", "option of another command", "edge"],
@@ -40,7 +40,7 @@ def test_a_usage_error_names_the_command_and_the_cure(
     more: list[str], said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     err = error_of([*VERIFY, *more], capsys)
-    assert err.startswith("usage: trunnion verify ")
+    assert err.count("\n") == 1
     assert said in err
 
 
@@ -84,7 +84,7 @@ def test_no_page_names_the_zero_by_another_key() -> None:
 
 def test_a_command_line_leaves_nothing_for_the_next_one() -> None:
     post = ["post", "a.cls", "--machine", "yl569"]
-    more = parse_arguments([*post, "--set", "tool=7", "--with", "a.spf", "--dialect", "apt"])
-    again = parse_arguments(post)
+    more = parse([*post, "--set", "tool=7", "--subprograms", "a.spf", "--dialect", "apt"])
+    again = parse(post)
     assert (more.settings, more.subprograms) == ([("tool", "7"), ("dialect", "apt")], ["a.spf"])
     assert (again.settings, again.subprograms, again.dialect) == ([], [], None)

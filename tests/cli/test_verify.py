@@ -66,11 +66,11 @@ def test_a_main_program_is_proven_with_its_subprogram_where_that_is_named(
     code, out, _ = verify(capfd, main_program, "--cl", CL)
     assert code == 1
     assert f"{main_program}:1: unknown word or missing subprogram BLADE.SPF: it is not executed" in out
-    code, out, _ = verify(capfd, main_program, "--with", sub, "--cl", CL)
+    code, out, _ = verify(capfd, main_program, "--subprograms", sub, "--cl", CL)
     assert code == 0
     wrong = sub.read_text(encoding="utf-8").replace("X47.2619 ", "X47.3619 ")
     sub.write_text(wrong, encoding="utf-8")
-    code, out, _ = verify(capfd, main_program, "--with", sub, "--cl", CL)
+    code, out, _ = verify(capfd, main_program, "--subprograms", sub, "--cl", CL)
     assert code == 1
     assert f"{sub}:52 (N520), {CL}:20: the tip is 0.100000 mm off" in out
 
@@ -80,7 +80,7 @@ def test_what_the_cl_file_does_not_say_can_be_said(tmp_path: Path, capfd: pytest
     other = tmp_path / "other.mpf"
     other.write_text(text.replace("T=2", "T=7").replace("G54", "G55").replace("D1", "D3"), encoding="utf-8")
     assert verify(capfd, other, "--cl", CL)[0] == 1
-    assert verify(capfd, other, "--cl", CL, "--tool", "7", "--offset", "G55", "--edge", "3")[0] == 0
+    assert verify(capfd, other, "--cl", CL, "--tool", "7", "--work-offset", "G55", "--edge", "3")[0] == 0
     assert verify(capfd, PROGRAM, "--span", "1")[0] == 1
 
 
@@ -89,7 +89,7 @@ def test_what_the_cl_file_does_not_say_can_be_said(tmp_path: Path, capfd: pytest
     [
         (["nothing.mpf"], "nothing.mpf"),
         ([str(PROGRAM), "--cl", "nothing.cls"], "nothing.cls"),
-        ([str(PROGRAM), "--offset", "first"], "'first'"),
+        ([str(PROGRAM), "--work-offset", "first"], "'first'"),
         ([str(PROGRAM), "--zero", "1,2"], "--zero: error: is '1,2'"),
         ([str(PROGRAM), "--report", "page.pdf"], ".html"),
     ],

@@ -13,7 +13,7 @@ import pytest
 
 from tests.support.projects import OUT_OF_REACH, PROJECT, TWO, contents, operation, project
 from trunnion.cli import main
-from trunnion.cli.arguments import parse_arguments
+from trunnion.cli.parser import parse
 from trunnion.cli.process import Ended
 from trunnion.cli.watch import follow
 from trunnion.jobs.project.posting import ProjectResult, post_into
@@ -45,7 +45,7 @@ class Script:
 
 def watched(capsys: Capture, script: Script, *arguments: object) -> tuple[list[str], str]:
     """The lines of the rounds, and stderr."""
-    given = parse_arguments(["post", *map(str, arguments), "--watch"])
+    given = parse(["post", *map(str, arguments), "--watch"])
     assert follow(given, script, lambda: datetime(2026, 1, 2, 3, 4, 5)) == 0
     out, err = capsys.readouterr()
     return [line.removeprefix("03:04:05 ") for line in out.splitlines()], err
@@ -239,4 +239,4 @@ def test_a_signal_that_ends_the_process_is_not_taken_for_ctrl_c(tmp_path: Path) 
         raise Ended(signal.SIGTERM)
 
     with pytest.raises(Ended):
-        follow(parse_arguments(["post", str(project(tmp_path)), "--watch"]), Script(end))
+        follow(parse(["post", str(project(tmp_path)), "--watch"]), Script(end))

@@ -293,7 +293,7 @@ def test_parts_of_an_operation_are_no_larger_than_asked_and_say_what_is_in_force
         )
     again = tmp_path / "one.mpf"
     assert main([*common[:-1], str(again)]) == 0
-    files = ["--to-with", *map(str, parts)]
+    files = ["--to-subprograms", *map(str, parts)]
     assert main(["diff", str(again), str(target), "--machine", "yl569", *files, "--tolerance", "1e-9"]) == 0
 
 

@@ -173,7 +173,16 @@ def test_a_template_may_call_a_file_that_exists_already(tmp_path: Path) -> None:
         trunnion.post(tmp_path / "part.cls", machine=machine)
     assert trunnion.post(tmp_path / "part.cls", machine=machine, subprograms=[macro]).passed
     target = str(tmp_path / "part.nc")
-    words = ["post", str(tmp_path / "part.cls"), "--machine", str(machine), "--output", target, "--with", str(macro)]
+    words = [
+        "post",
+        str(tmp_path / "part.cls"),
+        "--machine",
+        str(machine),
+        "--output",
+        target,
+        "--subprograms",
+        str(macro),
+    ]
     assert main(words) == 0
 
 

@@ -9,10 +9,13 @@ import logging
 import os
 import sys
 from collections.abc import Sequence
+from importlib import import_module
 from typing import NoReturn
 
 from trunnion.cli.process import Ended, end_cleanly, let_messages_go
 from trunnion.errors import Problem, RefusedError, TrunnionError
+from trunnion.jobs.job import Given
+from trunnion.options.option import outputs
 
 
 def configure_process() -> None:
@@ -57,14 +60,14 @@ def _show_log() -> None:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; returns the exit code."""
-    from trunnion.cli.arguments import parse_arguments
+    from trunnion.cli.parser import parse
 
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):  # Windows consoles and pipes are not UTF-8 by default
             stream.reconfigure(encoding="utf-8", errors="replace")
-    arguments = parse_arguments(sys.argv[1:] if argv is None else argv)
+    given = parse(sys.argv[1:] if argv is None else argv)
     try:
-        code: int = arguments.run(arguments)
+        code = _carry_out(given)
     except TrunnionError as error:
         from trunnion.cli.wording import error_lines
 
@@ -77,4 +80,15 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("stopped", file=sys.stderr)
         return 2
+    return code
+
+
+def _carry_out(given: Given) -> int:
+    """Run a command, once it is known that it writes over nothing that it reads."""
+    if not given.job.guards and any(given.values[each.name] is not None for each in outputs(given.job.options)):
+        from trunnion.jobs.guard import guard
+
+        given.read = guard(given)
+    module, _, name = given.job.run.partition(":")
+    code: int = getattr(import_module(module), name)(given)
     return code

@@ -1,6 +1,5 @@
 """``trunnion batch``: many files posted, converted, verified or simulated."""
 
-import argparse
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
@@ -13,12 +12,14 @@ from trunnion.batch.cluster import Tls
 from trunnion.batch.records import Record
 from trunnion.batch.running import BatchResult
 from trunnion.batch.worker_task import Status
+from trunnion.cli.data import batch_data
 from trunnion.cli.progress import progress, progress_lines
-from trunnion.cli.results import print_result, tell
+from trunnion.cli.results import show, tell
 from trunnion.cli.terminal import Terminal
 from trunnion.cli.wording import in_command_words
 from trunnion.errors import InputError, argument_problem
-from trunnion.wording import counted, one_line
+from trunnion.jobs.job import Given
+from trunnion.wording import counted
 
 #: Files that failed which are printed; the summary has all of them.
 _MOST: Final = 200
@@ -34,42 +35,21 @@ _FILE_WIDTH: Final = 60
 _CODE_WIDTH: Final = 12
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(given: Given) -> int:
     """Run a batch; 0 if every file passed, else 1."""
-    given = {name: getattr(arguments, name) for name in ("tls_ca", "tls_cert", "tls_key")}
-    if arguments.scheduler is None and any(given.values()):
-        name = next(name for name, value in given.items() if value)
+    tls = [given.tls_ca, given.tls_cert, given.tls_key]
+    if given.scheduler is None and any(tls):
+        name = next(name for name in ("tls_ca", "tls_cert", "tls_key") if given.values[name])
         raise InputError(
             argument_problem(name, "is for a scheduler", "add --scheduler, or leave it out", code="ARG130")
         )
-    files = (None if value is None else Path(value) for value in given.values())
+    files = (None if value is None else Path(value) for value in tls)
     try:
-        result = run_batch(
-            arguments.jobs,
-            results=arguments.results,
-            action=arguments.action,
-            machine=arguments.machine,
-            files=arguments.files,
-            settings=dict(arguments.settings),
-            to_machine=arguments.to_machine,
-            to_cl=arguments.to_cl,
-            cl=arguments.cl,
-            stock=arguments.stock,
-            tools=arguments.tools,
-            report=arguments.report,
-            tiles=arguments.tiles,
-            workers=arguments.workers,
-            timeout=arguments.timeout,
-            scheduler=arguments.scheduler,
-            wait=arguments.wait,
-            tls=Tls(*files) if any(given.values()) else None,
-            summary=arguments.summary,
-            observer=_Terminal(),
-        )
+        result = run_batch(**given.arguments(), tls=Tls(*files) if any(tls) else None, observer=_Terminal())
     except KeyboardInterrupt:
         tell("the batch goes on where it was stopped when it is run again")
         raise
-    print_result(*map(one_line, result_lines(result)))
+    show(given, lambda: batch_data(result), result_lines(result))
     return 0 if result.passed else 1
 
 

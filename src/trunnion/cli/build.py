@@ -1,24 +1,24 @@
 """``trunnion build``: the definition of a machine, set up in a browser."""
 
-import argparse
 from pathlib import Path
 
 from trunnion.builder.server import builder_application
 from trunnion.builder.session import BuilderSession
 from trunnion.cli.serving import announce
 from trunnion.errors import InputError, Problem
+from trunnion.jobs.job import Given
 from trunnion.machines import shipped_machines
 from trunnion.viewer.serving import listen, serve
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(given: Given) -> int:
     """Serve the builder until the user ends it."""
-    file = Path(arguments.file) if arguments.file else None
+    file = Path(given.file) if given.file else None
     if file is not None and file.suffix != ".toml":
         cure = "give none, and start from it in the builder" if str(file) in shipped_machines() else "name a .toml file"
         raise InputError(Problem(str(file), 0, "is not the file of a definition", cure, code="ARG130"))
     session = BuilderSession(file.parent, file.name) if file is not None else BuilderSession(Path())
     session.start()
-    with listen(arguments.host, arguments.port) as listening:
-        serve(lambda access: builder_application(session, access), listening, announce(browser=arguments.browser))
+    with listen(given.host, given.port) as listening:
+        serve(lambda access: builder_application(session, access), listening, announce(browser=given.browser))
     return 0

@@ -1,63 +1,66 @@
 """``trunnion test``: whether the cases of a shop still come out as they did."""
 
-import argparse
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from trunnion.cli.results import print_result, tell
+from trunnion.cli.results import print_result, show, tell
 from trunnion.cli.wording import problem_line
 from trunnion.errors import InputError, RefusedError, TrunnionError
+from trunnion.jobs.job import Given
 from trunnion.jobs.project.cases import Case, ChangedProgram, find_cases, posted_case
 from trunnion.wording import counted, one_line
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(given: Given) -> int:
     """Post every case, and compare; 0 if all of them are as they were, or accepted."""
-    paths = find_cases(Path(arguments.folder))
-    became, code = Counter[str](), 0
+    paths = find_cases(Path(given.folder))
+    became, code, outcomes = Counter[str](), 0, list[dict[str, object]]()
     for path in paths:
-        outcome, own = _test(path, accept=arguments.accept)
+        outcome, own = _test(path, accept=given.accept, quiet=given.json == "-")
+        outcomes.append({"case": path.as_posix(), "outcome": outcome})
         became[outcome] += 1
         code = max(code, own)
     parts = ", ".join(f"{count} {outcome}" for outcome, count in became.items())
-    print_result(f"{counted(len(paths), 'case')}: {parts}")
-    if code and not arguments.accept and became["different"] + became["new"]:
-        folder = f'"{arguments.folder}"' if " " in arguments.folder else arguments.folder
+    data = {"schema": 1, "passed": code == 0, "cases": outcomes}
+    show(given, lambda: data, [f"{counted(len(paths), 'case')}: {parts}"])
+    if code and not given.accept and became["different"] + became["new"]:
+        folder = f'"{given.folder}"' if " " in given.folder else given.folder
         tell(f"trunnion test {folder} --accept takes the new programs over, once you have looked at them")
     return code
 
 
-def _test(path: Path, *, accept: bool) -> tuple[str, int]:
+def _test(path: Path, *, accept: bool, quiet: bool) -> tuple[str, int]:
     """What became of a case, and the exit code that it alone would have."""
+    said = tell if quiet else print_result  # data on stdout stands alone
     with posted_case(path) as case:
         tell(*map(problem_line, case.warnings))
         if case.error is not None:
-            return _tell_error(case, case.error)
+            return _tell_error(case, case.error, said)
         outcome = _outcome(case)
-        print_result(*map(one_line, _lines(case, outcome)))
+        said(*map(one_line, _lines(case, outcome)))
         if not accept:
             return outcome, 0 if case.passed else 1
         try:
             accepted = case.accept()
         except TrunnionError as error:
-            return _tell_error(case, error)
+            return _tell_error(case, error, said)
         left = len(case.gone) - len(accepted.removed)
         if accepted.written:
-            print_result(one_line(f"{path}: accepted: {', '.join(file.name for file in accepted.written)}"))
+            said(one_line(f"{path}: accepted: {', '.join(file.name for file in accepted.written)}"))
         if accepted.removed:
             names = ", ".join(file.name for file in accepted.removed)
-            print_result(one_line(f"{path}: removed: {names}; remove it from the control, too"))
+            said(one_line(f"{path}: removed: {names}; remove it from the control, too"))
         if left or case.passed:
             return outcome, 1 if left else 0
         return "accepted", 0
 
 
-def _tell_error(case: Case, error: TrunnionError) -> tuple[str, int]:
+def _tell_error(case: Case, error: TrunnionError, said: Callable[[str], None]) -> tuple[str, int]:
     tell(*map(problem_line, error.problems))
     is_refused = isinstance(error, RefusedError)
     what = "REFUSED: a program must not run" if is_refused else "NOT TESTED: it cannot be posted"
-    print_result(one_line(f"{case.path}: {what}"))
+    said(one_line(f"{case.path}: {what}"))
     assert is_refused or isinstance(error, InputError)
     return ("refused", 1) if is_refused else ("not tested", 2)
 

@@ -1,6 +1,5 @@
 """CL files of a command: files, archives and stdin; and reading them with a progress bar."""
 
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
@@ -11,31 +10,11 @@ from typing import BinaryIO
 from trunnion.cl.watched import read_watched
 from trunnion.cli.progress import progress
 from trunnion.errors import InputError, Problem
+from trunnion.jobs.job import STDIN, streams
 from trunnion.model.toolpath import Toolpath
-
-#: stdin as a CL file.
-STDIN = "-"
 
 #: Endings that archives add to the name of what they hold.
 _PACKED = frozenset({".gz", ".bz2"})
-
-
-def cl_inputs(files: Sequence[str]) -> list[str | BinaryIO]:
-    """CL files as the library takes them.
-
-    Raises
-    ------
-    InputError
-        If stdin is named twice: it can be read once.
-    """
-    if files.count(STDIN) > 1:
-        raise InputError(Problem("stdin", 0, "is named twice", f"write {STDIN} once", code="ARG130"))
-    return [sys.stdin.buffer if file == STDIN else file for file in files]
-
-
-def named_files(files: Sequence[str]) -> list[str]:
-    """CL files but stdin."""
-    return [file for file in files if file != STDIN]
 
 
 def result_stem(file: str) -> str:
@@ -69,7 +48,7 @@ def begin_reading(
     kernel, which leaves the interpreter to the imports of the caller.
     """
     scanning, within = Event(), _tolerance(spline_tolerance)
-    inputs = cl_inputs(files)
+    inputs = streams(files)
     begun = [executor.submit(_read, inputs[0], units, dialect, strict, within, scanning)]
     begun[0].add_done_callback(lambda _: scanning.set())
     scanning.wait()

@@ -1,11 +1,10 @@
 """``trunnion controls``."""
 
-import argparse
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from typing import Final
 
-from trunnion.cli.results import as_json, print_result
+from trunnion.cli.results import show
 from trunnion.jobs.describe.controls import (
     ControlDescription,
     SettingDescription,
@@ -13,18 +12,19 @@ from trunnion.jobs.describe.controls import (
     describe_control,
     describe_controls,
 )
+from trunnion.jobs.job import Given
 
 _INDENT: Final = "  "
 
 
-def controls(arguments: argparse.Namespace) -> int:
+def controls(given: Given) -> int:
     """List the shipped controls, or explain one."""
-    if arguments.name:
-        control = describe_control(arguments.name)
-        print_result(*([as_json(asdict(control))] if arguments.json else control_lines(control)))
+    if given.name:
+        control = describe_control(given.name)
+        show(given, lambda: asdict(control), control_lines(control))
         return 0
     found = describe_controls()
-    print_result(*([as_json([_list_entry(control) for control in found])] if arguments.json else _list_lines(found)))
+    show(given, lambda: [_list_entry(control) for control in found], _list_lines(found))
     return 0
 
 

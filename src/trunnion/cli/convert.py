@@ -1,52 +1,78 @@
 """``trunnion convert``: an NC program or a CL file to a toolpath, and out again as a CL file or for another machine."""
 
-import argparse
 import shlex
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
-from trunnion.cli.cl_files import cl_inputs, named_files, result_stem
-from trunnion.cli.results import tell
+from trunnion.cli.cl_files import result_stem
+from trunnion.cli.data import conversion_data
+from trunnion.cli.results import show, tell
 from trunnion.cli.terminal import ConversionTerminal, check_unnamed, output_folder, output_place
+from trunnion.cli.terminal_text import warning_line
 from trunnion.controls import load_control
+from trunnion.errors import InputError, argument_problem
 from trunnion.files import check_outputs
 from trunnion.jobs.convert.converting import convert
-from trunnion.jobs.inputs.reading import load_machine
+from trunnion.jobs.guard import files_read
+from trunnion.jobs.inputs.reading import load_machine, read_cl
+from trunnion.jobs.job import STDIN, Given
 from trunnion.wording import counted
 
 #: Extensions of CL files by their dialects.
 _CL_EXTENSIONS: Final = {"clsf": ".cls", "catia": ".aptsource", "ncl": ".ncl"}
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(given: Given) -> int:
     """Convert one program; 1 if what came of it is forced."""
-    machine = load_machine(arguments.machine) if arguments.machine else None
-    to_machine = load_machine(arguments.to_machine) if arguments.to_machine else None
-    dialect = arguments.to_dialect or "clsf"
+    machine = load_machine(given.machine) if given.machine else None
+    to_machine = load_machine(given.to_machine) if given.to_machine else None
+    dialect = _dialect(given)
     extension = _CL_EXTENSIONS[dialect] if to_machine is None else load_control(to_machine.control).extension
-    target = _target_file(arguments, extension)
-    converted = convert(
-        cl_inputs([arguments.file])[0] if machine is None else arguments.file,
-        machine=machine,
-        to_machine=to_machine,
-        to_cl=arguments.to_cl,
-        dialect=dialect,
-        output=output_place(target),
-        subprograms=arguments.subprograms,
-        zero=arguments.zero or None,
-        tool_length=arguments.tool_length or None,
-        settings=dict(arguments.settings),
-        force=arguments.force,
-        observer=ConversionTerminal(),
-    )
-    if arguments.to_cl and converted.settings:
-        tell(_post_hint(target, arguments.machine, converted.settings))
+    target = _target_file(given, extension)
+    own = {
+        "machine": machine, "to_machine": to_machine, "output": output_place(target), "dialect": dialect,
+        "settings": _settings(given),
+    }  # fmt: skip
+    arguments = given.arguments("units", "strict")
+    if machine is not None:
+        arguments["nc"] = given.nc
+    if given.strict and machine is None and given.nc != STDIN:
+        read_cl(arguments["nc"], units=given.units, dialect=given.dialect, strict=True)
+    converted = convert(**{**arguments, **own}, observer=ConversionTerminal())
+    if given.to_cl and converted.settings:
+        tell(_post_hint(target, given.machine, converted.settings))
     if target != "-":
         operations = converted.toolpath.operations
         rows = sum(len(operation.moves) for operation in operations)
         tell(f"{target}: {counted(rows, 'point')}, {counted(len(operations), 'operation')}")
+    if given.json is not None:
+        show(given, lambda: conversion_data(converted), ())
     return 0 if converted.passed else 1
+
+
+def _dialect(given: Given) -> str:
+    """What the CL file is written in. Until the next version ``--dialect`` alone says it, as it did before."""
+    if given.to_dialect is None and given.dialect is not None and given.to_cl:
+        what = "--dialect is what a CL file is read in; to say what it is written in, --to-dialect does"
+        print(warning_line("trunnion convert", what, "ARG190"), file=sys.stderr)
+        given.values["to_dialect"], given.values["dialect"] = given.dialect, None
+    return given.to_dialect or "clsf"
+
+
+def _settings(given: Given) -> dict[str, str]:
+    """The settings, with how a CL file is read."""
+    settings = dict(given.settings)
+    for name, key in (("units", "cl_units"), ("dialect", "dialect")):
+        if given.values[name] is None:
+            continue
+        if given.machine is not None:
+            raise InputError(
+                argument_problem(name, "is of CL files, and a program is read", "leave it out", code="ARG130")
+            )
+        settings[key] = given.values[name]
+    return settings
 
 
 def _post_hint(target: str, machine: str, settings: Mapping[str, str]) -> str:
@@ -56,13 +82,13 @@ def _post_hint(target: str, machine: str, settings: Mapping[str, str]) -> str:
     return "to post it with the same head: " + shlex.join(["trunnion", "post", name, "--machine", machine, *words])
 
 
-def _target_file(arguments: argparse.Namespace, extension: str) -> str:
+def _target_file(given: Given, extension: str) -> str:
     """Where the result goes."""
-    folder = output_folder(arguments.output)
+    folder = output_folder(given.output)
     if folder is None:
-        return str(arguments.output)
-    stem = Path(arguments.file).stem if arguments.machine else result_stem(arguments.file)
+        return str(given.output)
+    stem = Path(given.nc).stem if given.machine else result_stem(given.nc)
     target = str(folder / (stem + extension))
-    check_outputs([target], [*named_files([arguments.file]), *arguments.subprograms])
+    check_outputs([file for file in (target, given.json) if file not in (None, "-")], files_read(given))
     check_unnamed(target)
     return target

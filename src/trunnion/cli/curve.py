@@ -1,14 +1,14 @@
 """``trunnion curve``: curves through measured points."""
 
-import argparse
 from collections.abc import Iterator
 from typing import Final
 
-from trunnion.cli.results import as_json, print_result
+from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
 from trunnion.geometry.fitting import CurveFit
-from trunnion.jobs.impeller.curves import check_picture, fit_curve, read_points, write_curve_picture
-from trunnion.wording import counted, one_line
+from trunnion.jobs.impeller.curves import fit_curve, read_points, write_curve_picture
+from trunnion.jobs.job import Given
+from trunnion.wording import counted
 
 _DECIMALS: Final = 9
 
@@ -16,26 +16,14 @@ _DECIMALS: Final = 9
 _STRAIGHT: Final = 1e9
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(given: Given) -> int:
     """Fit curves, print and draw them."""
-    if arguments.picture is not None:
-        check_picture(arguments.picture, [arguments.file])
-    tables = read_points(arguments.file, scale=arguments.scale)
-    fits = [
-        fit_curve(
-            table,
-            start=arguments.start,
-            end=arguments.end,
-            parameterization=arguments.parameterization,
-            tolerance=arguments.tolerance,
-            fair=arguments.fair,
-        )
-        for table in tables
-    ]
+    tables = read_points(given.file, scale=given.scale)
+    fits = [fit_curve(table, **given.arguments("file")) for table in tables]
     Terminal().problems([remark for one in fits for remark in one.remarks])
-    if arguments.picture is not None:
-        write_curve_picture(fits, arguments.picture, inputs=[arguments.file])
-    print_result(*([as_json(curve_data(fits))] if arguments.json else map(one_line, curve_lines(fits))))
+    if given.picture is not None:
+        write_curve_picture(fits, given.picture, inputs=given.read)
+    show(given, lambda: curve_data(fits), curve_lines(fits))
     return 0
 
 

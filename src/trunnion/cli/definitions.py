@@ -1,14 +1,14 @@
 """``trunnion machines`` and ``trunnion check``."""
 
-import argparse
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path, PurePath
 
 from trunnion.cli.controls import control_lines
+from trunnion.cli.data import machines_data, plain_data
 from trunnion.cli.machine_list import machine_list
 from trunnion.cli.machine_text import machine_data, machine_lines
-from trunnion.cli.results import as_json, print_result
+from trunnion.cli.results import print_result, show
 from trunnion.controls import load_control
 from trunnion.controls.definition_files import is_control_file, load_control_table
 from trunnion.controls.loading import shipped_controls, with_control
@@ -20,52 +20,59 @@ from trunnion.jobs.describe.controls import describe_control
 from trunnion.jobs.describe.definition_checks import all_problems, machine_problems, stand_in
 from trunnion.jobs.describe.machines import describe_machine
 from trunnion.jobs.inputs.cl_statements import check_statements
+from trunnion.jobs.job import Given
 from trunnion.machines import load_machine, shipped_machines
 from trunnion.machines.loading import machine_library
 from trunnion.readers import check_reading
 from trunnion.schemas import first_line
 
 
-def machines(arguments: argparse.Namespace) -> int:
+def machines(given: Given) -> int:
     """List the shipped machines, or print one definition as its file has it, or with all that it extends."""
-    if arguments.resolved and not arguments.name:
+    if given.resolved and not given.name:
         raise InputError(argument_problem("resolved", "wants a machine", "name one, or the file of one", code="ARG130"))
-    if arguments.resolved:
-        load_machine(arguments.name)
-        table = load_table(arguments.name, machine_library(), kind="machine")
+    if given.name and given.json is not None:
+        load_machine(given.name)
+        definition = with_control(load_table(given.name, machine_library(), kind="machine"))
+        show(given, lambda: plain_data(definition), [resolved_text(definition)])
+        return 0
+    if given.resolved:
+        load_machine(given.name)
+        table = load_table(given.name, machine_library(), kind="machine")
         print_result(resolved_text(with_control(table)), end="")
         return 0
-    if arguments.name:
-        load_machine(arguments.name)
+    if given.name:
+        load_machine(given.name)
         folder = machine_library()
-        shipped_file = folder.joinpath(f"{arguments.name}.toml")
-        source = shipped_file if shipped_file.is_file() else Path(arguments.name)
+        shipped_file = folder.joinpath(f"{given.name}.toml")
+        source = shipped_file if shipped_file.is_file() else Path(given.name)
         text = source.read_text(encoding="utf-8")
         if source is shipped_file:  # the schema of what is saved of it lies beside that
             text = first_line("machine") + text.partition("\n")[2]
         print_result(text, end="")
         return 0
-    print_result(*machine_list([load_machine(key) for key in shipped_machines()]))
+    found = [load_machine(key) for key in shipped_machines()]
+    show(given, lambda: machines_data(found), machine_list(found))
     return 0
 
 
-def check(arguments: argparse.Namespace) -> int:
+def check(given: Given) -> int:
     """Validate the definition of a machine with its control, or of a control, and show what it means.
 
     Every mistake comes at once.
     """
-    if arguments.file in shipped_controls() or is_control_file(Path(arguments.file)):
-        _check_control_file(arguments.file)
-        control = describe_control(arguments.file)
-        good = f"{arguments.file}: good"
-        print_result(*([as_json(asdict(control))] if arguments.json else [good, "", *control_lines(control)]))
+    if given.file in shipped_controls() or is_control_file(Path(given.file)):
+        _check_control_file(given.file)
+        control = describe_control(given.file)
+        good = f"{given.file}: good"
+        show(given, lambda: asdict(control), [good, "", *control_lines(control)])
         return 0
-    _check_is_known(arguments.file)
-    key = PurePath(arguments.file).name.removesuffix(".toml")
-    _raise(machine_problems(load_table(arguments.file, machine_library(), kind="machine"), key))
-    found = describe_machine(arguments.file)
-    good = f"{arguments.file}: good"
-    print_result(*([as_json(machine_data(found))] if arguments.json else [good, "", *machine_lines(found)]))
+    _check_is_known(given.file)
+    key = PurePath(given.file).name.removesuffix(".toml")
+    _raise(machine_problems(load_table(given.file, machine_library(), kind="machine"), key))
+    found = describe_machine(given.file)
+    good = f"{given.file}: good"
+    show(given, lambda: machine_data(found), [good, "", *machine_lines(found)])
     return 0
 
 

@@ -1,31 +1,27 @@
 """``trunnion explain``: what a code of a message, or a check, means."""
 
-import argparse
 import textwrap
 from collections.abc import Sequence
 from dataclasses import asdict, replace
 
-from trunnion.cli.results import as_json, print_result
+from trunnion.cli.results import show
 from trunnion.cli.wording import in_command_words
 from trunnion.errors import InputError, Problem
 from trunnion.explanations import SUBJECTS, Explanation
 from trunnion.jobs.describe.codes import all_explanations
 from trunnion.jobs.describe.codes import explain as explain_code
+from trunnion.jobs.job import Given
 
 _WIDTH = 100
 
 
-def explain(arguments: argparse.Namespace) -> int:
+def explain(given: Given) -> int:
     """Print what codes mean; without any, list all of them."""
-    found, faults = _asked(arguments.codes)
-    found = found if arguments.codes else list(all_explanations())
-    if arguments.json:
-        print_result(as_json([asdict(each) for each in found]))
-    elif arguments.codes:
-        if found:
-            print_result("\n\n".join(map(_text, found)))
-    else:
-        print_result(*_list(found))
+    found, faults = _asked(given.codes)
+    found = found if given.codes else list(all_explanations())
+    lines = "\n\n".join(map(_text, found)).split("\n") if given.codes else _list(found)
+    if found or given.json:
+        show(given, lambda: [asdict(each) for each in found], lines)
     if faults:
         raise InputError(faults)
     return 0

@@ -1,43 +1,24 @@
 """``trunnion fit``: which machines can run CL files or an NC program."""
 
-import argparse
 import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from trunnion.cli.cl_files import cl_inputs, named_files
-from trunnion.cli.results import as_json, print_result
+from trunnion.cli.cl_reading import as_read
+from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
 from trunnion.cli.wording import in_command_words
-from trunnion.files import atomic_file, check_outputs
 from trunnion.jobs.capability.fitting import AxisMargin, FitStatus, MachineFit, fit
-from trunnion.wording import format_duration, one_line
+from trunnion.jobs.job import Given
+from trunnion.wording import format_duration
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(given: Given) -> int:
     """Ask the machines; 0 if one of them can run it, else 1."""
-    read = [*named_files(arguments.files), *arguments.subprograms]
-    read += [name for name in arguments.machines.split(",") if name.endswith(".toml")]
-    if arguments.json not in (None, "-"):
-        check_outputs([arguments.json], read)
-    found = fit(
-        cl_inputs(arguments.files) if arguments.machine is None else arguments.files,
-        machines=arguments.machines,
-        machine=arguments.machine,
-        subprograms=arguments.subprograms,
-        zero=arguments.zero,
-        tool_length=arguments.tool_length,
-        turns=arguments.turns,
-        observer=Terminal(),
-    )
-    if arguments.json == "-":
-        print_result(as_json(fit_data(found)))
-    else:
-        if arguments.json is not None:
-            with atomic_file(arguments.json, inputs=read) as sink:
-                sink.write((as_json(fit_data(found)) + "\n").encode())
-        print_result(*map(one_line, fit_lines(found)))
+    files = as_read(given, given.files) if given.machine is None else given.files
+    found = fit(files, **given.arguments("files"), observer=Terminal())
+    show(given, lambda: fit_data(found), fit_lines(found))
     return 0 if any(each.status is not FitStatus.NOT for each in found) else 1
 
 

@@ -1,20 +1,20 @@
 """``trunnion impeller``: an impeller from measured points."""
 
-import argparse
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
-from trunnion.cli.results import as_json, print_result
+from trunnion.cli.results import show
 from trunnion.cli.simulate import simulation_lines
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import InputError, argument_problem
 from trunnion.impeller.impeller import Impeller
 from trunnion.jobs.impeller.cutting import CutStep, ImpellerCut, cut_impeller
 from trunnion.jobs.impeller.models import load_impeller, model_impeller, write_impeller_step
+from trunnion.jobs.job import Given
 from trunnion.jobs.simulate.data import simulation_data
 from trunnion.simulation.meshes import STEP_ENDINGS, TriangleMesh, check_mesh_name, save_mesh
-from trunnion.wording import counted, format_duration, one_line
+from trunnion.wording import counted, format_duration
 
 _DECIMALS: Final = 6
 
@@ -29,57 +29,53 @@ _OF_CUT: Final = ("machine", "operations", "cell", "settings")
 _OF_MODEL: Final = ("tolerance",)
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(given: Given) -> int:
     """Carry out a step; options of the other one are refused."""
-    is_model = arguments.step == "model"
-    wrong = [name for name in (_OF_CUT if is_model else _OF_MODEL) if getattr(arguments, name) not in (None, [])]
+    is_model = given.step == "model"
+    wrong = [name for name in (_OF_CUT if is_model else _OF_MODEL) if getattr(given, name) not in (None, [])]
     if wrong:
-        what = f"is not for {arguments.step}"
+        what = f"is not for {given.step}"
         raise InputError([argument_problem(name, what, "leave it out", code="ARG130") for name in wrong])
-    return model(arguments) if is_model else cut(arguments)
+    return model(given) if is_model else cut(given)
 
 
-def model(arguments: argparse.Namespace) -> int:
+def model(given: Given) -> int:
     """Make an impeller a mesh or a solid, and say how good it is."""
-    if arguments.output is not None:
-        check_mesh_name(arguments.output, STEP_ENDINGS)
-        if Path(arguments.output).suffix.lower() in STEP_ENDINGS:
-            return _solid(arguments)
-    tolerance = _TOLERANCE if arguments.tolerance is None else arguments.tolerance
-    impeller = load_impeller(arguments.file)
+    if given.output is not None:
+        check_mesh_name(given.output, STEP_ENDINGS)
+        if Path(given.output).suffix.lower() in STEP_ENDINGS:
+            return _solid(given)
+    tolerance = _TOLERANCE if given.tolerance is None else given.tolerance
+    impeller = load_impeller(given.file)
     Terminal().problems(impeller.remarks)
     found = model_impeller(impeller, tolerance=tolerance)
-    if arguments.output is not None:
-        save_mesh(found.mesh, arguments.output, inputs=impeller.definition.files)
+    if given.output is not None:
+        save_mesh(found.mesh, given.output, inputs=impeller.definition.files)
     facets = len(found.mesh.faces)
-    if arguments.json:
-        print_result(as_json(_model_data(impeller, found.volume, {"facets": facets}, found.deviation, found.mesh)))
-        return 0
     lines = (
         _head(impeller, found.mesh),
         f"volume {found.volume:.1f} mm³, {facets} facets, a closed solid",
         f"facets are at most {found.deviation:.4f} mm off the exact surfaces, {tolerance:g} mm were asked",
     )
-    print_result(*map(one_line, lines))
+    parts = {"facets": facets}
+    show(given, lambda: _model_data(impeller, found.volume, parts, found.deviation, found.mesh), lines)
     return 0
 
 
-def _solid(arguments: argparse.Namespace) -> int:
+def _solid(given: Given) -> int:
     """Write a STEP file."""
-    tolerance = _OF_FACES if arguments.tolerance is None else arguments.tolerance
-    impeller = load_impeller(arguments.file)
+    tolerance = _OF_FACES if given.tolerance is None else given.tolerance
+    impeller = load_impeller(given.file)
     Terminal().problems(impeller.remarks)
-    found = write_impeller_step(impeller, arguments.output, tolerance=tolerance)
-    if arguments.json:
-        print_result(as_json(_model_data(impeller, found.volume, {"faces": found.faces}, found.deviation, found.mesh)))
-        return 0
+    found = write_impeller_step(impeller, given.output, tolerance=tolerance)
     lines = (
         _head(impeller, found.mesh),
         f"volume {found.volume:.1f} mm³, {found.faces} faces, a valid closed solid; its mesh has "
         f"{found.mesh.volume:.1f} mm³",
         f"faces are at most {found.deviation:.4f} mm off the exact surfaces, {tolerance:g} mm were asked",
     )
-    print_result(*map(one_line, lines))
+    parts = {"faces": found.faces}
+    show(given, lambda: _model_data(impeller, found.volume, parts, found.deviation, found.mesh), lines)
     return 0
 
 
@@ -109,25 +105,14 @@ def _head(impeller: Impeller, mesh: TriangleMesh) -> str:
     return f"{definition.name}: {definition.number} blades{splitters}, {size} mm"
 
 
-def cut(arguments: argparse.Namespace) -> int:
+def cut(given: Given) -> int:
     """Machine an impeller; 0 if its program is proven, and what was simulated has no finding."""
-    missing = [name for name in ("machine", "output") if getattr(arguments, name) is None]
+    missing = [name for name in ("machine", "output") if getattr(given, name) is None]
     if missing:
         cures = {"machine": "name the machine that runs the program", "output": "name a folder"}
         raise InputError([argument_problem(name, "is missing", cures[name], code="ARG130") for name in missing])
-    found = cut_impeller(
-        arguments.file,
-        machine=arguments.machine,
-        output=arguments.output,
-        operations=arguments.operations,
-        settings=dict(arguments.settings),
-        cell=arguments.cell,
-        observer=Terminal(),
-    )
-    if arguments.json:
-        print_result(as_json(_cut_data(found)))
-    else:
-        print_result(*map(one_line, _cut_lines(found)))
+    found = cut_impeller(given.file, **given.arguments("file", "tolerance"), observer=Terminal())
+    show(given, lambda: _cut_data(found), _cut_lines(found))
     return 0 if found.passed else 1
 
 

@@ -1,17 +1,16 @@
 """``trunnion info``: what CL files hold."""
 
-import argparse
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Final
 
-from trunnion.cli.cl_files import cl_inputs, named_files
-from trunnion.cli.results import as_json, print_result
+from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
 from trunnion.jobs.describe.cl_files import ClDescription, OperationDescription, ToolDescription, Vector, describe_cl
-from trunnion.jobs.describe.plot import check_plot, write_plot
+from trunnion.jobs.describe.plot import write_plot
+from trunnion.jobs.job import Given
 from trunnion.model.toolpath import Frame
-from trunnion.wording import counted, format_duration, one_line
+from trunnion.wording import counted, format_duration
 
 _INDENT: Final = "  "
 
@@ -25,22 +24,14 @@ _MOST_PLANES: Final = 6
 _NOT_DATA: Final = frozenset({"toolpaths", "remarks"})
 
 
-def info(arguments: argparse.Namespace) -> int:
+def info(given: Given) -> int:
     """Show what CL files hold, as text or data, and draw it."""
-    if arguments.plot is not None:
-        check_plot(arguments.plot, named_files(arguments.files))
     terminal = Terminal()
-    found = describe_cl(
-        cl_inputs(arguments.files),
-        units=arguments.units,
-        dialect=arguments.dialect,
-        strict=arguments.strict,
-        observer=terminal,
-    )
+    found = describe_cl(**given.arguments(), observer=terminal)
     terminal.problems(found.remarks)
-    if arguments.plot is not None:
-        write_plot(found, arguments.plot)
-    print_result(*([as_json(info_data(found))] if arguments.json else map(one_line, info_lines(found))))
+    if given.plot is not None:
+        write_plot(found, given.plot)
+    show(given, lambda: info_data(found), info_lines(found))
     return 0
 
 

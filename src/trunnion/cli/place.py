@@ -1,31 +1,28 @@
 """``trunnion place``: where on the table a part may sit."""
 
-import argparse
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from trunnion.arrays import Floats
-from trunnion.cli.cl_files import cl_inputs, named_files
+from trunnion.cli.cl_reading import as_read
 from trunnion.cli.place_bodies import body_lines, gain_text, touch_line
-from trunnion.cli.results import as_json, print_result, tell
+from trunnion.cli.results import print_result, show, tell
 from trunnion.cli.terminal import Terminal, output_place
 from trunnion.errors import InputError, Problem, argument_problem
-from trunnion.files import atomic_file, check_outputs
-from trunnion.jobs.inputs.input_files import machine_files
-from trunnion.jobs.inputs.reading import FilePath, ToolpathLike, load_machine
+from trunnion.jobs.inputs.reading import ToolpathLike, load_machine
 from trunnion.jobs.inputs.settings import as_texts
+from trunnion.jobs.job import Given
 from trunnion.jobs.place.bodies import BodiesInput
 from trunnion.jobs.place.data import placement_data
 from trunnion.jobs.place.inputs import toolpaths_to_post
 from trunnion.jobs.place.placing import place
 from trunnion.jobs.place.posting import post_placed
-from trunnion.jobs.project.file import library_files
 from trunnion.model.clamping import are_one_angle, number
 from trunnion.placing.placement import AxisUse, Limit, PartPlace, Placement, RotaryUse, TurnMargin
 from trunnion.placing.program_use import ProgramUse, other_positions
 from trunnion.placing.table_limits import KEPT
-from trunnion.wording import counted, format_duration, one_line
+from trunnion.wording import counted, format_duration
 
 if TYPE_CHECKING:  # imported where a project is placed
     from trunnion.jobs.place.project import PlacedSetup
@@ -37,77 +34,59 @@ _FREE_STEP: Final = 15.0
 _MOST: Final = 3
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(given: Given) -> int:
     """Place a part; 0 if it fits somewhere, else 1."""
-    project = _project(arguments)
-    read: list[FilePath] = [*named_files(arguments.files), *arguments.subprograms]
-    read += [*arguments.fixtures, *library_files(arguments.libraries)]
+    project = _project(given)
     if project is not None:
-        read += project.read
         Terminal().problems(project.problems)
-        arguments.files, arguments.machine = list(project.files), arguments.machine or project.machine
-    if arguments.machine is None:
+    files, machine_name = (
+        (given.files, given.machine) if project is None else (project.files, given.machine or project.machine)
+    )
+    if machine_name is None:
         raise InputError(argument_problem("machine", "is missing", "name the machine", code="ARG130"))
-    machine = load_machine(arguments.machine)
-    read += machine_files(arguments.machine, machine)
-    read += [mesh for mesh in (arguments.stock, arguments.part) if mesh is not None]
-    if arguments.plot is not None:
-        from trunnion.jobs.place.plot import check_placing_plot
-
-        check_placing_plot(arguments.plot, read)
-    if arguments.sheet is not None and arguments.apply is None:
+    machine = load_machine(machine_name)
+    if given.sheet is not None and given.apply is None:
         what = "is that of the program of --apply, and there is none"
         raise InputError(argument_problem("sheet", what, "give --apply too", code="ARG130"))
-    targets = (arguments.json, arguments.apply, arguments.plot, arguments.sheet)
-    if arguments.json == arguments.apply == "-":
-        what, cure = "go to stdout both", "let one of them go to a file"
-        raise InputError(argument_problem("json", f"and apply {what}", cure, code="ARG140"))
-    check_outputs([target for target in targets if target not in (None, "-")], read)
-    settings = {**({} if project is None else as_texts(project.settings)), **dict(arguments.settings)}
-    length = arguments.tool_length or settings.get("tool_length")
+    settings = {**({} if project is None else as_texts(project.settings)), **dict(given.settings)}
+    length = given.tool_length or settings.get("tool_length")
     stated = BodiesInput() if project is None else project.bodies
-    files: Sequence[ToolpathLike] = cl_inputs(arguments.files)
-    if arguments.apply is not None:
-        files = toolpaths_to_post(files, machine=machine, settings=settings, observer=Terminal())
+    placed: Sequence[ToolpathLike] = as_read(given, files)
+    if given.apply is not None:
+        placed = toolpaths_to_post(placed, machine=machine, settings=settings, observer=Terminal())
     found = place(
-        files,
+        placed,
         machine=machine,
-        goal=arguments.goal,
-        turns=arguments.only or arguments.turns,
-        tilts=(_FREE_STEP if arguments.free else arguments.tilts) or (),
-        zero=arguments.zero or settings.get("zero"),
+        goal=given.goal,
+        turns=given.only_turns or given.turns,
+        tilts=(_FREE_STEP if given.free else given.tilts) or (),
+        zero=given.zero or settings.get("zero"),
         tool_length=length,
         settings=settings,
-        subprograms=arguments.subprograms,
-        fixtures=arguments.fixtures or stated.fixtures,
-        part=arguments.part or stated.part,
-        stock=arguments.stock or stated.stock,
-        tools=arguments.tools or stated.tools,
-        libraries=arguments.libraries or stated.libraries,
-        unit=arguments.unit or stated.unit,
+        subprograms=given.subprograms,
+        fixtures=given.fixtures or stated.fixtures,
+        part=given.part or stated.part,
+        stock=given.stock or stated.stock,
+        tools=given.tools or stated.tools,
+        libraries=given.libraries or stated.libraries,
+        unit=given.unit or stated.unit,
         observer=Terminal(),
     )
-    lines = tell if arguments.apply == "-" else print_result
-    if arguments.json == "-":
-        print_result(as_json(placement_data(found)))
-    else:
-        lines(*map(one_line, placement_lines(found)))
-    if arguments.json not in (None, "-"):
-        with atomic_file(arguments.json, inputs=read) as stream:
-            stream.write((as_json(placement_data(found)) + "\n").encode())
-    if arguments.plot is not None:
+    to_stdout = given.apply == "-"
+    show(given, lambda: placement_data(found), placement_lines(found), aside=to_stdout)
+    if given.plot is not None:
         from trunnion.jobs.place.plot import write_placing_plot
 
-        write_placing_plot(found, arguments.plot, inputs=read)
-    if arguments.apply is not None and found.fits:
+        write_placing_plot(found, given.plot, inputs=given.read)
+    if given.apply is not None and found.fits:
         settings = settings if length is None else {**settings, "tool_length": length}
-        output = output_place(arguments.apply)
+        output = output_place(given.apply)
         posted = post_placed(
-            found, machine=machine, output=output, settings=settings, sheet=arguments.sheet, observer=Terminal()
+            found, machine=machine, output=output, settings=settings, sheet=given.sheet, observer=Terminal()
         )
         use = None if posted.run is None else other_positions(found, posted.run)
         if use is not None:
-            (tell if arguments.json == "-" else lines)(f"  {_other_positions(use)}")
+            (tell if to_stdout or given.json == "-" else print_result)(f"  {_other_positions(use)}")
     return 0 if found.fits else 1
 
 
@@ -117,18 +96,18 @@ def _other_positions(use: ProgramUse) -> str:
     return f"the program takes other rotary positions, at feed {ends} degrees: {use.margin_mm:.3f} mm to the limits"
 
 
-def _project(arguments: argparse.Namespace) -> "PlacedSetup | None":
+def _project(given: Given) -> "PlacedSetup | None":
     """The set-up of the project that is placed; None: files are."""
-    projects = [file for file in arguments.files if file.endswith(".toml")]
+    projects = [file for file in given.files if file.endswith(".toml")]
     if not projects:
-        if arguments.setup is not None:
+        if given.setup is not None:
             raise InputError(argument_problem("setup", "is that of a project", "give one (.toml)", code="ARG130"))
         return None
-    if len(arguments.files) > 1:
+    if len(given.files) > 1:
         raise InputError(Problem(projects[0], 0, "is a project, and others are named", "give it alone", code="ARG130"))
     from trunnion.jobs.place.project import placed_setup
 
-    return placed_setup(Path(projects[0]), arguments.setup)
+    return placed_setup(Path(projects[0]), given.setup)
 
 
 def placement_lines(found: Placement) -> Iterator[str]:

@@ -1,19 +1,20 @@
 """``trunnion post``: CL files in, one proven NC program out (or one each, into a folder)."""
 
-import argparse
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from itertools import chain, islice
 from pathlib import Path
 
-from trunnion.cli.cl_files import named_files, result_stem
-from trunnion.cli.results import tell
+from trunnion.cli.cl_files import result_stem
+from trunnion.cli.data import posts_data
+from trunnion.cli.results import show, tell
 from trunnion.cli.terminal import Terminal, check_unnamed, output_folder, output_place, warn_of_old
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem, TrunnionError, argument_problem
 from trunnion.files import OutputGroup, check_outputs
-from trunnion.jobs.inputs.input_files import machine_files
+from trunnion.jobs.guard import files_read
 from trunnion.jobs.inputs.reading import load_machine
+from trunnion.jobs.job import Given
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.papers.files import PAPERS, paper_files
 from trunnion.jobs.post.posting import post_beside
@@ -24,7 +25,7 @@ from trunnion.wording import counted
 
 
 def post(
-    arguments: argparse.Namespace,
+    given: Given,
     toolpaths: Iterator[list[Toolpath]],
     group: OutputGroup | None = None,
     observer: Observer | None = None,
@@ -33,49 +34,54 @@ def post(
 
     Programs appear one by one, or with those of the ``group``; an ``observer`` is told in place of the terminal.
     """
-    machine = load_machine(arguments.machine)
-    targets = files_by_target(arguments, machine)
-    papers = {name: getattr(arguments, name) for name in PAPERS if getattr(arguments, name) is not None}
+    machine = load_machine(given.machine)
+    targets = files_by_target(given, machine)
+    papers = {name: getattr(given, name) for name in PAPERS if getattr(given, name) is not None}
     for name, file in papers.items():
         if len(targets) > 1:
             what = f"one {PAPERS[name]} for {len(targets)} programs"
             raise InputError(Problem(file, 0, what, f"post them one at a time, or leave --{name} out", code="ARG130"))
-    read = [*named_files(arguments.files), *machine_files(arguments.machine, machine), *arguments.hooks]
-    check_outputs([*(target for target in targets if target != "-"), *papers.values()], read)
-    if output_folder(arguments.output) is not None:
+    read = list(files_read(given))
+    if "-" in targets and given.json == "-":
+        what = "and the program go to stdout both"
+        raise InputError(argument_problem("json", what, "let one of them go to a file", code="ARG140"))
+    written = [*targets, *papers.values(), *([] if given.json is None else [given.json])]
+    check_outputs([file for file in written if file != "-"], read)
+    if output_folder(given.output) is not None:
         for target in targets:
             check_unnamed(target, alone=len(targets) == 1)
     toolpaths = toolpaths if observer is not None else _with_dialects(toolpaths)
-    written: list[Path] = []
-    passed = True
+    made: list[Path] = []
+    results: list[PostResult] = []
     for target, files in targets.items():
         old = [target, *(file for name, file in papers.items() if name != "report")]  # a refusal writes its report
         with old_files_told(old if observer is None else []):
             result = post_beside(
                 chain.from_iterable(islice(toolpaths, len(files))),
-                read if group is not None else [*read, *written],  # a group knows what its jobs write
+                read if group is not None else [*read, *made],  # a group knows what its jobs write
                 machine=machine,
                 output=output_place(target),
-                settings=dict(arguments.settings),
-                strict=arguments.strict,
-                force=arguments.force,
-                explain=arguments.explain,
+                settings=dict(given.settings),
+                strict=given.strict,
+                force=given.force,
+                explain=given.explain,
                 papers=paper_files(**{name: papers.get(name) for name in PAPERS}, output=output_place(target)),
                 columns=False,
-                subprograms=arguments.subprograms,
-                simulation=simulation_of(arguments),
-                hooks=arguments.hooks,
-                turn=arguments.turn,
-                tilt=arguments.tilt,
-                observer=observer
-                or Terminal(explain=arguments.explain, recorded=arguments.explain or bool(arguments.report)),
+                subprograms=given.subprograms,
+                simulation=simulation_of(given),
+                hooks=given.hooks,
+                turn=given.turn,
+                tilt=given.tilt,
+                observer=observer or Terminal(explain=given.explain, recorded=given.explain or bool(given.report)),
                 group=group,
             )
-        written += [*result.subprograms, *([] if result.output is None else [result.output])]
-        passed = passed and result.passed
+        made += [*result.subprograms, *([] if result.output is None else [result.output])]
+        results.append(result)
         if observer is None:
             print_summary(target, result)
-    return 0 if passed else 1
+    if given.json is not None and observer is None:
+        show(given, lambda: posts_data(results), ())
+    return 0 if all(result.passed for result in results) else 1
 
 
 @contextmanager
@@ -89,7 +95,7 @@ def old_files_told(names: Sequence[str]) -> Iterator[None]:
         raise
 
 
-def simulation_of(arguments: argparse.Namespace) -> dict[str, object] | None:
+def simulation_of(given: Given) -> dict[str, object] | None:
     """What the program is simulated with; None: it is not.
 
     Raises
@@ -98,8 +104,8 @@ def simulation_of(arguments: argparse.Namespace) -> dict[str, object] | None:
         If something is said about a simulation, and none is asked for.
     """
     names = ("project", "stock", "part", "fixtures", "near", "tools", "libraries", "unit", "cell", "accuracy")
-    stated = {name: getattr(arguments, name) for name in names if getattr(arguments, name)}
-    if arguments.simulate:
+    stated = {name: getattr(given, name) for name in names if getattr(given, name)}
+    if given.simulate:
         return stated
     if stated:
         what = "is only for a simulation, and none is asked for"
@@ -132,9 +138,9 @@ def print_summary(target: str, result: PostResult) -> None:
         tell(f"{subprogram}: a subprogram of {result.output.name}")
 
 
-def files_by_target(arguments: argparse.Namespace, machine: Machine) -> dict[str, list[str]]:
+def files_by_target(given: Given, machine: Machine) -> dict[str, list[str]]:
     """Which program is made from which CL files."""
-    place, files = arguments.output, arguments.files
+    place, files = given.output, given.cl
     if place == "-":
         return {"-": files}
     if place is None and len(files) > 1:
@@ -147,7 +153,7 @@ def files_by_target(arguments: argparse.Namespace, machine: Machine) -> dict[str
         return {place: files}
     extension = load_control(machine.control).extension
     targets: dict[str, list[str]] = {}
-    for file in arguments.files:
+    for file in given.cl:
         targets.setdefault(str(into / (result_stem(file) + extension)), []).append(file)
     twice = next((files for files in targets.values() if len(files) > 1), None)
     if twice:

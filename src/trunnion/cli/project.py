@@ -1,29 +1,37 @@
 """``trunnion post PROJECT``: all programs of a project, together or not at all."""
 
-import argparse
 from pathlib import Path
 
+from trunnion.cli.data import posts_data
 from trunnion.cli.post import old_files_told, print_dialects, print_summary
+from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
-from trunnion.jobs.project.file import load_project
+from trunnion.files import check_outputs
+from trunnion.jobs.job import Given
+from trunnion.jobs.project.file import load_project, project_inputs
 from trunnion.jobs.project.operation_programs import programs_of_operations
 from trunnion.jobs.project.posting import ProjectResult, post_project
 from trunnion.jobs.project.project import Division, Project
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(given: Given) -> int:
     """Post a project."""
-    project = load_project(Path(arguments.files[0]))
+    project = load_project(Path(given.cl[0]))
+    if given.json not in (None, "-"):
+        given.read = [*project_inputs(project), *outputs_of(project)]
+        check_outputs([given.json], given.read)
     papers = (paper for each in project.setups for name, paper in each.papers.by_name().items() if name != "report")
     with old_files_told([*outputs_of(project), *(str(paper) for paper in papers)]):
         result = post_project(
-            arguments.files[0],
-            settings=dict(arguments.settings),
-            strict=arguments.strict,
-            explain=arguments.explain,
-            observer=Terminal(explain=arguments.explain, recorded=arguments.explain),
+            given.cl[0],
+            settings=dict(given.settings),
+            strict=given.strict,
+            explain=given.explain,
+            observer=Terminal(explain=given.explain, recorded=given.explain),
         )
     _print_files(result)
+    if given.json is not None:
+        show(given, lambda: posts_data(result.results), ())
     return 0
 
 

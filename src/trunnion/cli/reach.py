@@ -1,6 +1,5 @@
 """``trunnion reach``: which tool axes and points a machine reaches."""
 
-import argparse
 from collections.abc import Iterator
 from typing import Final
 
@@ -9,16 +8,14 @@ import numpy as np
 from trunnion.capability.part_reach import PartReach
 from trunnion.capability.path_reach import PathReach
 from trunnion.capability.reach import Reach, TiltReach
-from trunnion.cli.cl_files import cl_inputs, named_files
-from trunnion.cli.results import as_json, print_result
+from trunnion.cli.cl_reading import as_read
+from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
-from trunnion.files import atomic_file, check_outputs
-from trunnion.jobs.capability.reach_report import check_reach_plot, reach_data, write_reach_plot
+from trunnion.jobs.capability.reach_report import reach_data, write_reach_plot
 from trunnion.jobs.capability.reaching import reach
-from trunnion.jobs.inputs.input_files import machine_files
-from trunnion.jobs.inputs.reading import load_machine
+from trunnion.jobs.job import Given
 from trunnion.machines.reach import ReachedVolume
-from trunnion.wording import counted, one_line
+from trunnion.wording import counted
 
 _DM3: Final = 1e6
 
@@ -26,35 +23,14 @@ _DM3: Final = 1e6
 _MOST: Final = 12
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(given: Given) -> int:
     """Tell and draw what is reached; 0 if all that was asked for is, else 1."""
-    machine = load_machine(arguments.machine)
-    read = [*named_files(arguments.files), *machine_files(arguments.machine, machine)]
-    read += [] if arguments.part is None else [arguments.part]
-    if arguments.plot is not None:
-        check_reach_plot(arguments.plot, read)
-    check_outputs([each for each in (arguments.plot, arguments.json) if each not in (None, "-")], read)
     terminal = Terminal()
-    found = reach(
-        machine,
-        cl=cl_inputs(arguments.files),
-        part=arguments.part,
-        lean=arguments.lean,
-        zero=arguments.zero,
-        tool_length=arguments.tool_length,
-        step=arguments.step,
-        observer=terminal,
-    )
+    found = reach(**given.arguments("cl"), cl=as_read(given, given.cl), observer=terminal)
     terminal.problems(found.remarks)
-    if arguments.plot is not None:
-        write_reach_plot(found, arguments.plot, read)
-    if arguments.json == "-":
-        print_result(as_json(reach_data(found)))
-    else:
-        if arguments.json is not None:
-            with atomic_file(arguments.json, inputs=read) as sink:
-                sink.write((as_json(reach_data(found)) + "\n").encode())
-        print_result(*map(one_line, reach_lines(found)))
+    if given.plot is not None:
+        write_reach_plot(found, given.plot, given.read)
+    show(given, lambda: reach_data(found), reach_lines(found))
     missed = any(each.no_axis or each.no_travel for each in found.paths)
     return 1 if missed or (found.part is not None and len(found.part.missed)) else 0
 

@@ -1,24 +1,21 @@
 """``trunnion record``: what a machine, or a twin, shows by OPC UA, as a file."""
 
-import argparse
 import getpass
 import sys
 
 from trunnion.cli.results import print_result, tell
 from trunnion.cli.terminal import Terminal
+from trunnion.jobs.job import Given
 from trunnion.jobs.twin.recording import record
 from trunnion.wording import counted
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(given: Given) -> int:
     """Record until the user ends it, or until the time is over."""
-    made = record(
-        arguments.address, output=arguments.output, nodes=arguments.nodes, seconds=arguments.seconds,
-        rate=arguments.rate, secure=arguments.secure, trust=arguments.trust, user=arguments.user,
-        password=machine_password(arguments.user), ready=_announce, observer=Terminal(),
-    )  # fmt: skip
+    password = machine_password(given.user)
+    made = record(**given.arguments(), password=password, ready=_announce, observer=Terminal())
     gaps = f", {counted(made.gaps, 'gap')} marked" if made.gaps else ""
-    print_result(f"{arguments.output}: {counted(made.rows, 'row')}{gaps}")
+    print_result(f"{given.output}: {counted(made.rows, 'row')}{gaps}")
     return 0
 
 

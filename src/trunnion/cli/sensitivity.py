@@ -1,53 +1,29 @@
 """``trunnion sensitivity``: which number of a machine's geometry a program depends on."""
 
-import argparse
 from collections.abc import Iterator
 
 from trunnion.capability.sensitivity import ErrorExtent, NumberSensitivity, Sensitivity
-from trunnion.cli.results import as_json, print_result
+from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
-from trunnion.files import atomic_file, check_outputs
 from trunnion.jobs.capability.sensitivity import sensitivity
 from trunnion.jobs.capability.sensitivity_report import (
     amount_text,
-    check_sensitivity_report,
     place_text,
     sensitivity_data,
     write_sensitivity_report,
     zero_text,
 )
-from trunnion.jobs.inputs.input_files import machine_files
-from trunnion.jobs.inputs.reading import load_machine
-from trunnion.wording import counted, one_line
+from trunnion.jobs.job import Given
+from trunnion.wording import counted
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(given: Given) -> int:
     """Rank the numbers, print and draw them."""
-    machine = load_machine(arguments.machine)
-    read = [arguments.file, *arguments.subprograms, *machine_files(arguments.machine, machine)]
-    if arguments.report is not None:
-        check_sensitivity_report(arguments.report, read)
-    check_outputs([each for each in (arguments.report, arguments.json) if each not in (None, "-")], read)
-    found = sensitivity(
-        arguments.file,
-        machine=machine,
-        subprograms=arguments.subprograms,
-        zero=arguments.zero,
-        tool_length=arguments.tool_length,
-        length=arguments.length,
-        angle=arguments.angle,
-        zero_at=arguments.zero_at,
-    )
+    found = sensitivity(**given.arguments())
     Terminal().problems(found.remarks)
-    if arguments.report is not None:
-        write_sensitivity_report(found, arguments.report, read)
-    if arguments.json == "-":
-        print_result(as_json(sensitivity_data(found)))
-        return 0
-    if arguments.json is not None:
-        with atomic_file(arguments.json, inputs=read) as sink:
-            sink.write((as_json(sensitivity_data(found)) + "\n").encode())
-    print_result(*map(one_line, sensitivity_lines(found)))
+    if given.report is not None:
+        write_sensitivity_report(found, given.report, given.read)
+    show(given, lambda: sensitivity_data(found), sensitivity_lines(found))
     return 0
 
 

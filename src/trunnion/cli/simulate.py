@@ -1,79 +1,36 @@
 """``trunnion simulate``: what NC programs leave of the stock, and what they hit."""
 
-import argparse
 from collections.abc import Iterator
 from typing import Final
 
-from trunnion.cli.cl_files import cl_inputs, named_files
-from trunnion.cli.results import as_json, print_result
+from trunnion.cli.cl_reading import as_read
+from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import Severity
-from trunnion.files import atomic_file, check_outputs
-from trunnion.jobs.inputs.input_files import machine_files
-from trunnion.jobs.inputs.reading import load_machine
-from trunnion.jobs.papers.reports import check_report_name
+from trunnion.jobs.job import Given
 from trunnion.jobs.papers.simulation_report import write_simulation_report
-from trunnion.jobs.project.file import library_files, project_files
 from trunnion.jobs.simulate.data import simulation_data
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.simulating import simulate
 from trunnion.model.clamping import Clamping, number
-from trunnion.simulation.meshes import check_mesh_name, save_mesh
+from trunnion.simulation.meshes import save_mesh
 from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.stock.surface import stock_surface
-from trunnion.wording import counted, format_duration, one_line
+from trunnion.wording import counted, format_duration
 
 #: Findings that the text shows of each kind; the data has all.
 _MOST: Final = 20
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(given: Given) -> int:
     """Simulate programs; 0 if nothing was found, else 1."""
-    read = [*arguments.files, *named_files(arguments.cl), *library_files(arguments.libraries), *arguments.subprograms]
-    read += [mesh for mesh in (arguments.part, arguments.stock, *arguments.fixtures) if mesh is not None]
-    read += project_files(arguments.files)
-    if arguments.machine is not None:
-        read += machine_files(arguments.machine, load_machine(arguments.machine))
-    if arguments.save_stock is not None:
-        check_mesh_name(arguments.save_stock)
-    if arguments.report is not None:
-        check_report_name(arguments.report)
-    targets = (arguments.save_stock, arguments.report, arguments.json)
-    check_outputs([target for target in targets if target not in (None, "-")], read)
-    found = simulate(
-        arguments.files,
-        machine=arguments.machine,
-        stock=arguments.stock,
-        part=arguments.part,
-        fixtures=arguments.fixtures,
-        near=arguments.near,
-        tools=arguments.tools,
-        libraries=arguments.libraries,
-        unit=arguments.unit,
-        cl=cl_inputs(arguments.cl),
-        subprograms=arguments.subprograms,
-        cell=arguments.cell,
-        accuracy=arguments.accuracy,
-        zero=arguments.zero or None,
-        tool_length=arguments.tool_length or None,
-        turn=arguments.turn,
-        tilt=arguments.tilt,
-        stop_at=arguments.stop_at,
-        until=arguments.until,
-        observer=Terminal(),
-    )
-    if arguments.save_stock is not None:
-        save_mesh(stock_surface(found.simulation.stock), arguments.save_stock, inputs=read)
-    if arguments.report is not None:
-        write_simulation_report(found, arguments.report, read)
-    if arguments.json == "-":
-        print_result(as_json(simulation_data(found)))
-    else:
-        print_result(*map(one_line, simulation_lines(found)))
-        if arguments.json is not None:
-            with atomic_file(arguments.json, inputs=read) as stream:
-                stream.write((as_json(simulation_data(found)) + "\n").encode())
+    found = simulate(**given.arguments("cl"), cl=as_read(given, given.cl), observer=Terminal())
+    if given.save_stock is not None:
+        save_mesh(stock_surface(found.simulation.stock), given.save_stock, inputs=given.read)
+    if given.report is not None:
+        write_simulation_report(found, given.report, given.read)
+    show(given, lambda: simulation_data(found), simulation_lines(found))
     return 0 if found.passed else 1
 
 

@@ -9,35 +9,33 @@ dozens of calls deeper, Numba has such a loop: 16,000 times, which lengthens the
 1.61 s of processor time).
 """
 
-import argparse
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING
 
 import trunnion.jit
 from trunnion.cli.cl_files import begin_reading
-from trunnion.cli.post_arguments import names_project
+from trunnion.cli.post_mistakes import names_project
+from trunnion.jobs.job import Given
 
 if TYPE_CHECKING:  # imported while the first CL file is read
     from trunnion.files import OutputGroup
     from trunnion.jobs.observer import Observer
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(given: Given) -> int:
     """Post every CL file, or a project; or watch them."""
-    if arguments.watch:
+    if given.watch:
         from trunnion.cli.watch import run as watch
 
-        return watch(arguments)
-    if names_project(arguments.files):
+        return watch(given)
+    if names_project(given.cl):
         from trunnion.cli.project import run as post_project
 
-        return post_project(arguments)
-    return post_files(arguments)
+        return post_project(given)
+    return post_files(given)
 
 
-def post_files(
-    arguments: argparse.Namespace, group: "OutputGroup | None" = None, observer: "Observer | None" = None
-) -> int:
+def post_files(given: Given, group: "OutputGroup | None" = None, observer: "Observer | None" = None) -> int:
     """Post every CL file; programs appear with those of the group, if there is one."""
     if trunnion.jit.is_first_run():  # compiling takes longer than all else: the second process should begin at once
         from trunnion.jobs import kernels
@@ -45,13 +43,13 @@ def post_files(
         trunnion.jit.compile_ahead(kernels.POSTING)
     executor = ThreadPoolExecutor(1)
     try:
-        given = dict(arguments.settings)
+        settings = dict(given.settings)
         coming = begin_reading(
-            arguments.files, given.get("cl_units"), arguments.strict, executor, given.get("dialect"),
-            given.get("spline_tolerance", ""),
+            given.cl, settings.get("cl_units"), given.strict, executor, settings.get("dialect"),
+            settings.get("spline_tolerance", ""),
         )  # fmt: skip
         from trunnion.cli.post import post
 
-        return post(arguments, coming, group, observer)
+        return post(given, coming, group, observer)
     finally:
         executor.shutdown(wait=False, cancel_futures=True)  # it may wait for stdin, which nobody needs any more

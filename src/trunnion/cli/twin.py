@@ -1,30 +1,25 @@
 """``trunnion twin``: a program as a running machine on OPC UA and MTConnect."""
 
-import argparse
 import getpass
 import sys
 from typing import TYPE_CHECKING
 
 from trunnion.cli.results import print_result
 from trunnion.errors import InputError, Problem, argument_problem
-from trunnion.files import check_outputs
-from trunnion.jobs.inputs.input_files import machine_files
-from trunnion.jobs.inputs.reading import load_machine
+from trunnion.jobs.job import Given
 from trunnion.jobs.twin.serving import add_twin_user, is_loopback, serve_twin, write_device_xml
 
 if TYPE_CHECKING:
     from trunnion.twin.serving import TwinAddresses
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(given: Given) -> int:
     """Serve the program until the user ends it; or add a user; or write the device model."""
-    if arguments.add_user is not None:
-        path = add_twin_user(
-            arguments.add_user, _password(), operator=arguments.role == "operator", users=arguments.users
-        )
-        print_result(f"{path}: {arguments.add_user} is {'an operator' if arguments.role == 'operator' else 'a viewer'}")
+    if given.add_user is not None:
+        path = add_twin_user(given.add_user, _password(), operator=given.role == "operator", users=given.users)
+        print_result(f"{path}: {given.add_user} is {'an operator' if given.role == 'operator' else 'a viewer'}")
         return 0
-    missing = [name for name, value in (("nc", arguments.file), ("machine", arguments.machine)) if value is None]
+    missing = [name for name, value in (("nc", given.nc), ("machine", given.machine)) if value is None]
     if missing:
         raise InputError(
             [
@@ -32,35 +27,28 @@ def run(arguments: argparse.Namespace) -> int:
                 for name in missing
             ]
         )
-    if arguments.device_xml is not None:
-        definition = machine_files(arguments.machine, load_machine(arguments.machine))
-        check_outputs([arguments.device_xml], [arguments.file, *arguments.subprograms, *definition])
-        write_device_xml(
-            arguments.file, machine=arguments.machine, output=arguments.device_xml,
-            subprograms=arguments.subprograms, zero=arguments.zero or None, tool_length=arguments.tool_length or None,
-        )  # fmt: skip
-        print_result(f"{arguments.device_xml}: written")
+    if given.device_xml is not None:
+        setup = {name: given.values[name] for name in ("machine", "subprograms", "zero", "tool_length")}
+        write_device_xml(given.nc, output=given.device_xml, **setup)
+        print_result(f"{given.device_xml}: written")
         return 0
-    serve_twin(
-        arguments.file, machine=arguments.machine, subprograms=arguments.subprograms, zero=arguments.zero or None,
-        tool_length=arguments.tool_length or None, speed=arguments.speed, loop=arguments.loop, rate=arguments.rate,
-        hold=arguments.hold, host=arguments.host, port=arguments.port,
-        adapter_port=None if arguments.no_mtconnect else arguments.adapter_port, users=arguments.users,
-        ready=lambda addresses: _announce(addresses, arguments),
-    )  # fmt: skip
+    settings = given.arguments()
+    if given.no_mtconnect:
+        settings["adapter_port"] = None
+    serve_twin(**settings, ready=lambda addresses: _announce(addresses, given))
     return 0
 
 
-def _announce(addresses: "TwinAddresses", arguments: argparse.Namespace) -> None:
+def _announce(addresses: "TwinAddresses", given: Given) -> None:
     """Say where it is served, and how to connect."""
-    if is_loopback(arguments.host):
+    if is_loopback(given.host):
         how = "from this computer, anonymous, security None"
     else:
         how = f"with a user and SignAndEncrypt; certificate {addresses.fingerprint}"
     lines = [f"OPC UA: {addresses.opcua} ({how})"]
     if addresses.mtconnect:
         lines.append(f"MTConnect: an agent connects to {addresses.mtconnect} (SHDR); --device-xml writes its devices")
-    if arguments.hold:
+    if given.hold:
         lines.append("the program waits for a client to call Start in the object Twin")
     print(*lines, "Ctrl-C ends it", sep="\n", file=sys.stderr, flush=True)
 

@@ -1,17 +1,17 @@
 """``trunnion verify``: an NC program, read back by an independent reader, run, and compared with its CL files."""
 
-import argparse
 from typing import Final
 
-from trunnion.cli.cl_files import cl_inputs, named_files
-from trunnion.cli.results import print_result, tell
+from trunnion.cli.cl_reading import as_read
+from trunnion.cli.data import manifest_data, report_data
+from trunnion.cli.results import show, tell
 from trunnion.cli.terminal import Terminal
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Severity, argument_problem
-from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import load_machine
+from trunnion.jobs.job import Given, streams
 from trunnion.jobs.papers.manifests import verify_manifest
-from trunnion.jobs.papers.reports import check_report, write_report
+from trunnion.jobs.papers.reports import write_report
 from trunnion.jobs.verify.verifying import verify
 from trunnion.verification import Verification, check_lines, place_lines, time_lines
 from trunnion.wording import counted, one_line
@@ -19,83 +19,45 @@ from trunnion.wording import counted, one_line
 #: Fewer errors do not suggest that the program is for another control.
 _MANY_ERRORS: Final = 5
 
+#: Options that stand beside a manifest.
+_OF_MANIFESTS: Final = ("nc", "cl", "json")
 
-def run(arguments: argparse.Namespace) -> int:
+
+def run(given: Given) -> int:
     """Verify one program; 0 if every check has passed, else 1."""
-    if arguments.machine is None:
-        if arguments.file.lower().endswith(".json"):
-            return _run_manifest(arguments)
+    if given.machine is None:
+        if given.nc.lower().endswith(".json"):
+            return _run_manifest(given)
         raise InputError(
             argument_problem("machine", "is missing", "name the machine that runs the program", code="ARG130")
         )
-    machine = load_machine(arguments.machine)
-    if arguments.report is not None:
-        read = [arguments.file, *named_files(arguments.cl), *arguments.subprograms, *arguments.hooks]
-        read += [] if arguments.recorded is None else [arguments.recorded]
-        check_report(arguments.report, [*read, *machine_files(arguments.machine, machine)])
     verification = verify(
-        arguments.file,
-        machine=machine,
-        cl=cl_inputs(arguments.cl),
-        subprograms=arguments.subprograms,
-        tolerance=arguments.tolerance,
-        span=arguments.span,
-        span_tip=arguments.span_tip,
-        tool=arguments.tool,
-        work_offset=arguments.offset,
-        edge=arguments.edge,
-        units=arguments.units,
-        dialect=arguments.dialect,
-        frame=arguments.frame,
-        zero=arguments.zero or None,
-        tool_length=arguments.tool_length or None,
-        recorded=arguments.recorded,
-        recorded_tolerance=arguments.recorded_tolerance,
-        feed=arguments.feed or "programmed",
-        feed_limit=arguments.feed_limit,
-        columns=arguments.report is not None,
-        hooks=arguments.hooks,
-        turn=arguments.turn or 0.0,
-        tilt=arguments.tilt or 0.0,
+        **{**given.arguments("cl"), "machine": load_machine(given.machine)},
+        cl=as_read(given, given.cl) if given.strict else streams(given.cl),
+        columns=given.report is not None or given.json is not None,
         observer=Terminal(),
     )
     if hint := _control_hint(verification):
         tell(hint)
     lines = (*check_lines(verification), *place_lines(verification), *time_lines(verification))
-    print_result(*map(one_line, lines))
-    if arguments.report is not None:
-        write_report(verification, arguments.report)
+    show(given, lambda: report_data(verification), lines)
+    if given.report is not None:
+        write_report(verification, given.report)
     return 0 if verification.passed else 1
 
 
-def _run_manifest(arguments: argparse.Namespace) -> int:
+def _run_manifest(given: Given) -> int:
     """Compare the files of a post with its manifest; 0 if all are the same and proven, else 1."""
-    others = (
-        "subprograms",
-        "hooks",
-        "recorded",
-        "report",
-        "zero",
-        "tool_length",
-        "span",
-        "span_tip",
-        "tool",
-        "offset",
-        "edge",
-        "feed_limit",
-        "turn",
-        "tilt",
-    )
-    for name in (*others, "feed_limit", "units", "dialect"):
-        if getattr(arguments, name):
-            what, cure = "says nothing about a manifest", "leave it out; --cl compares CL files, too"
-            raise InputError(argument_problem(name, what, cure, code="ARG130"))
-    found = verify_manifest(arguments.file, cl=arguments.cl)
-    print_result(*(one_line(str(file)) for file in found.files))
+    stated = (each for each in given.job.options if each.name not in _OF_MANIFESTS)
+    if wrong := [each for each in stated if given.values[each.name] != each.empty]:
+        what, cure = "says nothing about a manifest", "leave it out; --cl compares CL files, too"
+        raise InputError(argument_problem(wrong[0].name, what, cure, code="ARG130"))
+    found = verify_manifest(given.nc, cl=given.cl)
+    show(given, lambda: manifest_data(found), map(str, found.files))
     for name in found.not_compared:
         tell(one_line(f"{name}: not compared, and the program was made from it: --cl FILE compares it"))
     if not found.proven:
-        tell(f"{arguments.file}: the program was written by force, and must not run as it is")
+        tell(f"{given.nc}: the program was written by force, and must not run as it is")
     return 0 if found.passed else 1
 
 

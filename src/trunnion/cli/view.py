@@ -1,83 +1,67 @@
 """``trunnion view``: a program on its machine, in a browser."""
 
-import argparse
 import sys
 from functools import partial
-from typing import Any
+from pathlib import Path
+from typing import Any, Final
 
-from trunnion.cli.cl_files import cl_inputs, named_files
+from trunnion.cl import is_cl_file
+from trunnion.cli.cl_reading import as_read
 from trunnion.cli.record import machine_password
 from trunnion.cli.results import print_result
 from trunnion.cli.serving import announce
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import InputError, argument_problem
-from trunnion.files import check_outputs
-from trunnion.jobs.inputs.input_files import machine_files
-from trunnion.jobs.inputs.reading import load_machine
-from trunnion.jobs.project.file import library_files, project_files
+from trunnion.jobs.job import Given
 from trunnion.jobs.twin.recording import machine_feed
 from trunnion.jobs.view.live import LiveMachine, machine_content
-from trunnion.jobs.view.viewing import check_view_name, prepare_view, write_view
+from trunnion.jobs.view.viewing import prepare_view, write_view
+from trunnion.options.groups import LIVE
 from trunnion.viewer.content import ViewContent
 from trunnion.viewer.live import LiveView
 from trunnion.viewer.server import view_application
 from trunnion.viewer.serving import listen, serve
 from trunnion.wording import counted
 
+#: How to connect to a machine, and what is shown of one without a program.
+_LIVE: Final = tuple(option.name for option in LIVE)
+_OF_MACHINE: Final = ("zero", "tool_length", "part", "fixtures", "tools", "libraries", "unit")
 
-def run(arguments: argparse.Namespace) -> int:
+
+def run(given: Given) -> int:
     """Write the page, or serve it until the user ends it."""
-    files = arguments.files
-    if arguments.live is None and not files:
+    if given.live is None and not given.nc:
         raise InputError(argument_problem("nc", "is missing", "name a program, CL files or a project", code="ARG130"))
-    if arguments.live is not None and arguments.output is not None:
+    if given.live is not None and given.output is not None:
         raise InputError(argument_problem("live", "is for a page that is served", "leave --output out", code="ARG130"))
-    read = [*files, *project_files(files, ("machine", "stock")), *arguments.subprograms, *named_files(arguments.cl)]
-    read += [*library_files(arguments.libraries), *arguments.fixtures]
-    read += [file for file in (arguments.part, arguments.stock, arguments.against) if file is not None]
-    given = {
-        "machine": arguments.machine, "against": arguments.against, "against_machine": arguments.against_machine,
-        "setup": arguments.setup, "settings": dict(arguments.settings) or None,
-        "cl": cl_inputs(arguments.cl), "subprograms": arguments.subprograms, "stock": arguments.stock,
-        "part": arguments.part, "fixtures": arguments.fixtures, "near": arguments.near, "tools": arguments.tools,
-        "libraries": arguments.libraries, "unit": arguments.unit, "cell": arguments.cell,
-        "accuracy": arguments.accuracy, "zero": arguments.zero or None, "tool_length": arguments.tool_length or None,
-    }  # fmt: skip
-    if arguments.output is not None:
-        check_view_name(arguments.output)
-        for machine in filter(None, (arguments.machine, arguments.against_machine)):
-            read += machine_files(machine, load_machine(machine))
-        check_outputs([arguments.output], read)
-        write_view(files, output=arguments.output, observer=Terminal(), **given)
-        print_result(f"{arguments.output}: written")
+    shown = given.arguments("output", "cl", *_LIVE) | {"cl": as_read(given, given.cl)}
+    if given.strict:
+        as_read(given, [file for file in given.nc if is_cl_file(Path(file))])
+    if given.output is not None:
+        write_view(**shown, output=given.output, observer=Terminal())
+        print_result(f"{given.output}: written")
         return 0
 
-    with listen(arguments.host, arguments.port) as listening:
+    with listen(given.host, given.port) as listening:
         live = None
-        if arguments.live is None:
-            content = prepare_view(files, observer=Terminal(), **given)
+        if given.live is None:
+            content = prepare_view(**shown, observer=Terminal())
         else:
-            content, live = _live(arguments, given)
+            content, live = _live(given, shown)
         print(counted(len(content.scene["findings"]), "finding"), file=sys.stderr)
-        serve(lambda access: view_application(content, access, live), listening, announce(browser=arguments.browser))
+        serve(lambda access: view_application(content, access, live), listening, announce(browser=given.browser))
     return 0
 
 
-def _live(arguments: argparse.Namespace, given: dict[str, Any]) -> tuple[ViewContent, LiveView]:
+def _live(given: Given, shown: dict[str, Any]) -> tuple[ViewContent, LiveView]:
     """What is shown of a machine that moves, and the machine; its program is shown where one is named."""
-    if arguments.machine is None:
+    if given.machine is None:
         raise InputError(argument_problem("machine", "is missing", "say which machine it is", code="ARG130"))
-    password = machine_password(arguments.user)
-    make = partial(
-        machine_feed, arguments.live, nodes=arguments.nodes, rate=arguments.rate, secure=arguments.secure,
-        trust=arguments.trust, user=arguments.user, password=password,
-    )  # fmt: skip
-    LiveMachine(make, arguments.machine).check()
-    if arguments.files:
-        content = prepare_view(arguments.files, observer=Terminal(), **given)
+    access = {name: given.values[name] for name in _LIVE}
+    make = partial(machine_feed, given.live, password=machine_password(given.user), **access)
+    LiveMachine(make, given.machine).check()
+    if given.nc:
+        content = prepare_view(**shown, observer=Terminal())
     else:
-        alone = {
-            name: given[name] for name in ("zero", "tool_length", "part", "fixtures", "tools", "libraries", "unit")
-        }
-        content = machine_content(arguments.machine, arguments.live, **alone)
-    return content, LiveView(LiveMachine(make, arguments.machine, content.scene["files"]))
+        content = machine_content(given.machine, given.live, **{name: shown[name] for name in _OF_MACHINE})
+    return content, LiveView(LiveMachine(make, given.machine, content.scene["files"]))

@@ -1,6 +1,5 @@
 """``trunnion post --watch``: post again whenever CAM, or anyone else, writes one of the files that are read."""
 
-import argparse
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from datetime import datetime
@@ -8,7 +7,7 @@ from pathlib import Path
 from typing import Protocol
 
 from trunnion.cli.post import files_by_target, simulation_of
-from trunnion.cli.post_arguments import names_project
+from trunnion.cli.post_mistakes import names_project
 from trunnion.cli.process import Ended
 from trunnion.cli.progress import progress
 from trunnion.cli.project import outputs_of
@@ -20,6 +19,7 @@ from trunnion.errors import InputError, Problem, RefusedError, TrunnionError
 from trunnion.files import OutputGroup, file_on_disk, output_group
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import load_machine
+from trunnion.jobs.job import Given
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.project.file import load_project, project_inputs
 from trunnion.jobs.project.posting import post_into
@@ -29,18 +29,18 @@ from trunnion.jobs.simulate.posted import simulation_files
 from trunnion.wording import counted, one_line
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run(given: Given) -> int:
     """Post again and again; Ctrl-C ends it with 0, as nothing else does."""
     notices = FolderNotices()
     try:
-        return follow(arguments, notices)
+        return follow(given, notices)
     finally:
         notices.close()
 
 
-def follow(arguments: argparse.Namespace, waiting: Waiting, now: Callable[[], datetime] = datetime.now) -> int:
+def follow(given: Given, waiting: Waiting, now: Callable[[], datetime] = datetime.now) -> int:
     """Post as ``run`` does, where time passes as ``waiting`` says."""
-    work: _Work = _ProjectWork(arguments) if names_project(arguments.files) else _FilesWork(arguments)
+    work: _Work = _ProjectWork(given) if names_project(given.cl) else _FilesWork(given)
     try:
         tell(f"{work.name}: watched; Ctrl-C ends it")
         watch(_Told(work, now), waiting)
@@ -132,9 +132,9 @@ def _of_definition(machine: str) -> set[str]:
 class _ProjectWork:
     """A project that is posted again."""
 
-    def __init__(self, arguments: argparse.Namespace) -> None:
-        self.name = arguments.files[0]
-        self._arguments = arguments
+    def __init__(self, given: Given) -> None:
+        self.name = given.cl[0]
+        self._given = given
         self._project: Project | None = None
         self._files = {self.name}
 
@@ -150,7 +150,7 @@ class _ProjectWork:
 
     def post(self, group: OutputGroup) -> tuple[bool, list[str]]:
         """Post the project."""
-        given = self._arguments
+        given = self._given
         result = post_into(
             group, load_project(Path(self.name)), settings=dict(given.settings), strict=given.strict, explain=False,
             observer=_Warnings(),
@@ -165,15 +165,15 @@ class _ProjectWork:
 class _FilesWork:
     """CL files that are posted again."""
 
-    def __init__(self, arguments: argparse.Namespace) -> None:
-        self.name = ", ".join(arguments.files)
-        self._arguments = arguments
+    def __init__(self, given: Given) -> None:
+        self.name = ", ".join(given.cl)
+        self._given = given
         self._definitions: set[str] = set()
 
     def files(self) -> set[str]:
         """CL files, definitions, and what the simulation reads."""
-        given = self._arguments
-        named = {*map(file_on_disk, given.files), *given.subprograms, *given.hooks, *_of_definition(given.machine)}
+        given = self._given
+        named = {*map(file_on_disk, given.cl), *given.subprograms, *given.hooks, *_of_definition(given.machine)}
         try:
             found = machine_files(given.machine, load_machine(given.machine))
             self._definitions = {str(file) for file in found}
@@ -188,12 +188,12 @@ class _FilesWork:
 
     def post(self, group: OutputGroup) -> tuple[bool, list[str]]:
         """Post the CL files."""
-        code = post_files(self._arguments, group, _Warnings())
+        code = post_files(self._given, group, _Warnings())
         return code == 0, self.outputs()
 
     def outputs(self) -> list[str]:
         """The programs that they become."""
         try:
-            return list(files_by_target(self._arguments, load_machine(self._arguments.machine)))
+            return list(files_by_target(self._given, load_machine(self._given.machine)))
         except (TrunnionError, OSError):
             return []

@@ -1,27 +1,14 @@
 """Messages of the library in the words of the command line: options in place of arguments."""
 
 import re
+from functools import cache
 from typing import Final
 
 from trunnion.errors import ArgumentName, Problem, TrunnionError
+from trunnion.jobs.registry import JOBS
 
-#: Options that are not called after their arguments.
-_OPTIONS: Final = {
-    "settings": "--set",
-    "work_offset": "--offset",
-    "subprograms": "--with",
-    "to_subprograms": "--to-with",
-    "tools": "--tool",
-    "libraries": "--tools",
-    "fixtures": "--fixture",
-    "operations": "--operation",
-    "cl": "CL",
-    "code": "CODE",
-    "impeller": "IMPELLER",
-    "nc": "NC",
-    "first": "NC",
-    "second": "NC",
-}
+#: Arguments that a command knows by their place, or under several names.
+_BY_PLACE: Final = {"cl": "CL", "code": "CODE", "first": "NC", "second": "NC"}
 
 #: A setting, such as ``setting tool=5``; an argument with a value, such as ``argument trust=ABC``; and one that is
 #: switched on, such as ``force=True``.
@@ -50,4 +37,12 @@ def error_lines(error: TrunnionError) -> str:
 
 
 def _option(argument: str) -> str:
-    return _OPTIONS.get(argument, "--" + argument.replace("_", "-"))
+    return _options().get(argument, "--" + argument.replace("_", "-"))
+
+
+@cache
+def _options() -> dict[str, str]:
+    """What the command line calls an argument of the library: its flag, or what stands in its place."""
+    options = [option for job in JOBS.values() for option in job.options]
+    by_place = {option.name: option.value_name.partition("|")[0] for option in options if not option.flag}
+    return by_place | {option.name: option.flag for option in reversed(options) if option.flag} | _BY_PLACE

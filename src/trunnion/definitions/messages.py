@@ -1,6 +1,5 @@
 """Parts of messages about definitions: a value as it is written, and what to write instead."""
 
-import difflib
 import re
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
@@ -8,6 +7,7 @@ from typing import Final
 
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.definitions.units import unit_of
+from trunnion.wording import nearest_word
 
 _MAX_SHOWN = 60
 _NO_NAMES: Final[Mapping[str, str]] = MappingProxyType({})
@@ -36,8 +36,8 @@ def did_you_mean(word: str, known: Iterable[str], other_names: Mapping[str, str]
     ``other_names`` are in small letters, and in letters alone.
     """
     other = other_names.get("".join(filter(str.isalpha, word.lower())))
-    near = [other] if other else difflib.get_close_matches(word, list(known), n=1, cutoff=0.6)
-    return f'did you mean "{near[0]}"?' if near else ""
+    near = other or nearest_word(word, known)
+    return f'did you mean "{near}"?' if near else ""
 
 
 def a_number(key: str) -> str:

@@ -73,7 +73,7 @@ def test_nothing_is_written_over_what_a_definition_leads_to(folder: Path) -> Non
     Path("tools.toml").write_text('extends = "./shared.toml"\n', encoding="utf-8")
     Path("shared.toml").write_text('[[tool]]\nnumber = 1\nkind = "ball"\ndiameter_mm = 10\n', encoding="utf-8")
     before = contents(folder)
-    simulated = ["--stock", "box:9,9,9", "--tools", "tools.toml"]
+    simulated = ["--stock", "box:9,9,9", "--tool-library", "tools.toml"]
     for name in ("base.toml", "control.toml", "iron.stl"):
         with pytest.raises(trunnion.InputError, match=READ):
             trunnion.post("part.cls", machine="mine.toml", output=name)
@@ -102,7 +102,8 @@ def test_no_report_is_written_over_what_it_is_about(folder: Path, capfd: pytest.
     for report in spellings("part.json"):
         assert main(["verify", "part.json", "--machine", "mine.toml", "--report", report]) == 2
         assert main(["verify", "part.mpf", "--machine", "mine.toml", "--cl", "part.json", "--report", report]) == 2
-        assert main(["verify", "part.mpf", "--machine", "mine.toml", "--with", "part.json", "--report", report]) == 2
+        line = ["verify", "part.mpf", "--machine", "mine.toml", "--subprograms", "part.json"]
+        assert main([*line, "--report", report]) == 2
         assert capfd.readouterr().err.count(READ) == 3
         with pytest.raises(trunnion.InputError, match=READ):
             trunnion.write_report(verified, report)

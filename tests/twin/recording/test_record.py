@@ -143,7 +143,7 @@ def test_an_axis_that_was_off_fails_with_its_block(
 def test_one_recording_over_all_programs_of_a_part_is_in_the_report(tmp_path: Path) -> None:
     main_program, file, report = impeller(tmp_path), tmp_path / "impeller.csv", tmp_path / "impeller.json"
     files = [
-        "--with",
+        "--subprograms",
         *(str(program) for program, _ in IMPELLER.values()),
         "--zero",
         "0,0,-200",

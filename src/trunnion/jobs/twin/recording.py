@@ -13,7 +13,7 @@ from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.result_output import check_output_name
 from trunnion.model.recording import Recording
-from trunnion.twin.limits import LONGEST_RATE, SHORTEST_RATE
+from trunnion.options.limits import LONGEST_RATE, SHORTEST_RATE
 from trunnion.twin.recording.files import check_is_new
 from trunnion.twin.recording.nodes import load_nodes
 from trunnion.twin.recording.reading import read_recording as read_file

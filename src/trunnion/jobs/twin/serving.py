@@ -19,8 +19,8 @@ from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.result_output import check_output_name
 from trunnion.jobs.verify.verifying import rapid_feed_of
 from trunnion.model.run import Run
+from trunnion.options.limits import FASTEST, LONGEST_RATE, SHORTEST_RATE, SLOWEST
 from trunnion.timing import time_run
-from trunnion.twin.limits import FASTEST, LONGEST_RATE, SHORTEST_RATE, SLOWEST
 from trunnion.twin.mtconnect.device import device_xml
 from trunnion.twin.playback import Playback
 from trunnion.twin.ports import listen

@@ -24,7 +24,7 @@ def posted(folder: Path, *settings: str) -> list[str]:
 
 
 def verified(folder: Path, names: Sequence[str]) -> int:
-    others = [word for name in names for word in ("--with", str(folder / name))]
+    others = [word for name in names for word in ("--subprograms", str(folder / name))]
     check = ["verify", str(folder / "two.nc"), "--cl", str(folder / "two.cls"), "--machine", "matsuura_mx330"]
     return main([*check, *others])
 

@@ -1,0 +1,39 @@
+"""Text on a terminal: colours, unless ``NO_COLOR`` forbids them, and lines that say what is wrong."""
+
+import os
+import sys
+from typing import Final, TextIO
+
+_STYLES: Final = {"error": "1;31", "warning": "33", "title": "1", "good": "32"}
+
+
+def painted(text: str, style: str, stream: TextIO | None = None) -> str:
+    """A text in the colour of its style, where the stream is a terminal that has colours."""
+    return f"\x1b[{_STYLES[style]}m{text}\x1b[0m" if _has_colours(stream or sys.stderr) else text
+
+
+def _has_colours(stream: TextIO) -> bool:
+    if os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
+        return False
+    if sys.platform == "win32" and not (os.environ.get("WT_SESSION") or os.environ.get("TERM")):
+        return False  # an old console prints the codes as they are
+    return stream.isatty()
+
+
+def severity_painted(line: str) -> str:
+    """A line of a message with its severity in colour."""
+    for word in ("error", "warning"):
+        before, mark, rest = line.partition(f": {word}: ")
+        if mark:
+            return f"{before}: {painted(word, word)}: {rest}"
+    return line
+
+
+def error_line(where: str, what: str, code: str) -> str:
+    """A line about a command that cannot be understood."""
+    return severity_painted(f"{where}: error: {what} [{code}]")
+
+
+def warning_line(where: str, what: str, code: str) -> str:
+    """A line about something that the command does all the same."""
+    return severity_painted(f"{where}: warning: {what} [{code}]")

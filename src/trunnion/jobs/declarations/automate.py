@@ -1,0 +1,119 @@
+"""Commands for many files, for scripts and for editors."""
+
+from typing import Final
+
+from trunnion.jobs.job import Job, job
+from trunnion.options.groups import BARE_JSON, JSON, MACHINE, OTHER_MACHINE, SETTINGS, STOCK, TOOLS
+from trunnion.options.kinds import Choice, FileIn, FileOut, Switch, Text, seconds, whole
+from trunnion.options.option import Many, Option
+from trunnion.options.words import ACTIONS, SCHEMAS
+
+_FOLDER: Final = "for a folder"
+
+_BATCH: Final = job(
+    "batch", "post, convert, verify or simulate many files, here or on a cluster",
+    Option(
+        "jobs", "", FileIn("JOBS.toml|FOLDER", leads="jobs"),
+        "file of jobs, which states what is done; or a folder",
+    ),
+    Option(
+        "results", "--results", Text("FOLDER|URL"),
+        "where results go: a folder, or an address such as s3://bucket/folder",
+    ),
+    Option(
+        "summary", "--summary",
+        FileOut("FILE", (".sqlite", ".parquet"), "a summary is a database or a table"),
+        "a table of all files with their figures: .sqlite or .parquet",
+    ),
+    Option(
+        "workers", "--workers", whole("a number of workers", "one from 1 to 1024", "N", 1, 1024),
+        "processes; by default as many as there are processors",
+    ),
+    Option("timeout", "--timeout", seconds(1e6), "how long a file may take; by default any time"),
+    Option(
+        "scheduler", "--scheduler", Text("ADDRESS"),
+        "let the workers of Dask do it: tcp://HOST:PORT or tls://",
+    ),
+    Option("wait", "--wait", seconds(1e6), "end if the scheduler is without workers for so long"),
+    Option("tls_ca", "--tls-ca", FileIn(), "certificate of the authority, for tls://", own=True),
+    Option("tls_cert", "--tls-cert", FileIn(), "certificate of this computer", own=True),
+    Option("tls_key", "--tls-key", FileIn(), "its key", own=True),
+    JSON,
+    Option("action", "--action", Choice(ACTIONS), "what is done", heading=_FOLDER),
+    MACHINE.but(help="machine of the programs", heading=_FOLDER),
+    Option(
+        "files", "--files", Text("PATTERN"), "names of the files, such as '**/*.nc'; may be repeated",
+        many=Many.REPEAT, heading=_FOLDER,
+    ),
+    SETTINGS.but(help="settings as post has them; may be repeated", heading=_FOLDER),
+    OTHER_MACHINE.but(help="convert: machine of the new programs", either="target", heading=_FOLDER),
+    Option("to_cl", "--to-cl", Switch(), "convert: write CL files", either="target", heading=_FOLDER),
+    Option(
+        "cl", "--cl", Text("NAME"),
+        "verify: CL file of each program, such as '{folder}/{stem}.cls'; may be repeated", many=Many.REPEAT,
+        heading=_FOLDER,
+    ),
+    STOCK.but(help="simulate: as trunnion simulate has it", heading=_FOLDER),
+    TOOLS.but(help="simulate: a tool; may be repeated", heading=_FOLDER),
+    Option(
+        "tiles", "--tiles", Text("N"),
+        "simulate: tasks among which each simulation is divided; by default one", heading=_FOLDER,
+    ),
+    Option("report", "--report", Choice(("html", "json")), "a report of each file", heading=_FOLDER),
+    run="batch:run",
+    examples=[
+        ("trunnion batch jobs.toml", "what the file states, and only what is not done yet"),
+        ("trunnion batch cl --action post --machine yl569 --results nc", "every CL file of a folder"),
+    ],
+)  # fmt: skip
+
+_TEST: Final = job(
+    "test", "post the projects of a folder again, and compare with what is there",
+    Option(
+        "folder", "", Text("FOLDER|PROJECT"),
+        "every part.toml, case.toml and NAME.case.toml in it and below; or one project",
+    ),
+    Option("accept", "--accept", Switch(), "show what differs, and take the new programs over"),
+    JSON,
+    run="cases:run",
+    guards=True,
+    examples=[
+        ("trunnion test parts", "are all programs as they were?"),
+        ("trunnion test parts --accept", "take the new ones over"),
+    ],
+)  # fmt: skip
+
+_EXPLAIN: Final = job(
+    "explain", "say what a code of a message, or a check, means",
+    Option(
+        "codes", "", Text("CODE"), "as messages end with it, such as CL110, or a check", many=Many.ANY
+    ),
+    BARE_JSON,
+    run="explain:explain",
+    examples=[
+        ("trunnion explain CL110", "what the code at the end of a message means"),
+        ("trunnion explain tip", "what a check proves"),
+    ],
+)  # fmt: skip
+
+_SCHEMA: Final = job(
+    "schema", "print the JSON Schema of definitions or projects, for editors",
+    Option("kind", "", Choice(SCHEMAS, "|".join(SCHEMAS)), "what the files are"),
+    run="new:schema",
+    examples=[
+        ("trunnion schema project", "keys of project files, as an editor takes them"),
+        ("trunnion schema machine > machine.schema.json", "into a file"),
+    ],
+)  # fmt: skip
+
+_COMPLETION: Final = job(
+    "completion", "print what makes a shell complete commands and options",
+    Option("shell", "", Choice(("bash", "zsh", "fish", "powershell"), "bash|zsh|fish|powershell"), "the shell"),
+    run="completion:run",
+    examples=[
+        ('eval "$(trunnion completion bash)"', "in ~/.bashrc"),
+        ("trunnion completion fish > ~/.config/fish/completions/trunnion.fish", "once"),
+    ],
+)  # fmt: skip
+
+JOBS: Final[tuple[Job, ...]] = (_BATCH, _TEST, _EXPLAIN, _SCHEMA, _COMPLETION)

@@ -1,0 +1,77 @@
+"""Commands of the first steps: machines and their definitions."""
+
+from typing import Final
+
+from trunnion.jobs.job import Job, job
+from trunnion.options.groups import BARE_JSON, JSON, SERVING
+from trunnion.options.kinds import FileIn, Switch, Text
+from trunnion.options.option import Many, Option
+
+_NEW: Final = job(
+    "new", "write the definition of a machine that is like a shipped one",
+    Option("name", "", Text("NAME"), "name of the machine: NAME.toml is written"),
+    Option("like", "--like", Text("MACHINE"), "shipped machine that it extends", required=True),
+    JSON,
+    run="new:new",
+    examples=[
+        ("trunnion machines", "find the one that is most like yours"),
+        ("trunnion new our_mill --like dmu65", "write our_mill.toml, with the numbers to measure"),
+    ],
+)  # fmt: skip
+
+_CHECK: Final = job(
+    "check", "validate the definition of a machine or a control",
+    Option(
+        "file", "", FileIn("NAME_OR_FILE", leads="definition"),
+        "definition to validate: a TOML file, or a shipped one",
+    ),
+    BARE_JSON.but(help="what it means as data: into a file, or to stdout in place of text"),
+    run="definitions:check",
+    examples=[
+        ("trunnion check our_mill.toml", "every mistake at once, and what the numbers mean"),
+        ("trunnion check dmu65", "a shipped one"),
+    ],
+)  # fmt: skip
+
+_MACHINES: Final = job(
+    "machines", "list the machines, or print one definition",
+    Option(
+        "name", "", FileIn("NAME", leads="definition"), "machine whose definition is printed", many=Many.MAYBE
+    ),
+    Option(
+        "resolved", "--resolved", Switch(), "with all that it extends, and the file and line of each value"
+    ),
+    JSON,
+    run="definitions:machines",
+    examples=[
+        ("trunnion machines", "a line each"),
+        ("trunnion machines dmu65 --resolved", "every number, and where it comes from"),
+    ],
+)  # fmt: skip
+
+_CONTROLS: Final = job(
+    "controls", "list the controls, or explain one with all its settings",
+    Option(
+        "name", "", FileIn("NAME_OR_FILE", leads="definition"), "control to explain, or a machine's",
+        many=Many.MAYBE,
+    ),
+    BARE_JSON,
+    run="controls:controls",
+    examples=[
+        ("trunnion controls", "a line each"),
+        ("trunnion controls dmu65", "all settings of that machine's control"),
+    ],
+)  # fmt: skip
+
+_BUILD: Final = job(
+    "build", "set up the definition of a machine, in a browser",
+    Option("file", "", FileIn("MACHINE.toml"), "definition; none: a new one", many=Many.MAYBE, default=""),
+    SERVING,
+    run="build:run",
+    examples=[
+        ("trunnion build", "a new machine"),
+        ("trunnion build our_mill.toml", "go on with one"),
+    ],
+)  # fmt: skip
+
+JOBS: Final[tuple[Job, ...]] = (_NEW, _CHECK, _MACHINES, _CONTROLS, _BUILD)

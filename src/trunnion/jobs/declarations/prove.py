@@ -1,0 +1,241 @@
+"""Commands that prove programs, and say what machines can do."""
+
+from typing import Final
+
+from trunnion.jobs.job import Job, job
+from trunnion.options.groups import (
+    BODIES,
+    CLAMPING,
+    CUTTING,
+    FEED,
+    HOOKS,
+    JSON,
+    MACHINE,
+    OTHER_MACHINE,
+    READING,
+    READING_FIRST,
+    REPORT,
+    SETUP,
+    SUBPROGRAMS,
+    TOOL_LENGTH,
+    ZERO,
+)
+from trunnion.options.kinds import Choice, FileIn, FileOut, Number, Switch, Text, length, whole
+from trunnion.options.option import Level, Many, Option
+
+_CL: Final = Option("cl", "--cl", FileIn("CL", stdin=True), many=Many.REPEAT, key="cl")
+
+_TOLERANCE: Final = length("a tolerance", "0.001")
+
+_VERIFY: Final = job(
+    "verify", "prove an NC program: read it, run it, compare it with its CL files",
+    Option("nc", "", FileIn("NC", leads="manifest"), "NC program; or the manifest of a post (.json)"),
+    MACHINE.but(help="machine that runs it; not for a manifest"),
+    SUBPROGRAMS,
+    _CL.but(help="CL file that it was made from; may be repeated, in the order in which they are cut"),
+    HOOKS.but(
+        help="Python file that it was posted with, which changes the CL files again; it is run; may be repeated"
+    ),
+    Option(
+        "tolerance", "--tolerance", _TOLERANCE,
+        "how far a coordinate may be off, and in degrees a rotary axis; 0.001 (in inches 0.0013 mm)", default=0.001,
+    ),
+    Option(
+        "span", "--span", length("a tolerance", "0.001", "DEG"),
+        "how far the tool axis may be off between points; by default the definition's tolerance",
+    ),
+    Option(
+        "span_tip", "--span-tip", _TOLERANCE,
+        "how far the tip may be off between points without TCP, and lines off the arc that they stand for",
+    ),
+    Option("tool", "--tool", Text("T"), "tool that was called in place of the CL file's", default=""),
+    Option(
+        "work_offset", "--work-offset", Text("G"),
+        "work offset of the program; with --cl that of the control's definition", key="work_offset",
+        aliases=("--offset",),
+    ),
+    Option(
+        "edge", "--edge", whole("a cutting edge", "its D number, such as 1", "D"),
+        "cutting edge under which the tool works; with --cl that of the control's definition, if it has one",
+    ),
+    READING.but(strict={"own": True}),
+    Option(
+        "frame", "--frame", Choice(("first", "absolute")),
+        "whose coordinate system the program's is: the first operation's, or the CAM's absolute one", default="first",
+    ),
+    ZERO,
+    TOOL_LENGTH.but(help="length of the tool, for programs without TCP"),
+    FEED.but(help="fastest: it was posted so; feeds are what the axes reach", default="programmed"),
+    Option(
+        "feed_limit", "--feed-limit", length("a feed", "2000", "MM_MIN"),
+        "the feed_limit of that post, in place of the CL file's",
+    ),
+    Option(
+        "recorded", "--recorded", FileIn(),
+        "compare with what the machine did: a recording (.csv or .parquet)",
+    ),
+    Option(
+        "recorded_tolerance", "--recorded-tolerance", _TOLERANCE,
+        "how far the recorded tip may be off the path, and in degrees its tool axis; 0.05", default=0.05,
+    ),
+    CLAMPING.but(
+        turn={
+            "help": "the part is turned so about Z, counter-clockwise seen from +Z, as the head of a placed program"
+            " says; the CL files are turned before they are compared"
+        }
+    ),
+    JSON,
+    REPORT.but(own=True),
+    run="verify:run",
+    examples=[
+        ("trunnion verify part.mpf --machine yl569 --cl part.cls", "does it do what CAM asked for?"),
+        ("trunnion verify part.json", "are the files still those of this manifest?"),
+    ],
+)  # fmt: skip
+
+_DIFF: Final = job(
+    "diff", "compare what two NC programs make the tool do",
+    Option("files", "", FileIn("NC"), "NC program", many=Many.TWO, own=True),
+    MACHINE.but(help="machine that runs the first program", required=True),
+    OTHER_MACHINE.but(help="machine that runs the second one, if another"),
+    SUBPROGRAMS.but(help="files of the subprograms that the first program calls; no others are opened"),
+    SUBPROGRAMS.but(
+        name="to_subprograms", flag="--to-subprograms", aliases=("--to-with",), key="",
+        help="files of the subprograms that the second one calls; no others are opened",
+    ),
+    Option(
+        "tolerance", "--tolerance", _TOLERANCE, "how far tips may be apart, and in degrees tool axes; 0.001",
+        default=0.001,
+    ),
+    Option(
+        "path", "--path", Switch(), "compare where the tool goes, but not feed, spindle, tool and coolant",
+    ),
+    JSON,
+    run="diff:run",
+    examples=[
+        ("trunnion diff old.mpf new.mpf --machine yl569", "is it the same, whatever the text?"),
+        ("trunnion diff part.mpf part.h --machine yl569 --to-machine dmu65", "on two machines"),
+    ],
+)  # fmt: skip
+
+_SIMULATE: Final = job(
+    "simulate", "cut stock with NC programs: what is left, and what is hit",
+    Option(
+        "nc", "", FileIn("NC|PROJECT", leads="project"),
+        "NC program; several cut the same stock in their order. Or a project (.toml), which may state all options",
+        many=Many.SOME, key="programs",
+    ),
+    MACHINE.but(help="machine that runs them"),
+    BODIES,
+    CUTTING,
+    _CL.but(help="CL file whose tools these are; may be repeated"),
+    READING_FIRST,
+    SUBPROGRAMS.but(help="files of the subprograms that they call; no others are opened"),
+    SETUP,
+    CLAMPING.but(
+        turn={
+            "help": "the part is turned so about Z, counter-clockwise seen from +Z, as the head of its program says;"
+            " stock, part and fixtures are given as drawn"
+        }
+    ),
+    Option(
+        "stop_at", "--stop-at", Choice(("none", "first")), "end after the block of the first finding", key="stop_at",
+        level=Level.WHOLE,
+    ),
+    Option(
+        "until", "--until", Text("BLOCK"), "N number of the block before which the last program ends", key="until",
+        level=Level.WHOLE,
+    ),
+    JSON,
+    REPORT.but(help="findings, tables and pictures as a page (.html), or data (.json)", own=True, key=""),
+    Option(
+        "save_stock", "--save-stock", FileOut(form="mesh"),
+        "the finished stock: .stl, .ply, .3mf or .glb; .png: a picture of it", own=True,
+    ),
+    run="simulate:run",
+    examples=[
+        ("trunnion simulate part.mpf --machine yl569 --stock box:100,80,40 --tool 1=ball:10", "cut it"),
+        ("trunnion simulate part.toml --report part.html", "as a project states it, with pictures"),
+    ],
+)  # fmt: skip
+
+_NUMBER: Final = Number("DEG", "a number", "one, such as 5")
+
+_REACH: Final = job(
+    "reach", "show which tool axes and points a machine reaches",
+    Option("cl", "", FileIn("CL", stdin=True), "CL files whose points are judged", many=Many.ANY),
+    MACHINE.but(help="machine whose reach is shown", required=True),
+    Option("part", "--part", FileIn("MESH"), "part whose facets the tip is to reach along their normals"),
+    Option("lean", "--lean", _NUMBER, "how far the tool may lean from a normal; by default 0", default=0.0),
+    SETUP,
+    READING_FIRST,
+    Option("step", "--step", _NUMBER, "degrees between tilts, and between azimuths; by default 5", default=5.0),
+    JSON,
+    Option(
+        "plot", "--plot", FileOut("FILE", (".svg",), "reach is drawn as SVG"),
+        "tool axes on the sphere, and volumes over the tilt (.svg)", own=True,
+    ),
+    run="reach:run",
+    examples=[
+        ("trunnion reach --machine yl569", "all tool axes"),
+        ("trunnion reach part.cls --machine yl569 --zero 0,0,100", "the points of a CL file"),
+    ],
+)  # fmt: skip
+
+_FIT: Final = job(
+    "fit", "rank the machines that can run CL files or an NC program",
+    Option(
+        "files", "", FileIn("CL|NC", stdin=True), "CL files of one program; or, with --machine, a program",
+        many=Many.SOME,
+    ),
+    Option(
+        "machines", "--machines", FileIn("NAME_OR_FILE,…", leads="machines"),
+        "machines that are asked; by default all shipped ones", default="all",
+    ),
+    MACHINE.but(help="machine that the NC program is for"),
+    SUBPROGRAMS.but(help="files of the subprograms that the NC program calls; no others are opened"),
+    ZERO.but(help="workpiece zero of the NC program on its own machine, mm"),
+    TOOL_LENGTH.but(help="length of the tool on all machines, gauge point to tip"),
+    READING_FIRST,
+    Option(
+        "turns", "--turns", _NUMBER, "try the part at every so many degrees about Z; by default 5", default=5.0,
+    ),
+    JSON,
+    run="fit:run",
+    examples=[
+        ("trunnion fit part.cls", "which of the shipped machines can run it"),
+        ("trunnion fit part.mpf --machine yl569 --machines dmu65,our_mill.toml", "where else a program runs"),
+    ],
+)  # fmt: skip
+
+_SENSITIVITY: Final = job(
+    "sensitivity", "rank the numbers of a machine by what they do to an NC program",
+    Option("nc", "", FileIn("NC"), "NC program"),
+    MACHINE.but(help="machine that runs it", required=True),
+    SUBPROGRAMS,
+    SETUP,
+    Option(
+        "length", "--length", Number("MM", "a number", "one, such as 5"),
+        "how far points and lengths are off; by default 0.01", default=0.01,
+    ),
+    Option(
+        "angle", "--angle", Number("ARCSEC", "a number", "one, such as 5"),
+        "how far directions and displayed angles are off, seconds of arc; by default 5", default=5.0,
+    ),
+    Option(
+        "zero_at", "--zero-at", Text("C=0,B=0|home|none"),
+        "where the rotary axes stand when the workpiece zero is set; none: leave nothing to the zero", default="home",
+    ),
+    JSON,
+    Option(
+        "report", "--report", FileOut("FILE", (".html",), "this report is a page"),
+        "the table, and errors over the program, as a page (.html)", own=True,
+    ),
+    run="sensitivity:run",
+    examples=[
+        ("trunnion sensitivity part.mpf --machine yl569", "which numbers to measure well"),
+        ("trunnion sensitivity part.mpf --machine yl569 --length 0.02 --report part.html", "with curves"),
+    ],
+)  # fmt: skip
+
+JOBS: Final[tuple[Job, ...]] = (_VERIFY, _DIFF, _SIMULATE, _REACH, _FIT, _SENSITIVITY)

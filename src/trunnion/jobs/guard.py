@@ -1,0 +1,158 @@
+"""The guard of files: no command writes over a file that it reads, and no two of its outputs are one file.
+
+In:     what a command was given, and the kinds of its options: they say which files are read, to which others these
+        lead, and which are written.
+Out:    the files that are read; or an ``InputError``, before any work.
+"""
+
+import os
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import Any, Final
+
+from trunnion.controls.definition_files import is_control_file, load_control_table
+from trunnion.controls.loading import shipped_controls
+from trunnion.errors import InputError, argument_problem
+from trunnion.files import check_outputs
+from trunnion.jobs.inputs.input_files import definition_files, machine_files
+from trunnion.jobs.inputs.reading import FilePath, load_machine
+from trunnion.jobs.job import STDIN, Given
+from trunnion.jobs.project.file import library_files, load_project, project_files, project_inputs
+from trunnion.jobs.result_output import check_output_name
+from trunnion.options.kinds import FileIn, FileOut
+from trunnion.options.option import Option, outputs
+from trunnion.simulation.meshes import check_mesh_name
+from trunnion.simulation.stock.solids import is_mesh
+
+#: What stands for stdout.
+_STDOUT: Final = "-"
+
+
+def guard(given: Given) -> list[FilePath]:
+    """The files that a command reads, once it is known that it may write what it is to write.
+
+    Raises
+    ------
+    InputError
+        If an output is one of them, or another output by whatever name, has an ending that says another form, or cannot
+        be written; or if two outputs go to stdout.
+    """
+    named = [(each, given.values[each.name]) for each in outputs(given.job.options)]
+    written = [(option, file) for option, file in named if file is not None and not _takes_folder(option, file)]
+    streams = [option for option, file in written if file == _STDOUT]
+    if len(streams) > 1:
+        what = f"and {streams[1].name} go to stdout both"
+        raise InputError(argument_problem(streams[0].name, what, "let one of them go to a file", code="ARG140"))
+    files = [(option, file) for option, file in written if file != _STDOUT]
+    if not files:
+        return []
+    for option, file in files:
+        _check_name(option, file)
+    read = list(files_read(given))
+    check_outputs([file for _, file in files], read)
+    return read
+
+
+def files_read(given: Given) -> Iterator[FilePath]:
+    """The files that a command reads, with all to which they lead.
+
+    Raises
+    ------
+    InputError
+        If one of them leads to others, and cannot be read.
+    """
+    for option in given.job.options:
+        if not isinstance(option.kind, FileIn):
+            continue
+        value = given.values[option.name]
+        files = value if isinstance(value, list) else [] if value in (None, "") else [value]
+        yield from LEADS[option.kind.leads]([file for file in files if file != STDIN])
+
+
+def _takes_folder(option: Option, file: str) -> bool:
+    """Whether an output is a folder, in which the command names files itself."""
+    assert isinstance(option.kind, FileOut)
+    if not option.kind.folder:
+        return False
+    is_new = not Path(file).suffix and not Path(file).exists() and file != _STDOUT
+    return is_new or file.endswith(("/", os.sep)) or Path(file).is_dir()
+
+
+def _check_name(option: Option, file: str) -> None:
+    """Refuse a name whose ending says another form than is written."""
+    kind = option.kind
+    assert isinstance(kind, FileOut)
+    if kind.form == "mesh":
+        check_mesh_name(file)
+    if kind.endings:
+        check_output_name(option.name, file, kind.endings, kind.why)
+
+
+def _of_machines(names: Iterable[str]) -> Iterator[FilePath]:
+    for name in names:
+        yield from machine_files(name, load_machine(name))
+
+
+def _of_list(lists: Iterable[str]) -> Iterator[FilePath]:
+    """Definitions in lists with commas: those that are files, with all that they extend."""
+    for name in (name.strip() for each in lists for name in each.split(",")):
+        if name.endswith(".toml"):
+            yield name
+            if Path(name).is_file():
+                yield from definition_files(name, load_machine(name))
+
+
+def _of_definitions(names: Iterable[str]) -> Iterator[FilePath]:
+    """Definitions of machines or controls."""
+    for name in names:
+        if name in shipped_controls() or is_control_file(Path(name)):
+            yield from [name, *load_control_table(name).files()]
+        else:
+            yield from _of_machines([name])
+
+
+def _of_projects(names: Iterable[str]) -> list[FilePath]:
+    files = list(names)
+    return [*files, *project_files(files, ("machine", "stock"))]
+
+
+def _of_posted(names: Iterable[str]) -> Iterator[FilePath]:
+    """CL files, programs, and projects whose programs need not be there yet."""
+    for name in names:
+        yield name
+        if name.endswith(".toml"):
+            project = load_project(Path(name))
+            yield from [*project_inputs(project), *(setup.output for setup in project.setups)]
+
+
+def _of_stocks(names: Iterable[str]) -> list[FilePath]:
+    return [name for name in names if is_mesh(name)]
+
+
+def _of_impellers(names: Iterable[str]) -> Iterator[FilePath]:
+    from trunnion.impeller.definition import read_impeller  # most commands are about none
+
+    for name in names:
+        yield from [name, *read_impeller(Path(name)).files]
+
+
+def _named(names: Iterable[str]) -> Iterator[FilePath]:
+    """Names of shipped lists, or files."""
+    yield from (name for name in names if Path(name).suffix)
+
+
+#: What a kind of file leads to: the files themselves, and those that they name.
+LEADS: Final[dict[str, Callable[[list[Any]], Iterable[FilePath]]]] = {
+    "": lambda files: files,
+    "machine": _of_machines,
+    "machines": _of_list,
+    "definition": _of_definitions,
+    "library": library_files,
+    "project": _of_projects,
+    "posted": _of_posted,
+    "stock": _of_stocks,
+    "impeller": _of_impellers,
+    "manifest": lambda files: files,
+    "jobs": _named,
+    "named": _named,
+}

@@ -1,0 +1,118 @@
+"""What a job is: its options, the function that carries it out, and the words about it."""
+
+import os
+import sys
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, BinaryIO, Final
+
+from trunnion.errors import InputError, Problem
+from trunnion.options.kinds import FileIn
+from trunnion.options.option import Group, Option, flat
+
+#: stdin as a file.
+STDIN: Final = "-"
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """One command, as data; modules are named by texts, and imported when it is run.
+
+    name      of the command
+    title     one line for lists of commands
+    options   in the order in which ``--help`` shows them
+    run       ``module:function`` of the command line, which takes what is given, and returns the exit code
+    examples  what is typed, and what it does
+    guards    whether it finds out itself which files it must not write over: it begins to work before that is known
+    """
+
+    name: str
+    title: str
+    options: tuple[Option, ...]
+    run: str
+    examples: tuple[tuple[str, str], ...] = ()
+    guards: bool = False
+
+    @property
+    def arguments(self) -> list[Option]:
+        """Options that are known by their place."""
+        return [each for each in self.options if not each.flag]
+
+    @property
+    def flags(self) -> list[Option]:
+        """Options that are known by their flag."""
+        return [each for each in self.options if each.flag]
+
+    def option(self, name: str) -> Option | None:
+        """The option of an argument; None if it has none."""
+        return next((each for each in self.options if each.name == name), None)
+
+
+def job(
+    name: str, title: str, *options: Option | Group, run: str, examples: Iterable[tuple[str, str]], guards: bool = False
+) -> Job:
+    """Declare a command."""
+    return Job(name, title, flat(options), f"trunnion.cli.{run}", tuple(examples), guards)
+
+
+class Given:
+    """What a command was given: each option's value under its name.
+
+    job   the command
+    read  files that it reads, none of which it writes over; known once ``jobs.guard`` has asked
+    """
+
+    def __init__(self, job: Job, values: Mapping[str, Any]) -> None:
+        self.job = job
+        self.values = dict(values)
+        self.read: list[str | os.PathLike[str]] = []
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return self.values[name]
+        except KeyError:
+            raise AttributeError(name) from None
+
+    def arguments(self, *left_out: str) -> dict[str, Any]:
+        """The arguments of the function that the command runs; stdin as a stream.
+
+        Raises
+        ------
+        InputError
+            If stdin is named twice: it can be read once.
+        """
+        options = [each for each in self.job.options if not each.own and each.name not in left_out]
+        found = {each.name: self._argument(each) for each in options}
+        if "settings" in found:
+            found["settings"] = dict(found["settings"])
+            found = {name: value for name, value in found.items() if not self._is_setting(name)}
+        return found
+
+    def _argument(self, option: Option) -> Any:
+        value = self.values[option.name]
+        if not isinstance(option.kind, FileIn) or not option.kind.stdin:
+            return value
+        return streams(value) if isinstance(value, list) else next(iter(streams([value])), None)
+
+    def _is_setting(self, name: str) -> bool:
+        option = self.job.option(name)
+        return option is not None and bool(option.setting)
+
+
+def streams(files: Iterable[str]) -> list[str | BinaryIO]:
+    """Files as the library takes them: ``-`` is stdin.
+
+    Raises
+    ------
+    InputError
+        If stdin is named twice: it can be read once.
+    """
+    named = list(files)
+    if named.count(STDIN) > 1:
+        raise InputError(Problem("stdin", 0, "is named twice", f"write {STDIN} once", code="ARG130"))
+    return [sys.stdin.buffer if file == STDIN else file for file in named]
+
+
+def named_files(files: Iterable[str]) -> list[str]:
+    """Files but stdin."""
+    return [file for file in files if file != STDIN]

@@ -1,0 +1,263 @@
+"""Options that several commands share: each is said once, and a command may say in its own words what it is for."""
+
+from typing import Final
+
+from trunnion.options.kinds import Choice, FileIn, FileOut, Number, Setting, Switch, Text, angle, length, whole
+from trunnion.options.limits import LONGEST_RATE, SHORTEST_RATE
+from trunnion.options.option import Group, Level, Many, Option
+from trunnion.options.words import DIALECTS, FEEDS
+
+PAGE_OR_DATA: Final = (".html", ".json")
+
+MACHINE: Final = Option(
+    "machine", "--machine", FileIn("NAME_OR_FILE", leads="machine"), "shipped machine, or a TOML file", key="machine"
+)
+
+OTHER_MACHINE: Final = MACHINE.but(name="to_machine", flag="--to-machine", key="")
+
+SETTINGS: Final = Option("settings", "--set", Setting(), many=Many.REPEAT)
+
+SUBPROGRAMS: Final = Option(
+    "subprograms",
+    "--subprograms",
+    FileIn("NC"),
+    "files of the subprograms that it calls; no others are opened",
+    many=Many.LIST,
+    key="subprograms",
+    aliases=("--with",),
+)
+
+HOOKS: Final = Option(
+    "hooks",
+    "--hooks",
+    FileIn("FILE.py"),
+    "Python file whose functions change what the CL files ask for; it is run",
+    many=Many.REPEAT,
+    key="hooks",
+    level=Level.WHOLE,
+)
+
+#: How CL files are read; ``units`` and ``dialect`` are settings too where a command takes settings.
+READING: Final = Group(
+    "how CL files are read",
+    (
+        Option("units", "--units", Choice(("mm", "inch")), "length unit of the CL files, whatever they state"),
+        Option(
+            "dialect", "--dialect", Choice(DIALECTS, "NAME"), f"what the CL files are written in: {', '.join(DIALECTS)}"
+        ),
+        Option(
+            "strict", "--strict", Switch(), "unknown CL statements are errors at once", key="strict", level=Level.WHOLE
+        ),
+    ),
+)
+
+#: The same where the command line reads the files itself, and hands their toolpaths on.
+READING_FIRST: Final = READING.but(**{name: {"own": True} for name in ("units", "dialect", "strict")})
+
+#: The same where units and dialect are settings too.
+READING_AS_SETTINGS: Final = READING.but(units={"setting": "cl_units"}, dialect={"setting": "dialect"})
+
+FEED: Final = Option(
+    "feed", "--feed", Choice(FEEDS), "fastest: of each block what the axes reach, within the feed of the CL file"
+)
+
+ZERO: Final = Option("zero", "--zero", Text("X,Y,Z"), "the workpiece zero on the machine, mm", key="zero_mm")
+
+TOOL_LENGTH: Final = Option(
+    "tool_length", "--tool-length", Text("MM"), "length of the tool, gauge point to tip", key="tool_length_mm"
+)
+
+SETUP: Final = Group("where the part sits", (ZERO, TOOL_LENGTH))
+
+CLAMPING: Final = Group(
+    "how the part is clamped",
+    (
+        Option("turn", "--turn", angle("a turn", -360.0, 360.0, "45"), key="turn_deg"),
+        Option(
+            "tilt",
+            "--tilt",
+            angle("a tilt", -90.0, 90.0, "30"),
+            "before that it is tilted about X of the program, right-handed",
+            key="tilt_deg",
+        ),
+    ),
+)
+
+STOCK: Final = Option(
+    "stock",
+    "--stock",
+    FileIn("STOCK", leads="stock"),
+    "box:X,Y,Z[,x0,y0,z0] (sizes, lowest corner; by default 0,0,0), cylinder:D,H[,z0] (by default 0), or a mesh file;"
+    " mm",
+    key="stock",
+    level=Level.WHOLE,
+)
+
+TOOLS: Final = Option(
+    "tools",
+    "--tool",
+    Text("N=KIND:SIZES"),
+    "a tool, such as 3=ball:10,length=60,flutes=20,shank=12,holder=40x50",
+    many=Many.REPEAT,
+    key="tools",
+)
+
+#: Stock, part, fixtures and tools: what is cut, and what must not be met.
+BODIES: Final = Group(
+    "stock, part, fixtures and tools",
+    (
+        STOCK,
+        Option(
+            "part", "--part", FileIn("MESH"), "the finished part, to compare with what is left of the stock", key="part"
+        ),
+        TOOLS,
+        Option(
+            "libraries",
+            "--tool-library",
+            FileIn("LIBRARY", leads="library"),
+            "tool library: TOML, .tools or .json of Autodesk, FreeCAD's .fctb, LinuxCNC's tool.tbl",
+            many=Many.REPEAT,
+            key="tool_libraries",
+            aliases=("--tools",),
+        ),
+        Option("unit", "--unit", Choice(("mm", "inch")), "length unit of tool tables, which state none", key="unit"),
+        Option(
+            "fixtures",
+            "--fixture",
+            FileIn("MESH"),
+            "a fixture, as the program counts",
+            many=Many.REPEAT,
+            key="fixtures",
+        ),
+    ),
+)
+
+#: How fine a simulation is.
+CUTTING: Final = Group(
+    "how fine",
+    (
+        Option(
+            "near",
+            "--near",
+            length("a distance", "0.5"),
+            "report bodies that come as near as this, too",
+            key="near_mm",
+            level=Level.WHOLE,
+        ),
+        Option(
+            "cell",
+            "--cell",
+            length("a width of cells", "0.25"),
+            "width of the cells; by default a 200th of the stock's side",
+            key="cell_mm",
+            level=Level.WHOLE,
+        ),
+        Option(
+            "accuracy",
+            "--accuracy",
+            length("a tolerance", "0.001"),
+            "of motions and tools; by default a tenth of a cell",
+            key="accuracy_mm",
+            level=Level.WHOLE,
+        ),
+    ),
+)
+
+#: Everything as data; ``--json`` alone is stdout.
+JSON: Final = Option(
+    "json",
+    "--json",
+    FileOut("FILE|-", stdout=True),
+    "the result as data: into a file, or with - to stdout in place of text",
+    many=Many.MAYBE,
+    own=True,
+)
+
+#: The same of commands whose ``--json`` had no value before: what follows it may be something else.
+BARE_JSON: Final = JSON.but(many=Many.BARE)
+
+REPORT: Final = Option(
+    "report",
+    "--report",
+    FileOut("FILE", PAGE_OR_DATA, "a report is a page or data"),
+    "what was checked, as a page (.html) or data (.json)",
+    key="report",
+)
+
+SHEET: Final = Option(
+    "sheet",
+    "--sheet",
+    FileOut("FILE", PAGE_OR_DATA, "a setup sheet is a page or data"),
+    "setup sheet to print (.html), or its data (.json)",
+    key="sheet",
+)
+
+OUTPUT: Final = Option(
+    "output",
+    "--output",
+    FileOut("FILE|-|FOLDER", stdout=True, folder=True),
+    "program, stdout, or a folder: one program per CL file",
+    key="output",
+)
+
+#: A page that is served.
+SERVING: Final = Group(
+    "serving",
+    (
+        Option("browser", "--no-browser", Switch(value=False), "only print the address", own=True),
+        Option(
+            "host",
+            "--host",
+            Text("ADDRESS"),
+            "serve other computers, too, on this address; with a token",
+            default="127.0.0.1",
+            own=True,
+        ),
+        Option(
+            "port",
+            "--port",
+            whole("a port", "a number, 0 for a free one", "N", most=65535),
+            "a free one by default",
+            default=0,
+            own=True,
+        ),
+    ),
+)
+
+RATE: Final = Option(
+    "rate",
+    "--rate",
+    Number(
+        "MS",
+        "a rate",
+        f"milliseconds from {SHORTEST_RATE:g} to {LONGEST_RATE:g}",
+        least=SHORTEST_RATE,
+        most=LONGEST_RATE,
+    ),
+    "milliseconds between two looks of the server; 20",
+    default=20.0,
+)
+
+#: How a command connects to a machine.
+LIVE: Final = Group(
+    "how to connect to the machine",
+    (
+        Option(
+            "nodes",
+            "--nodes",
+            FileIn("NAME_OR_FILE", leads="named"),
+            "what is read: cnc (OPC 40502, such as a twin), sinumerik, heidenhain, or a file (.toml); cnc",
+            default="cnc",
+        ),
+        RATE,
+        Option("secure", "--secure", Switch(), "sign and encrypt the channel"),
+        Option("trust", "--trust", Text("FINGERPRINT"), "of the server's certificate; with --secure", default=""),
+        Option(
+            "user",
+            "--user",
+            Text("NAME"),
+            "user at the machine; the password is asked for or read from stdin",
+            default="",
+        ),
+    ),
+)

@@ -1,0 +1,22 @@
+"""Words that options take; the modules that know them need NumPy, so they stand here too, and a test compares them."""
+
+from typing import Final
+
+#: Dialects that CL files are read in, and those that they are written in.
+DIALECTS: Final = ("clsf", "ncl", "solidworks", "clt", "catia", "fusion", "apt")
+WRITTEN_DIALECTS: Final = ("clsf", "catia", "ncl")
+
+#: Values of the setting ``feed``.
+FEEDS: Final = ("programmed", "fastest")
+
+#: What the best place is best for.
+GOALS: Final = ("margin", "rotary", "slides", "time", "overspeed", "collisions")
+
+#: Kinds of files that there are schemas of.
+SCHEMAS: Final = ("machine", "control", "project", "tools", "impeller", "nodes", "batch")
+
+#: What a batch does with each file.
+ACTIONS: Final = ("post", "convert", "verify", "simulate")
+
+#: Endings of files that hold meshes, and of STEP files.
+MESHES: Final = (".stl", ".ply", ".3mf", ".glb")
