@@ -26,7 +26,7 @@ from tests.support.dask_clusters import Cluster
 
 import make_cls
 import trunnion
-from trunnion.batch import batch_run
+from trunnion.batch import run_batch
 from trunnion.batch.cluster import DaskWorkers
 from trunnion.batch.jobs import Batch, BatchJob
 from trunnion.batch.records import Record
