@@ -22,9 +22,9 @@ import numpy as np
 import trunnion
 from simulation import CASES, path
 from trunnion.jobs.observer import SILENT
-from trunnion.jobs.simulate.data import simulation_data
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.shares import join_shares, simulate_share
+from trunnion.results import to_data
 from trunnion.simulation.cutting.shares import Share
 from trunnion.simulation.meshes import save_mesh
 from trunnion.simulation.meshes.primitives import box_mesh
@@ -61,7 +61,7 @@ def make_program(folder: Path, blocks: int) -> Path:
 
 def same(one: SimulationResult, other: SimulationResult) -> bool:
     """Whether two results are equal to the last bit: data, findings, volumes of rows, stock."""
-    texts = [json.dumps(simulation_data(replace(each, seconds=0.0))) for each in (one, other)]
+    texts = [json.dumps(to_data(replace(each, seconds=0.0))) for each in (one, other)]
     rows = [[each.removed for each in found.simulation.operations] for found in (one, other)]
     stocks = [[found.simulation.stock.spans(bundle) for bundle in range(3)] for found in (one, other)]
     return (

@@ -25,7 +25,7 @@ from trunnion.batch.worker_task import Action, OtherVersionError, Task
 from trunnion.batch.workers import Assignment
 from trunnion.errors import InputError, Problem
 from trunnion.jobs.observer import Observer
-from trunnion.jobs.simulate.data import simulation_data
+from trunnion.results import to_data
 
 pytestmark = needs_dask
 
@@ -105,7 +105,7 @@ def test_a_divided_simulation_is_that_of_one_process_although_a_worker_dies(clus
     )
     (record,) = result.records()
     assert (record.status, record.figures["findings"]) == (Status.FAILED, len(simulated.findings))
-    expected = json.loads(json.dumps(simulation_data(simulated)))
+    expected = json.loads(json.dumps(to_data(simulated)))
     written = json.loads((tmp_path / "out" / report).read_text())
     for text in (expected, written):  # one names the files by their paths
         for each in ("collisions", "near", "air", "operations", "remarks"):

@@ -285,3 +285,12 @@ def test_several_files_become_one_or_several_as_it_is_set(tmp_path: Path, capfd:
     assert "become one program" not in capfd.readouterr().err
     (part,) = (tmp_path / "new").glob("*.spf")
     assert "A3=" in part.read_text(encoding="utf-8")
+
+
+def test_the_earlier_name_of_the_dialect_is_understood_with_a_warning(tmp_path: Path, capfd: Capture) -> None:
+    words = ["convert", str(YL569 / "2_hub_rough.cls"), "--to-cl", "--output"]
+    assert main([*words, str(tmp_path / "a.ncl"), "--dialect", "ncl"]) == 0
+    assert "--to-dialect does [ARG190]" in capfd.readouterr().err
+    assert main([*words, str(tmp_path / "b.ncl"), "--to-dialect", "ncl", "--dialect", "clsf", "--units", "mm"]) == 0
+    assert "ARG190" not in capfd.readouterr().err
+    assert (tmp_path / "a.ncl").read_bytes() == (tmp_path / "b.ncl").read_bytes()

@@ -13,6 +13,19 @@ Every error and warning ends with a code, such as `[CL110]`. It stays the same w
 `trunnion explain CL110` says what this page says: what it means, why it matters at the machine, and what to do. Checks
 are explained by their names: `trunnion explain tip`. `trunnion explain` alone lists everything; `--json` prints it as
 data.
+
+## Messages in data
+
+Wherever the data of a command has `remarks`, each has the same keys; `null` where there is no value:
+
+| key | value |
+| --- | --- |
+| `severity` | `error` or `warning` |
+| `code` | one of those below |
+| `file`, `line` | where it is; the line counts from 1, and is null if the message is about the whole file |
+| `text` | what is wrong |
+| `cure` | how to correct it |
+| `subject` | what it is about, if not a line: `kind` (`argument`, or `key` of a definition) and `name` |
 """
 
 

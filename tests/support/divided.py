@@ -11,8 +11,8 @@ import numpy as np
 import trunnion
 from tests.support.simulating import HEAD, cuboid
 from trunnion.jobs.observer import SILENT
-from trunnion.jobs.simulate.data import simulation_data
 from trunnion.jobs.simulate.shares import join_shares, simulate_share
+from trunnion.results import to_data
 from trunnion.simulation.cutting.shares import Share
 from trunnion.simulation.meshes import TriangleMesh, save_mesh
 
@@ -80,7 +80,7 @@ def facts(found: trunnion.SimulationResult) -> dict[str, object]:
     cut = found.simulation
     spans = [cut.stock.spans(bundle) for bundle in range(3)]
     return {
-        "data": json.dumps(simulation_data(replace(found, seconds=0.0))),
+        "data": json.dumps(to_data(replace(found, seconds=0.0))),
         "rows": [each.removed.tobytes() for each in cut.operations],
         "operations": [(each.first, each.end, each.gouged, each.findings, each.near) for each in cut.operations],
         "stock": [(each.first.tobytes(), each.ends.tobytes(), each.rows.tobytes()) for each in spans],

@@ -11,13 +11,16 @@ import numpy as np
 
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.model.arc_extremes import RunArcs
-from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
-from trunnion.reporting.extents import AxisExtent, axis_extent
+from trunnion.reporting.extents import axis_extent
+from trunnion.results import to_data
 from trunnion.verification import Check, Verification
 
 #: Digits behind the point, of mm, degrees and seconds.
 _DECIMALS: Final = 6
+
+#: What is said of an axis.
+_OF_AXIS: Final = ("unit", "low", "high", "margin", "zero_known")
 
 
 def point_count(toolpaths: Iterable[Toolpath]) -> int:
@@ -36,9 +39,10 @@ def verification_figures(found: Verification) -> dict[str, Any]:
     arcs = RunArcs.of(run)
     axes = [axis_extent(run, k, axis, arcs) for k, axis in enumerate(run.machine.axes)]
     return {
-        **_run_figures(run),
+        "motions": len(run),
+        "tools": sorted({run.tools[int(index)] for index in np.unique(run.tool)} - {""}),
         "seconds": _rounded(float(np.nansum(found.seconds))) if len(found.seconds) else None,
-        "axes": {each.name: _extent(each) for each in axes},
+        "axes": {each.name: to_data(each, decimals=_DECIMALS, only=_OF_AXIS) for each in axes},
         "margin_mm": _least(each.margin for each in axes if each.unit == "mm" and each.zero_known),
         "margin_deg": _least(each.margin for each in axes if each.unit != "mm"),
         "tip_deviation_mm": _worst_of(found.checks, "tip"),
@@ -55,22 +59,6 @@ def simulation_figures(found: SimulationResult) -> dict[str, Any]:
         "removed_mm3": _rounded(found.removed),
         "findings": len(found.findings),
         "gouge_mm": None if found.gouge is None else _rounded(found.gouge.largest),
-    }
-
-
-def _run_figures(run: Run) -> dict[str, Any]:
-    tools = {run.tools[int(index)] for index in np.unique(run.tool)}
-    return {"motions": len(run), "tools": sorted(tools - {""})}
-
-
-def _extent(extent: AxisExtent) -> dict[str, Any]:
-    low, high = (None, None) if extent.extremes is None else (extent.extremes.low, extent.extremes.high)
-    return {
-        "unit": "mm" if extent.unit == "mm" else "deg",
-        "low": _rounded(low),
-        "high": _rounded(high),
-        "margin": _rounded(extent.margin),
-        "zero_known": extent.zero_known,
     }
 
 

@@ -2,13 +2,14 @@
 
 import math
 from dataclasses import dataclass
-from typing import Final
+from typing import Annotated, Final
 
 import numpy as np
 
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Machine
 from trunnion.machines.reach import reached_points
+from trunnion.results import NOT_DATA, Figure
 from trunnion.simulation.meshes import TriangleMesh
 
 #: Directions on a ring around a normal.
@@ -30,18 +31,31 @@ class PartReach:
     """
 
     name: str
-    lean: float
-    rings: int
-    area: Floats
-    centre: Floats
-    normal: Floats
-    axis: Flags
-    travel: Flags
+    lean: Annotated[float, Figure(unit="deg")]
+    rings: Annotated[int, NOT_DATA]
+    area: Annotated[Floats, Figure("facets", take=len), Figure(unit="mm2", decimals=6, take=np.sum)]
+    centre: Annotated[Floats, NOT_DATA]
+    normal: Annotated[Floats, NOT_DATA]
+    axis: Annotated[Flags, NOT_DATA]
+    travel: Annotated[Flags, NOT_DATA]
 
     @property
+    @Figure("reached_share", decimals=6)
     def share(self) -> float:
         """Share of the surface that is reached."""
         return float(self.area[self.travel].sum() / self.area.sum())
+
+    @property
+    @Figure("no_tool_axis")
+    def without_axis(self) -> Ints:
+        """Facets for which the rotary axes give no tool axis."""
+        return np.asarray(np.flatnonzero(~self.axis))
+
+    @property
+    @Figure("no_travel")
+    def without_travel(self) -> Ints:
+        """Facets that have a tool axis with which the slides do not reach them."""
+        return np.asarray(np.flatnonzero(self.axis & ~self.travel))
 
     @property
     def missed(self) -> Ints:

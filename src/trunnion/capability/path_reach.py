@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from trunnion.machines import Machine
 from trunnion.machines.reach import reached_points
 from trunnion.model.frames import into_frame
 from trunnion.model.toolpath import Operation, Toolpath
+from trunnion.results import Figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,11 +26,11 @@ class PathReach:
 
     file: str
     points: int
-    tilts: tuple[float, float]
-    no_axis: int
-    no_axis_line: int
-    no_travel: int
-    no_travel_line: int
+    tilts: Annotated[tuple[float, float], Figure("tilt_deg", decimals=6)]
+    no_axis: Annotated[int, Figure("points", within="no_tool_axis")]
+    no_axis_line: Annotated[int, Figure("first_line", none=0, within="no_tool_axis")]
+    no_travel: Annotated[int, Figure("points", within="no_travel")]
+    no_travel_line: Annotated[int, Figure("first_line", none=0, within="no_travel")]
 
 
 def path_reach(machine: Machine, toolpaths: Sequence[Toolpath], step: float) -> tuple[PathReach, ...]:

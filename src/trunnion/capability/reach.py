@@ -3,7 +3,8 @@
 import math
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Final
+from operator import attrgetter
+from typing import Annotated, ClassVar, Final
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from trunnion.capability.path_reach import PathReach
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
 from trunnion.machines.reach import AxisPoses, PoseBodies, ReachedVolume, axis_poses, pose_bodies, reached_volumes
+from trunnion.results import Degrees, Figure
 
 #: Directions by which the share of the sphere is found.
 _SPREAD: Final = 40_000
@@ -37,14 +39,15 @@ class TiltReach:
     between    how far points of one rotary position go half-way to the next azimuth, at most, mm: bounds allow for it
     """
 
-    tilt: float
+    tilt: Degrees
     branches: tuple[int, ...]
-    one_pose: tuple[float, float] | None
-    some: ReachedVolume | None
-    every: ReachedVolume | None
-    between: float
+    one_pose: Annotated[tuple[float, float] | None, Figure(unit="mm3", decimals=1)]
+    some: Annotated[ReachedVolume | None, Figure("some_azimuth", unit="mm3")]
+    every: Annotated[ReachedVolume | None, Figure("every_azimuth", unit="mm3")]
+    between: Annotated[float, Figure("half_way_between", unit="mm", decimals=6)]
 
     @property
+    @Figure("azimuth_share", decimals=6, after="tilt_deg")
     def share(self) -> float:
         """Share of the azimuths at which the tool axis can be had."""
         return sum(count > 0 for count in self.branches) / len(self.branches)
@@ -63,15 +66,23 @@ class Reach:
     remarks  what was assumed
     """
 
-    machine: Machine
-    step: float
+    SCHEMA: ClassVar[int] = 2
+
+    machine: Annotated[
+        Machine,
+        Figure(take=attrgetter("key")),
+        Figure("workpiece_zero", unit="mm", take=attrgetter("workpiece_zero")),
+        Figure("tool_length", unit="mm", take=attrgetter("tool_length")),
+    ]
+    step: Degrees
     tilts: tuple[TiltReach, ...]
-    sphere: float
+    sphere: Annotated[float, Figure("sphere_share", decimals=6, after="step_deg")]
     part: PartReach | None
-    paths: tuple[PathReach, ...]
+    paths: Annotated[tuple[PathReach, ...], Figure("files")]
     remarks: tuple[Problem, ...]
 
     @property
+    @Figure("slides_not_judged", after="sphere_share")
     def unjudged_axes(self) -> tuple[str, ...]:
         """Names of the linear axes that part and paths are not held against: limits or places are not known."""
         machine = self.machine

@@ -8,6 +8,8 @@ Units:  mm, seconds of arc, degrees; workpiece frame.
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from operator import attrgetter
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -17,6 +19,7 @@ from trunnion.capability.tip_errors import TipErrors, in_radians, joints_at_zero
 from trunnion.errors import Problem
 from trunnion.machines.sensitivity import GeometryNumber, idle_numbers
 from trunnion.model.run import Run
+from trunnion.results import NOT_DATA, BlockNumber, Figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +28,7 @@ class BlockPlace:
 
     file: str
     line: int
-    block: int
+    block: BlockNumber
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,9 +40,9 @@ class ErrorExtent:
     place    where it is farthest off
     """
 
-    largest: float
-    rms: float
-    place: BlockPlace
+    largest: Annotated[float, Figure(unit="mm", decimals=9)]
+    rms: Annotated[float, Figure(unit="mm", decimals=9)]
+    place: Annotated[BlockPlace, Figure(is_flat=True)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,11 +56,18 @@ class NumberSensitivity:
     axis_deg  how far the tool axis is off at most, degrees
     """
 
-    number: GeometryNumber
-    amount: float
+    number: Annotated[
+        GeometryNumber,
+        Figure(take=attrgetter("name")),
+        Figure("axis", take=attrgetter("axis")),
+        Figure("component", take=attrgetter("component")),
+        Figure("key", take=attrgetter("key")),
+        Figure("unit", take=lambda number: "arcsec" if number.is_angle else "mm", after="off_by"),
+    ]
+    amount: Annotated[float, Figure("off_by")]
     tip: ErrorExtent
-    zeroed: ErrorExtent | None
-    axis_deg: float
+    zeroed: Annotated[ErrorExtent | None, Figure("with_zero_set")]
+    axis_deg: Annotated[float, Figure(decimals=9)]
 
     @property
     def worst(self) -> ErrorExtent:
@@ -79,14 +89,22 @@ class Sensitivity:
     angle    how far angles are off, seconds of arc
     """
 
-    run: Run
+    SCHEMA: ClassVar[int] = 2
+
+    run: Annotated[
+        Run,
+        Figure("program", take=lambda run: run.files[0]),
+        Figure("machine", take=attrgetter("machine.key")),
+    ]
     motions: int
     numbers: tuple[NumberSensitivity, ...]
-    idle: tuple[GeometryNumber, ...]
-    zero_at: Mapping[str, float] | None
+    idle: Annotated[
+        tuple[GeometryNumber, ...], Figure("without_effect", take=lambda idle: [each.name for each in idle])
+    ]
+    zero_at: Annotated[Mapping[str, float] | None, Figure(unit="deg", after="motions")]
     remarks: tuple[Problem, ...]
-    length: float
-    angle: float
+    length: Annotated[float, NOT_DATA]
+    angle: Annotated[float, NOT_DATA]
 
 
 def program_sensitivity(

@@ -1,7 +1,6 @@
 """``trunnion controls``."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
 from typing import Final
 
 from trunnion.cli.results import show
@@ -13,6 +12,7 @@ from trunnion.jobs.describe.controls import (
     describe_controls,
 )
 from trunnion.jobs.job import Given
+from trunnion.results import to_data
 
 _INDENT: Final = "  "
 
@@ -21,7 +21,7 @@ def controls(given: Given) -> int:
     """List the shipped controls, or explain one."""
     if given.name:
         control = describe_control(given.name)
-        show(given, lambda: asdict(control), control_lines(control))
+        show(given, lambda: control, control_lines(control))
         return 0
     found = describe_controls()
     show(given, lambda: [_list_entry(control) for control in found], _list_lines(found))
@@ -29,14 +29,8 @@ def controls(given: Given) -> int:
 
 
 def _list_entry(control: ControlDescription) -> dict[str, object]:
-    return {
-        "key": control.key,
-        "name": control.name,
-        "family": control.family,
-        "description": control.description,
-        "settings": len(control.settings),
-        "run_settings": len(control.run_settings),
-    }
+    data: dict[str, object] = to_data(control, only=("key", "name", "family", "description"))
+    return data | {"settings": len(control.settings), "run_settings": len(control.run_settings)}
 
 
 def _list_lines(found: Sequence[ControlDescription]) -> Iterator[str]:

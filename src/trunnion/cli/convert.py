@@ -58,6 +58,9 @@ def _dialect(given: Given) -> str:
         what = "--dialect is what a CL file is read in; to say what it is written in, --to-dialect does"
         print(warning_line("trunnion convert", what, "ARG190"), file=sys.stderr)
         given.values["to_dialect"], given.values["dialect"] = given.dialect, None
+    if given.to_dialect is not None and not given.to_cl:
+        what, cure = "is given, and no CL file is written", "leave it out, or give --to-cl"
+        raise InputError(argument_problem("to_dialect", what, cure, code="CNV110"))
     return given.to_dialect or "clsf"
 
 

@@ -1,7 +1,6 @@
 """``trunnion curve``: curves through measured points."""
 
 from collections.abc import Iterator
-from typing import Final
 
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
@@ -9,11 +8,6 @@ from trunnion.geometry.fitting import CurveFit
 from trunnion.jobs.impeller.curves import fit_curve, read_points, write_curve_picture
 from trunnion.jobs.job import Given
 from trunnion.wording import counted
-
-_DECIMALS: Final = 9
-
-#: A larger radius is that of a straight line, mm.
-_STRAIGHT: Final = 1e9
 
 
 def run(given: Given) -> int:
@@ -23,7 +17,7 @@ def run(given: Given) -> int:
     Terminal().problems([remark for one in fits for remark in one.remarks])
     if given.picture is not None:
         write_curve_picture(fits, given.picture, inputs=given.read)
-    show(given, lambda: curve_data(fits), curve_lines(fits))
+    show(given, lambda: {"schema": 2, "curves": fits}, curve_lines(fits))
     return 0
 
 
@@ -48,38 +42,3 @@ def curve_lines(fits: list[CurveFit]) -> Iterator[str]:
             f"  points are at most {one.offsets.max():.6f} mm off, {(one.offsets**2).mean() ** 0.5:.6f} rms;"
             f" natural ends would move the curve by up to {worst.bend:.5f} mm"
         )
-
-
-def curve_data(fits: list[CurveFit]) -> dict[str, object]:
-    """Curves as data."""
-    return {"schema": 1, "curves": [_data(one) for one in fits]}
-
-
-def _data(one: CurveFit) -> dict[str, object]:
-    curve = one.curve
-    return {
-        "name": one.name,
-        "degree": 3,
-        "control_points": [[round(number, _DECIMALS) for number in point] for point in curve.control_points.tolist()],
-        "knots": [round(knot, 12) for knot in curve.knots.tolist()],
-        "length_mm": round(one.length, _DECIMALS),
-        "points": [
-            {"point": point, "parameter": round(parameter, 12), "off_mm": round(off, _DECIMALS)}
-            for point, parameter, off in zip(
-                one.points.tolist(), one.parameters.tolist(), one.offsets.tolist(), strict=True
-            )
-        ],
-        "spans": [
-            {
-                "length_mm": round(span.length, _DECIMALS),
-                "sag_mm": round(span.sag, _DECIMALS),
-                "radius_mm": round(span.radius, _DECIMALS) if span.radius < _STRAIGHT else None,
-                "turn_deg": round(span.turn, _DECIMALS),
-                "off_natural_mm": round(span.bend, _DECIMALS),
-            }
-            for span in one.spans
-        ],
-        "remarks": [
-            {"file": r.file, "line": r.line, "what": r.what, "cure": r.cure, "code": r.code} for r in one.remarks
-        ],
-    }

@@ -8,7 +8,6 @@ from typing import Any
 
 from trunnion.batch.running import BatchResult
 from trunnion.definitions.source_lines import LocatedValue
-from trunnion.errors import Problem
 from trunnion.jobs.convert.converting import ConvertResult
 from trunnion.jobs.papers.manifests import ManifestCheck
 from trunnion.jobs.papers.reports import add_report
@@ -46,7 +45,7 @@ def conversion_data(found: ConvertResult) -> dict[str, Any]:
         "points": sum(len(each.moves) for each in operations),
         "settings": dict(found.settings),
         "posted": None if found.posted is None else _program(found.posted),
-        "remarks": _remarks(found.problems),
+        "remarks": found.problems,
     }
 
 
@@ -61,7 +60,7 @@ def batch_data(result: BatchResult) -> dict[str, Any]:
         "files": [
             {
                 "job": each.job, "file": each.file, "status": str(each.status), "outputs": list(each.outputs),
-                "error": None if each.error is None else _remark(each.error),
+                "error": each.error,
             }
             for each in result.records()
         ],
@@ -119,16 +118,5 @@ def _program(result: PostResult) -> dict[str, Any]:
         "operations": sum(motion.starts_operation for motion in result.motions),
         "points": sum(len(motion.operation.moves) for motion in result.motions),
         "checks": {check.key: check.passed for check in result.checks},
-        "remarks": _remarks(result.problems),
+        "remarks": result.problems,
     }
-
-
-def _remarks(problems: Iterable[Problem]) -> list[dict[str, Any]]:
-    return [_remark(problem) for problem in problems]
-
-
-def _remark(problem: Problem) -> dict[str, Any]:
-    return {
-        "severity": str(problem.severity), "code": problem.code, "file": str(problem.file), "line": problem.line,
-        "text": problem.what, "cure": problem.cure,
-    }  # fmt: skip

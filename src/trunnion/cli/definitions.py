@@ -1,7 +1,6 @@
 """``trunnion machines`` and ``trunnion check``."""
 
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path, PurePath
 
 from trunnion.cli.controls import control_lines
@@ -65,7 +64,7 @@ def check(given: Given) -> int:
         _check_control_file(given.file)
         control = describe_control(given.file)
         good = f"{given.file}: good"
-        show(given, lambda: asdict(control), [good, "", *control_lines(control)])
+        show(given, lambda: control, [good, "", *control_lines(control)])
         return 0
     _check_is_known(given.file)
     key = PurePath(given.file).name.removesuffix(".toml")

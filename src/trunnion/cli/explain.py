@@ -2,7 +2,7 @@
 
 import textwrap
 from collections.abc import Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 from trunnion.cli.results import show
 from trunnion.cli.wording import in_command_words
@@ -21,7 +21,7 @@ def explain(given: Given) -> int:
     found = found if given.codes else list(all_explanations())
     lines = "\n\n".join(map(_text, found)).split("\n") if given.codes else _list(found)
     if found or given.json:
-        show(given, lambda: [asdict(each) for each in found], lines)
+        show(given, lambda: found, lines)
     if faults:
         raise InputError(faults)
     return 0

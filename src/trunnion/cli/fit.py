@@ -2,8 +2,6 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from pathlib import Path
-from typing import Any
 
 from trunnion.cli.cl_reading import as_read
 from trunnion.cli.results import show
@@ -18,7 +16,7 @@ def run(given: Given) -> int:
     """Ask the machines; 0 if one of them can run it, else 1."""
     files = as_read(given, given.files) if given.machine is None else given.files
     found = fit(files, **given.arguments("files"), observer=Terminal())
-    show(given, lambda: fit_data(found), fit_lines(found))
+    show(given, lambda: {"schema": 1, "machines": found}, fit_lines(found))
     return 0 if any(each.status is not FitStatus.NOT for each in found) else 1
 
 
@@ -48,29 +46,3 @@ def _facts(each: MachineFit) -> str:
 def _margin(margin: AxisMargin) -> str:
     unit = "°" if margin.unit == "deg" else " mm"
     return f"{margin.axis} {margin.margin:.1f}{unit}"
-
-
-def fit_data(found: Sequence[MachineFit]) -> dict[str, Any]:
-    """The machines as data, in their order."""
-    return {"schema": 1, "machines": [_data(each) for each in found]}
-
-
-def _data(each: MachineFit) -> dict[str, Any]:
-    return {
-        "machine": each.key if not each.key.endswith(".toml") else Path(each.key).as_posix(),
-        "status": str(each.status),
-        "is_example": each.is_example,
-        "reasons": list(each.reasons),
-        "seconds": None if each.seconds is None else round(each.seconds, 3),
-        "zero_mm": None if each.zero_mm is None else list(each.zero_mm),
-        "turn_deg": each.turn_deg,
-        "missing_mm": None if each.missing is None else round(each.missing, 6),
-        "margins": [
-            {
-                "axis": margin.axis,
-                "unit": margin.unit,
-                "left": round(margin.margin, 6) if math.isfinite(margin.margin) else None,
-            }
-            for margin in each.margins
-        ],
-    }

@@ -9,14 +9,14 @@ from trunnion.cli.simulate import simulation_lines
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import InputError, argument_problem
 from trunnion.impeller.impeller import Impeller
+from trunnion.impeller.model import ImpellerModel
+from trunnion.impeller.solid.making import ImpellerSolid
 from trunnion.jobs.impeller.cutting import CutStep, ImpellerCut, cut_impeller
 from trunnion.jobs.impeller.models import load_impeller, model_impeller, write_impeller_step
 from trunnion.jobs.job import Given
-from trunnion.jobs.simulate.data import simulation_data
+from trunnion.results import to_data
 from trunnion.simulation.meshes import STEP_ENDINGS, TriangleMesh, check_mesh_name, save_mesh
 from trunnion.wording import counted, format_duration
-
-_DECIMALS: Final = 6
 
 #: Width of the facets' errors where none is stated, mm.
 _TOLERANCE: Final = 0.01
@@ -57,8 +57,7 @@ def model(given: Given) -> int:
         f"volume {found.volume:.1f} mm³, {facets} facets, a closed solid",
         f"facets are at most {found.deviation:.4f} mm off the exact surfaces, {tolerance:g} mm were asked",
     )
-    parts = {"facets": facets}
-    show(given, lambda: _model_data(impeller, found.volume, parts, found.deviation, found.mesh), lines)
+    show(given, lambda: _model_data(impeller, found), lines)
     return 0
 
 
@@ -74,26 +73,13 @@ def _solid(given: Given) -> int:
         f"{found.mesh.volume:.1f} mm³",
         f"faces are at most {found.deviation:.4f} mm off the exact surfaces, {tolerance:g} mm were asked",
     )
-    parts = {"faces": found.faces}
-    show(given, lambda: _model_data(impeller, found.volume, parts, found.deviation, found.mesh), lines)
+    show(given, lambda: _model_data(impeller, found), lines)
     return 0
 
 
-def _model_data(
-    impeller: Impeller, volume: float, parts: dict[str, int], deviation: float, mesh: TriangleMesh
-) -> dict[str, object]:
-    """A model as data; ``parts`` counts what it consists of."""
-    definition = impeller.definition
-    return {
-        "schema": 1,
-        "name": definition.name,
-        "blades": definition.number,
-        "splitters": 0 if impeller.splitter is None else definition.number,
-        "volume_mm3": round(volume, _DECIMALS),
-        **parts,
-        "deviation_mm": round(deviation, _DECIMALS),
-        "extents": mesh.bounds.tolist(),
-    }
+def _model_data(impeller: Impeller, found: ImpellerModel | ImpellerSolid) -> dict[str, object]:
+    """A model as data."""
+    return {"schema": 1, **to_data(impeller), **to_data(found)}
 
 
 def _head(impeller: Impeller, mesh: TriangleMesh) -> str:
@@ -112,7 +98,7 @@ def cut(given: Given) -> int:
         cures = {"machine": "name the machine that runs the program", "output": "name a folder"}
         raise InputError([argument_problem(name, "is missing", cures[name], code="ARG130") for name in missing])
     found = cut_impeller(given.file, **given.arguments("file", "tolerance"), observer=Terminal())
-    show(given, lambda: _cut_data(found), _cut_lines(found))
+    show(given, lambda: found, _cut_lines(found))
     return 0 if found.passed else 1
 
 
@@ -139,46 +125,3 @@ def _step_line(step: CutStep) -> str:
         names = list(dict.fromkeys((step.programs[0].name, step.programs[-1].name)))
         parts.append(f"in {' to '.join(names)}")
     return ", ".join(parts)
-
-
-def _cut_data(found: ImpellerCut) -> dict[str, object]:
-    """The same as data."""
-    return {
-        "schema": 1,
-        "name": found.impeller.definition.name,
-        "passed": found.passed,
-        "program": str(found.result.output),
-        "subprograms": [str(file) for file in found.result.subprograms],
-        "cl_files": [str(file) for file in found.cl_files],
-        "steps": [
-            {
-                "name": step.step.name,
-                "kind": step.step.kind,
-                "operations": len(step.seconds),
-                "cl_file": str(step.cl_file),
-                "programs": [str(file) for file in step.programs],
-                "points": step.points,
-                "minutes": round(step.minutes, _DECIMALS),
-                "published_minutes": step.step.published_minutes or None,
-                "clearances": [
-                    {"part": one.part, "body": one.body, "mm": round(one.distance, _DECIMALS), "at": one.centre}
-                    for one in step.clearance
-                ],
-                "before": {
-                    "form_mm": round(step.before.form, _DECIMALS),
-                    "hub_mm": round(step.before.hub, _DECIMALS),
-                    "blades_mm": None if step.before.blades is None else round(step.before.blades, _DECIMALS),
-                },
-                "flanks": [
-                    {"overcut_mm": round(over, _DECIMALS), "undercut_mm": round(under, _DECIMALS)}
-                    for over, under in step.flanks
-                ],
-            }
-            for step in found.steps
-        ],
-        "remarks": [
-            {"file": r.file, "line": r.line, "what": r.what, "cure": r.cure, "code": r.code} for r in found.remarks
-        ],
-        "checks": {check.key: check.passed for check in found.result.checks},
-        "simulation": None if found.simulation is None else simulation_data(found.simulation),
-    }

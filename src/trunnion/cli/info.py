@@ -1,7 +1,6 @@
 """``trunnion info``: what CL files hold."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import fields, is_dataclass
 from typing import Final
 
 from trunnion.cli.results import show
@@ -14,14 +13,8 @@ from trunnion.wording import counted, format_duration
 
 _INDENT: Final = "  "
 
-#: Decimals of numbers in data.
-_DECIMALS: Final = 9
-
 #: Planes that the text shows of an operation.
 _MOST_PLANES: Final = 6
-
-#: Fields of a description that are no data.
-_NOT_DATA: Final = frozenset({"toolpaths", "remarks"})
 
 
 def info(given: Given) -> int:
@@ -31,35 +24,8 @@ def info(given: Given) -> int:
     terminal.problems(found.remarks)
     if given.plot is not None:
         write_plot(found, given.plot)
-    show(given, lambda: info_data(found), info_lines(found))
+    show(given, lambda: found, info_lines(found))
     return 0
-
-
-def info_data(found: ClDescription) -> dict[str, object]:
-    """A description as data."""
-    data: dict[str, object] = {"schema": 1}
-    for field in fields(found):
-        if field.name not in _NOT_DATA:
-            data[field.name] = _plain(getattr(found, field.name))
-    data["remarks"] = [
-        {"file": r.file, "line": r.line, "what": r.what, "cure": r.cure, "code": r.code} for r in found.remarks
-    ]
-    return data
-
-
-def _plain(value: object) -> object:
-    if isinstance(value, Frame):
-        x, y, z = value.matrix().T.tolist()
-        return _plain({"origin": value.origin, "x": x, "y": y, "z": z})
-    if isinstance(value, float):
-        return round(value, _DECIMALS) + 0.0
-    if isinstance(value, tuple | list):
-        return [_plain(each) for each in value]
-    if isinstance(value, dict):
-        return {key: _plain(each) for key, each in value.items()}
-    if is_dataclass(value) and not isinstance(value, type):
-        return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
-    return value
 
 
 def info_lines(found: ClDescription) -> Iterator[str]:

@@ -1,8 +1,6 @@
 """What a machine's definition means, as text and as data for ``trunnion check``."""
 
-import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields, is_dataclass
+from collections.abc import Iterator
 from typing import Final
 
 from trunnion.cli.wording import in_command_words
@@ -10,6 +8,7 @@ from trunnion.jobs.describe.machines import MachineDescription
 from trunnion.machines import Axis, Machine
 from trunnion.machines.jog_table import AxisJog, JogTable, RotaryPose, named_direction, number_text
 from trunnion.machines.machine import Vector
+from trunnion.results import to_data
 
 _LEGEND: Final = (
     "Jog the machine and compare. X Y Z are the directions of the definition; the table is what carries the part,",
@@ -46,29 +45,8 @@ def machine_lines(found: MachineDescription) -> Iterator[str]:
 
 def machine_data(found: MachineDescription) -> dict[str, object]:
     """The same as plain data: what is not limited or not known is None."""
-    machine = found.machine
-    return {
-        "key": machine.key,
-        "name": machine.name,
-        "description": machine.description,
-        "spindle_direction": list(machine.spindle_direction),
-        "spindle_point_mm": list(machine.spindle_point),
-        "workpiece_zero_mm": _plain(machine.workpiece_zero),
-        "jogs": _plain(found.jogs),
-        "assumed": [in_command_words(each) for each in found.assumed],
-        "control": found.control,
-        "texts": _plain(found.texts),
-    }
-
-
-def _plain(value: object) -> object:
-    if is_dataclass(value):
-        return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
-    if isinstance(value, Mapping):
-        return {str(key): _plain(item) for key, item in value.items()}
-    if isinstance(value, Sequence) and not isinstance(value, str):
-        return [_plain(item) for item in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+    data: dict[str, object] = to_data(found)
+    return data | {"assumed": [in_command_words(each) for each in found.assumed]}
 
 
 def _spindle_lines(machine: Machine) -> Iterator[str]:

@@ -14,7 +14,6 @@ from trunnion.jobs.inputs.reading import ToolpathLike, load_machine
 from trunnion.jobs.inputs.settings import as_texts
 from trunnion.jobs.job import Given
 from trunnion.jobs.place.bodies import BodiesInput
-from trunnion.jobs.place.data import placement_data
 from trunnion.jobs.place.inputs import toolpaths_to_post
 from trunnion.jobs.place.placing import place
 from trunnion.jobs.place.posting import post_placed
@@ -73,7 +72,7 @@ def run(given: Given) -> int:
         observer=Terminal(),
     )
     to_stdout = given.apply == "-"
-    show(given, lambda: placement_data(found), placement_lines(found), aside=to_stdout)
+    show(given, lambda: found, placement_lines(found), aside=to_stdout)
     if given.plot is not None:
         from trunnion.jobs.place.plot import write_placing_plot
 

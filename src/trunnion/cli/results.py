@@ -1,12 +1,12 @@
 """Results on stdout."""
 
-import json
 import sys
 from collections.abc import Callable, Iterable
 
 from trunnion.errors import InputError, Problem
 from trunnion.files import atomic_file
 from trunnion.jobs.job import Given
+from trunnion.results import as_json, to_data
 from trunnion.wording import one_line, printable
 
 
@@ -36,29 +36,24 @@ def print_result(*lines: str, end: str = "\n") -> None:
         raise InputError(Problem("stdout", 0, what, "let it go elsewhere", code="FIL230")) from None
 
 
-def as_json(value: object) -> str:
-    """Data as text."""
-    return json.dumps(value, ensure_ascii=False, allow_nan=False, indent=1)
-
-
-def show(given: Given, data: Callable[[], object], lines: Iterable[str], *, aside: bool = False) -> None:
+def show(given: Given, result: Callable[[], object], lines: Iterable[str], *, aside: bool = False) -> None:
     """Print a result, as ``--json`` says: in lines, as data, or both where the data goes to a file.
 
     Parameters
     ----------
     given
         What the command was given.
-    data
-        Makes the data, if it is asked for.
+    result
+        Makes the result, a record or plain data, if it is asked for as data.
     lines
         Of text; beside data on stdout they are not printed.
     aside
         Lines go to stderr: stdout has something else.
     """
     if given.json == "-":
-        print_result(as_json(data()))
+        print_result(as_json(to_data(result())))
         return
     (tell if aside else print_result)(*map(one_line, lines))
     if given.json is not None:
         with atomic_file(given.json, inputs=given.read) as sink:
-            sink.write((as_json(data()) + "\n").encode())
+            sink.write((as_json(to_data(result())) + "\n").encode())

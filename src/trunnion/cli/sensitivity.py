@@ -9,7 +9,6 @@ from trunnion.jobs.capability.sensitivity import sensitivity
 from trunnion.jobs.capability.sensitivity_report import (
     amount_text,
     place_text,
-    sensitivity_data,
     write_sensitivity_report,
     zero_text,
 )
@@ -23,7 +22,7 @@ def run(given: Given) -> int:
     Terminal().problems(found.remarks)
     if given.report is not None:
         write_sensitivity_report(found, given.report, given.read)
-    show(given, lambda: sensitivity_data(found), sensitivity_lines(found))
+    show(given, lambda: found, sensitivity_lines(found))
     return 0
 
 

@@ -9,7 +9,6 @@ from trunnion.cli.terminal import Terminal
 from trunnion.errors import Severity
 from trunnion.jobs.job import Given
 from trunnion.jobs.papers.simulation_report import write_simulation_report
-from trunnion.jobs.simulate.data import simulation_data
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.simulating import simulate
 from trunnion.model.clamping import Clamping, number
@@ -30,7 +29,7 @@ def run(given: Given) -> int:
         save_mesh(stock_surface(found.simulation.stock), given.save_stock, inputs=given.read)
     if given.report is not None:
         write_simulation_report(found, given.report, given.read)
-    show(given, lambda: simulation_data(found), simulation_lines(found))
+    show(given, lambda: found, simulation_lines(found))
     return 0 if found.passed else 1
 
 

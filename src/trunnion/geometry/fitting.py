@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from operator import attrgetter
+from typing import Annotated
 
 import numpy as np
 
@@ -9,7 +11,7 @@ from trunnion.arrays import Floats
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.geometry.approximation import approximate
 from trunnion.geometry.closest import closest_parameters
-from trunnion.geometry.curves import BSplineCurve
+from trunnion.geometry.curves import DEGREE, BSplineCurve
 from trunnion.geometry.ends import Ends
 from trunnion.geometry.fairing import LEAST_POINTS, fair_points
 from trunnion.geometry.interpolation import interpolate
@@ -17,6 +19,7 @@ from trunnion.geometry.parameters import parameters_of
 from trunnion.geometry.point_faults import point_faults
 from trunnion.geometry.point_tables import PointTable
 from trunnion.geometry.spans import Span, spans_between
+from trunnion.results import NOT_DATA, Figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +38,15 @@ class Wanted:
     fair: float | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class FittedPoint:
+    """A point (3,) as given, mm, the parameter of the curve's nearest point, and how far that is off."""
+
+    point: tuple[float, ...]
+    parameter: Annotated[float, Figure(decimals=12)]
+    off: Annotated[float, Figure(unit="mm", decimals=9)]
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class CurveFit:
     """A curve, and how far it is off.
@@ -49,14 +61,27 @@ class CurveFit:
     """
 
     name: str
-    points: Floats
-    parameters: Floats
-    offsets: Floats
-    curve: BSplineCurve
+    points: Annotated[Floats, NOT_DATA]
+    parameters: Annotated[Floats, NOT_DATA]
+    offsets: Annotated[Floats, NOT_DATA]
+    curve: Annotated[
+        BSplineCurve,
+        Figure("degree", take=lambda _: DEGREE),
+        Figure("control_points", decimals=9, take=attrgetter("control_points")),
+        Figure("knots", decimals=12, take=attrgetter("knots")),
+    ]
     spans: tuple[Span, ...]
     remarks: tuple[Problem, ...]
 
     @property
+    @Figure("points", after="length_mm")
+    def fitted_points(self) -> list["FittedPoint"]:
+        """The points one by one."""
+        columns = (self.points.tolist(), self.parameters.tolist(), self.offsets.tolist())
+        return [FittedPoint(tuple(point), at, off) for point, at, off in zip(*columns, strict=True)]
+
+    @property
+    @Figure(unit="mm", decimals=9, after="knots")
     def length(self) -> float:
         """Length of the curve, mm."""
         return float(self.curve.lengths(np.array([0.0, 1.0]))[0])

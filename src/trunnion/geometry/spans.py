@@ -2,16 +2,20 @@
 
 import math
 from dataclasses import dataclass
-from typing import Final
+from typing import Annotated, Final
 
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.geometry.closest import closest_parameters
 from trunnion.geometry.curves import BSplineCurve
+from trunnion.results import Figure
 
 #: Spans that are measured at once: memory does not grow with the number of points.
 _CHUNK: Final = 1024
+
+#: A larger radius is that of a straight line, mm.
+_STRAIGHT: Final = 1e9
 
 #: Samples of a span.
 _SAMPLES: Final = 65
@@ -28,11 +32,11 @@ class Span:
     bend    how far it is off the curve through the same points with natural ends, mm
     """
 
-    length: float
-    sag: float
-    radius: float
-    turn: float
-    bend: float
+    length: Annotated[float, Figure(unit="mm", decimals=9)]
+    sag: Annotated[float, Figure(unit="mm", decimals=9)]
+    radius: Annotated[float, Figure(unit="mm", decimals=9, take=lambda radius: radius if radius < _STRAIGHT else None)]
+    turn: Annotated[float, Figure(unit="deg", decimals=9)]
+    bend: Annotated[float, Figure("off_natural", unit="mm", decimals=9)]
 
     @property
     def runs_back(self) -> bool:

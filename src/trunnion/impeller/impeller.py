@@ -7,6 +7,8 @@ Units:  mm, axis Z.
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from operator import attrgetter
+from typing import Annotated
 
 import numpy as np
 
@@ -22,6 +24,7 @@ from trunnion.impeller.definition import ImpellerDefinition
 from trunnion.impeller.faults import blade_faults, direction_faults, section_faults
 from trunnion.impeller.profiles import Profile
 from trunnion.impeller.stock_faults import stock_faults
+from trunnion.results import NOT_DATA, Figure
 
 #: How far blades go on beyond hub, shroud and stock, mm, besides their thickness.
 _BEYOND = 1.0
@@ -42,13 +45,23 @@ class Impeller:
     remarks   warnings of what is probably not meant
     """
 
-    definition: ImpellerDefinition
-    curves: tuple[BSplineCurve, ...]
-    blade: Blade
-    splitter: Blade | None
-    hub: Profile
-    shroud: Profile
-    remarks: tuple[Problem, ...] = ()
+    definition: Annotated[
+        ImpellerDefinition,
+        Figure("name", take=attrgetter("name")),
+        Figure("blades", take=attrgetter("number")),
+    ]
+    curves: Annotated[tuple[BSplineCurve, ...], NOT_DATA]
+    blade: Annotated[Blade, NOT_DATA]
+    splitter: Annotated[Blade | None, NOT_DATA]
+    hub: Annotated[Profile, NOT_DATA]
+    shroud: Annotated[Profile, NOT_DATA]
+    remarks: Annotated[tuple[Problem, ...], NOT_DATA] = ()
+
+    @property
+    @Figure()
+    def splitters(self) -> int:
+        """How many splitters there are."""
+        return 0 if self.splitter is None else self.definition.number
 
     def blades(self) -> Iterator[tuple[Blade, float]]:
         """All blades and splitters, each with the angle in radians by which it is turned about Z."""

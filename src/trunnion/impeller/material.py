@@ -11,7 +11,7 @@ and the ridges between its passes.
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Annotated, Final
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.paths.least_clearances import PartClearance
 from trunnion.impeller.paths.shroud import shroud_form
 from trunnion.impeller.steps import ROUND_STEPS, MachiningStep, StepKind
+from trunnion.results import Figure
 from trunnion.simulation.tools.profile import Role
 
 #: Points of the shroud at which the depth of the channels is looked at.
@@ -38,9 +39,9 @@ class Material:
     blades  on blades; None: nothing has been along them
     """
 
-    form: float
-    hub: float
-    blades: float | None
+    form: Annotated[float, Figure(unit="mm", decimals=6)]
+    hub: Annotated[float, Figure(unit="mm", decimals=6)]
+    blades: Annotated[float | None, Figure(unit="mm", decimals=6)]
 
 
 def full_stock(impeller: Impeller) -> Material:

@@ -8,7 +8,8 @@ Units:  mm.
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final
+from operator import attrgetter
+from typing import Annotated, Final
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from trunnion.impeller.faults import fillet_faults, no_place
 from trunnion.impeller.fillet import Fillet, FilletError, root_fillet, root_stations
 from trunnion.impeller.impeller import Impeller, rotated
 from trunnion.impeller.meshing import blade_mesh, fillet_mesh, solid, turned_mesh, union
+from trunnion.results import Figure
 from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
 
 #: Part of the tolerance that each kind of facet takes: along and across, and what simplifying adds, make one together.
@@ -47,9 +49,13 @@ class ImpellerModel:
     deviation  how far vertices and middles of facets are from the exact surfaces at most, mm
     """
 
-    mesh: TriangleMesh
-    volume: float
-    deviation: float
+    mesh: Annotated[
+        TriangleMesh,
+        Figure("facets", take=lambda mesh: len(mesh.faces), after="volume_mm3"),
+        Figure("extents", take=attrgetter("bounds"), after="deviation_mm"),
+    ]
+    volume: Annotated[float, Figure(unit="mm3", decimals=6)]
+    deviation: Annotated[float, Figure(unit="mm", decimals=6)]
 
 
 def impeller_model(impeller: Impeller, tolerance: float) -> ImpellerModel:

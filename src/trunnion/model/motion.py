@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from enum import StrEnum
+from typing import Annotated
 
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import Problem, Severity
@@ -9,6 +10,7 @@ from trunnion.model.arcs import with_closed_turns
 from trunnion.model.deviations import Deviations
 from trunnion.model.frames import into_plane
 from trunnion.model.toolpath import Frame, Operation
+from trunnion.results import NOT_DATA, Figure
 
 
 class PoleStrategy(StrEnum):
@@ -96,11 +98,11 @@ class Decision:
     row   of the operation, in which arcs that became lines count as several; -1: it is about the whole operation
     """
 
-    file: str
+    file: Annotated[str, Figure("cl_file", none="", after="operation")]
     operation: str
-    line: int
-    row: int
-    topic: DecisionTopic
+    line: Annotated[int, Figure("cl_line", none=0, after="cl_file")]
+    row: Annotated[int, NOT_DATA]
+    topic: Annotated[DecisionTopic, Figure("about")]
     text: str
 
     def __str__(self) -> str:

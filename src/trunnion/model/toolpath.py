@@ -18,6 +18,7 @@ from trunnion.arrays import Codes, Flags, Floats, Ints, Lines
 from trunnion.errors import Problem
 from trunnion.model.clamping import Clamping
 from trunnion.model.splines import Splines
+from trunnion.results import Figure
 
 
 class Kind(IntEnum):
@@ -328,6 +329,12 @@ class Frame:
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     x: tuple[float, float, float] = (1.0, 0.0, 0.0)
     y: tuple[float, float, float] = (0.0, 1.0, 0.0)
+
+    @property
+    @Figure()
+    def z(self) -> tuple[float, ...]:
+        """Z as a unit vector."""
+        return tuple(np.cross(self.x, self.y).tolist())
 
     def matrix(self) -> Floats:
         """(3, 3) float64: columns are X, Y, Z of this frame in the absolute system."""

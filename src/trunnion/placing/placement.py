@@ -2,6 +2,8 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from operator import attrgetter
+from typing import Annotated, ClassVar
 
 import numpy as np
 
@@ -12,6 +14,7 @@ from trunnion.model.clamping import Clamping
 from trunnion.model.toolpath import Toolpath
 from trunnion.placing.region import Region
 from trunnion.placing.table_limits import ClampingArea
+from trunnion.results import NOT_DATA, Figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,10 +111,10 @@ class PartPlace:
     zero_mm: Vector
     turn_deg: float
     margin_mm: float
-    axes: tuple[AxisUse, ...]
+    axes: Annotated[tuple[AxisUse, ...], Figure(after="nearest")]
     value: float | None = None
-    tilt_deg: float = 0.0
-    rotary: tuple[RotaryUse, ...] = ()
+    tilt_deg: Annotated[float, Figure(after="turn_deg")] = 0.0
+    rotary: Annotated[tuple[RotaryUse, ...], Figure(after="axes")] = ()
     planned_s: float | None = None
     table_mm: float | None = None
     nearest: BodyDistance | None = None
@@ -137,13 +140,14 @@ class TurnMargin:
     turn_deg: float
     margin_mm: float | None
     zero_mm: Vector | None = None
-    obstacle: str = ""
+    obstacle: Annotated[str, Figure(after="value")] = ""
     value: float | None = None
-    tilt_deg: float = 0.0
-    is_asked: bool = True
-    table_is_too_small: bool = False
+    tilt_deg: Annotated[float, Figure(after="turn_deg")] = 0.0
+    is_asked: Annotated[bool, Figure("asked", after="tilt_deg")] = True
+    table_is_too_small: Annotated[bool, NOT_DATA] = False
 
     @property
+    @Figure(after="asked")
     def fits(self) -> bool:
         """Whether the part fits somewhere."""
         return self.margin_mm is not None and self.margin_mm >= 0.0
@@ -172,22 +176,29 @@ class Placement:
     most_distance_mm  with the goal ``collisions``: at no turn that was tried a place keeps the others farther apart
     """
 
+    SCHEMA: ClassVar[int] = 2
+    DECIMALS: ClassVar[int] = 6
+
     machine: str
     files: tuple[str, ...]
     goal: str
     best: PartPlace | None
-    limits: tuple[Limit, ...]
+    limits: Annotated[tuple[Limit, ...], Figure(after="present")]
     present: PartPlace | None
     turns: tuple[TurnMargin, ...]
     between_mm: float = 0.0
-    remarks: tuple[Problem, ...] = ()
-    toolpaths: tuple[Toolpath, ...] = ()
-    clamping: Clamping | None = None
-    tool_length_mm: float | None = None
+    remarks: Annotated[tuple[Problem, ...], Figure(after="left_out")] = ()
+    toolpaths: Annotated[tuple[Toolpath, ...], NOT_DATA] = ()
+    clamping: Annotated[
+        Clamping | None,
+        Figure("turn_deg", take=attrgetter("turn"), within="stated"),
+        Figure("tilt_deg", take=attrgetter("tilt"), within="stated"),
+    ] = None
+    tool_length_mm: Annotated[float | None, NOT_DATA] = None
     nearest_anywhere: BodyDistance | None = None
     most_distance_mm: float | None = None
     left_out: tuple[tuple[str, str], ...] = ()
-    table: ClampingArea | None = None
+    table: Annotated[ClampingArea | None, Figure(after="region")] = None
     _find_region: Callable[[], Region | None] = field(default=lambda: None, repr=False)
     _margin_at: Callable[[Floats, float, float], float] = field(default=lambda *_: np.nan, repr=False)
 
@@ -197,11 +208,13 @@ class Placement:
         return self.remarks
 
     @property
+    @Figure(after="turns")
     def region(self) -> Region | None:
         """The places at the turn of the best one; None: it fits nowhere. Worked out when first asked for."""
         return self._find_region()
 
     @property
+    @Figure(after="goal")
     def fits(self) -> bool:
         """Whether the part fits somewhere, with the goal ``collisions`` so that nothing touches."""
         return self.best is not None and self.best.fits and not (self.goal == "collisions" and self.touching)
@@ -214,6 +227,7 @@ class Placement:
         return min(found, key=lambda each: each.distance_mm, default=None)
 
     @property
+    @Figure(after="clamped")
     def distance_mm(self) -> float | None:
         """How far they are apart."""
         return None if self.nearest is None else self.nearest.distance_mm
@@ -239,6 +253,8 @@ class Placement:
         return None if self.best is None else self.best.tilt_deg
 
     @property
+    @Figure("turn_deg", take=attrgetter("turn"), within="clamped", after="stated")
+    @Figure("tilt_deg", take=attrgetter("tilt"), within="clamped")
     def clamped(self) -> Clamping | None:
         """How the part is clamped against its drawing at the best place, as far as the files state it."""
         return None if self.best is None else (self.clamping or Clamping()).then(self.best.turn_deg, self.best.tilt_deg)
@@ -254,6 +270,7 @@ class Placement:
         return None if self.best is None else self.best.planned_s
 
     @property
+    @Figure(after="limits")
     def share_of_turns(self) -> float:
         """Of the turns and tilts that were asked for, those at which the part fits somewhere, 0 to 1."""
         asked = [turn for turn in self.turns if turn.is_asked]

@@ -6,7 +6,8 @@ it, within the tolerance. ``Region.margin`` is exact.
 """
 
 from dataclasses import dataclass
-from typing import Final
+from operator import attrgetter
+from typing import Annotated, Final
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from trunnion.extras import import_extra
 from trunnion.placing.inscribed_box import Box, inscribed_box
 from trunnion.placing.largest_margin import BestPlace, innermost
 from trunnion.placing.travel_limits import FARTHEST, CutSet
+from trunnion.results import NOT_DATA, Figure
 
 #: How far corners may be outside, mm.
 TOLERANCE: Final = 0.01
@@ -38,13 +40,17 @@ class Region:
     cuts       its half-spaces
     """
 
-    corners: Floats
-    tolerance: float
-    volume: float
-    low: Floats
-    high: Floats
-    cuts: CutSet
-    box: Box
+    corners: Annotated[Floats, Figure(unit="mm", after="volume_mm3")]
+    tolerance: Annotated[float, Figure(unit="mm", after="corners_mm")]
+    volume: Annotated[float, Figure(unit="mm3", after="high_mm")]
+    low: Annotated[Floats, Figure(unit="mm", after="inside_high_mm")]
+    high: Annotated[Floats, Figure(unit="mm", after="low_mm")]
+    cuts: Annotated[CutSet, NOT_DATA]
+    box: Annotated[
+        Box,
+        Figure("inside_low", unit="mm", take=attrgetter("low")),
+        Figure("inside_high", unit="mm", take=attrgetter("high")),
+    ]
 
     @property
     def is_box(self) -> bool:

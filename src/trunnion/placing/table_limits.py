@@ -8,7 +8,7 @@ Frames: the machine's, all axes at zero.
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Final
+from typing import Annotated, Final
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from trunnion.arrays import Floats
 from trunnion.machines import Machine
 from trunnion.machines.machine import Mount, Vector
 from trunnion.placing.turning import hull_points, is_upright
+from trunnion.results import EXACT, NOT_DATA, Figure
 from trunnion.simulation.stock.solids import StockShape
 
 #: An outline that is beyond an edge by less is on the table, mm: zeros are in thousandths.
@@ -58,10 +59,10 @@ class ClampingArea:
     axis      the rotary axis on which the middle is taken to be; empty where it is stated, or there is none
     """
 
-    centre: tuple[float, float]
-    size: tuple[float, float] | None = None
-    diameter: float | None = None
-    axis: str = ""
+    centre: Annotated[tuple[float, float], Figure(unit="mm", decimals=EXACT, after="diameter_mm")]
+    size: Annotated[tuple[float, float] | None, Figure(unit="mm", decimals=EXACT)] = None
+    diameter: Annotated[float | None, Figure(unit="mm", decimals=EXACT)] = None
+    axis: Annotated[str, NOT_DATA] = ""
 
     @staticmethod
     def of(machine: Machine) -> "ClampingArea | None":

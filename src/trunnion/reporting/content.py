@@ -10,8 +10,9 @@ Text from outside is cleaned here of characters that no file can hold.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from pathlib import Path
-from typing import Final
+from typing import Annotated, ClassVar, Final
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from trunnion.reporting.recorded_content import RecordedContent, recorded_conten
 from trunnion.reporting.simulation_content import SimulationContent
 from trunnion.reporting.text import clean
 from trunnion.reporting.usage import OperationUsage, ToolUsage, operation_usage, tool_usages
+from trunnion.results import Figure, OptionalText
 from trunnion.verification.results import Check, Place, Verification, durations, moving_seconds
 
 #: Units of a program by whether they are inches.
@@ -40,28 +42,36 @@ class ReportContent:
     does not: its lengths are mm.
     """
 
+    SCHEMA: ClassVar[int] = 1
+
     program: str
-    machine_key: str
-    machine: str
-    control: str
-    made: str
+    machine_key: Annotated[str, Figure("key", within="machine")]
+    machine: Annotated[str, Figure("name", within="machine")]
+    control: OptionalText
+    made: OptionalText
     passed: bool
     checks: tuple[Check, ...]
     motions: int
-    seconds: float
-    cutting_seconds: float
-    rapid_seconds: float
-    waiting_seconds: float
-    untimed: int
-    tools: tuple[ToolUsage, ...]
-    operations: tuple[OperationUsage, ...]
-    decisions: tuple[Decision, ...]
-    tip: tuple[TipExtent, ...]
-    axes: tuple[AxisExtent, ...]
-    units: tuple[str, ...] = ()
-    simulation: SimulationContent | None = None
-    recorded: RecordedContent | None = None
-    clamping: Clamping | None = None
+    seconds: Annotated[float, Figure(within="time")] = 0.0
+    cutting_seconds: Annotated[float, Figure(within="time")] = 0.0
+    rapid_seconds: Annotated[float, Figure(within="time")] = 0.0
+    waiting_seconds: Annotated[float, Figure(within="time")] = 0.0
+    untimed: Annotated[int, Figure("motions_without_time", within="time")] = 0
+    tools: tuple[ToolUsage, ...] = ()
+    operations: tuple[OperationUsage, ...] = ()
+    decisions: tuple[Decision, ...] = ()
+    tip: Annotated[tuple[TipExtent, ...], Figure(within="extents")] = ()
+    axes: Annotated[tuple[AxisExtent, ...], Figure(within="extents")] = ()
+    units: Annotated[tuple[str, ...], Figure("program_units", after="made")] = ()
+    simulation: Annotated[
+        SimulationContent | None, Figure(take=attrgetter("data"), is_optional=True, after="operations")
+    ] = None
+    recorded: Annotated[RecordedContent | None, Figure(is_optional=True, after="simulation")] = None
+    clamping: Annotated[
+        Clamping | None,
+        Figure("turn_deg", take=attrgetter("turn"), after="program_units"),
+        Figure("tilt_deg", take=attrgetter("tilt")),
+    ] = None
 
 
 def collect_content(
@@ -125,16 +135,6 @@ def refused_content(machine: Machine, program: str, problems: Sequence[Problem])
         passed=False,
         checks=(_clean_check(check),),
         motions=0,
-        seconds=0.0,
-        cutting_seconds=0.0,
-        rapid_seconds=0.0,
-        waiting_seconds=0.0,
-        untimed=0,
-        tools=(),
-        operations=(),
-        decisions=(),
-        tip=(),
-        axes=(),
     )
 
 

@@ -5,7 +5,9 @@ Units:  mm and degrees.
 
 import math
 from dataclasses import dataclass
+from operator import attrgetter
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 
@@ -14,6 +16,7 @@ from trunnion.machines import Axis, Machine, slide_positions
 from trunnion.model.arc_extremes import Reach, RunArcs
 from trunnion.model.run import ProgrammedWord, Run
 from trunnion.reporting.text import clean
+from trunnion.results import NOT_DATA, BlockNumber, Figure
 from trunnion.verification.kinematics.positioning_moves import approach_rows, names_no_axis
 
 
@@ -22,8 +25,8 @@ class BlockReference:
     """A block of the program; ``file`` is the name of the subprogram it is in, empty for the program itself."""
 
     nc_line: int
-    number: int
-    file: str = ""
+    number: BlockNumber
+    file: Annotated[str, Figure("nc_file", none="")] = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +43,7 @@ class Extremes:
 class TipExtent:
     """Extremes of the tip along one direction of the workpiece frame, mm; ``cutting`` is without rapids."""
 
-    name: str
+    name: Annotated[str, Figure(), Figure("unit", take=lambda _: "mm")]
     whole: Extremes | None
     cutting: Extremes | None
 
@@ -56,13 +59,25 @@ class AxisExtent:
     """
 
     name: str
-    unit: str
-    extremes: Extremes | None
-    low_limit: float | None
-    high_limit: float | None
+    unit: Annotated[str, Figure(take=lambda unit: "deg" if unit == "°" else unit)]
+    extremes: Annotated[
+        Extremes | None,
+        Figure("whole"),
+        Figure("used", take=attrgetter("low", "high"), is_extra=True),
+        Figure("low", take=attrgetter("low"), is_extra=True),
+        Figure("high", take=attrgetter("high"), is_extra=True),
+    ]
+    low_limit: Annotated[float | None, NOT_DATA]
+    high_limit: Annotated[float | None, NOT_DATA]
     endless: bool
-    zero_known: bool
+    zero_known: Annotated[bool, Figure("placed"), Figure("zero_known", is_extra=True)]
     margin: float | None
+
+    @property
+    @Figure(after="whole")
+    def limits(self) -> tuple[float | None, float | None]:
+        """Low and high limit."""
+        return self.low_limit, self.high_limit
 
 
 def block_reference(run: Run, row: int) -> BlockReference:

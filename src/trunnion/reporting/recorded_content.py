@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from operator import itemgetter
 from pathlib import Path
-from typing import Final
+from typing import Annotated, Final
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from trunnion.model.recording import SPINDLE, TIP, Mark
 from trunnion.reporting.extents import AxisExtent, extent_of, extremes_of, is_zero_known
 from trunnion.reporting.plot_series import Curve, Plot, PlotSeries, finite_values
 from trunnion.reporting.text import clean
+from trunnion.results import NOT_DATA, Figure
 from trunnion.verification.recorded import RecordedComparison
 from trunnion.verification.results import Verification
 
@@ -47,15 +48,15 @@ class RecordedContent:
     """
 
     file: str
-    compared: int
-    other: int
-    incomplete: int
-    gaps: int
+    compared: Annotated[int, Figure("positions", after="seconds")]
+    other: Annotated[int, Figure("positions_elsewhere", after="positions")]
+    incomplete: Annotated[int, Figure("incomplete_rows", after="positions_elsewhere")]
+    gaps: Annotated[int, Figure(after="incomplete_rows")]
     seconds: float
-    positions: Ints
-    worst: Floats
+    positions: Annotated[Ints, NOT_DATA]
+    worst: Annotated[Floats, NOT_DATA]
     extents: tuple[AxisExtent, ...]
-    series: PlotSeries
+    series: Annotated[PlotSeries, NOT_DATA]
 
 
 def recorded_content(verification: Verification) -> RecordedContent | None:

@@ -9,7 +9,8 @@ Text from outside is cleaned here of characters that no file can hold.
 
 from bisect import bisect_left
 from dataclasses import dataclass, replace
-from typing import Final
+from operator import attrgetter
+from typing import Annotated, ClassVar, Final
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from trunnion.model.toolpath import Kind
 from trunnion.reporting.content import ReportContent
 from trunnion.reporting.extents import AxisExtent, BlockReference, block_reference
 from trunnion.reporting.text import clean
+from trunnion.results import FIRST, NOT_DATA, Figure, to_data
 from trunnion.verification.results import OperationRows
 
 #: Decimals of angles.
@@ -91,7 +93,7 @@ class SheetOperation:
     seconds: float
     cutting_seconds: float
     box: tuple[tuple[float, float, float], tuple[float, float, float]] | None
-    cuts: CutRanges
+    cuts: Annotated[CutRanges, Figure(is_flat=True, after=FIRST)]
     notes: tuple[str, ...] = ()
 
 
@@ -102,6 +104,11 @@ class SheetFile:
     name: str
     size: int
     sha256: str
+
+
+#: What the data of a sheet says of axes and checks.
+_OF_AXIS: Final = ("name", "unit", "used", "limits", "endless", "placed", "margin")
+_OF_CHECK: Final = ("key", "title", "passed", "summary", "worst", "limit", "unit")
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,23 +128,45 @@ class SetupSheet:
     untimed     what the times leave out, in words; empty: nothing
     """
 
-    content: ReportContent
-    version: str
-    part: str
+    SCHEMA: ClassVar[int] = 2
+
+    content: Annotated[
+        ReportContent,
+        Figure("program", take=attrgetter("program")),
+        Figure("key", take=attrgetter("machine_key"), within="machine", after="simulation_passed"),
+        Figure("name", take=attrgetter("machine"), within="machine"),
+        Figure("control", take=lambda content: content.control or None),
+        Figure("program_units", take=attrgetter("units"), after="made_by"),
+        Figure("turn_deg", take=lambda content: content.clamping and content.clamping.turn, after="zero"),
+        Figure("tilt_deg", take=lambda content: content.clamping and content.clamping.tilt),
+        Figure("seconds", take=attrgetter("seconds"), after="coordinates"),
+        Figure("cutting_seconds", take=attrgetter("cutting_seconds")),
+        Figure("axes", take=lambda content: to_data(content.axes, only=_OF_AXIS), after="operations"),
+        Figure("checks", take=lambda content: to_data(content.checks, only=_OF_CHECK), after="to_check"),
+    ]
+    version: Annotated[str, Figure("made_by", after="control")]
+    part: Annotated[str, Figure(none="", after="program")]
     may_run: bool
-    simulated: bool | None
-    offsets: tuple[str, ...]
+    simulated: Annotated[bool | None, Figure("simulation_passed")]
+    offsets: Annotated[tuple[str, ...], Figure("work_offsets")]
     zero: tuple[float, float, float] | None
     tool_length: float | None
-    system: str
-    rotary: tuple[str, str]
+    system: Annotated[str, Figure("coordinates")]
+    rotary: Annotated[tuple[str, str], NOT_DATA]
     tools: tuple[SheetTool, ...]
-    operations: tuple[SheetOperation, ...]
+    operations: Annotated[tuple[SheetOperation, ...], NOT_DATA]
     start: tuple[str, ...]
     to_check: tuple[str, ...]
     files: tuple[SheetFile, ...]
-    picture: str
-    untimed: str = ""
+    picture: Annotated[str, NOT_DATA]
+    untimed: Annotated[str, Figure("not_in_times", none="", after="cutting_seconds")] = ""
+
+    @property
+    @Figure("operations", after="tools")
+    def operations_data(self) -> list[dict[str, object]]:
+        """The operations as data, with the names of the rotary axes."""
+        rotary = [dict(zip(self.rotary, each.cuts.rotary, strict=True)) for each in self.operations]
+        return [{**to_data(each), "rotary": own} for each, own in zip(self.operations, rotary, strict=True)]
 
 
 def cut_ranges(run: Run, operation: OperationRows) -> CutRanges:

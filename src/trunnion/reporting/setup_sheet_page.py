@@ -4,14 +4,11 @@ In:     ``SetupSheet``.
 Out:    UTF-8. The page needs nothing else and runs no script; all text from outside is escaped.
 """
 
-import json
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict
 from importlib.resources import files
 from typing import Final
 
-from trunnion.model.clamping import clamping_data
-from trunnion.reporting.extents import AxisExtent, BlockReference
+from trunnion.reporting.extents import BlockReference
 from trunnion.reporting.html_text import (
     capitalised,
     escape,
@@ -22,12 +19,9 @@ from trunnion.reporting.html_text import (
     source_hash,
 )
 from trunnion.reporting.setup_sheet import Range, SetupSheet, SheetOperation, SheetTool
-from trunnion.reporting.text import finite_or_none
+from trunnion.results import as_json, to_data
 from trunnion.verification.results import Check
 from trunnion.wording import counted, format_duration
-
-#: Version of the data. It rises when programs that read older files would be misled.
-SCHEMA: Final = 1
 
 #: Who signs.
 _SIGNATURES: Final = ("Programmed by", "Set up by", "First part released by")
@@ -56,64 +50,7 @@ def sheet_page(sheet: SetupSheet) -> bytes:
 
 def sheet_json(sheet: SetupSheet) -> bytes:
     """Return the data: everything on the page but the picture."""
-    content = sheet.content
-    data = {
-        "schema": SCHEMA,
-        "program": content.program,
-        "part": sheet.part or None,
-        "may_run": sheet.may_run,
-        "simulation_passed": sheet.simulated,
-        "machine": {"key": content.machine_key, "name": content.machine},
-        "control": content.control or None,
-        "made_by": sheet.version,
-        "program_units": list(content.units),
-        "work_offsets": list(sheet.offsets),
-        "zero": sheet.zero,
-        **clamping_data(content.clamping),
-        "tool_length": sheet.tool_length,
-        "coordinates": sheet.system,
-        "seconds": content.seconds,
-        "cutting_seconds": content.cutting_seconds,
-        "not_in_times": sheet.untimed or None,
-        "tools": [asdict(tool) for tool in sheet.tools],
-        "operations": [_operation_data(each, sheet.rotary) for each in sheet.operations],
-        "axes": [_axis_data(axis) for axis in content.axes],
-        "start": list(sheet.start),
-        "to_check": list(sheet.to_check),
-        "checks": [
-            {
-                "key": check.key,
-                "title": check.title,
-                "passed": check.passed,
-                "summary": check.summary,
-                "worst": finite_or_none(check.worst),
-                "limit": finite_or_none(check.limit),
-                "unit": check.unit,
-            }
-            for check in content.checks
-        ],
-        "files": [asdict(file) for file in sheet.files],
-    }
-    return (json.dumps(data, ensure_ascii=False, allow_nan=False, indent=1) + "\n").encode()
-
-
-def _operation_data(operation: SheetOperation, rotary: Sequence[str]) -> dict[str, object]:
-    data = asdict(operation)
-    found: dict[str, object] = {**data.pop("cuts"), **data}
-    return {**found, "rotary": dict(zip(rotary, operation.cuts.rotary, strict=True))}
-
-
-def _axis_data(axis: AxisExtent) -> dict[str, object]:
-    extremes = axis.extremes
-    return {
-        "name": axis.name,
-        "unit": "deg" if axis.unit == "°" else axis.unit,
-        "used": None if extremes is None else [extremes.low, extremes.high],
-        "limits": [axis.low_limit, axis.high_limit],
-        "endless": axis.endless,
-        "placed": axis.zero_known,
-        "margin": axis.margin,
-    }
+    return (as_json(to_data(sheet)) + "\n").encode()
 
 
 # The page

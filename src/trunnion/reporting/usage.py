@@ -13,6 +13,7 @@ from trunnion.arrays import Flags, Floats
 from trunnion.model.run import Run
 from trunnion.reporting.extents import BlockReference, block_reference
 from trunnion.reporting.text import clean
+from trunnion.results import OptionalText
 from trunnion.verification.results import OperationRows
 
 
@@ -36,7 +37,7 @@ class OperationUsage:
 
     name: str
     tool: str
-    cl_file: str
+    cl_file: OptionalText
     motions: int
     seconds: float
     cutting_seconds: float

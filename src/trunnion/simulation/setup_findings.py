@@ -3,13 +3,14 @@
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from typing import Any, Final, TypeVar
+from typing import Annotated, Any, Final, TypeVar
 
 import numpy as np
 
 from trunnion.arrays import Floats, Lines
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
+from trunnion.results import NOT_DATA, BlockNumber, CubicMillimetres, Figure, Millimetres, OptionalLine, OptionalText
 from trunnion.simulation.collisions import Collision
 from trunnion.simulation.contact_times import reached
 from trunnion.simulation.findings import Finding, What, file_of_row
@@ -45,16 +46,16 @@ class SimulationFinding:
     between: tuple[str, str]
     file: str
     line: int
-    block: int
+    block: BlockNumber
     last_line: int
-    last_block: int
-    cl_line: int
+    last_block: BlockNumber
+    cl_line: OptionalLine
     seconds: float
-    depth: float
+    depth: Millimetres
     place: tuple[float, float, float]
-    cl_file: str = ""
-    setup: str = ""
-    row: int = -1
+    cl_file: Annotated[str, Figure(none="", after="cl_line")] = ""
+    setup: OptionalText = ""
+    row: Annotated[int, NOT_DATA] = -1
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,14 +65,14 @@ class NearMiss:
     between: tuple[str, str]
     file: str
     line: int
-    block: int
+    block: BlockNumber
     last_line: int
-    last_block: int
+    last_block: BlockNumber
     seconds: float
-    distance: float
+    distance: Millimetres
     place: tuple[float, float, float]
-    setup: str = ""
-    row: int = -1
+    setup: OptionalText = ""
+    row: Annotated[int, NOT_DATA] = -1
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,11 +81,11 @@ class AirCut:
 
     file: str
     line: int
-    block: int
+    block: BlockNumber
     last_line: int
-    last_block: int
-    length: float
-    setup: str = ""
+    last_block: BlockNumber
+    length: Millimetres
+    setup: OptionalText = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -97,8 +98,8 @@ class BlockRemoval:
     """
 
     line: Lines
-    removed: Floats
-    rate: Floats
+    removed: Annotated[Floats, Figure(unit="mm3")]
+    rate: Annotated[Floats, Figure("mm3_per_min")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,13 +121,13 @@ class SimulatedOperation:
     tool: str
     line: int
     last_line: int
-    removed: float
-    gouged: float
+    removed: CubicMillimetres
+    gouged: CubicMillimetres
     seconds: float
-    air: float
+    air: Millimetres
     findings: int
     blocks: BlockRemoval = field(compare=False, repr=False)
-    setup: str = ""
+    setup: OptionalText = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

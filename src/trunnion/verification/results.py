@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Annotated, Final
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from trunnion.machines import Machine
 from trunnion.model.clamping import Clamping
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
+from trunnion.results import NOT_DATA, BlockNumber, Figure, OptionalLine, OptionalText
 
 if TYPE_CHECKING:  # most verifications have no recording
     from trunnion.verification.recorded.compared import RecordedComparison
@@ -35,14 +36,14 @@ class Place:
     """
 
     nc_line: int
-    number: int
-    value: float
-    text: str
-    cl_file: str = ""
-    cl_line: int = 0
-    nc_file: str = ""
-    row: int = -1
-    code: str = ""
+    number: BlockNumber
+    value: Annotated[float, Figure(after="cl_line")]
+    text: Annotated[str, Figure(after="value")]
+    cl_file: OptionalText = ""
+    cl_line: OptionalLine = 0
+    nc_file: Annotated[str, Figure(none="", after="nc_line")] = ""
+    row: Annotated[int, NOT_DATA] = -1
+    code: Annotated[str, Figure(none="", after="text")] = ""
 
     @property
     def told(self) -> str:

@@ -13,8 +13,8 @@ import trunnion
 from tests.support.locations import GOLDEN
 from trunnion.capability.part_reach import facet_reach
 from trunnion.cli import main
-from trunnion.jobs.capability.reach_report import reach_data
 from trunnion.machines import load_machine
+from trunnion.results import to_data
 from trunnion.simulation.meshes import TriangleMesh, box_mesh, save_mesh
 
 Capture = pytest.CaptureFixture[str]
@@ -179,7 +179,7 @@ def test_the_picture_is_drawn_and_data_hold_the_same(tmp_path: Path, capfd: Capt
     picture = tmp_path / "reach.svg"
     assert main(["reach", "--machine", "yl569", "--step", "30", "--plot", str(picture), "--json", "-"]) == 0
     data = json.loads(capfd.readouterr().out)
-    assert data == reach_data(trunnion.reach("yl569", step=30.0))
+    assert data == to_data(trunnion.reach("yl569", step=30.0))
     drawing = ET.fromstring(picture.read_text("utf-8"))
     sectors = [each for each in drawing.iter("{http://www.w3.org/2000/svg}path") if each.get("class") in ("one", "two")]
     assert len(sectors) == 4  # tilts of 0, 30, 60 and 90 degrees, whole rings

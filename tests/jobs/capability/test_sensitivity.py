@@ -13,8 +13,9 @@ import trunnion
 from tests.support.locations import YL569
 from trunnion.capability.sensitivity import NumberSensitivity, Sensitivity, errors_over
 from trunnion.cli import main
-from trunnion.jobs.capability.sensitivity_report import sensitivity_data, write_sensitivity_report
+from trunnion.jobs.capability.sensitivity_report import write_sensitivity_report
 from trunnion.machines import forward, slide_positions
+from trunnion.results import to_data
 
 BLADE = YL569 / "3_blade_finish.expected.mpf"
 ZERO, LENGTH = (12.0, -7.0, 180.0), 140.0
@@ -138,7 +139,7 @@ def test_the_page_draws_the_error_of_each_motion(tmp_path: Path) -> None:
         assert errors[:, k].max() == pytest.approx(each.zeroed.largest, rel=1e-6)
     write_sensitivity_report(found, tmp_path / "page.html")
     assert (tmp_path / "page.html").read_bytes().startswith(b"<!DOCTYPE html>")
-    assert sensitivity_data(found)["motions"] == len(rows)
+    assert to_data(found)["motions"] == len(rows)
 
 
 @pytest.mark.parametrize(

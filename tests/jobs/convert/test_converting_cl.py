@@ -20,7 +20,7 @@ def test_a_cl_file_becomes_one_of_another_dialect(
     dialect: str, extension: str, tmp_path: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:
     into = tmp_path / f"{CL.stem}.{extension}"
-    assert main(["convert", str(CL), "--to-cl", "--dialect", dialect, "--output", str(tmp_path)]) == 0
+    assert main(["convert", str(CL), "--to-cl", "--to-dialect", dialect, "--output", str(tmp_path)]) == 0
     said = capfd.readouterr().err
     assert f"{into}: 23 points, 1 operation" in said
     found = trunnion.convert(CL, to_cl=True, dialect=dialect)
@@ -56,8 +56,8 @@ def test_units_are_those_of_the_file_or_of_the_setting(tmp_path: Path) -> None:
         (["--to-cl", "--zero", "0,0,0"], "--zero: error: has no meaning for a CL file"),
         (["--to-machine", "dmu65"], "--machine: error: is missing"),
         (
-            ["--to-machine", "dmu65", "--machine", "yl569", "--dialect", "ncl"],
-            "--dialect: error: is given",
+            ["--to-machine", "dmu65", "--machine", "yl569", "--to-dialect", "ncl"],
+            "--to-dialect: error: is given",
         ),
     ],
 )
@@ -87,6 +87,6 @@ def test_packed_files_and_streams(tmp_path: Path, capfdbinary: pytest.CaptureFix
     packed = tmp_path / "part.cls.gz"
     packed.write_bytes(gzip.compress(CL.read_bytes()))
     expected = trunnion.convert(CL, to_cl=True, dialect="ncl").text
-    assert main(["convert", str(packed), "--to-cl", "--dialect", "ncl", "--output", str(tmp_path)]) == 0
+    assert main(["convert", str(packed), "--to-cl", "--to-dialect", "ncl", "--output", str(tmp_path)]) == 0
     assert (tmp_path / "part.ncl").read_text(encoding="utf-8") == expected
     assert trunnion.convert(io.BytesIO(CL.read_bytes()), to_cl=True, dialect="ncl").text == expected

@@ -7,12 +7,13 @@ Units:  mm.
 
 from collections.abc import Collection
 from dataclasses import dataclass
-from typing import Final
+from typing import Annotated, Final
 
 import numpy as np
 
 from trunnion.arrays import Floats
 from trunnion.impeller.paths.clearance import Obstacles, ToolBody, distances_of
+from trunnion.results import NOT_DATA, Figure
 from trunnion.simulation.tools.profile import Role
 
 #: Clearances are told up to this, mm.
@@ -34,9 +35,9 @@ class PartClearance:
 
     part: Role
     body: str
-    distance: float
-    centre: tuple[float, float, float]
-    axis: tuple[float, float, float]
+    distance: Annotated[float, Figure("mm", decimals=6)]
+    centre: Annotated[tuple[float, float, float], Figure("at")]
+    axis: Annotated[tuple[float, float, float], NOT_DATA]
 
     def __str__(self) -> str:
         """Return the distance in words, such as ``shank 2.500 mm from blade 1``."""

@@ -12,8 +12,9 @@ import sys
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from operator import attrgetter
 from pathlib import Path
-from typing import Final
+from typing import Annotated, Final
 
 import numpy as np
 
@@ -28,6 +29,7 @@ from trunnion.impeller.model import impeller_model
 from trunnion.impeller.solid.impeller_body import impeller_body
 from trunnion.impeller.solid.order import Made, Order, Refusal
 from trunnion.impeller.solid.root_loop import Density, carried_on
+from trunnion.results import NOT_DATA, Figure
 from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
 
 #: Points of patches; the next of them where patches are too far off, or the kernel makes no solid.
@@ -75,11 +77,11 @@ class ImpellerSolid:
     mesh         a closed mesh of the impeller, made in another way
     """
 
-    step: bytes
-    volume: float
+    step: Annotated[bytes, NOT_DATA]
+    volume: Annotated[float, Figure(unit="mm3", decimals=6)]
     faces: int
-    deviation: float
-    mesh: TriangleMesh
+    deviation: Annotated[float, Figure(unit="mm", decimals=6)]
+    mesh: Annotated[TriangleMesh, Figure("extents", take=attrgetter("bounds"))]
 
 
 def impeller_solid(impeller: Impeller, tolerance: float) -> ImpellerSolid:

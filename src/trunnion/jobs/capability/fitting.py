@@ -5,7 +5,8 @@ import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Final
+from pathlib import Path
+from typing import Annotated, Final
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from trunnion.machines.loading import is_example, machine_library
 from trunnion.machines.machine import Vector
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.placing.placement import AxisUse, Placement
+from trunnion.results import Figure
 from trunnion.verification.results import durations
 
 #: Arguments that are the same for all machines: what is wrong with one is no reason of a machine.
@@ -55,7 +57,7 @@ class AxisMargin:
 
     axis: str
     unit: str
-    margin: float
+    margin: Annotated[float, Figure("left", decimals=6)]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,16 +74,17 @@ class MachineFit:
     turn_deg   turn of the part there, about Z
     """
 
-    key: str
+    key: Annotated[str, Figure("machine", take=lambda key: Path(key).as_posix() if key.endswith(".toml") else key)]
     status: FitStatus
     reasons: tuple[str, ...] = ()
-    seconds: float | None = None
-    margins: tuple[AxisMargin, ...] = ()
-    missing: float | None = None
+    seconds: Annotated[float | None, Figure(decimals=3)] = None
+    margins: Annotated[tuple[AxisMargin, ...], Figure(after="missing_mm")] = ()
+    missing: Annotated[float | None, Figure(unit="mm", decimals=6, after="turn_deg")] = None
     zero_mm: Vector | None = None
     turn_deg: float | None = None
 
     @property
+    @Figure(after="status")
     def is_example(self) -> bool:
         """Whether it is a shipped definition of no builder's machine, whose numbers are examples."""
         return is_example(self.key)

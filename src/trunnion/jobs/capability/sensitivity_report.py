@@ -50,22 +50,6 @@ def write_sensitivity_report(found: Sensitivity, file: FilePath, inputs: Iterabl
         sink.writelines(render_sensitivity_page(_content(found), _series(found)))
 
 
-def sensitivity_data(found: Sensitivity) -> dict[str, object]:
-    """A sensitivity as data."""
-    return {
-        "schema": 1,
-        "program": found.run.files[0],
-        "machine": found.run.machine.key,
-        "motions": found.motions,
-        "zero_at_deg": None if found.zero_at is None else dict(found.zero_at),
-        "numbers": [_number_data(each) for each in found.numbers],
-        "without_effect": [number.name for number in found.idle],
-        "remarks": [
-            {"file": r.file, "line": r.line, "what": r.what, "cure": r.cure, "code": r.code} for r in found.remarks
-        ],
-    }
-
-
 def amount_text(each: NumberSensitivity) -> str:
     """How far a number is off, in words."""
     return f"{each.amount:g}″" if each.number.is_angle else f"{each.amount:g} mm"
@@ -83,31 +67,6 @@ def place_text(extent: ErrorExtent, run: Run) -> str:
 def zero_text(pose: Mapping[str, float] | None) -> str:
     """Where the zero was set, in words."""
     return "not set" if pose is None else "at " + " ".join(f"{name}{value:g}" for name, value in pose.items())
-
-
-def _number_data(each: NumberSensitivity) -> dict[str, object]:
-    return {
-        "number": each.number.name,
-        "axis": each.number.axis,
-        "component": each.number.component,
-        "key": each.number.key,
-        "off_by": each.amount,
-        "unit": "arcsec" if each.number.is_angle else "mm",
-        "tip": _extent_data(each.tip),
-        "with_zero_set": None if each.zeroed is None else _extent_data(each.zeroed),
-        "axis_deg": round(each.axis_deg, _DECIMALS),
-    }
-
-
-def _extent_data(extent: ErrorExtent) -> dict[str, object]:
-    place = extent.place
-    return {
-        "largest_mm": round(extent.largest, _DECIMALS),
-        "rms_mm": round(extent.rms, _DECIMALS),
-        "file": place.file,
-        "line": place.line,
-        "block": None if place.block < 0 else place.block,
-    }
 
 
 def _content(found: Sensitivity) -> SensitivityContent:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Annotated, ClassVar, Final
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from trunnion.model.toolpath import (
 from trunnion.planning.holes.cycles import SpindleState
 from trunnion.planning.holes.operations import hole_rows
 from trunnion.planning.path_measures import Range, extents, kind_and_planes, measure
+from trunnion.results import NOT_DATA
 
 Vector = tuple[float, float, float]
 
@@ -164,6 +165,9 @@ class ClDescription:
     toolpaths       what was read
     """
 
+    SCHEMA: ClassVar[int] = 2
+    DECIMALS: ClassVar[int] = 9
+
     dialect: str | None
     units: str | None
     files: tuple[ClFileDescription, ...]
@@ -177,7 +181,7 @@ class ClDescription:
     moves_without_time: int
     unknown: tuple[UnknownDescription, ...]
     remarks: tuple[Problem, ...]
-    toolpaths: tuple[Toolpath, ...]
+    toolpaths: Annotated[tuple[Toolpath, ...], NOT_DATA]
 
     def __repr__(self) -> str:
         """Return what matters in a notebook."""

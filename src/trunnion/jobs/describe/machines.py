@@ -1,7 +1,9 @@
 """What the definition of a machine means, for a person beside the machine."""
 
 from dataclasses import dataclass
+from operator import attrgetter
 from pathlib import Path
+from typing import Annotated
 
 from trunnion.controls import load_control
 from trunnion.definitions import load_table
@@ -11,6 +13,7 @@ from trunnion.jobs.inputs.reading import MachineLike, as_machine
 from trunnion.machines import Machine
 from trunnion.machines.jog_table import JogTable, jog_table
 from trunnion.machines.loading import machine_library
+from trunnion.results import Figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,10 +27,18 @@ class MachineDescription:
     assumed  what its definition leaves open, marks as not measured, or has from another machine, in sentences
     """
 
-    machine: Machine
+    machine: Annotated[
+        Machine,
+        Figure("key", take=attrgetter("key")),
+        Figure("name", take=attrgetter("name")),
+        Figure("description", take=attrgetter("description")),
+        Figure("spindle_direction", take=attrgetter("spindle_direction")),
+        Figure("spindle_point", unit="mm", take=attrgetter("spindle_point")),
+        Figure("workpiece_zero", unit="mm", take=attrgetter("workpiece_zero")),
+    ]
     jogs: JogTable
-    control: str
-    texts: tuple[TemplateDescription, ...]
+    control: Annotated[str, Figure(after="assumed")]
+    texts: Annotated[tuple[TemplateDescription, ...], Figure(after="control")]
     assumed: tuple[str, ...] = ()
 
 

@@ -3,8 +3,9 @@
 import io
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from pathlib import Path
-from typing import Final
+from typing import Annotated, ClassVar, Final
 
 import numpy as np
 
@@ -43,6 +44,7 @@ from trunnion.machines.inverse import inverse
 from trunnion.machines.spindle_range import spindle_speed_fault
 from trunnion.model.toolpath import Operation, Tool, Toolpath
 from trunnion.reporting.simulation_page import render_simulation_page
+from trunnion.results import NOT_DATA, Figure
 from trunnion.simulation.meshes import picture
 from trunnion.simulation.stock.surface import stock_surface
 from trunnion.simulation.tools.library import LibraryTool
@@ -51,6 +53,10 @@ from trunnion.verification import durations
 
 #: How closely the model follows the surfaces where a simulation compares with it, as a part of the width of its cells.
 _MODEL: Final = 0.1
+
+
+def _flanks(flanks: Sequence[tuple[float, float]]) -> list[dict[str, float]]:
+    return [{"overcut_mm": over, "undercut_mm": under} for over, under in flanks]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,17 +74,23 @@ class CutStep:
     programs   the subprogram of each operation; none if they are in one program, or divided further
     """
 
-    step: MachiningStep
-    toolpath: Toolpath
-    points: int
-    seconds: tuple[float, ...]
-    clearance: tuple[PartClearance, ...]
-    before: Material
-    flanks: tuple[tuple[float, float], ...] = ()
+    step: Annotated[
+        MachiningStep,
+        Figure("name", take=attrgetter("name")),
+        Figure("kind", take=attrgetter("kind")),
+        Figure("published_minutes", take=lambda step: step.published_minutes or None, after="minutes"),
+    ]
+    toolpath: Annotated[Toolpath, NOT_DATA]
+    points: Annotated[int, Figure(after="programs")]
+    seconds: Annotated[tuple[float, ...], Figure("operations", take=len)]
+    clearance: Annotated[tuple[PartClearance, ...], Figure("clearances", after="published_minutes")]
+    before: Annotated[Material, Figure(after="clearances")]
+    flanks: Annotated[tuple[tuple[float, float], ...], Figure(decimals=6, take=_flanks, after="before")] = ()
     cl_file: Path | None = None
     programs: tuple[Path, ...] = ()
 
     @property
+    @Figure(decimals=6, after="points")
     def minutes(self) -> float:
         """Of one operation, in the mean."""
         return sum(self.seconds) / len(self.seconds) / 60.0
@@ -95,18 +107,26 @@ class ImpellerCut:
     simulation  what the program leaves of the stock, against the model; None: it was not simulated
     """
 
-    impeller: Impeller
-    steps: tuple[CutStep, ...]
-    result: PostResult
+    SCHEMA: ClassVar[int] = 2
+
+    impeller: Annotated[Impeller, Figure("name", take=attrgetter("definition.name"))]
+    steps: Annotated[tuple[CutStep, ...], Figure(after="cl_files")]
+    result: Annotated[
+        PostResult,
+        Figure("program", take=lambda result: str(result.output)),
+        Figure("subprograms", take=attrgetter("subprograms")),
+        Figure("checks", take=lambda result: {check.key: check.passed for check in result.checks}, after="remarks"),
+    ]
     cl_files: tuple[Path, ...]
-    simulation: SimulationResult | None
-    remarks: tuple[Problem, ...] = ()
+    simulation: Annotated[SimulationResult | None, Figure(after="checks")]
+    remarks: Annotated[tuple[Problem, ...], Figure(after="steps")] = ()
 
     def __repr__(self) -> str:
         """Return what matters in a notebook."""
         return f"ImpellerCut(passed={self.passed}, {len(self.steps)} steps)"
 
     @property
+    @Figure(after="name")
     def passed(self) -> bool:
         """Whether the program is proven, and what was simulated has no finding."""
         return self.result.passed and (self.simulation is None or self.simulation.passed)

@@ -11,7 +11,7 @@ import hashlib
 import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -24,7 +24,8 @@ from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.result import PostResult
 from trunnion.model.clamping import clamping_data
 from trunnion.output.program import Program
-from trunnion.reporting.text import clean, finite_or_none
+from trunnion.reporting.text import clean
+from trunnion.results import as_json, to_data
 from trunnion.verification import Verification, durations
 
 if TYPE_CHECKING:
@@ -38,6 +39,9 @@ _MOST_BYTES: Final = 64 << 20
 
 #: What files of a post are, but for the manifest itself.
 _WHATS: Final = ("program", "subprogram", "report", "sheet", "listing")
+
+#: What a manifest says of a check.
+_OF_CHECK: Final = ("key", "passed", "summary", "worst", "limit", "unit")
 
 #: Bytes of a name that file systems take.
 _LONGEST_NAME: Final = 255
@@ -135,7 +139,7 @@ def manifest_bytes(
         "warnings": [clean(each.what) for each in result.problems if each.severity is Severity.WARNING],
         **_proof(verification),
     }
-    return (json.dumps(data, ensure_ascii=False, allow_nan=False, indent=1) + "\n").encode("utf-8", "replace")
+    return (as_json(data) + "\n").encode("utf-8", "replace")
 
 
 def _made_by() -> str:
@@ -165,15 +169,7 @@ def _proof(verification: Verification | None) -> dict[str, object]:
     seconds, _ = durations(verification)
     return {
         "checks": [
-            {
-                "key": check.key,
-                "passed": check.passed,
-                "summary": clean(check.summary),
-                "worst": finite_or_none(check.worst),
-                "limit": finite_or_none(check.limit),
-                "unit": check.unit,
-            }
-            for check in verification.checks
+            to_data(replace(check, summary=clean(check.summary)), only=_OF_CHECK) for check in verification.checks
         ],
         "seconds": float(seconds.sum()),
         "operations": [

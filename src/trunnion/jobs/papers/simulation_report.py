@@ -4,7 +4,6 @@ In:     ``SimulationResult``.
 Out:    ``SimulationContent``, or the file.
 """
 
-import json
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Final
@@ -15,7 +14,6 @@ from trunnion.arrays import Floats
 from trunnion.files import atomic_file
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.papers.reports import check_report_name
-from trunnion.jobs.simulate.data import simulation_data
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.model.clamping import Clamping, number
 from trunnion.reporting.simulation_content import (
@@ -27,6 +25,7 @@ from trunnion.reporting.simulation_content import (
 )
 from trunnion.reporting.simulation_page import render_simulation_page
 from trunnion.reporting.text import clean
+from trunnion.results import as_json, to_data
 from trunnion.simulation.meshes.picture import picture
 from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
 from trunnion.simulation.stock.deviation import Excess
@@ -61,8 +60,8 @@ def write_simulation_report(found: SimulationResult, file: FilePath, inputs: Ite
     read = [*inputs, *(each for each in found.programs if Path(each).is_file())]
     with atomic_file(place, inputs=read) as sink:
         if Path(place.name).suffix.lower() == ".json":
-            data = _cleaned(simulation_data(found))
-            sink.write((json.dumps(data, ensure_ascii=False, allow_nan=False, indent=1) + "\n").encode())
+            data = _cleaned(to_data(found))
+            sink.write((as_json(data) + "\n").encode())
         else:
             sink.writelines(render_simulation_page(simulation_content(found)))
 
@@ -94,7 +93,7 @@ def simulation_content(found: SimulationResult) -> SimulationContent:
         ),
         states=tuple(_state(each) for each in found.setups or (found,)),
         remarks=tuple(clean(str(remark)) for remark in found.remarks),
-        data=_cleaned(simulation_data(found)),
+        data=_cleaned(to_data(found)),
     )  # fmt: skip
 
 

@@ -2,10 +2,12 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Final
+from functools import partial
+from typing import Annotated, Any, ClassVar, Final
 
 from trunnion.errors import Problem, Severity
 from trunnion.jobs.inputs.reading import FilePath
+from trunnion.results import NOT_DATA, CubicMillimetres, Degrees, Figure, Millimetres, to_data
 from trunnion.simulation.setup_findings import AirCut, NearMiss, SimulatedOperation, SimulationFinding, setup_findings
 from trunnion.simulation.simulator import Simulation
 from trunnion.simulation.steps import CutSetup
@@ -15,7 +17,13 @@ from trunnion.simulation.stock.deviation import Excess
 _MOST_AIR: Final = 20
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+#: What data says of each of several set-ups.
+_OF_SETUP: Final = (
+    "name", "machine", "programs", "passed", "cells_mm", "removed_mm3", "left", "gouge", "turn_deg", "tilt_deg",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class SimulationResult:
     """What a simulation found.
 
@@ -42,28 +50,39 @@ class SimulationResult:
                set-ups those of the last one
     """
 
+    SCHEMA: ClassVar[int] = 2
+    DECIMALS: ClassVar[int] = 6
+
     programs: tuple[str, ...]
     machine: str
-    cell: tuple[float, float, float]
-    accuracy: float
-    limit: float
-    removed: float
-    operations: tuple[SimulatedOperation, ...]
-    findings: tuple[SimulationFinding, ...]
-    near: tuple[NearMiss, ...]
-    air: tuple[AirCut, ...]
+    turn: Degrees = 0.0
+    tilt: Degrees = 0.0
+    cell: Annotated[tuple[float, float, float], Figure("cell", unit="mm", take=max), Figure("cells", unit="mm")]
+    accuracy: Millimetres
+    limit: Millimetres
+    removed: CubicMillimetres
     left: Excess | None
     gouge: Excess | None
-    remarks: tuple[Problem, ...]
+    pairs: Annotated[int, Figure("pairs_checked")] = 0
+    setups: Annotated[tuple["SimulationResult", ...], Figure(take=partial(to_data, only=_OF_SETUP))] = ()
+    findings: Annotated[tuple[SimulationFinding, ...], Figure("collisions")]
+    near: tuple[NearMiss, ...]
+    air: tuple[AirCut, ...]
+    operations: tuple[SimulatedOperation, ...]
+    remarks: Annotated[tuple[Problem, ...], NOT_DATA]
     seconds: float
-    simulation: Simulation
-    setup: str = ""
-    setups: tuple["SimulationResult", ...] = ()
-    pairs: int = 0
-    turn: float = 0.0
-    tilt: float = 0.0
+    simulation: Annotated[Simulation, NOT_DATA]
+    setup: Annotated[str, Figure("name", is_extra=True)] = ""
 
     @property
+    @Figure("remarks", after="operations")
+    def remarks_of_setups(self) -> list[dict[str, Any]]:
+        """The remarks as data, with the names of their set-ups."""
+        parts = self.setups or (self,)
+        return [{**to_data(each), "setup": part.setup or None} for part in parts for each in part.remarks]
+
+    @property
+    @Figure(after="schema")
     def passed(self) -> bool:
         """Whether nothing was found that must not be: no finding, no gouge, no program that breaks off."""
         if self.setups:
@@ -90,12 +109,26 @@ def make_result(cut: CutSetup) -> SimulationResult:
     found, own, programs = cut.simulation, setup_findings(cut), cut.programs
     x, y, z = found.stock.lattice.cell.tolist()
     return SimulationResult(
-        tuple(program.run.files[0] for program in programs), cut.setup.machine.key, (x, y, z),
-        found.model.tolerance + found.error, found.model.limit, found.start_volume - found.stock.volume,
-        own.operations, own.findings, own.near, _longest(own.air),
-        found.left, found.gouge, cut.remarks, found.seconds, found, cut.setup.name, pairs=cut.pairs,
-        turn=cut.setup.clamping.turn, tilt=cut.setup.clamping.tilt,
-    )  # fmt: skip
+        programs=tuple(program.run.files[0] for program in programs),
+        machine=cut.setup.machine.key,
+        turn=cut.setup.clamping.turn,
+        tilt=cut.setup.clamping.tilt,
+        cell=(x, y, z),
+        accuracy=found.model.tolerance + found.error,
+        limit=found.model.limit,
+        removed=found.start_volume - found.stock.volume,
+        left=found.left,
+        gouge=found.gouge,
+        pairs=cut.pairs,
+        findings=own.findings,
+        near=own.near,
+        air=_longest(own.air),
+        operations=own.operations,
+        remarks=cut.remarks,
+        seconds=found.seconds,
+        simulation=found,
+        setup=cut.setup.name,
+    )
 
 
 def join_results(results: Sequence[SimulationResult]) -> SimulationResult:

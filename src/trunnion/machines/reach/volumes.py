@@ -10,13 +10,14 @@ decided are what lies between the bounds.
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Final
+from typing import Annotated, Final
 
 import numpy as np
 
 from trunnion.arrays import Floats, Floats2, Floats3, Ints
 from trunnion.jit import inner, kernel
 from trunnion.machines.reach.bodies import PoseBodies
+from trunnion.results import Figure
 
 #: The box is divided into so many cells along each side at first.
 _FIRST: Final = 8
@@ -35,9 +36,9 @@ LEVELS: Final = 4
 class ReachedVolume:
     """A volume, mm^3: at least ``low``, at most ``high``, and ``likely`` by the middles of undecided cells."""
 
-    low: float
-    likely: float
-    high: float
+    low: Annotated[float, Figure("at_least", decimals=1)]
+    likely: Annotated[float, Figure(decimals=1)]
+    high: Annotated[float, Figure("at_most", decimals=1)]
 
 
 def reached_volumes(

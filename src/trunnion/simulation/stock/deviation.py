@@ -11,12 +11,13 @@ middle to the surface that is gone.
 
 import math
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Annotated, Final
 
 import numpy as np
 
 from trunnion.arrays import Floats, Floats2, Ints
 from trunnion.jit import kernel
+from trunnion.results import Figure, Millimetres
 from trunnion.simulation.stock.differences import OWN_END, Stretches, common, compare_solids
 from trunnion.simulation.stock.material import Stock
 from trunnion.simulation.stock.spans import Spans
@@ -36,16 +37,16 @@ _BUCKETS: Final = 64
 class ExcessPlace:
     """A place in the workpiece frame, mm, and how thick what is wrong is there, mm."""
 
-    at: tuple[float, float, float]
-    thickness: float
+    at: Annotated[tuple[float, float, float], Figure("place")]
+    thickness: Annotated[float, Figure("depth", unit="mm")]
 
 
 @dataclass(frozen=True, slots=True)
 class Excess:
     """What one solid has and the other has not: mm³, the greatest thickness in mm, and the thickest places."""
 
-    volume: float
-    largest: float
+    volume: Annotated[float, Figure(unit="mm3", after="largest_mm")]
+    largest: Millimetres
     places: tuple[ExcessPlace, ...]
 
 
