@@ -17,7 +17,7 @@ from trunnion.batch.running import BatchResult
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
 from trunnion.files import OutputPlace, output_group
-from trunnion.jobs.targets import check_output_name
+from trunnion.jobs.result_output import check_output_name
 
 #: Column -> type in SQLite. Of a file one row each; values are NULL where there is none.
 COLUMNS: Final = {

@@ -15,7 +15,7 @@ from trunnion.arrays import Floats, Ints, Lines
 from trunnion.capability.sensitivity import ErrorExtent, NumberSensitivity, Sensitivity, errors_over
 from trunnion.files import OutputPlace, atomic_file, check_outputs
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.targets import check_output_name
+from trunnion.jobs.result_output import check_output_name
 from trunnion.model.run import Run
 from trunnion.reporting.plot_series import Curve, Plot, PlotSeries, SingleFloats
 from trunnion.reporting.sensitivity_page import ErrorCells, NumberRow, SensitivityContent, render_sensitivity_page
