@@ -11,6 +11,8 @@ from typing import BinaryIO, TypeAlias
 from trunnion.errors import InputError, Problem
 from trunnion.files import OutputFiles, OutputGroup, OutputPlace, atomic_output, check_stream, resolve_output
 from trunnion.jobs.inputs.arguments import check_path
+from trunnion.jobs.registry import JOBS
+from trunnion.options.kinds import FileOut
 
 #: A file by its path, a stream that takes bytes, or None: the result keeps the text.
 OutputLike: TypeAlias = str | os.PathLike[str] | BinaryIO | None
@@ -51,6 +53,14 @@ def check_output_name(argument: str, file: object, endings: Sequence[str], what:
     if Path(place.name).suffix.lower() not in endings:
         raise InputError(Problem(place.name, 0, what, f"let its name end in {' or '.join(endings)}", code="FIL260"))
     return place
+
+
+def declared_output(command: str, option: str, file: object) -> OutputPlace:
+    """The place of an output that a command declares, found out before any work; errors as ``check_output_name``."""
+    declared = JOBS[command].option(option)
+    assert declared is not None
+    assert isinstance(declared.kind, FileOut)
+    return check_output_name(option, file, declared.kind.endings, declared.kind.why)
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from typing import Final
 from trunnion.errors import InputError, Problem
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.papers.reports import check_report_name
-from trunnion.jobs.targets import check_output_name
+from trunnion.jobs.targets import declared_output
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,9 +56,9 @@ def paper_files(
     if report is not None:
         check_report_name(report)
     if sheet is not None:
-        check_output_name("sheet", sheet, (".html", ".json"), "a setup sheet is a page or data")
+        declared_output("post", "sheet", sheet)
     if manifest is not None:
-        place = check_output_name("manifest", manifest, (".json",), "a manifest is data")
+        place = declared_output("post", "manifest", manifest)
         program = Path(output) if isinstance(output, str | os.PathLike) else None
         if program is None or program.parent.resolve() != Path(manifest).parent.resolve():
             cure = "name a file in the folder of the program, and write the program to a file"
