@@ -216,7 +216,7 @@ def test_the_system_tells_of_changes_in_the_folders(tmp_path: Path) -> None:
             ended.set()
 
         threading.Thread(target=wait, daemon=True).start()
-        assert ended.wait(60.0)
+        assert ended.wait(240.0)
     finally:
         writing.set()
         writer.join()

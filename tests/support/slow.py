@@ -1,5 +1,9 @@
 """The tests that take long: ``make.py quick`` leaves them out."""
 
+from pathlib import Path
+
+from tests.support.locations import TESTS
+
 #: Files that take more than some three seconds of processor time, and folders of them: whole matrices, judges, fuzzing,
 #: and long property tests.
 SLOW = (
@@ -47,3 +51,10 @@ SLOW = (
     "verification/test_turns.py", "viewer/test_bricks.py", "viewer/test_browser.py", "viewer/test_live.py",
     "viewer/test_stock.py", "viewer/test_tools.py",
 )  # fmt: skip
+
+_PLACES = frozenset(TESTS / name for name in SLOW)
+
+
+def is_slow(path: Path) -> bool:
+    """Whether a file of tests, or a folder that it is in, is one of the slow ones."""
+    return not _PLACES.isdisjoint((path, *path.parents))

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-from trunnion.cli.data import posts_data
 from trunnion.cli.post import old_files_told, print_dialects, print_summary
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
@@ -31,7 +30,7 @@ def run(given: Given) -> int:
         )
     _print_files(result)
     if given.json is not None:
-        show(given, lambda: posts_data(result.results), ())
+        show(given, lambda: {"schema": 1, "programs": result.results}, ())
     return 0
 
 

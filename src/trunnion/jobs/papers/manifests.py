@@ -13,7 +13,7 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final
 
 from trunnion.errors import InputError, Problem, Severity, unusable_file
 from trunnion.files import file_on_disk
@@ -25,7 +25,7 @@ from trunnion.jobs.post.result import PostResult
 from trunnion.model.clamping import clamping_data
 from trunnion.output.program import Program
 from trunnion.reporting.text import clean
-from trunnion.results import as_json, to_data
+from trunnion.results import FIRST, Figure, as_json, to_data
 from trunnion.verification import Verification, durations
 
 if TYPE_CHECKING:
@@ -75,11 +75,14 @@ class ManifestCheck:
     not_compared  names of CL files from which the program was made, and that nobody gave to compare
     """
 
-    files: tuple[ManifestFile, ...]
+    SCHEMA: ClassVar[int] = 1
+
+    files: Annotated[tuple[ManifestFile, ...], Figure(after="proven")]
     proven: bool
     not_compared: tuple[str, ...] = ()
 
     @property
+    @Figure(after=FIRST)
     def passed(self) -> bool:
         """Whether all are the same, and were proven."""
         return self.proven and not any(file.fault for file in self.files)

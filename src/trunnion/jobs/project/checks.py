@@ -163,10 +163,7 @@ def _simulate(
 def _found(simulated: "SimulationResult", cure: str) -> Iterator[Problem]:
     """What a set-up must not do, each at its program and line; the ``cure`` says how to see more of it."""
     for finding in simulated.findings[:_MOST_TOLD]:
-        x, y, z = finding.place
-        between = f"{finding.kind}: {finding.between[0]}, {finding.between[1]}"
-        what = f"the simulation finds: {between}: {finding.depth:.3f} mm deep at X{x:.3f} Y{y:.3f} Z{z:.3f}"
-        yield Problem(finding.file, finding.line, what, code="PRJ210")
+        yield Problem(finding.file, finding.line, f"the simulation finds: {finding}", code="PRJ210")
     if len(simulated.findings) > _MOST_TOLD:
         what = f"the simulation has {len(simulated.findings)} findings here; the first {_MOST_TOLD} are told"
         yield Problem(simulated.programs[0], 0, what, cure, code="PRJ210")

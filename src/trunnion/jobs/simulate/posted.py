@@ -31,7 +31,7 @@ from trunnion.simulation.setup_findings import SimulationFinding
 from trunnion.simulation.stock.solids import is_mesh, stock_shape
 from trunnion.simulation.turned_parts import as_clamped
 from trunnion.verification import Check, Place
-from trunnion.wording import counted
+from trunnion.wording import counted, position
 
 #: Arguments of ``simulate`` by their names, or the path of a project file.
 SimulationLike: TypeAlias = Mapping[str, Any] | FilePath
@@ -225,8 +225,7 @@ def _gouge_check(found: SimulationResult, findings: Sequence[SimulationFinding])
 
 def _places(findings: Sequence[SimulationFinding]) -> Iterator[Place]:
     for each in sorted(findings, key=lambda finding: -finding.depth)[:_MOST_PLACES]:
-        x, y, z = each.place
-        text = f"{_words(each)}, {each.depth:.3f} mm deep at X{x:.3f} Y{y:.3f} Z{z:.3f}"
+        text = f"{_words(each)}, {each.depth:.3f} mm deep at {position(each.place)}"
         yield Place(each.line, each.block, each.depth, text, each.cl_file, each.cl_line if each.cl_file else 0)
 
 

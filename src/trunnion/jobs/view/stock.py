@@ -25,6 +25,7 @@ from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
 from trunnion.simulation.tools.profile import cutting_width
 from trunnion.viewer.content import ViewContent
 from trunnion.viewer.stock import StockView
+from trunnion.wording import position
 
 #: Arguments that mean nothing without stock.
 _OF_STOCK: Final = ("near", "cell", "accuracy")
@@ -112,8 +113,7 @@ def _short(problem: Problem) -> str:
 
 
 def _between(one: SimulationFinding | NearMiss) -> str:
-    x, y, z = one.place
-    return f"{' and '.join(one.between)} at X{x:.3f} Y{y:.3f} Z{z:.3f}"
+    return f"{' and '.join(one.between)} at {position(one.place)}"
 
 
 def _mark(run: Run, kind: str, row: int, text: str, place: tuple[float, float, float] | None) -> dict[str, Any]:

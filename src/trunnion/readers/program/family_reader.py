@@ -40,8 +40,3 @@ class FamilyReader:
     raw_words: RawWords = NO_RAW_WORDS
     offsets_of: Callable[[Machine], WorkOffsetWords] | None = None
     check_reading: Callable[[Machine], object] = no_reading
-
-
-def g_words(tenths: frozenset[int]) -> frozenset[str]:
-    """Return G words for codes in tenths: 541 is G54.1."""
-    return frozenset(f"G{code / 10:g}" for code in tenths)

@@ -1,4 +1,4 @@
-"""Statements that another one has swallowed: a lost line end, a continuation sign too many, a lone carriage return."""
+"""Statements without a line of their own: a lost line end, a continuation sign too many, a lone carriage return."""
 
 import pytest
 
@@ -12,7 +12,7 @@ POINT = "GOTO/10,0,-1,0,0,1"
 CUT = ["RAPID", "GOTO/0,0,50,0,0,1", "FEDRAT/200,MMPM", "GOTO/0,0,-1,0,0,1"]
 DIALECTS_OF_FILES = ("clsf", *HEADS)
 
-#: Statements that say nothing, carry a text, or whose word nobody knows, in each dialect that has them.
+#: Statements that say nothing, carry a text, or whose word is unknown, in each dialect that has them.
 SILENT = {
     "MACHIN/A,1": DIALECTS_OF_FILES,
     "CLPRNT/ON": DIALECTS_OF_FILES,

@@ -1,7 +1,6 @@
-"""Statements that another one has swallowed: a line end is lost between them, or there is a continuation sign too many.
+"""Refuses statements without a line of their own: a line end before them is lost, or a continuation sign is too many.
 
-A text, a comment and a statement that says nothing take whatever stands behind them; so each is searched for the words
-of other statements that are glued to it.
+A text, a comment and a statement without effect would hide such a statement, so each is searched for words of others.
 """
 
 import re
@@ -36,7 +35,7 @@ _CONTROL: Final = re.compile(r"[\x00-\x08\x0b-\x1f\x7f]")
 _POINT: Final = re.compile(r"(GOTO|GODLTA)\s*/\s*[-+.]?\d", re.IGNORECASE)
 
 
-class SwallowedStatements:
+class GluedStatements:
     """Finds statements of ``dialect`` within others."""
 
     def __init__(self, dialect: Dialect) -> None:
