@@ -12,7 +12,7 @@ import trunnion
 from tests.support.projects import SETUPS, TWO, contents, project
 from trunnion.errors import Problem, Severity
 
-EXAMPLE = Path(__file__).parents[2] / "examples" / "project"
+EXAMPLE = Path(__file__).parents[3] / "examples" / "project"
 
 #: Set-up -> its papers.
 PAPERS = {
