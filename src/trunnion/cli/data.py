@@ -5,7 +5,7 @@ import json
 from typing import Any
 
 from trunnion.definitions.source_lines import LocatedValue
-from trunnion.jobs.papers.reports import add_report
+from trunnion.jobs.verify.reports import add_report
 from trunnion.verification import Verification
 
 

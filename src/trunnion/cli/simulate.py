@@ -8,7 +8,7 @@ from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import Severity
 from trunnion.jobs.job import Given
-from trunnion.jobs.papers.simulation_report import write_simulation_report
+from trunnion.jobs.simulate.report import write_simulation_report
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.simulating import simulate
 from trunnion.model.clamping import Clamping, number

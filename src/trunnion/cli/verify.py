@@ -10,8 +10,8 @@ from trunnion.controls import load_control
 from trunnion.errors import InputError, Severity, argument_problem
 from trunnion.jobs.inputs.reading import load_machine
 from trunnion.jobs.job import Given, streams
-from trunnion.jobs.papers.manifests import verify_manifest
-from trunnion.jobs.papers.reports import write_report
+from trunnion.jobs.post.papers.manifests import verify_manifest
+from trunnion.jobs.verify.reports import write_report
 from trunnion.jobs.verify.verifying import verify
 from trunnion.verification import Verification, check_lines, place_lines, time_lines
 from trunnion.wording import counted, one_line

@@ -14,8 +14,9 @@ import trunnion
 from tests.support.examples import examples
 from tests.support.reports import waves
 from tests.support.simulating import SLOT, cuboid, simulate
+from trunnion.jobs.inputs.simulation_input import SetupInput
 from trunnion.jobs.observer import SILENT
-from trunnion.jobs.simulate.setups import SetupInput, prepare_setup
+from trunnion.jobs.simulate.setups import prepare_setup
 from trunnion.machines import load_machine
 from trunnion.model.clamping import Clamping
 from trunnion.model.columns import StepColumn

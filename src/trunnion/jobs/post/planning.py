@@ -16,6 +16,7 @@ from trunnion.jobs.inputs.settings import Settings, check_operation_names, numbe
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.inserts import insert_problems
 from trunnion.jobs.post.post_job import PostJob, prepare
+from trunnion.jobs.post.stages import PlannedProgram
 from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.place_texts import with_place_texts
@@ -162,19 +163,8 @@ def _settings_of_twins(own: Mapping[str, object], cut: Sequence[tuple[str, str]]
     ]
 
 
-def plan_program(
-    toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer = SILENT
-) -> tuple[Program, Plan, list[Problem]]:
+def plan_program(toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer = SILENT) -> PlannedProgram:
     """Plan a program and check that it can be written, and may.
-
-    Returns
-    -------
-    program
-        With a notice in its head for each problem that ``force`` overrules.
-    plan
-        Its motions and decisions.
-    problems
-        Warnings about program and plan, and what ``force`` overrules; they have been reported.
 
     Raises
     ------
@@ -209,7 +199,7 @@ def plan_program(
         raise RefusedError((*found, *unproven, refused))
     observer.problems(found)
     notices = [f"{FORCED_NOTICE}, written by --force: {problem.what}" for problem in blocking]
-    return replace(program, notices=[*job.notices, *notices]), planned, [*problems, *found]
+    return PlannedProgram(replace(program, notices=[*job.notices, *notices]), planned, [*problems, *found])
 
 
 def _leaning_operations(planned: Plan, most: float | None) -> list[Problem]:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.papers.reports import write_post_report
 from trunnion.jobs.targets import written_text
+from trunnion.jobs.verify.reports import write_post_report
 from trunnion.model.motion import Decision, Motion, Plan
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath

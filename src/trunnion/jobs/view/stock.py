@@ -14,10 +14,11 @@ from typing import Any, Final
 import numpy as np
 
 from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.jobs.inputs.simulation_input import SimulationInput
 from trunnion.jobs.observer import Observer
+from trunnion.jobs.post.writing import named_run
 from trunnion.jobs.simulate.posted import simulate_posted, simulation_checks, simulation_input
 from trunnion.jobs.simulate.result import SimulationResult
-from trunnion.jobs.simulate.setups import SimulationInput
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
@@ -62,7 +63,7 @@ def with_stock(
     InputError
         If a file cannot be used, nothing says the form of a tool, or the stock is too large for a picture.
     """
-    found = simulate_posted(given, run, run.files[0], toolpaths, observer)
+    found = simulate_posted(given, named_run(run, run.files[0]), toolpaths, observer)
     (job,) = found.simulation.jobs
     widths = [cutting_width(job.tools[name]) for name in _cutting(run) if name in job.tools]
     stock = StockView(found.simulation, min(widths, default=math.inf))

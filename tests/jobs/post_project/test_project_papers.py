@@ -101,7 +101,7 @@ def test_what_is_judged_a_warning_is_told_once_and_as_one(
 
 
 def test_papers_appear_with_the_programs_or_not_at_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("trunnion.jobs.project.checks._MOST_TOLD", 1)
+    monkeypatch.setattr("trunnion.jobs.post_project.checks._MOST_TOLD", 1)
     path = example(tmp_path, "refuse")
     before = contents(tmp_path)
     with pytest.raises(trunnion.RefusedError) as refused:

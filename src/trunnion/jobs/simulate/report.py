@@ -13,8 +13,8 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.files import atomic_file
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.papers.reports import check_report_name
 from trunnion.jobs.simulate.result import SimulationResult
+from trunnion.jobs.targets import check_report_name
 from trunnion.model.clamping import Clamping, number
 from trunnion.reporting.simulation_content import (
     DeviationBin,

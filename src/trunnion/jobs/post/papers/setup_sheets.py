@@ -9,7 +9,7 @@ import numpy as np
 
 from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD
 from trunnion.errors import Severity
-from trunnion.jobs.papers.writing import MADE_BY
+from trunnion.jobs.post.papers import MADE_BY
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.result import PostResult
 from trunnion.machines import Machine

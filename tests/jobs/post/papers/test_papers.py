@@ -133,7 +133,7 @@ def test_an_operation_begins_where_its_blocks_do(settings: dict[str, str], tmp_p
 
 
 def test_rotary_positions_are_those_that_the_display_shows(tmp_path: Path) -> None:
-    flange = Path(__file__).parents[2] / "golden" / "fanuc" / "flange.cls"
+    flange = Path(__file__).parents[3] / "golden" / "fanuc" / "flange.cls"
     sheet, listing, output = tmp_path / "a.json", tmp_path / "a.lpt", tmp_path / "a.nc"
     trunnion.post(flange, machine="matsuura_mx330", output=output, sheet=sheet, listing=listing)
     programmed = set(re.findall(r" C(\d+)\.", output.read_text(encoding="ascii")))
@@ -146,7 +146,7 @@ def test_rotary_positions_are_those_that_the_display_shows(tmp_path: Path) -> No
 
 
 def test_a_sheet_tells_what_its_numbers_lack(tmp_path: Path) -> None:
-    flange = Path(__file__).parents[2] / "golden" / "fanuc" / "flange.cls"
+    flange = Path(__file__).parents[3] / "golden" / "fanuc" / "flange.cls"
     trunnion.post(flange, machine="matsuura_mx330", output=tmp_path / "a.nc", sheet=tmp_path / "a.html")
     text = " ".join(_Tags((tmp_path / "a.html").read_text(encoding="utf-8")).text.split())
     assert "Not in these times rapids, speeding up and slowing down, tool changes: the machine" in text

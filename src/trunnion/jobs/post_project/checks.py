@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trunnion.errors import Problem, Severity
+from trunnion.jobs.inputs.simulation_input import SetupInput
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.post.forcing import Untold
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.writing import named_run
 from trunnion.jobs.project.project import Division, Judgement, PostedSetup, Project
-from trunnion.jobs.simulate.setups import SetupInput
 from trunnion.jobs.verify.comparing import diff
 from trunnion.model.run import Run
 from trunnion.verification import durations

@@ -15,17 +15,17 @@ from typing import Final
 
 from trunnion.errors import InputError, Problem, TrunnionError
 from trunnion.files import EarlierJob, output_group, resolve_output
-from trunnion.jobs.observer import SILENT
-from trunnion.jobs.papers.files import NO_PAPERS
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.writing import named_run
-from trunnion.jobs.project.case_papers import StalePaper, stale_papers
-from trunnion.jobs.project.dividing import programs_of_operations
+from trunnion.jobs.post_project.case_papers import StalePaper, stale_papers
+from trunnion.jobs.post_project.dividing import programs_of_operations
+from trunnion.jobs.post_project.posting import ProjectResult, check_within, files_of, post_into
+from trunnion.jobs.post_project.setups import ProjectOptions
+from trunnion.jobs.post_project.text_difference import TextDifference, text_difference
+from trunnion.jobs.post_project.watching import State, state_of
 from trunnion.jobs.project.file import load_project, project_inputs
-from trunnion.jobs.project.posting import ProjectResult, check_within, files_of, post_into
 from trunnion.jobs.project.project import Division, PostedSetup, Project
-from trunnion.jobs.project.text_difference import TextDifference, text_difference
-from trunnion.jobs.project.watching import State, state_of
+from trunnion.jobs.targets import NO_PAPERS
 from trunnion.jobs.verify.comparing import diff
 
 #: What projects are called that are cases, and how the names of others end.
@@ -115,9 +115,7 @@ class Case:
         if changed:
             changed.update(paper for each in project.setups for paper in each.papers.by_name().values())
             with output_group(remembers=False) as group:
-                result = post_into(
-                    group, project, settings=None, strict=False, explain=False, observer=SILENT, replaces=True
-                )
+                result = post_into(group, project, ProjectOptions(replaces=True))
                 if state_of(list(self._state)) != self._state:
                     what, cure = "has changed since it was compared", "test it again"
                     raise InputError(Problem(str(self.path), 0, what, cure, code="PRJ160"))
@@ -201,7 +199,7 @@ def _compared(path: Path, folder: Path) -> Case:
         for file in (setup.output, *setup.papers.by_name().values()):
             file.parent.mkdir(parents=True, exist_ok=True)
     with output_group(remembers=False) as group:
-        result = post_into(group, aside, settings=None, strict=False, explain=False, observer=SILENT)
+        result = post_into(group, aside)
     places = {file: aside.place_of(file) for file in result.files}
     check_within(list(places.values()), project)
     changed = [_changed(program, setup, places) for setup, programs in result.posted for program in programs]

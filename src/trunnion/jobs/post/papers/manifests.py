@@ -20,6 +20,7 @@ from trunnion.files import file_on_disk
 from trunnion.jobs.inputs.arguments import check_path, check_paths
 from trunnion.jobs.inputs.input_files import definition_files
 from trunnion.jobs.inputs.reading import FilePath
+from trunnion.jobs.post.papers import MADE_BY
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.result import PostResult
 from trunnion.model.clamping import clamping_data
@@ -112,7 +113,6 @@ def manifest_bytes(
     program: Program,
     job: PostJob,
     result: PostResult,
-    verification: Verification | None,
     inputs: Mapping[str, list[dict[str, object]]],
 ) -> bytes:
     """Return the manifest of a post whose other files are complete and flushed; ``inputs`` as ``post_inputs``."""
@@ -126,7 +126,7 @@ def manifest_bytes(
             files.append(_entry(place.path.name, path, names[place.entry]))
     data = {
         "schema": SCHEMA,
-        "made_by": _made_by(),
+        "made_by": MADE_BY,
         "program": clean(main),
         "machine": {"key": clean(job.machine.key), "name": clean(job.machine.name)},
         "control": clean(program.control.name),
@@ -140,15 +140,9 @@ def manifest_bytes(
         "settings_in_force": dict(sorted(program.effective_settings().items())),
         "overruled": [clean(each.what) for each in result.problems if each.severity is Severity.ERROR],
         "warnings": [clean(each.what) for each in result.problems if each.severity is Severity.WARNING],
-        **_proof(verification),
+        **_proof(result.verification),
     }
     return (as_json(data) + "\n").encode("utf-8", "replace")
-
-
-def _made_by() -> str:
-    from trunnion.jobs.papers.writing import MADE_BY
-
-    return MADE_BY
 
 
 def _entry(name: str, path: Path, what: str) -> dict[str, object]:

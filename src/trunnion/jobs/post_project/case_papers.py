@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from trunnion.errors import InputError
-from trunnion.jobs.papers.files import PaperFiles
-from trunnion.jobs.papers.manifests import verify_manifest
+from trunnion.jobs.post.papers.manifests import verify_manifest
+from trunnion.jobs.targets import PaperFiles
 
 
 @dataclass(frozen=True, slots=True)

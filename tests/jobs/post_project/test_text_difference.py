@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trunnion.jobs.project.text_difference import TextDifference, text_difference
+from trunnion.jobs.post_project.text_difference import TextDifference, text_difference
 
 
 def compared(folder: Path, old: bytes, new: bytes) -> TextDifference | None:

@@ -9,12 +9,12 @@ from pathlib import Path
 
 from trunnion.errors import Severity
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.papers.writing import PostPapers
-from trunnion.jobs.project.checks import SetupFindings
+from trunnion.jobs.inputs.simulation_input import SimulationInput
+from trunnion.jobs.post.papers.writing import PostPapers
+from trunnion.jobs.post_project.checks import SetupFindings
 from trunnion.jobs.project.file import simulated_files
 from trunnion.jobs.project.project import Project
 from trunnion.jobs.simulate.result import SimulationResult
-from trunnion.jobs.simulate.setups import SimulationInput
 
 
 def write_setup_papers(papers: PostPapers, project: Project, number: int, found: SetupFindings) -> None:

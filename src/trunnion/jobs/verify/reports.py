@@ -6,28 +6,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from trunnion.errors import InputError, Problem
-from trunnion.files import OutputPlace, atomic_file
+from trunnion.files import atomic_file
 from trunnion.jobs.inputs.arguments import wrong_argument
 from trunnion.jobs.inputs.input_files import verified_files
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.targets import declared_output
+from trunnion.jobs.targets import check_report_name
 from trunnion.machines import Machine
 from trunnion.model.motion import Decision
 from trunnion.verification import Verification
 
 if TYPE_CHECKING:  # imported where a program is simulated
     from trunnion.jobs.simulate.result import SimulationResult
-
-
-def check_report_name(file: FilePath) -> OutputPlace:
-    """The place of a report, which is found out before any work.
-
-    Raises
-    ------
-    InputError
-        If it is of an unknown form, or cannot be written.
-    """
-    return declared_output("post", "report", file)
 
 
 def write_post_report(
@@ -84,7 +73,7 @@ def add_report(
 
     content = None
     if simulation is not None:
-        from trunnion.jobs.papers.simulation_report import simulation_content
+        from trunnion.jobs.simulate.report import simulation_content
 
         content = simulation_content(simulation)
         # How long it was computed differs each time, and the same post gives the same bytes.
