@@ -17,7 +17,7 @@ from trunnion.batch.running import BatchResult
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
 from trunnion.files import OutputPlace, output_group, resolve_output
-from trunnion.jobs.targets import declared_output
+from trunnion.jobs.result_output import declared_output
 
 #: Column -> type in SQLite. Of a file one row each; values are NULL where there is none.
 COLUMNS: Final = {

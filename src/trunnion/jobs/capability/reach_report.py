@@ -11,7 +11,7 @@ from typing import Final
 from trunnion.capability.reach import Reach
 from trunnion.files import atomic_file
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.targets import declared_output
+from trunnion.jobs.result_output import declared_output
 from trunnion.machines.reach import ReachedVolume
 from trunnion.reporting.reach_picture import ReachPicture, TiltOfPicture, reach_picture
 from trunnion.reporting.text import clean

@@ -15,7 +15,7 @@ from trunnion.arrays import Floats, Ints, Lines
 from trunnion.capability.sensitivity import ErrorExtent, NumberSensitivity, Sensitivity, errors_over
 from trunnion.files import atomic_file
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.targets import declared_output
+from trunnion.jobs.result_output import declared_output
 from trunnion.model.run import Run
 from trunnion.reporting.plot_series import Curve, Plot, PlotSeries, SingleFloats
 from trunnion.reporting.sensitivity_page import ErrorCells, NumberRow, SensitivityContent, render_sensitivity_page

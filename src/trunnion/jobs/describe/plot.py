@@ -6,7 +6,7 @@ from trunnion.files import atomic_file, check_outputs, file_on_disk
 from trunnion.jobs.describe.cl_files import ClDescription
 from trunnion.jobs.inputs.arguments import wrong_argument
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.targets import declared_output
+from trunnion.jobs.result_output import declared_output
 from trunnion.model.frames import into_frame
 from trunnion.model.toolpath import Frame
 from trunnion.reporting.path_page import render_path_page

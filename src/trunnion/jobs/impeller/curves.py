@@ -15,7 +15,7 @@ from trunnion.geometry.parameters import PARAMETERIZATIONS
 from trunnion.geometry.point_tables import PointTable, read_point_table, scaled
 from trunnion.jobs.inputs.arguments import check_choice, check_path, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.targets import declared_output
+from trunnion.jobs.result_output import declared_output
 from trunnion.reporting.curve_picture import curve_picture
 
 EndLike: TypeAlias = str | Natural | Tangent

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from trunnion.files import atomic_file
 from trunnion.jobs.inputs.arguments import wrong_argument
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.targets import declared_output
+from trunnion.jobs.result_output import declared_output
 from trunnion.placing.placement import Placement
 from trunnion.reporting.placing_picture import placing_picture
 

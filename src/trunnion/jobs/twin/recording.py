@@ -11,7 +11,7 @@ from trunnion.extras import import_extra
 from trunnion.jobs.inputs.arguments import check_observer, check_path, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.observer import SILENT, Observer
-from trunnion.jobs.targets import declared_output
+from trunnion.jobs.result_output import declared_output
 from trunnion.model.recording import Recording
 from trunnion.options.limits import LONGEST_RATE, SHORTEST_RATE
 from trunnion.twin.recording.files import check_is_new

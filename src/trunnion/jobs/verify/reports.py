@@ -10,7 +10,7 @@ from trunnion.files import atomic_file
 from trunnion.jobs.inputs.arguments import wrong_argument
 from trunnion.jobs.inputs.input_files import verified_files
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.targets import check_report_name
+from trunnion.jobs.result_output import check_report_name
 from trunnion.machines import Machine
 from trunnion.model.motion import Decision
 from trunnion.verification import Verification

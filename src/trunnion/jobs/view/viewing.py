@@ -13,7 +13,7 @@ from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as
 from trunnion.jobs.inputs.settings import Settings, set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.project.file import is_project
-from trunnion.jobs.targets import declared_output
+from trunnion.jobs.result_output import declared_output
 from trunnion.jobs.view.inputs import bodies_not_clamped_so, of_project, view_program
 from trunnion.jobs.view.stock import view_simulation, with_stock
 from trunnion.model.run import Run
