@@ -1,7 +1,7 @@
 """The jobs of a batch: which files, and what is done with each.
 
 In:     a file of jobs (``jobs_file.py``) or a folder.
-Out:    a ``Batch`` of ``Job`` records, and its ``Unit`` records, one for each file, in order.
+Out:    a ``Batch`` of ``BatchJob`` records, and its ``Unit`` records, one for each file, in order.
 """
 
 import os
@@ -12,11 +12,11 @@ from pathlib import Path, PurePosixPath
 from typing import Any, Final, NamedTuple
 
 from trunnion.batch.argument_checks import beside_fault, check_simulation, check_tiles, check_to_cl
-from trunnion.batch.keys import home_of
-from trunnion.batch.left_out import left_out
 from trunnion.batch.patterns import matches
 from trunnion.batch.records import FOLDER
-from trunnion.batch.task import DEFINITIONS, FILES, Action
+from trunnion.batch.result_keys import home_of
+from trunnion.batch.unmatched_patterns import unmatched
+from trunnion.batch.worker_task import DEFINITIONS, FILES, Action
 from trunnion.controls import load_control
 from trunnion.definitions.extends import is_within
 from trunnion.dialect_names import WRITTEN_DIALECTS
@@ -40,7 +40,7 @@ NOTED: Final = {Action.VERIFY: ".verification", Action.SIMULATE: ".simulation"}
 
 
 @dataclass(frozen=True, slots=True)
-class Job:
+class BatchJob:
     """Files with which the same is done.
 
     files      names beside the jobs, in order
@@ -80,7 +80,7 @@ class Batch:
     """
 
     folder: Path
-    jobs: Sequence[Job]
+    jobs: Sequence[BatchJob]
     results: Path | None = None
     home: str = ""
     is_whole: bool = False
@@ -164,7 +164,7 @@ def folder_batch(
         if (any(matches(name, each) for each in patterns) if patterns else name.lower().endswith(sought))
     ]  # fmt: skip
     if not files:
-        reasons = (left_out(folder, each, results) for each in patterns or [f"**/*{each}" for each in sought])
+        reasons = (unmatched(folder, each, results) for each in patterns or [f"**/*{each}" for each in sought])
         raise InputError(
             Problem(
                 str(folder),
@@ -181,7 +181,7 @@ def folder_batch(
                 ),
             )
         )
-    job = Job(str(action), action, files, said, shared, beside, "", extensions.written, report, tiles)
+    job = BatchJob(str(action), action, files, said, shared, beside, "", extensions.written, report, tiles)
     return Batch(folder, [job], home=home_of(folder))
 
 
