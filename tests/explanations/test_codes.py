@@ -42,7 +42,7 @@ def test_every_message_carries_a_code() -> None:
     without = [
         f"{path.name}:{call.lineno}"
         for path, call in calls()
-        if any(isinstance(arg, ast.JoinedStr) or isinstance(arg, ast.Constant) for arg in call.args[2:3])
+        if any(isinstance(arg, ast.JoinedStr | ast.Constant) for arg in call.args[2:3])
         and not any(keyword.arg in ("code", None) for keyword in call.keywords)
     ]
     assert not without, f"{len(without)} messages without a code: {without}"
