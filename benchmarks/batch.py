@@ -28,12 +28,12 @@ import make_cls
 import trunnion
 from trunnion.batch import run_batch
 from trunnion.batch.cluster import DaskWorkers
-from trunnion.batch.jobs import Batch, Job
-from trunnion.batch.keys import program_version
+from trunnion.batch.jobs import Batch, BatchJob
 from trunnion.batch.records import Record
+from trunnion.batch.result_keys import program_version
 from trunnion.batch.running import run_jobs
 from trunnion.batch.stores import FolderStore, Store, open_store
-from trunnion.batch.task import Action, Outcome, Status, Task
+from trunnion.batch.worker_task import Action, Outcome, Status, Task
 from trunnion.jobs.observer import Observer
 
 MACHINE = "yl569"
@@ -206,16 +206,16 @@ def wait_for(cluster: Cluster) -> None:
 
 def _import(_: int) -> float:
     used = time.process_time()
-    import trunnion.batch.work
+    import trunnion.batch.processing
 
-    assert trunnion.batch.work
+    assert trunnion.batch.processing
     return time.process_time() - used
 
 
 def costs(folder: Path, count: int) -> None:
     """What a file costs besides its work: the client alone, and by the scheduler."""
     files = sorted(each.relative_to(folder / "in").as_posix() for each in (folder / "in").rglob("*.cls"))
-    batch = Batch(folder / "in", [Job("job", Action.POST, files, {"machine": MACHINE}, extension=".mpf")])
+    batch = Batch(folder / "in", [BatchJob("job", Action.POST, files, {"machine": MACHINE}, extension=".mpf")])
     with timed("client alone: read, checksum, write", count):
         run_simply(batch, FolderStore(folder / "client"))
     with Cluster(folder, 2) as cluster:

@@ -19,12 +19,12 @@ from tests.support.divided import write_divided, write_jobs
 from tests.support.locations import YL569
 from trunnion.batch import Status, run_batch
 from trunnion.batch.cluster import DaskWorkers
-from trunnion.batch.dividing import SHARES
+from trunnion.batch.divided_files import SHARES
 from trunnion.batch.jobs import Batch
 from trunnion.batch.records import Record
 from trunnion.batch.running import BatchResult, run_jobs
 from trunnion.batch.stores import FolderStore, open_store
-from trunnion.batch.task import Action, OtherVersionError, Task
+from trunnion.batch.worker_task import Action, OtherVersionError, Task
 from trunnion.batch.workers import Assignment
 from trunnion.errors import InputError, Problem
 from trunnion.jobs.observer import Observer

@@ -8,7 +8,7 @@ import pytest
 from tests.support.batches import write_files
 from trunnion.batch.jobs import Batch, folder_batch
 from trunnion.batch.jobs_file import load_batch
-from trunnion.batch.task import Action
+from trunnion.batch.worker_task import Action
 from trunnion.errors import InputError
 
 

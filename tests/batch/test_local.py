@@ -10,7 +10,7 @@ from trunnion.batch.local import LocalWorkers
 from trunnion.batch.records import Record
 from trunnion.batch.running import run_jobs
 from trunnion.batch.stores import FolderStore
-from trunnion.batch.task import Action, Status, Task
+from trunnion.batch.worker_task import Action, Status, Task
 from trunnion.batch.workers import Assignment
 from trunnion.errors import InputError
 

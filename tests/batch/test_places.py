@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from trunnion.batch.jobs import Job, folder_files
+from trunnion.batch.jobs import BatchJob, folder_files
 from trunnion.batch.patterns import matches, pattern_fault
 from trunnion.batch.places import units_of
-from trunnion.batch.task import Action
+from trunnion.batch.worker_task import Action
 from trunnion.errors import InputError
 from trunnion.files import name_fault
 
@@ -23,7 +23,7 @@ FILES = st.lists(st.lists(NAMES, min_size=1, max_size=3).map("/".join), max_size
 
 
 def places(*files: str, action: Action = Action.POST, output: str = "") -> list[str]:
-    return [unit.place for unit in units_of([Job("job", action, files, {}, output=output, extension=".mpf")])]
+    return [unit.place for unit in units_of([BatchJob("job", action, files, {}, output=output, extension=".mpf")])]
 
 
 def test_results_lie_as_their_files_do() -> None:
@@ -42,14 +42,14 @@ def test_results_lie_as_their_files_do() -> None:
     ],
 )
 def test_files_whose_results_would_have_one_place_have_none(files: tuple[str, ...], clashing: dict[str, str]) -> None:
-    units = units_of([Job("job", Action.POST, files, {}, extension=".mpf")])
+    units = units_of([BatchJob("job", Action.POST, files, {}, extension=".mpf")])
     assert {unit.file: unit.clash for unit in units} == clashing
 
 
 def test_files_of_which_nothing_is_written_share_no_place() -> None:
-    jobs = [Job(name, Action.VERIFY, ["x.mpf"], {}) for name in ("one", "other")]
+    jobs = [BatchJob(name, Action.VERIFY, ["x.mpf"], {}) for name in ("one", "other")]
     assert [unit.clash for unit in units_of(jobs)] == ["", ""]
-    reported = [Job(name, Action.VERIFY, ["x.mpf"], {}, report="html") for name in ("one", "other")]
+    reported = [BatchJob(name, Action.VERIFY, ["x.mpf"], {}, report="html") for name in ("one", "other")]
     assert [unit.clash for unit in units_of(reported)] == ["x.mpf.verification"] * 2
 
 
@@ -62,7 +62,9 @@ def test_names_that_some_system_does_not_take_are_replaced() -> None:
 
 @given(FILES, FILES)
 def test_places_are_unique_and_safe_on_every_system(one: list[str], other: list[str]) -> None:
-    jobs = [Job(name, Action.POST, files, {}, extension=".mpf") for name, files in (("one", one), ("other", other))]
+    jobs = [
+        BatchJob(name, Action.POST, files, {}, extension=".mpf") for name, files in (("one", one), ("other", other))
+    ]
     units = units_of(jobs)
     folded = [unicodedata.normalize("NFC", unit.place).casefold() for unit in units]
     assert len(set(folded)) == len(units) == len(one) + len(other)
@@ -71,11 +73,11 @@ def test_places_are_unique_and_safe_on_every_system(one: list[str], other: list[
         unit
         for job in jobs
         for file in job.files
-        for unit in units_of([Job(job.name, job.action, [file], {}, extension=".mpf")])
+        for unit in units_of([BatchJob(job.name, job.action, [file], {}, extension=".mpf")])
     ]
     assert {unit.place for unit in units if not unit.clash} <= {unit.place for unit in alone}
     assert {unit.clash for unit in units if unit.clash} <= {unit.place for unit in alone}
-    turned = units_of([Job(job.name, job.action, job.files[::-1], {}, extension=".mpf") for job in jobs])
+    turned = units_of([BatchJob(job.name, job.action, job.files[::-1], {}, extension=".mpf") for job in jobs])
     assert turned == units
 
 

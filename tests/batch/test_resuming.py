@@ -10,7 +10,7 @@ from tests.support.batches import InOrder, Interrupted, StoppingStore, run_simpl
 from tests.support.dask_clusters import needs_dask
 from trunnion.batch.records import FOLDER, Record, record_name
 from trunnion.batch.stores import FolderStore, open_store
-from trunnion.batch.task import Outcome, Status, Task
+from trunnion.batch.worker_task import Outcome, Status, Task
 from trunnion.batch.workers import Assignment
 
 TEXTS = {"a/x.cls": "one", "b/x.cls": "two", "c.cls": "fail", "d.cls": "several parts", "e.cls": "refuse"}

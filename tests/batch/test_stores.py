@@ -10,7 +10,7 @@ import pytest
 
 from tests.support.batches import run_simply, simple_batch, tree, write_files
 from tests.support.dask_clusters import needs_dask
-from trunnion.batch.keys import digest
+from trunnion.batch.result_keys import digest
 from trunnion.batch.stores import FolderStore, Store, open_store
 from trunnion.errors import InputError
 

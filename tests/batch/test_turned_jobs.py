@@ -12,12 +12,12 @@ import trunnion
 from tests.support.batches import InOrder
 from tests.support.locations import YL569
 from trunnion.batch.jobs_file import load_batch
+from trunnion.batch.processing import work
 from trunnion.batch.records import Record
 from trunnion.batch.running import BatchResult, run_jobs
 from trunnion.batch.stores import FolderStore
 from trunnion.batch.summary import write_summary
-from trunnion.batch.task import Outcome, Status, Task
-from trunnion.batch.work import work
+from trunnion.batch.worker_task import Outcome, Status, Task
 from trunnion.batch.workers import Assignment
 from trunnion.cli.batch import result_lines
 

@@ -13,7 +13,7 @@ from tests.support.batch_work import simple_work
 from tests.support.batches import AsTheyCome, run_simply, simple_batch, write_files
 from tests.support.locations import ROOT, YL569
 from trunnion.batch.stores import FolderStore
-from trunnion.batch.task import Outcome, Task
+from trunnion.batch.worker_task import Outcome, Task
 from trunnion.cli import main
 from trunnion.cli.batch import result_lines
 from trunnion.cli.progress import progress_lines

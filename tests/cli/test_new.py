@@ -16,7 +16,7 @@ import trunnion
 from trunnion.cli import main
 from trunnion.controls.loading import with_control
 from trunnion.definitions import Table, load_table
-from trunnion.definitions.marks import marked_values
+from trunnion.definitions.value_marks import marked_values
 from trunnion.machines import Machine, load_machine, shipped_machines
 from trunnion.machines.loading import machine_library
 from trunnion.options.words import SCHEMAS

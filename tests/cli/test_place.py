@@ -11,7 +11,7 @@ import trunnion
 from trunnion.cli import main
 from trunnion.jobs.place.project import placed_setup
 from trunnion.model.clamping import Clamping
-from trunnion.model.clamping_notices import StatedPlace
+from trunnion.model.clamping_notices import HeadNotices
 from trunnion.placing.program_heads import stated_place
 from trunnion.simulation.meshes import TriangleMesh, box_mesh, save_mesh
 
@@ -395,11 +395,11 @@ def test_what_is_converted_from_a_placed_program_says_how_the_part_is_clamped_an
         HUB, machine=source, output=program, turn=30.5, tilt=-10.0, force=True,
         settings={"zero": (1.0, 2.0, -33.25), "tool_length": 100.0},
     )  # fmt: skip
-    assert stated_place(program) == StatedPlace(Clamping(30.5, -10.0), (1.0, 2.0, -33.25), 100.0)
+    assert stated_place(program) == HeadNotices(Clamping(30.5, -10.0), (1.0, 2.0, -33.25), 100.0)
     for machine in FAMILIES:
         other = tmp_path / f"{machine}.nc"
         trunnion.convert(program, machine=source, to_machine=machine, output=other, force=True)
-        assert stated_place(other) == StatedPlace(Clamping(30.5, -10.0))
+        assert stated_place(other) == HeadNotices(Clamping(30.5, -10.0))
         text = other.read_text("utf-8")
         assert text.count("PART TURNED") == text.count("PART TILTED") == 1
         assert "WORKPIECE ZERO X" not in text

@@ -12,7 +12,7 @@ from trunnion.arrays import Floats
 from trunnion.controls import load_control
 from trunnion.machines import load_machine
 from trunnion.model.clamping import Clamping
-from trunnion.model.clamping_notices import StatedPlace, clamped_notices, head_comments, read_place, zero_notices
+from trunnion.model.clamping_notices import HeadNotices, clamped_notices, head_comments, read_place, zero_notices
 
 TILTED = "PART TILTED 20 DEG FIRST, ABOUT ITS X, RIGHT-HANDED, ITS +Y SIDE UP"
 TURNED = "PART TURNED 30 DEG ABOUT Z, COUNTER-CLOCKWISE SEEN FROM ABOVE, FROM +Z"
@@ -27,7 +27,7 @@ angles = st.integers(-360_000, 360_000).map(lambda value: value / 1000.0)
 lengths = st.integers(-9_999_999, 9_999_999).map(lambda value: value / 1000.0)
 
 
-def stated(*texts: str) -> StatedPlace:
+def stated(*texts: str) -> HeadNotices:
     return read_place(list(enumerate(texts, 1)))
 
 
@@ -52,10 +52,10 @@ def test_what_each_control_writes_is_read_again(
 
 
 def test_a_sound_head_is_believed() -> None:
-    assert stated(TILTED, TURNED, ZERO, LENGTH) == StatedPlace(Clamping(30.0, 20.0), (10.0, -5.0, -60.0), 120.0)
-    assert stated(TURNED, TURNED.lower()) == StatedPlace(Clamping(30.0))
-    assert stated(DRAWN) == StatedPlace(Clamping())
-    assert stated("TURNED PART", "OPERATION PART TURNED 30 DEG") == StatedPlace()
+    assert stated(TILTED, TURNED, ZERO, LENGTH) == HeadNotices(Clamping(30.0, 20.0), (10.0, -5.0, -60.0), 120.0)
+    assert stated(TURNED, TURNED.lower()) == HeadNotices(Clamping(30.0))
+    assert stated(DRAWN) == HeadNotices(Clamping())
+    assert stated("TURNED PART", "OPERATION PART TURNED 30 DEG") == HeadNotices()
 
 
 @pytest.mark.parametrize(

@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize  # type: ignore[import-untyped]
 
 from tests.support.examples import examples
-from tests.support.placed_paths import brute_margin, limited_machines, random_rows
+from tests.support.placed_paths import best_turns, brute_margin, limited_machines, random_rows
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, inverse, load_machine
-from trunnion.placing.best_turn import best_of_turn, best_turns
+from trunnion.placing.best_turn import best_of_turn
 from trunnion.placing.largest_margin import largest_margin
 from trunnion.placing.path_rows import PathRows
 from trunnion.placing.region import TOLERANCE, region_of
@@ -126,7 +126,7 @@ def test_the_best_turn_is_the_best_of_all_turns(machine: Machine, seed: int) -> 
     paths = [TurnedPath.of(machine, choice, each, np.zeros(3)) for choice, each in choices_of(rows)]
     grid = np.arange(0.0, 360.0, 60.0)
     assume(all(well_conditioned(path.at(turn)) for path in paths for turn in grid.tolist()))
-    results, best = best_turns(paths, grid, lambda _: None, refine=True)
+    results, best = best_turns(paths, grid, refine=True)
     most = max(result.margin for result in results)
     assert best.margin >= most - 0.01 * max(most, 0.0) - 1e-6  # that much is given up for the rotary axes
     for result in results[:4]:

@@ -17,8 +17,8 @@ from trunnion.machines import Machine, MachineBody, load_machine
 from trunnion.model.rotations import about_x, about_z
 from trunnion.placing.best_turn import Grid, TurnResult
 from trunnion.placing.collisions.best_clearance import Guard, NearestRow, Oriented, farthest_orientations, nearest_at
-from trunnion.placing.collisions.ceilings import Witness
 from trunnion.placing.collisions.clearance import ENOUGH, Clearance
+from trunnion.placing.collisions.distance_planes import Witness
 from trunnion.placing.collisions.guarded_pairs import (
     Changes,
     Guarded,
@@ -28,7 +28,7 @@ from trunnion.placing.collisions.guarded_pairs import (
     guarded_pairs,
     guarded_tool,
 )
-from trunnion.placing.collisions.moments import moments_of
+from trunnion.placing.collisions.path_samples import path_samples
 from trunnion.placing.collisions.search import FarthestSearch
 from trunnion.placing.largest_margin import largest_margin
 from trunnion.placing.path_rows import PathRows
@@ -249,7 +249,7 @@ def on_link(name: str, link: str, mesh: TriangleMesh) -> Guarded:
 def clearance(machine: Machine, rows: PathRows, pair: GuardedPair, near: Floats, turn: float = 0.0) -> Clearance:
     path = TurnedPath.of(machine, next(choices_of(rows))[0], rows, np.zeros(3))
     turned, positions = path.rows_at(turn)
-    moments = moments_of(path.machine, turned, positions, np.zeros(len(rows), np.int64), {})
+    moments = path_samples(path.machine, turned, positions, np.zeros(len(rows), np.int64), {})
     return Clearance(path.machine, moments, [pair], about_z(turn), near)
 
 

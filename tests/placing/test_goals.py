@@ -8,14 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.support.examples import examples
-from tests.support.placed_paths import random_rows
+from tests.support.placed_paths import best_turns, random_rows
 from trunnion.machines import Machine, inverse, load_machine
-from trunnion.placing.best_turn import best_turns
-from trunnion.placing.goals import Goal, PlaceCost, rotary_travel
+from trunnion.placing.goals import Goal, PlaceCost, planned_seconds, rotary_travel
 from trunnion.placing.largest_margin import largest_margin
 from trunnion.placing.least_cost import least_cost
 from trunnion.placing.path_rows import PathRows, Stretch
-from trunnion.placing.planned_time import planned_seconds
 from trunnion.placing.rotary_angles import RotaryAngles, rotary_angles
 from trunnion.placing.travel_limits import CutSet
 from trunnion.placing.turns import Choice, TurnedPath
@@ -141,7 +139,7 @@ def test_the_place_for_time_is_the_fastest_by_the_planner_of_those_it_judges(see
     machine = replace(YL569, axes=axes)
     rows = tilted_rows(seed)
     path = TurnedPath.of(machine, Choice.AS_PLANNED, rows, np.zeros(3))
-    _, best = best_turns([path], np.array([0.0, 120.0]), lambda _: None, refine=False, goal=Goal.TIME)
+    _, best = best_turns([path], np.array([0.0, 120.0]), refine=False, goal=Goal.TIME)
     assert best.best is not None
     assert best.cost is not None
     seconds = planned_seconds(path.machine, *path.rows_at(best.turn), best.best.zero)

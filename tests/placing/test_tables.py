@@ -157,7 +157,7 @@ def test_the_table_is_where_its_definition_says() -> None:
 
 def test_stock_without_a_stated_table_is_a_warning() -> None:
     found = trunnion.place(CONTOUR, machine="dmu65", turns=[0.0], tool_length=100.0, stock=STOCK)
-    assert [problem.code for problem in found.problems] == ["PLC260"]
+    assert [problem.code for problem in found.remarks] == ["PLC260"]
     assert found.fits
 
 

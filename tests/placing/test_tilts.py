@@ -15,7 +15,7 @@ from trunnion.arrays import Floats
 from trunnion.errors import Problem
 from trunnion.machines import Machine, load_machine
 from trunnion.model.clamping import Clamping
-from trunnion.model.clamping_notices import StatedPlace
+from trunnion.model.clamping_notices import HeadNotices
 from trunnion.model.rotations import about_x
 from trunnion.placing.best_turn import Grid, best_of_turn, best_orientations
 from trunnion.placing.path_rows import PathRows
@@ -169,7 +169,7 @@ def test_notices_are_found_again(tmp_path: Path) -> None:
     assert unlike_head(program, 315.0, 30.0) == unlike_head(program, -45.0, 30.0) == []
     assert [problem.code for problem in unlike_head(program, 45.0, 30.0)] == ["PLC220"]
     assert [problem.code for problem in unlike_head(program, 315.0, 0.0)] == ["PLC220"]
-    assert stated_place(program) == StatedPlace(Clamping(315.0, 30.0), (1.0, -2.0, 3.5), 120.25)
+    assert stated_place(program) == HeadNotices(Clamping(315.0, 30.0), (1.0, -2.0, 3.5), 120.25)
 
 
 def test_a_comparison_is_told_the_angles_that_lead_from_the_cl_file_to_the_head(tmp_path: Path) -> None:

@@ -10,11 +10,11 @@ from trunnion.arrays import Codes, Floats
 from trunnion.machines import inverse, load_machine
 from trunnion.model.arc_extremes import ArcPaths
 from trunnion.model.rotations import about_z
-from trunnion.placing.between_rows import most_between
+from trunnion.placing.axis_equations import AxisEquations
 from trunnion.placing.extremes import Extremes
+from trunnion.placing.moving_samples import most_between
 from trunnion.placing.path_rows import Stretch
 from trunnion.placing.rotary_angles import RotaryAngles, rotary_angles
-from trunnion.placing.slide_forms import SlideForms
 from trunnion.placing.travel_limits import CutSet
 from trunnion.placing.turns import Choice, TurnedPath, path_forms
 
@@ -58,10 +58,10 @@ def test_slides_that_swing_while_rotary_axes_turn_count_within_the_bound() -> No
     positions = angles.positions[0] + share * (angles.positions[1] - angles.positions[0])
     line = path_rows(tip[0] + share * (tip[1] - tip[0]), np.tile([0.0, 0.0, 1.0], (20_001, 1)), np.zeros(20_001))
     dense = path_forms(YL569, line, positions)
-    assert isinstance(dense, SlideForms)
+    assert isinstance(dense, AxisEquations)
     exact, _ = Extremes.of(dense, ZERO).at(ZERO)
     sampled = path_forms(YL569, rows, angles.positions)
-    assert isinstance(sampled, SlideForms)
+    assert isinstance(sampled, AxisEquations)
     found, _ = Extremes.of(sampled, ZERO).at(ZERO)
     ends = dense.slides(ZERO)[[0, -1]]
     assert exact[2, 1] > ends[:, 2].max() + 0.5  # it does swing
@@ -70,7 +70,7 @@ def test_slides_that_swing_while_rotary_axes_turn_count_within_the_bound() -> No
     assert np.abs(found - exact).max() <= bound
     # Slides that go straight themselves have their extremes at the ends.
     apart = path_forms(YL569, replace(rows, straight=np.zeros(2, np.bool_)), angles.positions)
-    assert isinstance(apart, SlideForms)
+    assert isinstance(apart, AxisEquations)
     assert len(apart) == 2
     assert most_between(YL569, replace(rows, straight=np.zeros(2, np.bool_)), angles.positions, ZERO) == 0.0
 
@@ -136,7 +136,7 @@ def test_a_turned_path_is_the_path_of_the_turned_part(name: str) -> None:
         angles = rotary_angles(machine, turned)
         assert isinstance(angles, RotaryAngles)
         forms = path_forms(machine, turned, angles.positions)
-        assert isinstance(forms, SlideForms)
+        assert isinstance(forms, AxisEquations)
         whole = Extremes.of(forms, np.zeros(3))
         cuts = path.at(turn)
         assert isinstance(cuts, CutSet)

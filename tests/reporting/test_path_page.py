@@ -9,6 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
+from tests.support.page_columns import decode_column
 from tests.support.reports import Page
 from trunnion.model.toolpath import (
     Arcs,
@@ -20,7 +21,6 @@ from trunnion.model.toolpath import (
     Operation,
     Tool,
 )
-from trunnion.reporting.column_encoding import decode_column
 from trunnion.reporting.path_page import render_path_page
 from trunnion.reporting.path_series import PathSeries, collect_paths
 

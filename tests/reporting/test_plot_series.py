@@ -6,8 +6,9 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 from numpy.typing import NDArray
 
+from tests.support.page_columns import decode_column
 from tests.support.reports import blade, waves
-from trunnion.reporting.column_encoding import decode_column, encode_column
+from trunnion.reporting.column_encoding import encode_column
 from trunnion.reporting.detail_levels import (
     BUCKETS_IN_VIEW,
     MAX_DIRECT_POINTS,

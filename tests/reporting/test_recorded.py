@@ -10,13 +10,13 @@ from playwright.sync_api import Browser
 
 from tests.support.browser import browser as browser
 from tests.support.browser import needs_browser, open_file
+from tests.support.page_columns import decode_column
 from tests.support.recordings import BLADE_FINISH, IMPELLER, blade, impeller, recorded, with_gap
 from trunnion import read_program, verify, write_report
 from trunnion.arrays import Floats
 from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.machines import load_machine
 from trunnion.model.recording import Recording
-from trunnion.reporting.column_encoding import decode_column
 from trunnion.timing import time_run
 
 GAP = (300, 360)

@@ -6,7 +6,7 @@ import pytest
 import trunnion
 from tests.support.stepped_slot import write_slot
 from trunnion.simulation.replay import Replay, changed_box
-from trunnion.simulation.simulator import Job, Simulation
+from trunnion.simulation.simulator import SimulatedProgram, Simulation
 from trunnion.simulation.stock.material import Stock
 
 
@@ -26,31 +26,31 @@ def ends(stock: Stock) -> list[np.ndarray]:
 
 
 def cut_at_once(found: Simulation, rows: int) -> Stock:
-    job = found.jobs[0]
-    return trunnion.simulation.simulate(found.setup, [Job(job.run, job.tools, rows)]).stock
+    job = found.programs[0]
+    return trunnion.simulation.simulate(found.model, [SimulatedProgram(job.run, job.tools, rows)]).stock
 
 
 def test_any_row_in_any_order_is_that_of_a_simulation(found: Simulation) -> None:
-    replay = Replay(found.setup, found.jobs[0])
-    for rows in (120, 7, 120, 75, 0, 151, 149, found.jobs[0].end):
+    replay = Replay(found.model, found.programs[0])
+    for rows in (120, 7, 120, 75, 0, 151, 149, found.programs[0].end):
         assert replay.go_to(rows)
         assert replay.done == rows
         for ours, theirs in zip(ends(replay.stock), ends(cut_at_once(found, rows)), strict=True):
             np.testing.assert_array_equal(ours, theirs)
     assert replay.kept == (0, 50, 100, 150)
     assert replay.go_to(10**9)
-    assert replay.done == found.jobs[0].end
+    assert replay.done == found.programs[0].end
 
 
 def test_the_box_of_what_changes_has_all_of_it_and_little_else(found: Simulation) -> None:
-    replay = Replay(found.setup, found.jobs[0])
+    replay = Replay(found.model, found.programs[0])
     replay.go_to(60)
     before = replay.state()
     assert changed_box(before, replay.state()) is None
     replay.go_to(70)
     box = changed_box(before, replay.state())
     assert box is not None
-    tips = found.jobs[0].run.tip[59:70]
+    tips = found.programs[0].run.tip[59:70]
     # A mill of 10 mm, 5 mm deep in stock that is 0 high; rays are half a cell from what they stand for.
     np.testing.assert_array_less(tips.min(axis=0) - np.array([5.0, 5.0, 1e-6]), box[0])
     np.testing.assert_array_less(box[1], tips.max(axis=0) + np.array([5.0, 5.0, 5.0]))
@@ -61,7 +61,7 @@ def test_the_box_of_what_changes_has_all_of_it_and_little_else(found: Simulation
 
 
 def test_states_stay_within_their_bound(found: Simulation) -> None:
-    replay = Replay(found.setup, found.jobs[0], bound=1)
+    replay = Replay(found.model, found.programs[0], bound=1)
     replay.go_to(160)
     assert len(replay.kept) <= 2
     replay.go_to(140)
@@ -71,7 +71,7 @@ def test_states_stay_within_their_bound(found: Simulation) -> None:
 
 def test_what_nobody_wants_any_more_is_left(found: Simulation) -> None:
     asked: list[int] = []
-    replay = Replay(found.setup, found.jobs[0])
+    replay = Replay(found.model, found.programs[0])
 
     def go_on() -> bool:
         asked.append(replay.done)
@@ -83,7 +83,7 @@ def test_what_nobody_wants_any_more_is_left(found: Simulation) -> None:
 
 
 def test_the_finished_stock_needs_no_cutting(found: Simulation) -> None:
-    replay = Replay(found.setup, found.jobs[0], found.stock)
-    assert replay.go_to(found.jobs[0].end, lambda: False)
+    replay = Replay(found.model, found.programs[0], found.stock)
+    assert replay.go_to(found.programs[0].end, lambda: False)
     for ours, theirs in zip(ends(replay.stock), ends(found.stock), strict=True):
         np.testing.assert_array_equal(ours, theirs)

@@ -22,7 +22,7 @@ from trunnion.simulation.cutting import shares as shares_module
 from trunnion.simulation.cutting import sweeps
 from trunnion.simulation.cutting.shares import DamagedShareError, JoinedShares, Share, tiles_of
 from trunnion.simulation.cutting.stretch_kernel import MET_IDLE, REMOVED
-from trunnion.simulation.simulator import Job, cut_share, simulate
+from trunnion.simulation.simulator import SimulatedProgram, cut_share, simulate
 from trunnion.simulation.stock import material
 from trunnion.simulation.stock.deviation import missing_from
 from trunnion.simulation.stock.lattice import Lattice
@@ -48,12 +48,12 @@ def test_the_simulation_that_is_divided_here_has_everything(
     assert [each.tool for each in found.operations] == ["1", "2", "1"]
     cut = found.simulation
     assert Counter(tile.bundle for tile in cut.stock.tiles) == {0: 3, 1: 3, 2: 9}
-    shape, lattice = cut.setup.part, cut.stock.lattice
+    shape, lattice = cut.model.part, cut.stock.lattice
     assert shape is not None
-    start = make_stock(cut.setup.stock, cut.setup.cell)
+    start = make_stock(cut.model.stock, cut.model.cell)
     whole = missing_from(
         cut.stock, (start.spans(0), start.spans(1), start.spans(2)),
-        (shape.spans(lattice, 0), shape.spans(lattice, 1), shape.spans(lattice, 2)), cut.setup.limit,
+        (shape.spans(lattice, 0), shape.spans(lattice, 1), shape.spans(lattice, 2)), cut.model.limit,
     )[1].whole  # fmt: skip
     assert whole is not None  # a wall that is gone, of which the rows that took it are found by cutting it again
 
@@ -122,9 +122,9 @@ def test_any_program_in_any_number_of_shares_gives_what_one_process_gives(
     cut = found.simulation
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sweeps, "CHUNK_ROWS", chunk)
-        whole = simulate(cut.setup, cut.jobs)
-        parts = [cut_share(cut.setup, cut.jobs, Share(k, count), threads=1) for k in range(count)]
-        again = simulate(cut.setup, cut.jobs, shares=JoinedShares(parts))
+        whole = simulate(cut.model, cut.programs)
+        parts = [cut_share(cut.model, cut.programs, Share(k, count), threads=1) for k in range(count)]
+        again = simulate(cut.model, cut.programs, shares=JoinedShares(parts))
     for name in ("left", "gouge", "lacking"):
         assert getattr(again, name) == getattr(whole, name)
     assert again.stock.volume == whole.stock.volume
@@ -169,10 +169,10 @@ def _tampered(share: bytes, at: float, value: int) -> bytes:
 @given(at=st.floats(0.0, 1.0), value=st.integers(1, 255), cuts=st.booleans())
 def test_a_damaged_share_is_told_or_harmless(small: Any, at: float, value: int, cuts: bool) -> None:
     cut = small(HEAD + "G1 X-5 Y3 Z-3 F500\nG1 X8\nG0 Y-9\nM30\n").simulation
-    parts = [cut_share(cut.setup, cut.jobs, Share(k, 2), threads=1) for k in range(2)]
+    parts = [cut_share(cut.model, cut.programs, Share(k, 2), threads=1) for k in range(2)]
     parts[1] = parts[1][: int(at * (len(parts[1]) - 1))] if cuts else _tampered(parts[1], at, value)
     try:
-        again = simulate(cut.setup, cut.jobs, shares=JoinedShares(parts))
+        again = simulate(cut.model, cut.programs, shares=JoinedShares(parts))
     except DamagedShareError:
         return
     assert not cuts
@@ -183,15 +183,15 @@ def test_a_damaged_share_is_told_or_harmless(small: Any, at: float, value: int, 
 def test_shares_of_another_simulation_are_refused(small: Any) -> None:
     cut = small(HEAD + "G1 X-5 Y3 Z-3 F500\nG1 X8\nM30\n").simulation
     other = small(HEAD + "G1 X-5 Y3 Z-3 F500\nG1 X8\nT2 M6\nG43 H2\nG1 X0 Z-1\nM30\n").simulation
-    parts = [cut_share(cut.setup, cut.jobs, Share(k, 2), threads=1) for k in range(2)]
+    parts = [cut_share(cut.model, cut.programs, Share(k, 2), threads=1) for k in range(2)]
     for wrong in (parts[:1], [parts[0], b""], [parts[0], parts[0]]):
         with pytest.raises(DamagedShareError):
-            simulate(cut.setup, cut.jobs, shares=JoinedShares(wrong))
+            simulate(cut.model, cut.programs, shares=JoinedShares(wrong))
     with pytest.raises(DamagedShareError):
-        simulate(other.setup, other.jobs, shares=JoinedShares(parts))
-    shorter = [Job(job.run, job.tools, job.end - 1) for job in cut.jobs]
+        simulate(other.model, other.programs, shares=JoinedShares(parts))
+    shorter = [SimulatedProgram(job.run, job.tools, job.end - 1) for job in cut.programs]
     with pytest.raises(DamagedShareError):
-        simulate(cut.setup, shorter, shares=JoinedShares(parts))
+        simulate(cut.model, shorter, shares=JoinedShares(parts))
 
 
 def test_what_no_tile_knows_alone_is_not_divided(rich: tuple[Path, Given, trunnion.SimulationResult]) -> None:

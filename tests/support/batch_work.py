@@ -13,8 +13,8 @@ import signal
 import time
 from pathlib import Path
 
-from trunnion.batch.sealing import BrokenSealError, unsealed_all
-from trunnion.batch.task import SHARE_FILE, Outcome, Status, Task
+from trunnion.batch.share_seals import BrokenSealError, unsealed_all
+from trunnion.batch.worker_task import SHARE_FILE, Outcome, Status, Task
 from trunnion.batch.workers import damaged
 from trunnion.errors import Problem
 

@@ -9,11 +9,11 @@ from random import Random
 from types import TracebackType
 
 from tests.support.batch_work import simple_work
-from trunnion.batch.jobs import Batch, Job
+from trunnion.batch.jobs import Batch, BatchJob
 from trunnion.batch.records import FOLDER, Record
 from trunnion.batch.running import BatchResult, run_jobs
 from trunnion.batch.stores import FolderStore, Store
-from trunnion.batch.task import Action, Outcome, Task
+from trunnion.batch.worker_task import Action, Outcome, Task
 from trunnion.batch.workers import Assignment
 from trunnion.jobs.observer import SILENT, Observer
 
@@ -102,7 +102,7 @@ def write_files(folder: Path, texts: dict[str, str]) -> None:
 def simple_batch(folder: Path) -> Batch:
     """All files ``.cls`` in a folder; nothing is asked of a machine."""
     files = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*.cls"))
-    return Batch(folder, [Job("job", Action.POST, files, {"machine": "yl569"}, extension=".mpf")])
+    return Batch(folder, [BatchJob("job", Action.POST, files, {"machine": "yl569"}, extension=".mpf")])
 
 
 def divided_batch(folder: Path, tiles: int) -> Batch:

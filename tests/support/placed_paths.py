@@ -1,5 +1,6 @@
 """Machines with limits and paths to place, and a slow way to judge a place that shares nothing with placing."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +9,10 @@ from hypothesis import strategies as st
 from tests.support.machine_strategies import machines
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, inverse
+from trunnion.placing.best_turn import Grid, TurnResult, best_orientations
+from trunnion.placing.goals import Goal
 from trunnion.placing.path_rows import PathRows, Stretch, no_arcs
+from trunnion.placing.turns import TurnedPath
 
 #: Tool axes of a path lean as much to each side of a middle one, so that few machines fail to reach some.
 _LEAN = 0.35
@@ -89,3 +93,10 @@ def brute_margin(machine: Machine, rows: PathRows, turn: float, zero: Floats) ->
         axis = machine.axes[column]
         least = min(least, joints[:, column].min() - axis.low, axis.high - joints[:, column].max())
     return float(least)
+
+
+def best_turns(
+    paths: Sequence[TurnedPath], turns: Floats, *, refine: bool, goal: Goal = Goal.MARGIN
+) -> tuple[list[TurnResult], TurnResult]:
+    """What each turn (k,) allows, in their order and refined about the best; and the best of all."""
+    return best_orientations(lambda _: paths, Grid(turns, refines_turns=refine), lambda _: None, goal=goal)

@@ -80,7 +80,7 @@ def test_what_changes_makes_the_same_bricks_as_the_whole(tmp_path: Path) -> None
     steps = "".join(f"G1 X{25 + 1.5 * k:.2f} Y{(-1) ** k * 0.4 * k:.2f} Z{-3 + 0.05 * k:.2f}\n" for k in range(25))
     program.write_text(program.read_text().replace("N80 G1 X70\n", steps), encoding="utf-8")
     found = trunnion.simulate(program, **{**given, "part": None, "cell": 0.3}).simulation
-    replay = Replay(found.setup, found.jobs[0])
+    replay = Replay(found.model, found.programs[0])
     lattice, frames = replay.stock.lattice, list[BrickFrame]()
     tiles: tuple[Tile, ...] = ()
     for rows in (3, 4, 8, 9, 16, 20, 12, 29):

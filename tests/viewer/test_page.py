@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from tests.support.locations import GOLDEN
+from tests.support.page_columns import decode_column
 from trunnion import InputError, read_program, write_view
 from trunnion.jobs.view.viewing import prepare_view
-from trunnion.reporting.column_encoding import decode_column
 from trunnion.viewer.motion import COUNT
 from trunnion.viewer.page import MODULES, render_view
 

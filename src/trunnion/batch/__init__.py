@@ -8,13 +8,13 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
+    from trunnion.batch.batch_run import run_batch as run_batch
     from trunnion.batch.cluster import Tls as Tls
-    from trunnion.batch.front import run_batch as run_batch
     from trunnion.batch.running import BatchResult as BatchResult
-    from trunnion.batch.task import Status as Status
+    from trunnion.batch.worker_task import Status as Status
 
 #: Public name -> its module.
-_MODULES: Final = {"BatchResult": "running", "Status": "task", "Tls": "cluster", "run_batch": "front"}
+_MODULES: Final = {"BatchResult": "running", "Status": "worker_task", "Tls": "cluster", "run_batch": "batch_run"}
 
 __all__ = ["BatchResult", "Status", "Tls", "run_batch"]
 

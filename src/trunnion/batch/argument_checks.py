@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from trunnion.batch.patterns import pattern_fault
-from trunnion.batch.task import Action
+from trunnion.batch.worker_task import Action
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.convert.converting import check_conversion_settings
 from trunnion.jobs.inputs.arguments import check_whole

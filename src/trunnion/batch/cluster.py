@@ -16,11 +16,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
-from trunnion.batch.dividing import keep_share
-from trunnion.batch.keys import digest
+from trunnion.batch.divided_files import keep_share
 from trunnion.batch.records import Record, settle
+from trunnion.batch.result_keys import digest
 from trunnion.batch.stores import Kept, Store, open_store
-from trunnion.batch.task import OtherVersionError, Outcome, Status, Task
+from trunnion.batch.worker_task import OtherVersionError, Outcome, Status, Task
 from trunnion.batch.workers import Assignment, died
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.extras import import_extra

@@ -1,7 +1,7 @@
 """The jobs of a batch: which files, and what is done with each.
 
 In:     a file of jobs (``jobs_file.py``) or a folder.
-Out:    a ``Batch`` of ``Job`` records, and its ``Unit`` records, one for each file, in order.
+Out:    a ``Batch`` of ``BatchJob`` records, and its ``Unit`` records, one for each file, in order.
 """
 
 import os
@@ -12,11 +12,11 @@ from pathlib import Path, PurePosixPath
 from typing import Any, Final, NamedTuple
 
 from trunnion.batch.argument_checks import beside_fault, check_simulation, check_tiles, check_to_cl
-from trunnion.batch.keys import home_of
-from trunnion.batch.left_out import left_out
 from trunnion.batch.patterns import matches
 from trunnion.batch.records import FOLDER
-from trunnion.batch.task import DEFINITIONS, FILES, Action
+from trunnion.batch.result_keys import home_of
+from trunnion.batch.unmatched_patterns import unmatched
+from trunnion.batch.worker_task import DEFINITIONS, FILES, Action
 from trunnion.controls import load_control
 from trunnion.definitions.extends import is_within
 from trunnion.dialect_names import WRITTEN_DIALECTS
@@ -39,7 +39,7 @@ NOTED: Final = {Action.VERIFY: ".verification", Action.SIMULATE: ".simulation"}
 
 
 @dataclass(frozen=True, slots=True)
-class Job:
+class BatchJob:
     """Files with which the same is done.
 
     files      names beside the jobs, in order
@@ -79,7 +79,7 @@ class Batch:
     """
 
     folder: Path
-    jobs: Sequence[Job]
+    jobs: Sequence[BatchJob]
     results: Path | None = None
     home: str = ""
     is_whole: bool = False
@@ -165,11 +165,11 @@ def folder_batch(
     ]  # fmt: skip
     if not files:
         what = f"has no files that match {', '.join(patterns)}" if patterns else f"has no files {', '.join(sought)}"
-        reasons = (left_out(folder, each, results) for each in patterns or [f"**/*{each}" for each in sought])
+        reasons = (unmatched(folder, each, results) for each in patterns or [f"**/*{each}" for each in sought])
         what += next((f"; {why}" for why in reasons if why), "")
         cure = "name them by a pattern of files, such as '**/*.nc'"
         raise InputError(Problem(str(folder), 0, what, cure, code="BAT120"))
-    job = Job(str(action), action, files, said, shared, beside, "", extensions.written, report, tiles)
+    job = BatchJob(str(action), action, files, said, shared, beside, "", extensions.written, report, tiles)
     return Batch(folder, [job], home=home_of(folder))
 
 

@@ -10,11 +10,11 @@ from pathlib import Path, PurePosixPath
 from typing import Any, Final, TypeAlias
 
 from trunnion.batch.argument_checks import MOST_TILES, beside_fault
-from trunnion.batch.jobs import Batch, Job, folder_files, judged
-from trunnion.batch.keys import home_of
-from trunnion.batch.left_out import left_out
+from trunnion.batch.jobs import Batch, BatchJob, folder_files, judged
 from trunnion.batch.patterns import matches, pattern_fault
-from trunnion.batch.task import Action
+from trunnion.batch.result_keys import home_of
+from trunnion.batch.unmatched_patterns import unmatched
+from trunnion.batch.worker_task import Action
 from trunnion.cl import DIALECTS
 from trunnion.cl.writers import WRITERS
 from trunnion.definitions import Table, load_table
@@ -189,7 +189,7 @@ def read_batch_table(root: Table, path: Path) -> Batch:
         own = []
     found = folder_files(path.parent, results) if path.parent.is_dir() else []
     found = [name for name in found if name != path.name]
-    jobs: list[Job] = []
+    jobs: list[BatchJob] = []
     for number, table in enumerate(own, 1):
         action = _action(table, default_action)
         stated = _values(tables, table)
@@ -227,7 +227,7 @@ def _with_place_settings(table: Table, values: Mapping[str, Any]) -> dict[str, A
 
 def _judged(
     table: Table, name: str, action: Action, inputs: list[str], values: dict[str, Any], output: str, folder: Path
-) -> list[Job]:
+) -> list[BatchJob]:
     """The job of a table, if its arguments can be used; else its problems are told where the table states them."""
     if table.problems:
         return []
@@ -253,7 +253,7 @@ def _judged(
             else:
                 table.problems.append(each)
         return []
-    return [Job(name, action, inputs, said, shared, beside, output, extensions.written, report, tiles)]
+    return [BatchJob(name, action, inputs, said, shared, beside, output, extensions.written, report, tiles)]
 
 
 def _action(table: Table, default: Action) -> Action:
@@ -315,7 +315,7 @@ def _inputs(table: Table, names: Collection[str], path: Path, results: Path) -> 
             continue
         matched = [name for name in names if matches(name, pattern)]
         if not matched:
-            why = left_out(path.parent, pattern, results)
+            why = unmatched(path.parent, pattern, results)
             if not why and matches(path.name, pattern):
                 why = f"{path.name} is the file of jobs itself"
             what = f'"{pattern[:100]}" matches no file' + (f"; {why}" if why else "")

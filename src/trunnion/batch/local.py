@@ -17,7 +17,7 @@ from multiprocessing.process import BaseProcess
 from tempfile import TemporaryDirectory
 from typing import Any, Final
 
-from trunnion.batch.task import Costs, Outcome, Status, Task
+from trunnion.batch.worker_task import Costs, Outcome, Status, Task
 from trunnion.batch.workers import Assignment, died, timed_out
 from trunnion.errors import InputError, Problem
 from trunnion.files.interrupts import children_without_interrupts

@@ -11,9 +11,9 @@ from collections.abc import Callable, Sequence
 from pathlib import PurePosixPath
 from typing import Final
 
-from trunnion.batch.jobs import NOTED, Job, Unit
-from trunnion.batch.keys import digest
-from trunnion.batch.task import Action
+from trunnion.batch.jobs import NOTED, BatchJob, Unit
+from trunnion.batch.result_keys import digest
+from trunnion.batch.worker_task import Action
 from trunnion.errors import InputError, Problem
 from trunnion.files import name_fault
 
@@ -27,7 +27,7 @@ _LONGEST_EXTENSION: Final = 16
 _PACKED: Final = frozenset({".gz", ".bz2"})
 
 
-def units_of(jobs: Sequence[Job]) -> list[Unit]:
+def units_of(jobs: Sequence[BatchJob]) -> list[Unit]:
     """The files of all jobs with the places of their results, in the order of these.
 
     Files whose results would have one place get another one, by which they are known but at which nothing is written
@@ -51,7 +51,7 @@ def units_of(jobs: Sequence[Job]) -> list[Unit]:
     return sorted(Unit(places[k], number, file, clashes[k]) for k, (number, file) in enumerate(files))
 
 
-def _writes(job: Job) -> bool:
+def _writes(job: BatchJob) -> bool:
     return bool(job.report) or job.action not in NOTED
 
 
@@ -72,12 +72,12 @@ def _folded(place: str) -> str:
     return unicodedata.normalize("NFC", place).casefold()
 
 
-def _place(job: Job, file: str) -> str:
+def _place(job: BatchJob, file: str) -> str:
     name = PurePosixPath(file).name
     return _named(job, file, lambda: _stem(name) if job.action in (Action.POST, Action.CONVERT) else name)
 
 
-def _with_checksum(job: Job, file: str) -> str:
+def _with_checksum(job: BatchJob, file: str) -> str:
     return _named(job, file, lambda: f"{PurePosixPath(file).name}-{digest(f'{job.name}/{file}'.encode())[:16]}")
 
 
@@ -86,7 +86,7 @@ def _stem(name: str) -> str:
     return PurePosixPath(path.stem).stem if path.suffix.lower() in _PACKED else path.stem
 
 
-def _named(job: Job, file: str, stem: Callable[[], str]) -> str:
+def _named(job: BatchJob, file: str, stem: Callable[[], str]) -> str:
     ending = NOTED.get(job.action, job.extension)
     folders = PurePosixPath(file).parent.parts
     parts = [*PurePosixPath(job.output).parts, *map(_safe, folders), _safe(stem() + ending)]

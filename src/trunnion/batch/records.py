@@ -13,9 +13,9 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import PurePosixPath
 from typing import Annotated, Any, Final
 
-from trunnion.batch.keys import digest
+from trunnion.batch.result_keys import digest
 from trunnion.batch.stores import Store, TakenError
-from trunnion.batch.task import NO_COSTS, Costs, Outcome, Status
+from trunnion.batch.worker_task import NO_COSTS, Costs, Outcome, Status
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.results import Figure
 

@@ -9,11 +9,12 @@ from operator import attrgetter
 from pathlib import Path, PurePosixPath
 from typing import Annotated, Any, ClassVar, Final
 
-from trunnion.batch.dividing import Divisions
-from trunnion.batch.jobs import Batch, Job, Unit
-from trunnion.batch.keys import digest, key_of, program_version
+from trunnion.batch.divided_files import Divisions
+from trunnion.batch.jobs import Batch, BatchJob, Unit
 from trunnion.batch.local import LocalWorkers
+from trunnion.batch.obsolete_results import remove_obsolete, remove_obsolete_shares
 from trunnion.batch.places import units_of
+from trunnion.batch.processing import work
 from trunnion.batch.records import (
     Record,
     check_store,
@@ -23,11 +24,10 @@ from trunnion.batch.records import (
     record_name,
     settle,
 )
-from trunnion.batch.stale import remove_stale, remove_stale_shares
+from trunnion.batch.result_keys import digest, key_of, program_version
 from trunnion.batch.stores import Store
-from trunnion.batch.task import FILES, Outcome, Status, Task
-from trunnion.batch.warned import Warned, WarningTally
-from trunnion.batch.work import work
+from trunnion.batch.warning_counts import CountedWarning, WarningCounter
+from trunnion.batch.worker_task import FILES, Outcome, Status, Task
 from trunnion.batch.workers import Assignment, Workers
 from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem
@@ -62,7 +62,7 @@ class BatchResult:
     failed: Annotated[Sequence[int], NOT_DATA] = field(repr=False)
     jobs: Annotated[Sequence[str], NOT_DATA] = ()
     new: Annotated[Sequence[int], NOT_DATA] = field(default=(), repr=False)
-    warned: Annotated[Sequence[Warned], NOT_DATA] = ()
+    warned: Annotated[Sequence[CountedWarning], NOT_DATA] = ()
 
     @property
     @Figure(after=FIRST)
@@ -111,8 +111,8 @@ def run_jobs(
     """
     units = units_of(batch.jobs)
     check_store(store)
-    remove_stale(batch, units, store, observer)
-    remove_stale_shares(batch, units, store, observer)
+    remove_obsolete(batch, units, store, observer)
+    remove_obsolete_shares(batch, units, store, observer)
     steps = [batch.jobs[unit.job].tasks for unit in units]
     is_divided, new = sum(steps) > len(units), list[int]()
     with observer.progress("batch", sum(steps), "tasks" if is_divided else "files") as advance:
@@ -145,7 +145,7 @@ class _Tally:
     def __init__(self, steps: Sequence[int], advance: Callable[[int], None]) -> None:
         self.counts = Counter[Status]()
         self.failed: list[int] = []
-        self.warnings = WarningTally()
+        self.warnings = WarningCounter()
         self._left = list(steps)
         self._advance = advance
 
@@ -227,7 +227,7 @@ class _Pending:
             self._store.write(record_name(record.place), record_bytes(renamed))
 
 
-def task_of(folder: Path, job: Job, unit: Unit, shared: Mapping[str, bytes]) -> Task:
+def task_of(folder: Path, job: BatchJob, unit: Unit, shared: Mapping[str, bytes]) -> Task:
     """The task of a unit, with the content of its files as it is now; what goes with it and is missing is left out.
 
     Raises

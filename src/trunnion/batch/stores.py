@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import Any, Final, Protocol
 
-from trunnion.batch.keys import digest
+from trunnion.batch.result_keys import digest
 from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Final, Protocol
 
 from trunnion.batch.records import Record
-from trunnion.batch.task import DEFINITIONS, FILES, Outcome, Task
+from trunnion.batch.worker_task import DEFINITIONS, FILES, Outcome, Task
 from trunnion.errors import Problem
 from trunnion.wording import format_duration
 

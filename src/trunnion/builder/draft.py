@@ -15,8 +15,8 @@ from trunnion.builder.fields import PAGES, Field, SettingNotes, fields_of, named
 from trunnion.controls import load_control
 from trunnion.controls.loading import with_control
 from trunnion.definitions import LocatedValue, Table, load_draft
-from trunnion.definitions.marks import marked_values
 from trunnion.definitions.toml_text import written
+from trunnion.definitions.value_marks import marked_values
 from trunnion.errors import InputError, Problem
 from trunnion.jobs.describe.controls import describe_settings
 from trunnion.jobs.describe.definition_checks import machine_problems

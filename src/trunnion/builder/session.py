@@ -28,7 +28,7 @@ from trunnion.builder.draft import Draft, draft_data, inherited_value, judge
 from trunnion.builder.sample import sample_data
 from trunnion.builder.saved_file import check_place, file_text, is_file_name, page_text, read_raw
 from trunnion.controls.loading import shipped_controls
-from trunnion.definitions.marks import without_mark
+from trunnion.definitions.value_marks import without_mark
 from trunnion.errors import InputError
 from trunnion.files import atomic_file
 from trunnion.machines import load_machine, shipped_machines

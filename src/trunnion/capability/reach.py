@@ -33,8 +33,8 @@ class TiltReach:
     tilt       degrees
     branches   how many rotary positions give the tool axis at each azimuth, from 0 degrees on; one azimuth where the
                tool axis is Z itself, up or down
-    one_pose   least and greatest volume of the tips of one rotary position, mm^3, exact; None: no slide limits
-    some       volume of the points reached at some azimuth, mm^3; None: no slide limits
+    one_pose   least and greatest volume of the tips of one rotary position, mm^3, exact; None: no linear axis limits
+    some       volume of the points reached at some azimuth, mm^3; None: no linear axis limits
     every      volume of the points reached at every azimuth
     between    how far points of one rotary position go half-way to the next azimuth, at most, mm: bounds allow for it
     """
@@ -83,11 +83,16 @@ class Reach:
 
     @property
     @Figure("slides_not_judged", after="sphere_share")
-    def unjudged_slides(self) -> tuple[str, ...]:
-        """Names of the slides that part and paths are not held against: limits or places are not known."""
+    def unjudged_axes(self) -> tuple[str, ...]:
+        """Names of the linear axes that part and paths are not held against: limits or places are not known."""
         machine = self.machine
         judged = [k for k in machine.linear if machine.is_placed(k) and machine.axes[k].has_limits]
         return tuple(machine.names[k] for k in machine.linear if k not in judged)
+
+    @property
+    def unjudged_slides(self) -> tuple[str, ...]:
+        """The name of ``unjudged_axes`` before, which goes with the next version."""
+        return self.unjudged_axes
 
 
 def tilts_between(step: float) -> list[float]:
@@ -157,7 +162,7 @@ def _between(poses: AxisPoses, bodies: PoseBodies) -> Floats:
 
 
 def _has_travel(machine: Machine) -> bool:
-    """Whether all slides have limits."""
+    """Whether all linear axes have limits."""
     return bool(np.isfinite(machine.limits[list(machine.linear)]).all())
 
 

@@ -23,7 +23,7 @@ from trunnion.results import NOT_DATA, BlockNumber, Figure
 
 
 @dataclass(frozen=True, slots=True)
-class ProgramPlace:
+class BlockPlace:
     """The block of a motion: ``line`` of ``file`` from 1, ``block`` its N number, -1 where it has none."""
 
     file: str
@@ -42,7 +42,7 @@ class ErrorExtent:
 
     largest: Annotated[float, Figure(unit="mm", decimals=9)]
     rms: Annotated[float, Figure(unit="mm", decimals=9)]
-    place: Annotated[ProgramPlace, Figure(is_flat=True)]
+    place: Annotated[BlockPlace, Figure(is_flat=True)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,5 +193,5 @@ class _Extent:
 
     def result(self, run: Run, count: int) -> ErrorExtent:
         row = self._row
-        place = ProgramPlace(run.files[run.state.file[row]], int(run.lines[row]), int(run.block_numbers[row]))
+        place = BlockPlace(run.files[run.state.file[row]], int(run.lines[row]), int(run.block_numbers[row]))
         return ErrorExtent(math.sqrt(max(self._largest, 0.0)), math.sqrt(self._squares / count), place)

@@ -7,11 +7,11 @@ from itertools import islice
 from pathlib import Path
 from typing import Final
 
+from trunnion.batch.batch_run import run_batch
 from trunnion.batch.cluster import Tls
-from trunnion.batch.front import run_batch
 from trunnion.batch.records import Record
 from trunnion.batch.running import BatchResult
-from trunnion.batch.task import Status
+from trunnion.batch.worker_task import Status
 from trunnion.cli.progress import progress, progress_lines
 from trunnion.cli.results import show, tell
 from trunnion.cli.terminal import Terminal

@@ -5,7 +5,7 @@ from pathlib import Path
 from trunnion.builder.likeness import definition_like
 from trunnion.builder.saved_file import is_file_name
 from trunnion.cli.results import print_result, show
-from trunnion.definitions.marks import marked_values
+from trunnion.definitions.value_marks import marked_values
 from trunnion.errors import InputError, Problem
 from trunnion.files import atomic_file
 from trunnion.jobs.job import Given

@@ -18,7 +18,7 @@ from trunnion.jobs.place.inputs import toolpaths_to_post
 from trunnion.jobs.place.placing import place
 from trunnion.jobs.place.posting import post_placed
 from trunnion.model.clamping import are_one_angle, number
-from trunnion.placing.placement import AxisUse, Limit, Place, Placement, RotaryUse, TurnMargin
+from trunnion.placing.placement import AxisUse, Limit, PartPlace, Placement, RotaryUse, TurnMargin
 from trunnion.placing.program_use import ProgramUse, other_positions
 from trunnion.placing.table_limits import KEPT
 from trunnion.wording import counted, format_duration
@@ -158,7 +158,7 @@ def placement_lines(found: Placement) -> Iterator[str]:
             yield f"  and not beyond {_ends(found.region.low, found.region.high)}, where not every place fits"
 
 
-def _table(found: Placement, best: Place) -> Iterator[str]:
+def _table(found: Placement, best: PartPlace) -> Iterator[str]:
     """Which table the part stands on, and how far from its edge; or that nothing keeps it there."""
     table = found.table
     if table is None:
@@ -172,25 +172,25 @@ def _table(found: Placement, best: Place) -> Iterator[str]:
         yield f"the zero is beyond the table, {named}: give stock or part to keep them on it"
 
 
-def _held(found: Placement, best: Place) -> str:
+def _held(found: Placement, best: PartPlace) -> str:
     """What the limits that are told do."""
     if not best.fits:
         return "these conflict:"
     return "it is held by" if found.goal == "margin" else f"nearest limit{'s' if len(found.limits) > 1 else ''}:"
 
 
-def _beyond_table(place: Place) -> str:
+def _beyond_table(place: PartPlace) -> str:
     beyond = 0.0 if place.table_mm is None else -place.table_mm
     return f" ({beyond:.3f} mm beyond the table)" if beyond > KEPT else ""
 
 
-def _where(best: Place, place: Place | None = None) -> str:
+def _where(best: PartPlace, place: PartPlace | None = None) -> str:
     """How the part is clamped at a place, by default the best: where that is not how it is now."""
     is_turned = not (are_one_angle(best.turn_deg, 0.0) and are_one_angle(best.tilt_deg, 0.0))
     return f", {_clamped(place or best)}{'' if place else ','}" if is_turned else ""
 
 
-def _clamped(place: Place | TurnMargin) -> str:
+def _clamped(place: PartPlace | TurnMargin) -> str:
     tilted = f"tilted {number(place.tilt_deg)} degrees about X, then " if place.tilt_deg else ""
     return f"{tilted}turned {number(_once(place.turn_deg))} degrees"
 
@@ -262,7 +262,7 @@ def _rotary_use(axis: RotaryUse) -> str:
     return f"{text} of {axis.low_deg:g} to {axis.high_deg:g}: {max(axis.margin_deg, 0.0):.3f} left"
 
 
-def _point(place: Place) -> str:
+def _point(place: PartPlace) -> str:
     return ",".join(f"{value:.3f}" for value in place.zero_mm)
 
 
@@ -274,7 +274,7 @@ def _overlap(found: Placement) -> str:
     return f"; {found.limits[0].axis} needs {-2.0 * found.best.margin_mm:.3f} mm more travel"
 
 
-def _value(goal: str, place: Place) -> str:
+def _value(goal: str, place: PartPlace) -> str:
     """The value of a goal in words."""
     what = {
         "rotary": "the rotary axes turn",
@@ -285,7 +285,7 @@ def _value(goal: str, place: Place) -> str:
     return f"{what[goal]} {_goal_number(goal, place)}"
 
 
-def _goal_number(goal: str, place: Place) -> str:
+def _goal_number(goal: str, place: PartPlace) -> str:
     value = place.value or 0.0
     if goal == "time":
         planned = value if place.planned_s is None else place.planned_s

@@ -17,7 +17,7 @@ from trunnion.jobs.job import Given
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.post.posting import post_beside
 from trunnion.jobs.post.result import PostResult
-from trunnion.jobs.targets import PAPERS, paper_files
+from trunnion.jobs.result_output import PAPERS, paper_files
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Toolpath
 from trunnion.wording import counted

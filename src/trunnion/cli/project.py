@@ -7,7 +7,7 @@ from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
 from trunnion.files import check_outputs
 from trunnion.jobs.job import Given
-from trunnion.jobs.post_project.dividing import programs_of_operations
+from trunnion.jobs.post_project.operation_programs import programs_of_operations
 from trunnion.jobs.post_project.posting import ProjectResult, post_project
 from trunnion.jobs.project.file import load_project, project_inputs
 from trunnion.jobs.project.project import Division, Project

@@ -92,7 +92,7 @@ def _ranges(tilts: list[float], step: float) -> str:
 
 def _not_judged(found: Reach) -> str:
     """What is not known of slides, in words, with what to give; empty where all are judged."""
-    slides, machine = found.unjudged_slides, found.machine
+    slides, machine = found.unjudged_axes, found.machine
     if not slides:
         return ""
     free = [k for k in machine.linear if not machine.axes[k].has_limits]
@@ -142,6 +142,6 @@ def _path_line(path: PathReach, found: Reach) -> str:
     if path.no_travel:
         faults.append(f"{counted(path.no_travel, 'point')} beyond the travel, first in line {path.no_travel_line}")
     unknown = _not_judged(found)
-    fine = "every tool axis can be had" if len(found.unjudged_slides) == len(found.machine.linear) else "all reached"
+    fine = "every tool axis can be had" if len(found.unjudged_axes) == len(found.machine.linear) else "all reached"
     told = "; ".join(faults) or fine
     return f"{path.file}: {counted(path.points, 'point')}, {tilts}: {told}{'; but ' if unknown else ''}{unknown}"

@@ -36,7 +36,7 @@ from trunnion.controls.vocabulary import (
 )
 from trunnion.controls.words import BlockNumbers, NumberFormat
 from trunnion.definitions import LocatedValue, Table, definition_names, resolve_extends
-from trunnion.definitions.twin_keys import report_twins, statement_form
+from trunnion.definitions.duplicate_keys import report_duplicates, statement_form
 from trunnion.errors import InputError, Problem
 from trunnion.families import FAMILIES, load_writer
 from trunnion.model.axis_tolerance import AxisTolerance
@@ -284,7 +284,7 @@ def _read_statements(table: Table) -> dict[str, str]:
             table.add_problem(
                 statement, "has a line break or a control character in it", "write one line of a program", code="DEF550"
             )
-    report_twins(table, statement_form)
+    report_duplicates(table, statement_form)
     table.report_unread_keys()
     return found
 

@@ -3,10 +3,10 @@
 from collections.abc import Iterator, Mapping
 from pathlib import PurePath
 
-from trunnion.definitions.marked import marked_in
-from trunnion.definitions.marks import ASSUMED, MARKS
+from trunnion.definitions.marked_values import marked_in
 from trunnion.definitions.source_lines import LocatedValue
 from trunnion.definitions.toml_text import written, written_key
+from trunnion.definitions.value_marks import ASSUMED, MARKS
 
 
 def resolved_text(root: LocatedValue) -> str:

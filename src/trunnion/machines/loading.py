@@ -12,10 +12,10 @@ from pathlib import Path, PurePath
 from typing import Final, NamedTuple
 
 from trunnion.definitions import Table, definition_names, load_table
-from trunnion.definitions.marked import marked_in
-from trunnion.definitions.marks import MARKS
+from trunnion.definitions.duplicate_keys import report_duplicates, statement_form
+from trunnion.definitions.marked_values import marked_in
 from trunnion.definitions.messages import did_you_mean
-from trunnion.definitions.twin_keys import report_twins, statement_form
+from trunnion.definitions.value_marks import MARKS
 from trunnion.errors import InputError, Problem
 from trunnion.machines.body_tables import read_bodies
 from trunnion.machines.chain_checks import check_chain
@@ -125,7 +125,7 @@ def read_machine(table: Table, key: str) -> Machine:
         check_chain(table, axis_tables, axes, spindle_direction, sound=len(table.problems) == before)
     bodies = read_bodies(table, [axis.name for axis in axes])
     cl_words = {word: words.text(word) for word in words.names()}
-    report_twins(words, statement_form)
+    report_duplicates(words, statement_form)
     for part in (spindle, workpiece, words, cl, table):
         part.report_unread_keys()
     table.raise_problems()

@@ -71,7 +71,7 @@ class Axis:
 
     mount           whether it carries the part or the tool
     direction       unit vector, machine frame, all axes at zero
-    point           a point on the axis of a rotary joint, mm, machine frame, all axes at zero; unused for slides
+    point           a point on the axis of a rotary joint, mm, machine frame, all axes at zero; unused for linear axes
     low, high       travel in displayed values, mm or deg; -inf and inf where endless or not stated
     rapid           mm/min or deg/min; None where not stated
     acceleration    mm/s^2 or deg/s^2; None where not stated
@@ -176,7 +176,7 @@ _OF_AXIS: Final = ("name", "is_rotary", "carries", "endless", "limits")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Machine:
-    """A five-axis machine: three slides and two rotary axes, FROM THE WORKPIECE TO THE TOOL.
+    """A five-axis machine: three linear axes and two rotary axes, FROM THE WORKPIECE TO THE TOOL.
 
     spindle_direction   unit vector from tool tip to holder, all axes at zero
     spindle_point       gauge point (where tool lengths begin), mm, all axes at zero
@@ -220,7 +220,7 @@ class Machine:
 
     @property
     def linear(self) -> tuple[int, int, int]:
-        """Columns of the three slides, in chain order."""
+        """Columns of the three linear axes, in chain order."""
         first, second, third = (k for k, axis in enumerate(self.axes) if not axis.is_rotary)
         return first, second, third
 
@@ -246,7 +246,8 @@ class Machine:
     def is_placed(self, column: int) -> bool:
         """Whether it is known where an axis stands when the tip is at a point of the workpiece.
 
-        Slides need the workpiece zero for that, and those along the tool its length; all of them where a head turns it.
+        Linear axes need the workpiece zero for that, and those along the tool its length; all of them where a head
+        turns it.
         """
         if self.axes[column].is_rotary:
             return True

@@ -42,7 +42,7 @@ _LENGTH: Final = re.compile(rf"{LENGTH_NOTICE} (?:{_NUMBER} MM, FROM GAUGE POINT
 
 
 @dataclass(frozen=True, slots=True)
-class StatedPlace:
+class HeadNotices:
     """What the head of a program, or of a CL file, states of its part.
 
     clamping     None: nothing, or what cannot be believed
@@ -96,7 +96,7 @@ def head_comments(lines: Iterable[tuple[int, str]]) -> Iterator[tuple[int, str]]
             return
 
 
-def read_place(comments: Sequence[tuple[int, str]]) -> StatedPlace:
+def read_place(comments: Sequence[tuple[int, str]]) -> HeadNotices:
     """What the comments of a head state, each with its line and without the signs of a comment.
 
     A comment that a control had to break goes on in the next one.
@@ -145,7 +145,7 @@ class _Reader:
         self._values[name] = None
         self._lines.setdefault(name, line)
 
-    def result(self) -> StatedPlace:
+    def result(self) -> HeadNotices:
         values, turn = self._values, self._values.get("turn")
         if "drawn" in values and ("turn" in values or "tilt" in values):
             line = self._lines["drawn"]
@@ -157,9 +157,9 @@ class _Reader:
             return self._stated(Clamping(0.0 if turn is None else turn[0], tilt[0]))
         return self._stated(None)
 
-    def _stated(self, clamping: Clamping | None) -> StatedPlace:
+    def _stated(self, clamping: Clamping | None) -> HeadNotices:
         zero, length = self._values.get("zero"), self._values.get("length")
-        return StatedPlace(
+        return HeadNotices(
             clamping,
             (zero[0], zero[1], zero[2]) if zero else None,
             length[0] if length else None,

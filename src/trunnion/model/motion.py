@@ -41,7 +41,8 @@ class Motion:
     operation         in the program's coordinate system (workpiece frame), with lines for arcs that the control cannot
                       take
     rotary            (n, 2) float64  displayed positions of the rotary axes, degrees, in the order of
-                      ``machine.rotary``. The slides follow from them and the tip: ``trunnion.machines.slide_positions``
+                      ``machine.rotary``. The linear axes follow from them and the tip:
+                      ``trunnion.machines.slide_positions``
     plane             in the mode TILTED the plane, seen from the program's coordinate system; its Z is the tool axis
     deviations        where it differs from its CL file
     starts_operation  False: it continues the operation of the motion before, in another plane or from home

@@ -1,7 +1,7 @@
 """What a control did with a program: columns with one row per motion, and the events between the rows.
 
 A run stores what its blocks program and what a single row does not determine. Values that change seldom are stored by
-their changes (``ModalState``). Slides, tips and tool axes follow from the machine's kinematics: ``positions`` and
+their changes (``ModalState``). Linear axes, tips and tool axes follow from the machine's kinematics: ``positions`` and
 ``chunk`` compute them for some rows; the whole columns are computed on first access and cached.
 
 Units: mm, degrees, unit vectors, rev/min; feeds in mm/min, mm/rev or 1/min according to ``feed_mode``.
@@ -181,11 +181,11 @@ class SurfaceNormals:
 class ModalState:
     """Values that change seldom, as columns stored by their changes; ``Run`` has whole columns of the same names.
 
-    xyz_is_tip  ``Run.xyz`` is the tool tip, not the slide positions
+    xyz_is_tip  ``Run.xyz`` is the tool tip, not the positions of the linear axes
     plane       the row of ``Run.planes`` in whose coordinates words are; -1: in none of them
     compensation_plane  where radius compensation is on, the row of ``Run.compensation_planes``; -1: across the tool
     radius      the number by which radius compensation takes the radius (D); -1: it is that of the tool, or of the edge
-    machine_steps  in coordinates of the machine: bits of the slides that a block moves on from where they stand (G91)
+    machine_steps  in coordinates of the machine: bits of the linear axes that a block moves from where they are (G91)
     feed_path   a ``FeedPath``: the path that F refers to where rotary axes turn without TCP
     """
 
@@ -241,7 +241,7 @@ class Run:
     kind           (n,)   uint8    a ``trunnion.model.toolpath.Kind``
     programmed     (n,)   uint8    ``ProgrammedWord`` bits
     xyz            (n, 3) float64  target of X, Y and Z, mm: the tool tip in the workpiece frame where
-                                   ``state.xyz_is_tip``, else the positions of the slides X, Y and Z
+                                   ``state.xyz_is_tip``, else the positions of the linear axes X, Y and Z
     rotary         (n, 2) float64  positions of the rotary axes with all their turns, deg, order of ``machine.rotary``
     start          (5,)   float64  axis values before row 0
     splines                        the splines for which rows stand, tips in the workpiece frame

@@ -13,10 +13,9 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.machines import Machine
 from trunnion.model.rotations import about_z
-from trunnion.placing.goals import OF_PLACE, Goal, PlaceCost, rotary_travel
+from trunnion.placing.goals import OF_PLACE, Goal, PlaceCost, planned_seconds, rotary_travel
 from trunnion.placing.largest_margin import BestPlace, largest_margin
 from trunnion.placing.least_cost import least_cost
-from trunnion.placing.planned_time import planned_seconds
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.travel_limits import CutSet
 from trunnion.placing.turns import Choice, TurnedPath
@@ -152,18 +151,6 @@ class Grid:
         """Those of turns and tilts, degrees; 0: not refined."""
         turn = float(self.turns[1] - self.turns[0]) if self.refines_turns and len(self.turns) > 1 else 0.0
         return turn, float(self.tilts[1] - self.tilts[0]) if self.refines_tilts and len(self.tilts) > 1 else 0.0
-
-
-def best_turns(
-    paths: Sequence[TurnedPath],
-    turns: Floats,
-    advance: Callable[[int], None],
-    *,
-    refine: bool,
-    goal: Goal = Goal.MARGIN,
-) -> tuple[list[TurnResult], TurnResult]:
-    """What each turn (k,) allows, in their order and refined about the best; and the best of all."""
-    return best_orientations(lambda _: paths, Grid(turns, refines_turns=refine), advance, goal=goal)
 
 
 def best_orientations(

@@ -11,7 +11,7 @@ from trunnion.placing.best_turn import TurnResult
 from trunnion.placing.collisions.best_clearance import Guard, NearestRow, nearest_at
 from trunnion.placing.collisions.guarded_pairs import Changes, GuardedPair, standing
 from trunnion.placing.path_rows import PathRows
-from trunnion.placing.placement import BodyDistance, Place, Placement
+from trunnion.placing.placement import BodyDistance, PartPlace, Placement
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.turns import TurnedPath
 
@@ -66,19 +66,19 @@ def with_distance(found: Placement, most: float | None) -> Placement:
     return replace(found, best=best, present=present, most_distance_mm=max(most, best.nearest.distance_mm))
 
 
-def _with_nearest(place: Place, rows: PathRows, guard: Guard, path: TurnedPath) -> Place:
+def _with_nearest(place: PartPlace, rows: PathRows, guard: Guard, path: TurnedPath) -> PartPlace:
     judged = guard.without(_standing(place, guard, path))
     nearest = nearest_at(path, judged, place.turn_deg, place.tilt_deg, np.array(place.zero_mm), *_CHANGED)
     return replace(place, nearest=_told(nearest, rows))
 
 
-def _standing(place: Place, guard: Guard, path: TurnedPath) -> list[GuardedPair]:
+def _standing(place: PartPlace, guard: Guard, path: TurnedPath) -> list[GuardedPair]:
     """The pairs that a simulation does not check at a place."""
     turn = Clamping(place.turn_deg, place.tilt_deg).rotation
     return standing(path.machine, guard.pairs, turn, np.array(place.zero_mm))
 
 
-def _reaches(path: TurnedPath, place: Place) -> bool:
+def _reaches(path: TurnedPath, place: PartPlace) -> bool:
     """Whether a path is that of a place: the one whose slides go as far."""
     cuts = path.at(place.turn_deg)
     if isinstance(cuts, Obstacle):

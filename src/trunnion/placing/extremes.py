@@ -14,7 +14,7 @@ import numpy as np
 
 from trunnion.arrays import Floats, Floats2, Floats3, Ints2
 from trunnion.jit import kernel
-from trunnion.placing.slide_forms import SlideForms
+from trunnion.placing.axis_equations import AxisEquations
 
 #: Samples of a block.
 _BLOCK: Final = 64
@@ -32,7 +32,7 @@ class Extremes:
             slides stand as they did for the part as it was, with the zero turned back about the pivot
     """
 
-    forms: SlideForms
+    forms: AxisEquations
     centre: Floats
     mean: Floats
     spread: Floats
@@ -41,7 +41,7 @@ class Extremes:
     pivot: Floats = field(default_factory=lambda: np.zeros(3))
 
     @staticmethod
-    def of(forms: SlideForms, centre: Floats) -> "Extremes":
+    def of(forms: AxisEquations, centre: Floats) -> "Extremes":
         """Prepare the blocks of a path; quick near ``centre``, exact anywhere."""
         blocks = -(-len(forms) // _BLOCK)
         mean, spread, reach = np.empty((blocks, 3, 3)), np.empty((blocks, 3)), np.empty((blocks, 3, 2))

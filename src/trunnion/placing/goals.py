@@ -6,7 +6,7 @@ Slides are linear in the workpiece zero, so their steps from row to row are, and
     time       the sum of the longest of the time at the programmed feed and that of each axis at its rapid speed, s
     overspeed  what the second is longer than the first in rows at feed, summed, s; and the number of such rows
 
-are convex. Accelerations are not in them.
+are convex. Accelerations are not in them, but in ``planned_seconds``.
 """
 
 from dataclasses import dataclass
@@ -18,8 +18,9 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Floats2, Floats3
 from trunnion.jit import kernel
 from trunnion.machines import Machine
+from trunnion.placing.axis_equations import axis_equations
 from trunnion.placing.path_rows import PathRows
-from trunnion.placing.slide_forms import slide_forms
+from trunnion.timing import CORNER_TOLERANCE, AxisDynamics, Path, piece_seconds
 
 
 class Goal(StrEnum):
@@ -70,7 +71,7 @@ class PlaceCost:
     @staticmethod
     def of(goal: Goal, machine: Machine, rows: PathRows, positions: Floats) -> "PlaceCost":
         """Of rows as the part is turned; ``machine`` without a workpiece zero, ``positions`` (n, 2) degrees."""
-        normals, offsets, _ = slide_forms(machine, rows.tip, positions, rows.length)
+        normals, offsets, _ = axis_equations(machine, rows.tip, positions, rows.length)
         steps = np.abs(np.diff(positions, axis=0, prepend=positions[:1]))
         turning = np.zeros(len(rows))
         for k, column in enumerate(machine.rotary):
@@ -139,3 +140,34 @@ def _cost(
             for j in range(3):
                 gradient[j] += direction * (normals[row, slowest, j] - normals[row - 1, slowest, j])
     return cost, count
+
+
+def planned_seconds(machine: Machine, rows: PathRows, positions: Floats, zero: Floats) -> float:
+    """Seconds with the workpiece zero at a place (3,), of rows as the part is turned, by the planner of speeds.
+
+    It counts accelerations, jerks and corners; approaches, tool changes and dwells are not among the rows.
+
+    ``machine`` is without a workpiece zero; ``positions`` (n, 2) are those of the rotary axes, degrees.
+    """
+    normals, offsets, _ = axis_equations(machine, rows.tip, positions, rows.length)
+    joints = np.empty((len(rows), 5))
+    joints[:, list(machine.linear)] = normals @ zero + offsets
+    joints[:, list(machine.rotary)] = positions
+    steps = np.diff(joints, axis=0, prepend=joints[:1])
+    begins = rows.begins
+    steps[begins] = 0.0
+    length = np.linalg.norm(np.diff(rows.tip, axis=0, prepend=rows.tip[:1]), axis=1)
+    length = np.where(length > 0.0, length, np.abs(steps).max(axis=1))
+    length[begins] = 0.0
+    is_timed = rows.seconds > 0.0
+    rate = np.where(is_timed, 60.0 * length / np.where(is_timed, rows.seconds, 1.0), np.inf)
+    path = Path(
+        steps,
+        length,
+        rate,
+        np.full(len(rows), CORNER_TOLERANCE),
+        np.append(begins[1:], True),
+        np.zeros(len(rows), np.bool_),
+        np.zeros(0, np.int64),
+    )
+    return float(piece_seconds(path, AxisDynamics.of(machine)).sum())

@@ -5,13 +5,16 @@ these points are exact. While they turn under TCP, slides leave their lines: sam
 """
 
 import math
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from trunnion.arrays import Floats, Ints
+from trunnion.machines import Machine, kinematic_parameters
 from trunnion.model.arc_extremes import ArcPaths
 from trunnion.model.subdivision import arc_frames, circle_points
+from trunnion.model.turning_lines import chord_excursion, longest_arms
 from trunnion.placing.path_rows import PathRows
 
 #: The farthest that a rotary axis turns between two samples, degrees.
@@ -97,3 +100,32 @@ def _turning_points(arcs: ArcPaths, normal: Floats) -> tuple[Ints, Floats]:
             arc.append(inside)
             share.append(angle[inside] / frame.sweep[inside])
     return np.concatenate(arc), np.concatenate(share)
+
+
+def most_between(machine: Machine, rows: PathRows, positions: Floats, zero: Floats) -> float:
+    """The bound over the ways to all rows, mm, with the zero (3,) there; NaN if rotary axes stand between slides.
+
+    Parameters
+    ----------
+    rows
+        As the part is turned.
+    positions : (n, 2) float64
+        Of the rotary axes, degrees.
+    """
+    x, y, z = zero.tolist()
+    if rows.length is not None and np.isfinite(rows.length).any():
+        machine = replace(machine, tool_length=max(machine.tool_length or 0.0, float(np.nanmax(rows.length))))
+    kinematics = kinematic_parameters(replace(machine, workpiece_zero=(x, y, z)))
+    turn = np.abs(np.diff(positions, axis=0))
+    pieces = np.maximum(np.ceil(turn.max(axis=1, initial=0.0) / STEP), 1.0)
+    counts = rows.straight[1:] & ~rows.begins[1:] & (turn.max(axis=1, initial=0.0) > 0.0) & (pieces <= 180.0 / STEP)
+    if not counts.any():
+        return 0.0
+    if len(set(kinematics.rotary_below)) > 1:
+        return np.nan
+    angle = np.radians(turn.sum(axis=1) / pieces)[counts]
+    way = (np.linalg.norm(np.diff(rows.tip, axis=0), axis=1) / pieces)[counts]
+    arm = longest_arms(kinematics, rows.tip)
+    arm = np.maximum(arm[1:], arm[:-1])[counts]
+    slides = np.linalg.norm(np.array(kinematics.slides_inverse).reshape(3, 3), axis=1).max()
+    return float((slides * chord_excursion(angle, way, arm)).max())

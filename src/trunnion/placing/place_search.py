@@ -11,13 +11,12 @@ from trunnion.arrays import Floats
 from trunnion.machines import Machine
 from trunnion.model.rotations import about_x, about_z
 from trunnion.placing.best_turn import Grid, TurnResult, best_orientations
-from trunnion.placing.between_rows import most_between
 from trunnion.placing.body_distances import standing_at, with_bodies, with_distance
 from trunnion.placing.collisions.best_clearance import Guard, farthest_orientations
-from trunnion.placing.goals import Goal, PlaceCost, rotary_travel
+from trunnion.placing.goals import Goal, PlaceCost, planned_seconds, rotary_travel
+from trunnion.placing.moving_samples import most_between
 from trunnion.placing.path_rows import PathRows
-from trunnion.placing.placement import Place, Placement, TurnMargin
-from trunnion.placing.planned_time import planned_seconds
+from trunnion.placing.placement import PartPlace, Placement, TurnMargin
 from trunnion.placing.region import Region, region_of
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.table_limits import ClampingArea, Standing
@@ -134,7 +133,7 @@ def _first_guess(machine: Machine) -> Floats:
     return np.array(machine.axes[machine.rotary[0]].point)
 
 
-def _between(path: TurnedPath, found: Place) -> float:
+def _between(path: TurnedPath, found: PartPlace) -> float:
     """How far slides may go beyond their samples at a place, mm."""
     angles = path.angles_at(found.turn_deg)
     assert not isinstance(angles, Obstacle)
@@ -142,7 +141,7 @@ def _between(path: TurnedPath, found: Place) -> float:
     return most_between(path.machine, rows, angles.positions, np.array(found.zero_mm))
 
 
-def _with_value(place: Place, path: TurnedPath | None, goal: Goal) -> Place:
+def _with_value(place: PartPlace, path: TurnedPath | None, goal: Goal) -> PartPlace:
     """A place with the value of the goal."""
     angles = None if path is None else path.angles_at(place.turn_deg)
     if path is None or isinstance(angles, Obstacle) or angles is None:
@@ -160,7 +159,7 @@ def _with_value(place: Place, path: TurnedPath | None, goal: Goal) -> Place:
     return replace(place, value=PlaceCost.of(goal, path.machine, rows, positions).value(np.array(place.zero_mm)))
 
 
-def _present(machine: Machine, rows: PathRows, paths: Sequence[TurnedPath], goal: Goal) -> Place | None:
+def _present(machine: Machine, rows: PathRows, paths: Sequence[TurnedPath], goal: Goal) -> PartPlace | None:
     """The place that the machine has been given; None if it has none, or rotary axes do not reach the path there."""
     if machine.workpiece_zero is None:
         return None

@@ -19,7 +19,7 @@ from trunnion.results import NOT_DATA, Figure
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """A limit, and where a slide comes nearest to it.
+    """A limit, and where a linear axis comes nearest to it.
 
     axis       its name, or ``table``
     end        ``low`` or ``high``; of the table the edge: ``low X``, ``high X``, ``low Y``, ``high Y`` or ``rim``
@@ -38,7 +38,7 @@ class Limit:
 
 @dataclass(frozen=True, slots=True)
 class AxisUse:
-    """How a slide uses its travel at a place.
+    """How a linear axis uses its travel at a place.
 
     axis                   its name
     least_mm, greatest_mm  how far it goes, mm
@@ -95,15 +95,15 @@ class BodyDistance:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
-    """A place of the part, and what it leaves the slides.
+class PartPlace:
+    """A place of the part, and what it leaves the linear axes.
 
     zero_mm    of the workpiece, machine frame, all axes at zero
     turn_deg   of the part about Z, right-handed
     tilt_deg   of the part about X of the program's coordinate system, right-handed: the first of the two
-    margin_mm  of the slide that is nearest to a limit; negative beyond it, or where something is beyond the table
+    margin_mm  of the linear axis that is nearest to a limit; negative beyond it, or where something is beyond the table
     value      of the goal: mm of margin, mm or degrees of travel, seconds, blocks; None: the goal has none here
-    axes       of all slides
+    axes       of all linear axes
     rotary     of the rotary axes
     planned_s  with the goal ``time``: seconds of the rows by the planner of speeds, with accelerations and jerks
     table_mm   what stock and part, seen from above, have left to the edge of the table; negative beyond it; None: not
@@ -125,7 +125,7 @@ class Place:
 
     @property
     def fits(self) -> bool:
-        """Whether every slide keeps its limits, and what stands on the table stays on it."""
+        """Whether every linear axis keeps its limits, and what stands on the table stays on it."""
         return self.margin_mm >= 0.0
 
 
@@ -137,7 +137,7 @@ class TurnMargin:
                small, as ``obstacle`` says
     zero_mm    the best place there
     obstacle   why there is none; empty where there is one
-    value      of the goal there, as in ``Place``
+    value      of the goal there, as in ``PartPlace``
     is_asked   it is one of those that were asked for; else it was tried between them, around the best
     table_is_too_small  that is the obstacle
     """
@@ -170,11 +170,11 @@ class Placement:
               are nearest at the best place; where it does not fit, what conflicts
     present   the place of the definition or of the arguments; None: neither states one
     turns     what each turn allows, in order; those of the grid and those around the best
-    between_mm  how far slides may go beyond that between rows where rotary axes turn
-    problems  warnings
+    between_mm  how far linear axes may go beyond that between rows where rotary axes turn
+    remarks   what was assumed, or cannot be judged
     toolpaths  of CL files; empty for NC programs
     clamping  how the part is clamped, as the files state; turns and tilts come after that. None: they state nothing
-    tool_length_mm    of the tool that slides keep their limits with; None: it is not known
+    tool_length_mm    of the tool that linear axes keep their limits with; None: it is not known
     nearest_anywhere  of bodies whose distance no place and no turn changes, such as tool and fixture, the nearest two
     left_out  names of pairs of bodies that are not judged: at home they overlap, on one side of the machine
     table     of the machine's definition; None: it states none
@@ -187,12 +187,12 @@ class Placement:
     machine: str
     files: tuple[str, ...]
     goal: str
-    best: Place | None
+    best: PartPlace | None
     limits: Annotated[tuple[Limit, ...], Figure(after="present")]
-    present: Place | None
+    present: PartPlace | None
     turns: tuple[TurnMargin, ...]
     between_mm: float = 0.0
-    problems: Annotated[tuple[Problem, ...], Figure("remarks", after="left_out")] = ()
+    remarks: Annotated[tuple[Problem, ...], Figure(after="left_out")] = ()
     toolpaths: Annotated[tuple[Toolpath, ...], NOT_DATA] = ()
     clamping: Annotated[
         Clamping | None,
@@ -206,6 +206,11 @@ class Placement:
     table: Annotated[ClampingArea | None, Figure(after="region")] = None
     _find_region: Callable[[], Region | None] = field(default=lambda: None, repr=False)
     _margin_at: Callable[[Floats, float, float], float] = field(default=lambda *_: np.nan, repr=False)
+
+    @property
+    def problems(self) -> tuple[Problem, ...]:
+        """The name of ``remarks`` before, which goes with the next version."""
+        return self.remarks
 
     @property
     @Figure(after="turns")

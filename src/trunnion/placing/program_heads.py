@@ -12,7 +12,7 @@ from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
 from trunnion.model.clamping import SAME, Clamping, are_one_angle, number
-from trunnion.model.clamping_notices import StatedPlace, clamped_notices, head_comments, read_place, zero_notices
+from trunnion.model.clamping_notices import HeadNotices, clamped_notices, head_comments, read_place, zero_notices
 
 #: So much of a program is its head at most, bytes.
 _HEAD: Final = 1 << 16
@@ -26,19 +26,19 @@ def placed_notices(clamping: Clamping, zero: Vector | None = None, tool_length: 
     return (*clamped_notices(clamping), *([] if zero is None else zero_notices(zero, tool_length)))
 
 
-def stated_place(program: Path) -> StatedPlace:
+def stated_place(program: Path) -> HeadNotices:
     """What the head of a program states of its part; nothing where it cannot be read twice, as what a pipe holds."""
     if not program.is_file():
-        return StatedPlace()
+        return HeadNotices()
     try:
         with program.open("rb") as stream:
             head = stream.read(_HEAD).decode("latin-1")
     except OSError:
-        return StatedPlace()
+        return HeadNotices()
     return read_place(list(head_comments(enumerate(head.splitlines(), 1))))
 
 
-def damaged_notices(program: Path, stated: StatedPlace) -> list[Problem]:
+def damaged_notices(program: Path, stated: HeadNotices) -> list[Problem]:
     """Warnings of notices that are not as they were written, or that contradict each other."""
     cure = "compare it with the setup sheet or post it again: how the part is clamped, or where, is not known"
     return [Problem(str(program), line, what, cure, Severity.WARNING, code="PLC250") for line, what in stated.faults]
@@ -101,7 +101,7 @@ def unlike_zero(program: Path, machine: Machine) -> list[Problem]:
     return _unlike_zero(program, stated_place(program), machine)
 
 
-def _unlike_zero(program: Path, stated: StatedPlace, machine: Machine) -> list[Problem]:
+def _unlike_zero(program: Path, stated: HeadNotices, machine: Machine) -> list[Problem]:
     found, said = damaged_notices(program, stated), []
     zero, length = machine.workpiece_zero, machine.tool_length
     if stated.zero is not None and zero is not None and math.dist(stated.zero, zero) >= SAME:

@@ -34,7 +34,7 @@ class Region:
 
     corners    (v, 3) of the polyhedron, mm, machine frame
     tolerance  how far they are outside at most, mm
-    volume     mm^3; infinite where a slide without limits leaves it open
+    volume     mm^3; infinite where a linear axis without limits leaves it open
     low, high  (3,) its extent, mm; infinite where it is open: not every place within it fits
     box        the largest box of places that all fit, around the best one
     cuts       its half-spaces
@@ -59,7 +59,7 @@ class Region:
         return all(np.allclose(one, other, rtol=0.0, atol=TOLERANCE) for one, other in ends)
 
     def margin(self, zero: Floats) -> float:
-        """What the slide nearest to a limit has left with the zero (3,) there, mm; negative: it does not fit."""
+        """What the linear axis nearest to a limit has left with the zero (3,) there, mm; negative: it does not fit."""
         return self.cuts.at(np.asarray(zero, np.float64)).margin
 
 

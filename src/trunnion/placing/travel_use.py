@@ -13,7 +13,7 @@ from trunnion.arrays import Floats
 from trunnion.machines import Machine
 from trunnion.machines.machine import Vector
 from trunnion.placing.path_rows import PathRows
-from trunnion.placing.placement import AxisUse, Limit, Place, RotaryUse
+from trunnion.placing.placement import AxisUse, Limit, PartPlace, RotaryUse
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.table_limits import EDGES, ClampingArea, TableEdge
 from trunnion.placing.travel_limits import TABLE, Cut, CutSet
@@ -49,7 +49,7 @@ def obstacle_text(machine: Machine, rows: PathRows, obstacle: Obstacle) -> str:
     return f"{stretch.file}:{rows.line[obstacle.row]}: {what}"
 
 
-def place_at(machine: Machine, rows: PathRows, cuts: CutSet, zero: Floats, turn: float) -> Place:
+def place_at(machine: Machine, rows: PathRows, cuts: CutSet, zero: Floats, turn: float) -> PartPlace:
     """A place with what it leaves each slide."""
     reached = cuts.at(zero)
     axes = []
@@ -58,7 +58,7 @@ def place_at(machine: Machine, rows: PathRows, cuts: CutSet, zero: Floats, turn:
         least, greatest = reached.extremes[slide].tolist()
         axes.append(AxisUse(machine.axes[column].name, least, greatest, float(reached.margins[slide].min()), low, high))
     table = None if cuts.edges is None else reached.table
-    return Place(vector(zero), turn, reached.margin, tuple(axes), table_mm=table)
+    return PartPlace(vector(zero), turn, reached.margin, tuple(axes), table_mm=table)
 
 
 def rounded_zero(cuts: CutSet, zero: Floats) -> Floats:
@@ -95,7 +95,7 @@ def limit_of_cut(machine: Machine, rows: PathRows, cut: Cut) -> Limit:
     return limit_at(machine, rows, cut.row, cut.slide, cut.side)
 
 
-def nearest_limits(machine: Machine, cuts: CutSet, place: Place) -> tuple[Limit, ...]:
+def nearest_limits(machine: Machine, cuts: CutSet, place: PartPlace) -> tuple[Limit, ...]:
     """The limits to which slides have the least left at a place, like ones all; before them edges that are as near."""
     left = [(axis.least_mm - axis.low.limit_mm, axis.low) for axis in place.axes]
     left += [(axis.high.limit_mm - axis.greatest_mm, axis.high) for axis in place.axes]

@@ -18,8 +18,8 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.extras import import_extra
 from trunnion.machines import Machine, kinematic_parameters
 from trunnion.machines.machine import Axis
+from trunnion.placing.axis_equations import AxisEquations
 from trunnion.placing.path_rows import PathRows
-from trunnion.placing.slide_forms import SlideForms
 
 #: Sine of the angle within which an axis is parallel to Z.
 _PARALLEL: Final = 1e-12
@@ -111,7 +111,7 @@ def _flat_hull(points: Floats) -> Ints:
         return np.array([np.argmin(flat[:, 0]), np.argmax(flat[:, 0])])
 
 
-def turned_head(forms: SlideForms, turn: Floats, pivot: Floats) -> SlideForms:
+def turned_head(forms: AxisEquations, turn: Floats, pivot: Floats) -> AxisEquations:
     """The slides of a head that turns with the part, at a turn (3, 3), for a first rotary axis at ``pivot`` (3,) mm.
 
     All normals are the same matrix M, so that offsets o are those of a point v with o = M (v - pivot): v turns.
@@ -119,10 +119,10 @@ def turned_head(forms: SlideForms, turn: Floats, pivot: Floats) -> SlideForms:
     matrix = forms.normals[0]
     points = np.linalg.solve(matrix, forms.offsets.T).T + pivot
     offsets = (points @ turn.T - pivot) @ matrix.T
-    return SlideForms(forms.normals, np.ascontiguousarray(offsets), forms.row)
+    return AxisEquations(forms.normals, np.ascontiguousarray(offsets), forms.row)
 
 
-def outermost(forms: SlideForms) -> SlideForms:
+def outermost(forms: AxisEquations) -> AxisEquations:
     """Of forms with one normal for each slide those that count at any turn."""
     keep = np.sort(hull_points(np.linalg.solve(forms.normals[0], forms.offsets.T).T))
-    return SlideForms(forms.normals[keep], forms.offsets[keep], forms.row[keep])
+    return AxisEquations(forms.normals[keep], forms.offsets[keep], forms.row[keep])

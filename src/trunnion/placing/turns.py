@@ -10,11 +10,11 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Machine
 from trunnion.model.rotations import about_z
+from trunnion.placing.axis_equations import AxisEquations, axis_equations
 from trunnion.placing.extremes import Extremes
 from trunnion.placing.moving_samples import arc_samples, turning_samples
 from trunnion.placing.path_rows import PathRows
 from trunnion.placing.rotary_angles import Obstacle, RotaryAngles, rotary_angles
-from trunnion.placing.slide_forms import SlideForms, slide_forms
 from trunnion.placing.table_limits import Standing
 from trunnion.placing.table_room import has_room
 from trunnion.placing.travel_limits import CutSet, slide_limits
@@ -102,7 +102,7 @@ class TurnedPath:
             found = self._forms_of(self.rows.select(base.standing).turned(turn))
             if isinstance(found, Obstacle):
                 return Obstacle(int(base.standing_rows[found.row]), found.axis)
-            forms = SlideForms(found.normals, found.offsets, base.standing_rows[found.row])
+            forms = AxisEquations(found.normals, found.offsets, base.standing_rows[found.row])
             parts.append(Extremes.of(forms, self.near))
         return CutSet(tuple(parts), slide_limits(self.machine))
 
@@ -136,7 +136,7 @@ class TurnedPath:
             return forms
         return CutSet((Extremes.of(forms, self.near),), slide_limits(self.machine))
 
-    def _forms_of(self, rows: PathRows) -> SlideForms | Obstacle:
+    def _forms_of(self, rows: PathRows) -> AxisEquations | Obstacle:
         angles = rotary_angles(self.machine, rows)
         return angles if isinstance(angles, Obstacle) else path_forms(self.machine, rows, angles.positions)
 
@@ -169,26 +169,26 @@ class _Base:
     standing_rows: Ints
 
 
-def path_forms(machine: Machine, rows: PathRows, positions: Floats) -> SlideForms | Obstacle:
+def path_forms(machine: Machine, rows: PathRows, positions: Floats) -> AxisEquations | Obstacle:
     """The slides in all rows, and after them in samples between them; ``positions`` (n, 2) degrees."""
-    normals, offsets, failed = slide_forms(machine, rows.tip, positions, rows.length)
+    normals, offsets, failed = axis_equations(machine, rows.tip, positions, rows.length)
     if failed >= 0:
         return Obstacle(failed)
     parts, row = [(normals, offsets)], [np.arange(len(rows))]
     for tip, angles, of in (turning_samples(rows, positions), arc_samples(rows, positions, normals)):
         if len(of):
-            normals, offsets, failed = slide_forms(machine, tip, angles, rows.length_at(of))
+            normals, offsets, failed = axis_equations(machine, tip, angles, rows.length_at(of))
             if failed >= 0:
                 return Obstacle(int(of[failed]))
             parts.append((normals, offsets))
             row.append(of)
     if len(parts) == 1:
-        return SlideForms(*parts[0], row[0])
+        return AxisEquations(*parts[0], row[0])
     normals, offsets = (np.concatenate([part[k] for part in parts]) for k in range(2))
-    return SlideForms(normals, offsets, np.concatenate(row))
+    return AxisEquations(normals, offsets, np.concatenate(row))
 
 
-def _without(forms: SlideForms, rows: PathRows, held: Flags) -> SlideForms:
+def _without(forms: AxisEquations, rows: PathRows, held: Flags) -> AxisEquations:
     """The samples that neither belong to held rows nor to ways from these."""
     if not held.any():
         return forms
@@ -196,6 +196,6 @@ def _without(forms: SlideForms, rows: PathRows, held: Flags) -> SlideForms:
     between = np.arange(len(forms)) >= len(rows)
     comes = np.append(False, held[:-1]) & ~rows.begins
     keep &= ~(between & comes[forms.row])
-    return SlideForms(
+    return AxisEquations(
         np.ascontiguousarray(forms.normals[keep]), np.ascontiguousarray(forms.offsets[keep]), forms.row[keep]
     )

@@ -21,10 +21,3 @@ def encode_column(column: NDArray[np.float32] | NDArray[np.int32]) -> bytes:
     changes = np.diff(words, prepend=np.uint32(0)).astype("<u4")
     planes = changes.view(np.uint8).reshape(-1, 4).T.tobytes()
     return base64.b64encode(zlib.compress(planes, COMPRESSION_LEVEL))
-
-
-def decode_column(text: bytes) -> NDArray[np.int32]:
-    """Return the words (n,) of an encoded column; ``.view(np.float32)`` makes them floats again."""
-    planes = np.frombuffer(zlib.decompress(base64.b64decode(text)), np.uint8).reshape(4, -1)
-    changes = np.ascontiguousarray(planes.T).view("<u4").ravel()
-    return np.cumsum(changes, dtype=np.uint32).view(np.int32)

@@ -11,7 +11,7 @@ from trunnion.model.clamping import Clamping
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
 from trunnion.simulation.meshes import TriangleMesh
-from trunnion.simulation.simulator import Job
+from trunnion.simulation.simulator import SimulatedProgram
 from trunnion.simulation.stock.turning import Pose
 from trunnion.simulation.tool_deltas import as_the_tool_goes
 from trunnion.simulation.tools.profile import ToolShape
@@ -49,7 +49,7 @@ class PreparedSetup:
         """The runs on the machine, where the part is as it is clamped."""
         return [as_the_tool_goes(run)[0] for run in self.runs]
 
-    def jobs(self) -> list[Job]:
+    def programs(self) -> list[SimulatedProgram]:
         """The programs as far as they are simulated, about the part as it is drawn.
 
         Raises
@@ -59,10 +59,10 @@ class PreparedSetup:
         """
         turn, clamped = self.turn, self.clamped_runs()
         runs = clamped if turn is None else [run_of_drawn_part(run, turn) for run in clamped]
-        return [_job(run, self.tools, self.until if run is runs[-1] else None) for run in runs]
+        return [_program_of(run, self.tools, self.until if run is runs[-1] else None) for run in runs]
 
 
-def _job(run: Run, shapes: dict[str, ToolShape], until: str | int | None) -> Job:
+def _program_of(run: Run, shapes: dict[str, ToolShape], until: str | int | None) -> SimulatedProgram:
     end, why = len(run), ""
     errors = sorted(run.errors, key=lambda each: each.line)
     if errors:
@@ -75,7 +75,7 @@ def _job(run: Run, shapes: dict[str, ToolShape], until: str | int | None) -> Job
         row = _row_of_block(run, until)
         if row < end:
             end, why = row, ""
-    return Job(run, shapes, end, why)
+    return SimulatedProgram(run, shapes, end, why)
 
 
 def _row_of_block(run: Run, until: str | int) -> int:

@@ -15,7 +15,7 @@ from trunnion.model.stated_tips import StatedTips
 from trunnion.model.toolpath import Kind
 from trunnion.simulation.cutting.sweeps import sideways_exits, unknown_swivels
 from trunnion.simulation.findings import file_of_row
-from trunnion.simulation.simulator import Setup
+from trunnion.simulation.simulator import CuttingModel
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.stock.solids import StockShape
 from trunnion.simulation.tool_deltas import SIZES, is_told_of_length
@@ -26,11 +26,11 @@ from trunnion.wording import counted, position
 _SAME: Final = 1e-3
 
 
-def simulation_remarks(setup: Setup, runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]:
+def simulation_remarks(model: CuttingModel, runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]:
     """Return all remarks: errors where a crash may be hidden, else warnings."""
     return [
-        *_remarks(runs, shapes), *_unknown_ways(runs, setup.stock), *_lengths(runs, shapes),
-        *_out_of_travel(runs[0].machine, setup.stock),
+        *_remarks(runs, shapes), *_unknown_ways(runs, model.stock), *_lengths(runs, shapes),
+        *_out_of_travel(runs[0].machine, model.stock),
     ]  # fmt: skip
 
 
@@ -206,24 +206,24 @@ def _unjudged(run: Run) -> list[Problem]:
     return found
 
 
-def part_remarks(setup: Setup, lacking: Excess | None, slack: float, *, is_later: bool = False) -> list[Problem]:
+def part_remarks(model: CuttingModel, lacking: Excess | None, slack: float, *, is_later: bool = False) -> list[Problem]:
     """Errors where the part cannot come out of the stock: what of it is missing before a set-up cuts anything.
 
     lacking   of the part, within the box of the stock
     slack     how far the surface of the stock may have been moved, mm
     is_later  whether the stock is what an earlier set-up has left
     """
-    if setup.part is None:
+    if model.part is None:
         return []
     before = "this set-up cuts anything" if is_later else "anything is cut"
     cure = "check the size of the stock, and the zero of part and stock"
-    beyond = max(float((setup.stock.low - setup.part.low).max()), float((setup.part.high - setup.stock.high).max()))
-    if beyond > setup.tolerance + slack:
+    beyond = max(float((model.stock.low - model.part.low).max()), float((model.part.high - model.stock.high).max()))
+    if beyond > model.tolerance + slack:
         what = f"reaches {beyond:.3f} mm beyond the stock: it cannot come out, and what is outside is not compared"
         return [
             Problem("part", 0, what, "check the pose, and the zero of the part" if is_later else cure, code="SIM131")
         ]
-    if lacking is not None and lacking.largest > setup.limit + slack:
+    if lacking is not None and lacking.largest > model.limit + slack:
         what = f"is missing {lacking.largest:.3f} mm deep at {position(lacking.places[0].at)} before {before}"
         if is_later:
             cure = "check what the earlier set-ups took there, the pose, and the zero of the part"

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from trunnion.arrays import Floats
 from trunnion.simulation.cutting.removal import measure
-from trunnion.simulation.simulator import Job, Setup, tool_pieces
+from trunnion.simulation.simulator import CuttingModel, SimulatedProgram, tool_pieces
 from trunnion.simulation.stock.lattice import BUNDLE_AXES
 from trunnion.simulation.stock.material import Stock, Tile
 from trunnion.simulation.stock.solids import make_stock
@@ -36,22 +36,24 @@ _MOST_BYTES: Final = 300_000_000
 class Replay:
     """The states of one stock that one program cuts.
 
-    setup     the solids and the accuracy
-    job       the program
+    model     the solids and the accuracy
+    program   the program
     finished  what it leaves, where that is known
     bound     bytes that the states may take
     """
 
-    def __init__(self, setup: Setup, job: Job, finished: Stock | None = None, bound: int = _MOST_BYTES) -> None:
-        self._setup, self._job, self._bound = setup, job, bound
-        self._pieces = tool_pieces(job, setup)[0]
-        self._stock = make_stock(setup.stock, setup.cell)
+    def __init__(
+        self, model: CuttingModel, program: SimulatedProgram, finished: Stock | None = None, bound: int = _MOST_BYTES
+    ) -> None:
+        self._model, self._program, self._bound = model, program, bound
+        self._pieces = tool_pieces(program, model)[0]
+        self._stock = make_stock(model.stock, model.cell)
         self._done = 0
-        self._step = max(_FEWEST_ROWS, job.end // _STATES)
+        self._step = max(_FEWEST_ROWS, program.end // _STATES)
         self._kept: dict[int, tuple[Tile, ...]] = {}
         self._keep()
         if finished is not None:
-            self._kept[job.end] = tuple(map(_copy, finished.tiles))
+            self._kept[program.end] = tuple(map(_copy, finished.tiles))
 
     @property
     def done(self) -> int:
@@ -73,7 +75,7 @@ class Replay:
 
         ``go_on`` is asked now and then; where it says no, False is returned, and what was cut so far is kept.
         """
-        rows = min(max(rows, 0), self._job.end)
+        rows = min(max(rows, 0), self._program.end)
         at = self.kept
         nearest = at[bisect.bisect_right(at, rows) - 1]
         if nearest > self._done or rows < self._done:
@@ -83,7 +85,9 @@ class Replay:
             if not go_on():
                 return False
             end = min(self._done - self._done % self._step + self._step, rows)
-            chunks = measure(self._stock, self._job.run, self._pieces, self._setup.tolerance, start=self._done, end=end)
+            chunks = measure(
+                self._stock, self._program.run, self._pieces, self._model.tolerance, start=self._done, end=end
+            )
             for chunk in chunks:
                 for _ in chunk.tiles:  # each is cut when it is taken
                     pass

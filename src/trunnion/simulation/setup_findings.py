@@ -12,9 +12,9 @@ from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
 from trunnion.results import NOT_DATA, BlockNumber, CubicMillimetres, Figure, Millimetres, OptionalLine, OptionalText
 from trunnion.simulation.collisions import Collision
+from trunnion.simulation.contact_times import reached
 from trunnion.simulation.findings import Finding, What, file_of_row
-from trunnion.simulation.moments import reached
-from trunnion.simulation.simulator import Job, OperationCut, row_runs, tip_lengths
+from trunnion.simulation.simulator import OperationCut, SimulatedProgram, row_runs, tip_lengths
 from trunnion.simulation.steps import CutSetup
 from trunnion.simulation.tools.choice import NO_CALL
 from trunnion.simulation.tools.profile import Role
@@ -137,7 +137,7 @@ class SimulatedOperation:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SetupFindings:
+class CutFindings:
     """What was found in a set-up: what must not be, what comes near, operations with one tool, and all air cuts."""
 
     findings: tuple[SimulationFinding, ...]
@@ -152,39 +152,43 @@ _Named = TypeVar("_Named", SimulationFinding, NearMiss, AirCut, SimulatedOperati
 _ROLES: Final = {What.SHANK: (Role.SHANK,), What.HOLDER: (Role.HOLDER,), What.NEAR: (Role.SHANK, Role.HOLDER)}
 
 
-def setup_findings(cut: CutSetup) -> SetupFindings:
+def setup_findings(cut: CutSetup) -> CutFindings:
     """Records of what programs have cut, hit and come near to in a set-up, with their blocks and times."""
-    found, jobs, touched, setup = cut.simulation, cut.jobs, cut.touched, cut.setup.name
-    # Runs are taken as they were read; their rows are those of the jobs.
-    verified = [verify_run(run, cut.setup.toolpaths if len(jobs) == 1 else ()) for run in cut.setup.runs[: len(jobs)]]
+    found, programs, touched, setup = cut.simulation, cut.programs, cut.touched, cut.setup.name
+    # Runs are taken as they were read; their rows are those of the programs.
+    verified = [
+        verify_run(run, cut.setup.toolpaths if len(programs) == 1 else ()) for run in cut.setup.runs[: len(programs)]
+    ]
     slack = 0.5 * float(found.stock.lattice.cell.max())
     seconds = [np.cumsum(each.seconds) for each in verified]
-    lengths = [tip_lengths(job.run) for job in jobs]
+    lengths = [tip_lengths(program.run) for program in programs]
     findings, operations, air = list[SimulationFinding](), list[SimulatedOperation](), list[AirCut]()
     misses = list[NearMiss]()
     for one in found.operations:
-        run, at = jobs[one.job].run, seconds[one.job]
+        run, at = programs[one.program].run, seconds[one.program]
         for finding in one.findings:
-            findings.append(_finding(verified[one.job], finding, _moment(jobs[one.job], finding, at, slack)))
+            findings.append(
+                _finding(verified[one.program], finding, _moment(programs[one.program], finding, at, slack))
+            )
         for finding in one.near:
-            misses.append(_near(run, finding, _moment(jobs[one.job], finding, at, slack + finding.depth)))
-        idle = list(_air(run, one, lengths[one.job]))
+            misses.append(_near(run, finding, _moment(programs[one.program], finding, at, slack + finding.depth)))
+        idle = list(_air(run, one, lengths[one.program]))
         air += idle
         seconds_taken = float(at[one.end - 1]) - (float(at[one.first - 1]) if one.first else 0.0)
         lines = int(run.line[one.first]), int(run.line[one.end - 1])
         air_length = sum(each.length for each in idle)
-        own = [each for each in touched[one.job] if not each.is_near and one.first <= each.worst_row < one.end]
+        own = [each for each in touched[one.program] if not each.is_near and one.first <= each.worst_row < one.end]
         count, blocks = len(one.findings) + len(own), _blocks(run, one, at)
         operations.append(_operation(run, one, seconds_taken, lines, air_length, count, blocks))
     for number, collisions in enumerate(touched):
-        run, at = jobs[number].run, seconds[number]
+        run, at = programs[number].run, seconds[number]
         for finding in map(_of_collision, collisions):
-            moment = _moment(jobs[number], finding, at, slack)
+            moment = _moment(programs[number], finding, at, slack)
             if finding.what is What.NEAR:
                 misses.append(_near(run, finding, moment))
             else:
                 findings.append(_finding(verified[number], finding, moment))
-    return SetupFindings(_named(findings, setup), _named(misses, setup), _named(operations, setup), _named(air, setup))
+    return CutFindings(_named(findings, setup), _named(misses, setup), _named(operations, setup), _named(air, setup))
 
 
 def _named(found: Iterable[_Named], setup: str) -> tuple[_Named, ...]:
@@ -222,13 +226,13 @@ def _blocks(run: Run, one: OperationCut, at: Floats) -> BlockRemoval:
     return BlockRemoval(lines[starts][kept], removed[kept], rate[kept])
 
 
-def _moment(job: Job, finding: Finding, seconds: Floats, slack: float) -> float:
+def _moment(program: SimulatedProgram, finding: Finding, seconds: Floats, slack: float) -> float:
     """When something is found, seconds from the start of the program; ``seconds`` are those at the ends of rows."""
     row, fraction = finding.worst, finding.fraction
     if math.isnan(fraction):
-        shape = job.tools.get(job.run.tools[int(job.run.state.tool[row])])
+        shape = program.tools.get(program.run.tools[int(program.run.state.tool[row])])
         roles = _ROLES.get(finding.what, (Role.CUTTER,))
-        fraction = 1.0 if shape is None else reached(job.run, row, shape, roles, finding.place, slack)
+        fraction = 1.0 if shape is None else reached(program.run, row, shape, roles, finding.place, slack)
     return _at_fraction(seconds, row, fraction)
 
 

@@ -34,7 +34,7 @@ _FACETS: Final = 0.25
 
 
 @dataclass(frozen=True, slots=True)
-class Setup:
+class CuttingModel:
     """What is simulated: the solids, the cell, how far motions may be off (``tolerance``), mm.
 
     near  distance from the stock from which on shank and holder are told, mm; 0: only where they meet it
@@ -53,7 +53,7 @@ class Setup:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Job:
+class SimulatedProgram:
     """A program: its run, the body of each tool by its name in the program, the row at which it ends, and why."""
 
     run: Run
@@ -64,9 +64,9 @@ class Job:
 
 @dataclass(slots=True, eq=False)
 class OperationCut:
-    """What consecutive rows with one tool did: rows ``first`` to ``end`` (exclusive) of the run of a job."""
+    """What consecutive rows with one tool did: rows ``first`` to ``end`` (exclusive) of the run of a program."""
 
-    job: int
+    program: int
     tool: str
     first: int
     end: int
@@ -86,17 +86,17 @@ class OperationCut:
 class Simulation:
     """What came out.
 
-    jobs     the programs as far as they were cut
+    programs  as far as they were cut
     error    how far the bodies of tools with round corners may be off, mm
     left     what the stock has beyond the design; None without a design
     gouge    what of the design is missing, and was there
     lacking  what of it was missing before anything was cut
-    stopped  where it was stopped at the first finding: job and row
+    stopped  where it was stopped at the first finding: program and row
     seconds  of computing
     """
 
-    setup: Setup
-    jobs: tuple[Job, ...]
+    model: CuttingModel
+    programs: tuple[SimulatedProgram, ...]
     operations: tuple[OperationCut, ...]
     stock: Stock
     start_volume: float
@@ -110,8 +110,8 @@ class Simulation:
 
 
 def simulate(
-    setup: Setup,
-    jobs: Sequence[Job],
+    model: CuttingModel,
+    programs: Sequence[SimulatedProgram],
     *,
     stop_at_first: bool = False,
     threads: int | None = None,
@@ -122,9 +122,9 @@ def simulate(
 
     Parameters
     ----------
-    setup
+    model
         The solids and the accuracy.
-    jobs
+    programs
         The programs in their order.
     stop_at_first
         End after the row of the first finding.
@@ -140,19 +140,24 @@ def simulate(
     DamagedShareError
         If the shares cannot be used.
     """
-    found = _simulate(setup, jobs, threads, progress, shares=shares)
+    found = _simulate(model, programs, threads, progress, shares=shares)
     if stop_at_first:
-        first = min(((one.job, finding.rows[0]) for one in found.operations for finding in one.findings), default=None)
+        first = min(
+            ((one.program, finding.rows[0]) for one in found.operations for finding in one.findings), default=None
+        )
         if first is not None:
-            job, row = first
-            kept = [*jobs[:job], Job(jobs[job].run, jobs[job].tools, row + 1, jobs[job].broken_off)]
-            return _simulate(setup, kept, threads, progress, first)
+            program, row = first
+            kept = [
+                *programs[:program],
+                SimulatedProgram(programs[program].run, programs[program].tools, row + 1, programs[program].broken_off),
+            ]
+            return _simulate(model, kept, threads, progress, first)
     return found
 
 
 def cut_share(
-    setup: Setup,
-    jobs: Sequence[Job],
+    model: CuttingModel,
+    programs: Sequence[SimulatedProgram],
     share: Share,
     *,
     threads: int | None = None,
@@ -162,21 +167,21 @@ def cut_share(
 
     Parameters are those of ``simulate``.
     """
-    stock = make_stock(setup.stock, setup.cell, lambda lattice: tiles_of(share, lattice))
+    stock = make_stock(model.stock, model.cell, lambda lattice: tiles_of(share, lattice))
     tiles = tiles_of(share, stock.lattice)
-    design = None if setup.part is None else setup.part.bundles(stock.lattice, tiles)
+    design = None if model.part is None else model.part.bundles(stock.lattice, tiles)
     writer = ShareWriter(tiles)
-    total, done = sum(job.end for job in jobs), 0
-    for number, job in enumerate(jobs):
-        for chunk in _measured(setup, jobs, number, stock, design, threads, _shifted(progress, done, total)):
+    total, done = sum(program.end for program in programs), 0
+    for number, program in enumerate(programs):
+        for chunk in _measured(model, programs, number, stock, design, threads, _shifted(progress, done, total)):
             writer.add(number, chunk)
-        done += job.end
+        done += program.end
     return writer.finish(stock)
 
 
 def _measured(
-    setup: Setup,
-    jobs: Sequence[Job],
+    model: CuttingModel,
+    programs: Sequence[SimulatedProgram],
     number: int,
     stock: Stock,
     design: tuple[Spans, Spans, Spans] | None,
@@ -184,71 +189,85 @@ def _measured(
     progress: Callable[[int, int], None] | None,
 ) -> Iterator[Chunk]:
     """Cut stock with one of the programs."""
-    job = jobs[number]
-    pieces, _ = tool_pieces(job, setup, setup.near)
+    program = programs[number]
+    pieces, _ = tool_pieces(program, model, model.near)
     return measure(
-        stock, job.run, pieces, setup.tolerance, idle=idle_rows(job.run, spindle_turns(job.run)), design=design,
-        offset=_offset(jobs, number), end=job.end, threads=threads, progress=progress,
+        stock, program.run, pieces, model.tolerance,
+        idle=idle_rows(program.run, spindle_turns(program.run)), design=design,
+        offset=_offset(programs, number), end=program.end, threads=threads, progress=progress,
     )  # fmt: skip
 
 
 def _simulate(
-    setup: Setup,
-    jobs: Sequence[Job],
+    model: CuttingModel,
+    programs: Sequence[SimulatedProgram],
     threads: int | None,
     progress: Callable[[int, int], None] | None,
     stopped: tuple[int, int] | None = None,
     shares: JoinedShares | None = None,
 ) -> Simulation:
     begin = time.perf_counter()
-    stock = make_stock(setup.stock, setup.cell)
+    stock = make_stock(model.stock, model.cell)
     start = stock.spans(0), stock.spans(1), stock.spans(2)
     design: tuple[Spans, Spans, Spans] | None = None
     lacking, leaks = None, 0
-    if setup.part is not None:
-        design = setup.part.bundles(stock.lattice)
+    if model.part is not None:
+        design = model.part.bundles(stock.lattice)
         leaks = sum(spans.leaks for spans in design)
-        lacking = lacking_at_start(stock, design, setup.limit)
+        lacking = lacking_at_start(stock, design, model.limit)
     start_volume, operations = stock.volume, list[OperationCut]()
-    total, done, error = sum(job.end for job in jobs), 0, 0.0
-    for number, job in enumerate(jobs):
-        pieces, off = tool_pieces(job, setup, setup.near)
+    total, done, error = sum(program.end for program in programs), 0, 0.0
+    for number, program in enumerate(programs):
+        pieces, off = tool_pieces(program, model, model.near)
         error, tell = max(error, off), _shifted(progress, done, total)
         if shares is None:
-            chunks = _measured(setup, jobs, number, stock, design, threads, tell)
+            chunks = _measured(model, programs, number, stock, design, threads, tell)
         else:
-            chunks = shares.chunks(number, job.run, pieces, job.end, stock.lattice, tell)
-        operations += _operations(setup, job, number, rows_cut(chunks, pieces))
-        done += job.end
+            chunks = shares.chunks(number, program.run, pieces, program.end, stock.lattice, tell)
+        operations += _operations(model, program, number, rows_cut(chunks, pieces))
+        done += program.end
     if shares is not None:
         shares.finish(stock)
     left = gouge = None
     if design is not None:
-        left = left_on(stock, design, setup.limit)
-        gouge, gouges = missing_from(stock, start, design, setup.limit)
-        gouges = _with_whole(gouges, setup, jobs, stock, threads)
+        left = left_on(stock, design, model.limit)
+        gouge, gouges = missing_from(stock, start, design, model.limit)
+        gouges = _with_whole(gouges, model, programs, stock, threads)
         apart = _APART * float(stock.lattice.cell.max())
         for one in operations:
-            _add_gouges(one, jobs, gouges, apart)
+            _add_gouges(one, programs, gouges, apart)
     seconds = time.perf_counter() - begin
     return Simulation(
-        setup, tuple(jobs), tuple(operations), stock, start_volume, error, left, gouge, lacking, leaks, stopped, seconds
+        model,
+        tuple(programs),
+        tuple(operations),
+        stock,
+        start_volume,
+        error,
+        left,
+        gouge,
+        lacking,
+        leaks,
+        stopped,
+        seconds,
     )
 
 
-def _with_whole(gouges: Gouges, setup: Setup, jobs: Sequence[Job], stock: Stock, threads: int | None) -> Gouges:
+def _with_whole(
+    gouges: Gouges, model: CuttingModel, programs: Sequence[SimulatedProgram], stock: Stock, threads: int | None
+) -> Gouges:
     """Gouges, and the rows that took what is missing altogether: it alone is cut again."""
     if gouges.whole is None:
         return gouges
     parts = [gouges]
     took = [
         rows.first + np.flatnonzero(rows.removed > 0.0) + offset
-        for offset, rows in _cut_again(gouges.whole, setup, jobs, stock, threads, None)
+        for offset, rows in _cut_again(gouges.whole, model, programs, stock, threads, None)
     ]
-    idle = np.zeros(sum(len(job.run) for job in jobs), np.bool_)
+    idle = np.zeros(sum(len(program.run) for program in programs), np.bool_)
     idle[np.concatenate(took)] = True
-    for offset, rows in _cut_again(gouges.whole, setup, jobs, stock, threads, idle):
-        deep = np.flatnonzero(rows.idle.depth > setup.limit)
+    for offset, rows in _cut_again(gouges.whole, model, programs, stock, threads, idle):
+        deep = np.flatnonzero(rows.idle.depth > model.limit)
         parts.append(Gouges(rows.first + deep + offset, rows.idle.depth[deep], rows.idle.place[deep]))
     row, thickness, place = (
         np.concatenate([getattr(part, name) for part in parts]) for name in ("row", "thickness", "place")
@@ -258,33 +277,33 @@ def _with_whole(gouges: Gouges, setup: Setup, jobs: Sequence[Job], stock: Stock,
 
 def _cut_again(
     spans: tuple[Spans, Spans, Spans],
-    setup: Setup,
-    jobs: Sequence[Job],
+    model: CuttingModel,
+    programs: Sequence[SimulatedProgram],
     stock: Stock,
     threads: int | None,
     idle: Flags | None,
 ) -> Iterator[tuple[int, RowsCut]]:
     """Cut some stretches of material with all programs; what is added to rows of each, and what they did."""
     again = Stock.of_spans(stock.lattice, spans)
-    for number, job in enumerate(jobs):
-        offset, pieces = _offset(jobs, number), tool_pieces(job, setup)[0]
-        own = None if idle is None else idle[offset : offset + len(job.run)]
-        chunks = measure(again, job.run, pieces, setup.tolerance, idle=own, end=job.end, threads=threads)
+    for number, program in enumerate(programs):
+        offset, pieces = _offset(programs, number), tool_pieces(program, model)[0]
+        own = None if idle is None else idle[offset : offset + len(program.run)]
+        chunks = measure(again, program.run, pieces, model.tolerance, idle=own, end=program.end, threads=threads)
         for rows in rows_cut(chunks, pieces):
             yield offset, rows
 
 
-def _add_gouges(one: OperationCut, jobs: Sequence[Job], gouges: Gouges, apart: float) -> None:
+def _add_gouges(one: OperationCut, programs: Sequence[SimulatedProgram], gouges: Gouges, apart: float) -> None:
     """Add what an operation took from the design to its findings."""
-    offset, run = _offset(jobs, one.job), jobs[one.job].run
+    offset, run = _offset(programs, one.program), programs[one.program].run
     own = Gouges(gouges.row - offset, gouges.thickness, gouges.place)
     one.findings += gouge_findings(run, int(run.state.tool[one.first]), one.first, one.end, own, apart)
     one.findings.sort(key=lambda finding: finding.rows)
 
 
-def _offset(jobs: Sequence[Job], job: int) -> int:
-    """What is added to the rows of a job in the stock: rows of all jobs count on."""
-    return sum(len(each.run) for each in jobs[:job])
+def _offset(programs: Sequence[SimulatedProgram], program: int) -> int:
+    """What is added to the rows of a program in the stock: rows of all programs count on."""
+    return sum(len(each.run) for each in programs[:program])
 
 
 def _shifted(progress: Callable[[int, int], None] | None, before: int, total: int) -> Callable[[int, int], None] | None:
@@ -293,20 +312,24 @@ def _shifted(progress: Callable[[int, int], None] | None, before: int, total: in
     return lambda done, _: progress(before + done, total)
 
 
-def tool_pieces(job: Job, setup: Setup, near: float = 0.0) -> tuple[dict[int, RevolvedPieces], float]:
+def tool_pieces(
+    program: SimulatedProgram, model: CuttingModel, near: float = 0.0
+) -> tuple[dict[int, RevolvedPieces], float]:
     """The pieces of each tool by its index in the run, with what stands ``near`` mm around, and how far they are off,
     mm."""
-    found, error, tolerance = {}, 0.0, _FACETS * setup.tolerance
-    for index, name in enumerate(job.run.tools):
-        if name in job.tools:
-            found[index], off = pieces_with_near(job.tools[name], near, tolerance)
+    found, error, tolerance = {}, 0.0, _FACETS * model.tolerance
+    for index, name in enumerate(program.run.tools):
+        if name in program.tools:
+            found[index], off = pieces_with_near(program.tools[name], near, tolerance)
             error = max(error, off)
     return found, error
 
 
-def _operations(setup: Setup, job: Job, number: int, chunks: Iterable[RowsCut]) -> Iterator[OperationCut]:
+def _operations(
+    model: CuttingModel, program: SimulatedProgram, number: int, chunks: Iterable[RowsCut]
+) -> Iterator[OperationCut]:
     """Yield the operations of a program when each of them has ended."""
-    run, turning, current = job.run, spindle_turns(job.run), None
+    run, turning, current = program.run, spindle_turns(program.run), None
     for rows in chunks:
         name = run.tools[rows.tool]
         if current is None or current.tool != name or current.end != rows.first:
@@ -316,9 +339,9 @@ def _operations(setup: Setup, job: Job, number: int, chunks: Iterable[RowsCut]) 
         current.end = rows.first + len(rows.removed)
         current.volumes.append(rows.removed)
         current.gouged += float(rows.gouged.sum())
-        current.findings += row_findings(run, rows, job.tools[name], setup.limit, turning)
-        if setup.near > 0.0:
-            current.near += near_findings(run, rows, job.tools[name], setup.near, setup.tolerance)
+        current.findings += row_findings(run, rows, program.tools[name], model.limit, turning)
+        if model.near > 0.0:
+            current.near += near_findings(run, rows, program.tools[name], model.near, model.tolerance)
         current.air.append(air_cuts(run, rows))
     if current is not None:
         yield current

@@ -11,7 +11,7 @@ from trunnion.simulation.cutting.shares import JoinedShares, Share
 from trunnion.simulation.meshes import TriangleMesh
 from trunnion.simulation.prepared_setup import PreparedSetup
 from trunnion.simulation.remarks import of_setup, part_remarks, simulation_remarks
-from trunnion.simulation.simulator import Job, Setup, Simulation, cut_share, simulate
+from trunnion.simulation.simulator import CuttingModel, SimulatedProgram, Simulation, cut_share, simulate
 from trunnion.simulation.stock.solids import StockShape
 from trunnion.simulation.stock.turning import turned_stock
 from trunnion.simulation.tool_deltas import as_the_tool_goes
@@ -52,7 +52,7 @@ class CutSetup:
 
     setup       as it was read
     simulation  of its programs
-    jobs        the programs as far as they were simulated
+    programs    the programs as far as they were simulated
     touched     what bodies did in each of them
     remarks     what was not simulated, or was taken for granted
     pairs       of bodies that were checked against each other
@@ -60,7 +60,7 @@ class CutSetup:
 
     setup: PreparedSetup
     simulation: Simulation
-    jobs: Sequence[Job]
+    programs: Sequence[SimulatedProgram]
     touched: Sequence[Sequence[Collision]]
     remarks: tuple[Problem, ...]
     pairs: int
@@ -92,30 +92,34 @@ class SetupSteps:
                     Problem("stock", 0, what, "turn it by quarters to lose nothing", Severity.WARNING, code="SIM134")
                 )
         self._part = own.part or self._part
-        result = self._simulated(own, self._setup(shape, self._part), self._part, remarks)
+        result = self._simulated(own, self._model(shape, self._part), self._part, remarks)
         self._left = result.simulation
         return result
 
     def share(self, own: PreparedSetup, shape: StockShape, share: Share, remarks: list[Problem]) -> bytes:
         """Cut some tiles of the stock in the only set-up."""
         self._watcher.problems(remarks)
-        jobs, setup = own.jobs(), self._setup(shape, own.part)
-        with self._watcher.progress("cutting", sum(job.end for job in jobs), "blocks") as tell:
-            return cut_share(setup, jobs, share, threads=self._options.threads, progress=_told_once(tell))
+        programs, model = own.programs(), self._model(shape, own.part)
+        with self._watcher.progress("cutting", sum(program.end for program in programs), "blocks") as tell:
+            return cut_share(model, programs, share, threads=self._options.threads, progress=_told_once(tell))
 
-    def _setup(self, shape: StockShape, part: TriangleMesh | None) -> Setup:
+    def _model(self, shape: StockShape, part: TriangleMesh | None) -> CuttingModel:
         design = None if part is None else StockShape(part.bounds[0], part.bounds[1], mesh=part)
-        return Setup(shape, design, self._options.cell, self._options.tolerance, self._options.near)
+        return CuttingModel(shape, design, self._options.cell, self._options.tolerance, self._options.near)
 
     def _simulated(
-        self, own: PreparedSetup, setup: Setup, part: TriangleMesh | None, remarks: list[Problem]
+        self, own: PreparedSetup, model: CuttingModel, part: TriangleMesh | None, remarks: list[Problem]
     ) -> CutSetup:
         options, name, turn = self._options, own.name, own.turn
-        clamped, jobs = own.clamped_runs(), own.jobs()
-        runs = [job.run for job in jobs]
-        remarks += simulation_remarks(setup, runs, own.tools)
+        clamped, programs = own.clamped_runs(), own.programs()
+        runs = [program.run for program in programs]
+        remarks += simulation_remarks(model, runs, own.tools)
         remarks += [problem for run in own.runs for problem in as_the_tool_goes(run)[1]]
-        remarks += [Problem(job.run.files[0], 0, job.broken_off, code="SIM142") for job in jobs if job.broken_off]
+        remarks += [
+            Problem(program.run.files[0], 0, program.broken_off, code="SIM142")
+            for program in programs
+            if program.broken_off
+        ]
         self._watcher.problems(of_setup(remarks, name))
         told = len(remarks)
         solid, around = part, own.fixtures
@@ -124,27 +128,29 @@ class SetupSteps:
             around = tuple(as_clamped(mesh, turn) for mesh in around)
         machines = list[Problem]()
         bodies = [
-            _bodies(replace(job, run=run), number, solid, around, remarks, machines)
-            for number, (job, run) in enumerate(zip(jobs, clamped, strict=True))
+            _bodies(replace(program, run=run), number, solid, around, remarks, machines)
+            for number, (program, run) in enumerate(zip(programs, clamped, strict=True))
         ]
         machines = [each for each in dict.fromkeys(machines) if each not in self._of_machines]
         self._of_machines += machines
         self._watcher.problems(machines)
         pairs: list[int] = []
 
-        def touching(jobs: Sequence[Job], tell: Callable[[int], None] | None = None) -> list[list[Collision]]:
+        def touching(
+            programs: Sequence[SimulatedProgram], tell: Callable[[int], None] | None = None
+        ) -> list[list[Collision]]:
             """What touches on the machine, where the part is as it is clamped; places are those of the drawing."""
             found = [
-                _collisions(replace(job, run=run), each, options.near, tell)
-                for job, run, each in zip(jobs, clamped, bodies, strict=False)
+                _collisions(replace(program, run=run), each, options.near, tell)
+                for program, run, each in zip(programs, clamped, bodies, strict=False)
             ]
             return found if turn is None else [places_of_drawing(each, turn) for each in found]
 
-        touched = touching(jobs, pairs.append)
+        touched = touching(programs, pairs.append)
         if options.stops_at_first:
-            jobs = _up_to_first_hit(jobs, touched)
-        found = self._cut(setup, jobs)
-        remarks += part_remarks(setup, found.lacking, self._slack, is_later=self._left is not None)
+            programs = _up_to_first_hit(programs, touched)
+        found = self._cut(model, programs)
+        remarks += part_remarks(model, found.lacking, self._slack, is_later=self._left is not None)
         if found.leaks:
             what = f"{found.leaks} of {found.stock.lattice.ray_count} rays pass a hole in it, and were left empty"
             remarks.append(Problem("part", 0, what, "close the mesh", Severity.WARNING, code="SIM214"))
@@ -153,15 +159,15 @@ class SetupSteps:
             remarks.append(Problem(runs[0].files[0], 0, what, cure, Severity.WARNING, code="SIM133"))
         self._watcher.problems(of_setup(remarks[told:], name))
         if options.stops_at_first:
-            jobs = _until_stop(jobs, found)
-            touched = touching(jobs)
-        return CutSetup(own, found, jobs, touched, (*of_setup(remarks, name), *machines), sum(pairs))
+            programs = _until_stop(programs, found)
+            touched = touching(programs)
+        return CutSetup(own, found, programs, touched, (*of_setup(remarks, name), *machines), sum(pairs))
 
-    def _cut(self, setup: Setup, jobs: Sequence[Job]) -> Simulation:
+    def _cut(self, model: CuttingModel, programs: Sequence[SimulatedProgram]) -> Simulation:
         """Cut the stock, with progress."""
-        with self._watcher.progress("cutting", sum(job.end for job in jobs), "blocks") as tell:
+        with self._watcher.progress("cutting", sum(program.end for program in programs), "blocks") as tell:
             return simulate(
-                setup, jobs, stop_at_first=self._options.stops_at_first, threads=self._options.threads,
+                model, programs, stop_at_first=self._options.stops_at_first, threads=self._options.threads,
                 shares=self._shares, progress=_told_once(tell),
             )  # fmt: skip
 
@@ -179,27 +185,29 @@ def _told_once(tell: Callable[[int], None]) -> Callable[[int, int], None]:
     return progress
 
 
-def _up_to_first_hit(jobs: Sequence[Job], touched: Sequence[Sequence[Collision]]) -> list[Job]:
-    """The jobs as far as the row in which bodies first touch."""
+def _up_to_first_hit(
+    programs: Sequence[SimulatedProgram], touched: Sequence[Sequence[Collision]]
+) -> list[SimulatedProgram]:
+    """The programs as far as the row in which bodies first touch."""
     kept = []
-    for job, collisions in zip(jobs, touched, strict=True):
+    for program, collisions in zip(programs, touched, strict=True):
         first = min((each.row for each in collisions if not each.is_near), default=None)
-        kept.append(job if first is None else replace(job, end=first + 1))
+        kept.append(program if first is None else replace(program, end=first + 1))
         if first is not None:
             break
     return kept
 
 
-def _until_stop(jobs: Sequence[Job], found: Simulation) -> list[Job]:
-    """The jobs as far as they were simulated."""
+def _until_stop(programs: Sequence[SimulatedProgram], found: Simulation) -> list[SimulatedProgram]:
+    """The programs as far as they were simulated."""
     if found.stopped is None:
-        return list(jobs)
+        return list(programs)
     last, row = found.stopped
-    return [*jobs[:last], replace(jobs[last], end=row + 1)]
+    return [*programs[:last], replace(programs[last], end=row + 1)]
 
 
 def _bodies(
-    job: Job,
+    program: SimulatedProgram,
     number: int,
     part: TriangleMesh | None,
     fixtures: Sequence[TriangleMesh],
@@ -207,30 +215,30 @@ def _bodies(
     of_machine: list[Problem],
 ) -> list[Body]:
     """What a tool can hit while a program runs, and what the machine may hit with it."""
-    machine = job.run.machine
+    machine = program.run.machine
     bodies = [fixture_body(mesh, machine) for mesh in fixtures]
     if fixtures and part is not None:
         bodies.append(part_body(part, machine))
-    if machine.workpiece_zero is not None and _lengths_known(job):
+    if machine.workpiece_zero is not None and _lengths_known(program):
         bodies += machine_bodies(machine, of_machine.append)
     elif number == 0 and machine.bodies:
         what = "the bodies of the machine are not checked: workpiece zero and tool lengths are not known"
         cure = "give the workpiece zero, and the tool length or a tool with its holder"
-        remarks.append(Problem(job.run.files[0], 0, what, cure, Severity.WARNING, code="SIM310"))
+        remarks.append(Problem(program.run.files[0], 0, what, cure, Severity.WARNING, code="SIM310"))
     return bodies
 
 
 def _collisions(
-    job: Job, bodies: Sequence[Body], near: float, pairs_told: Callable[[int], None] | None = None
+    program: SimulatedProgram, bodies: Sequence[Body], near: float, pairs_told: Callable[[int], None] | None = None
 ) -> list[Collision]:
     """What touches, or comes near, while a program runs as far as it is simulated."""
     if not bodies:
         return []
-    return check_collisions(job.run, bodies, job.tools, near=near, end=job.end, pairs_told=pairs_told)
+    return check_collisions(program.run, bodies, program.tools, near=near, end=program.end, pairs_told=pairs_told)
 
 
-def _lengths_known(job: Job) -> bool:
+def _lengths_known(program: SimulatedProgram) -> bool:
     """Whether the length of every tool that the program calls is known, from its tip to the gauge point."""
-    used = [job.run.tools[int(index)] for index in job.run.state.tool.distinct()]
-    known = job.run.machine.tool_length is not None
-    return all(known or job.tools[name].length for name in used if name in job.tools)
+    used = [program.run.tools[int(index)] for index in program.run.state.tool.distinct()]
+    known = program.run.machine.tool_length is not None
+    return all(known or program.tools[name].length for name in used if name in program.tools)

@@ -66,9 +66,9 @@ class StockView:
     """
 
     def __init__(self, simulation: Simulation, narrowest: float) -> None:
-        (job,) = simulation.jobs
+        (job,) = simulation.programs
         self._simulation, self._job = simulation, job
-        setup = simulation.setup
+        setup = simulation.model
         cell = max(setup.cell, _picture_cell(setup.stock, narrowest))
         self._lattice = Lattice.of_box(setup.stock.low, setup.stock.high, cell)
         self._replay = Replay(replace(setup, cell=cell), job, simulation.stock if cell == setup.cell else None)
@@ -89,7 +89,7 @@ class StockView:
 
     def scene(self) -> dict[str, Any]:
         """What the page says of it, and what its messages count in."""
-        lattice, setup = self._lattice, self._simulation.setup
+        lattice, setup = self._lattice, self._simulation.model
         found: dict[str, Any] = {
             "low": lattice.low.tolist(), "cell": lattice.cell.tolist(), "counts": list(lattice.counts),
             "rows": self.rows, "simulated": setup.cell, "deviation": None,
@@ -182,7 +182,7 @@ class StockView:
         return frame
 
     def _points(self) -> SurfacePoints:
-        part, stock = self._simulation.setup.part, self._simulation.stock
+        part, stock = self._simulation.model.part, self._simulation.stock
         lattice = stock.lattice
         design = None if part is None else (part.spans(lattice, 0), part.spans(lattice, 1), part.spans(lattice, 2))
         return surface_points(stock, design)

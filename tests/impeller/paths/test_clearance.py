@@ -14,7 +14,7 @@ from trunnion.errors import InputError
 from trunnion.extras import import_extra
 from trunnion.impeller.definition import read_impeller
 from trunnion.impeller.impeller import Impeller, build_impeller, rotated
-from trunnion.impeller.paths.cells import STEPS, cell_tree, joined
+from trunnion.impeller.paths.cell_trees import STEPS, cell_tree, joined
 from trunnion.impeller.paths.clearance import (
     SLACK,
     Margins,

@@ -11,7 +11,7 @@ from trunnion.errors import InputError
 from trunnion.impeller.definition import read_impeller
 from trunnion.impeller.impeller import Impeller, build_impeller, rotated
 from trunnion.impeller.linear_program import solve_linear_program
-from trunnion.impeller.paths.cells import STEPS, cell_tree, joined
+from trunnion.impeller.paths.cell_trees import STEPS, cell_tree, joined
 from trunnion.impeller.paths.clearance import Obstacles, obstacles_of
 from trunnion.impeller.paths.clearance_kernel import BodyData
 from trunnion.impeller.paths.least_clearances import PartClearance

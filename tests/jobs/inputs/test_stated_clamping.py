@@ -203,7 +203,7 @@ def test_zero_and_damage_are_told_without_cl_files(folder: Path, tmp_path: Path)
     assert back.text is not None
     assert "$$ PART T" not in back.text
     placed = trunnion.place(bad, machine="yl569", turns=[0.0], tool_length=120.0)
-    assert "PLC250" in [each.code for each in placed.problems]
+    assert "PLC250" in [each.code for each in placed.remarks]
 
 
 def test_a_view_with_bodies_warns(folder: Path, tmp_path: Path) -> None:

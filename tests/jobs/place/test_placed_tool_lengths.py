@@ -51,7 +51,7 @@ def test_each_row_keeps_the_limits_with_its_own_tool(two_tools: Path) -> None:
     assert z.axis == "Z"
     assert [z.least_mm, z.greatest_mm] == pytest.approx([72.5, 227.5])
     assert found.best.zero_mm[2] == pytest.approx(7.5, abs=1e-3)
-    assert not any(each.code == "PLC290" for each in found.problems)
+    assert not any(each.code == "PLC290" for each in found.remarks)
     assert found.present is not None
     assert found.present.axes[2].least_mm == pytest.approx(65.0)
     # Z needs 155 of travel: one length for both would need 35.
@@ -70,7 +70,7 @@ def test_lengths_that_cl_files_state_count_without_bodies_too(tmp_path: Path) ->
     assert found.best is not None
     assert [found.best.axes[2].least_mm, found.best.axes[2].greatest_mm] == pytest.approx([72.5, 227.5])
     assert found.tool_length_mm == 180
-    assert not any(each.code == "PLC210" for each in found.problems)
+    assert not any(each.code == "PLC210" for each in found.remarks)
     assert not trunnion.place(file, machine=mill(0, 150), turns=[0.0]).fits
     # One that is asked for counts for all.
     assert trunnion.place(file, machine=mill(0, 150), turns=[0.0], tool_length=180).fits
@@ -80,7 +80,7 @@ def test_a_stated_length_that_is_not_that_of_the_tools_is_told(two_tools: Path) 
     found = trunnion.place(
         two_tools, machine=mill(0, 300), turns=[0.0], tools=[SHORT, LONG], zero=(0, 0, 0), tool_length=60
     )
-    told = [each.what for each in found.problems if each.code == "PLC290"]
+    told = [each.what for each in found.remarks if each.code == "PLC290"]
     assert told == ["says 60 mm, and places are sought with the lengths of the tools: 2 of 180 mm"]
     assert found.present is not None
     assert found.present.axes[2].greatest_mm == pytest.approx(220.0)

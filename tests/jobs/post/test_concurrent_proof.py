@@ -18,7 +18,7 @@ from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.posting import post_toolpaths
 from trunnion.jobs.post.result import ProofFailedError
 from trunnion.jobs.post.writing import read_back_while_writing, write
-from trunnion.jobs.targets import Target
+from trunnion.jobs.result_output import Target
 from trunnion.machines import load_machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath

@@ -25,10 +25,6 @@ class Flank:
         """All points (n · m, 3)."""
         return self.points.reshape(-1, 3)
 
-    def turned_over(self) -> "Flank":
-        """The same surface, cut from its other side."""
-        return Flank(self.points, -self.normals)
-
     def smoothed(self, share: float) -> "Flank":
         """The same points with the mean of the normals over so large a share of the flank's length."""
         count = len(self.normals)

@@ -9,8 +9,8 @@ from trunnion.impeller.blade import Blade
 from trunnion.impeller.fillet import Stations, crossings
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.paths.around import dense_stations, lay_passes, row_depths, side_end, stations_at
+from trunnion.impeller.paths.ball_clearance import prove_room, surroundings_of
 from trunnion.impeller.paths.passes import PassFamily, Stepover, Way
-from trunnion.impeller.paths.room import prove_room, surroundings_of
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,7 +21,7 @@ from trunnion.arrays import Flags, Floats
 from trunnion.errors import InputError, argument_problem
 from trunnion.impeller.blade import Blade
 from trunnion.impeller.impeller import Impeller
-from trunnion.impeller.paths.cells import STEPS, Cells, cell_tree, joined
+from trunnion.impeller.paths.cell_trees import STEPS, Cells, cell_tree, joined
 from trunnion.impeller.paths.clearance_kernel import BodyData, ToolData, least_margins, part_distances
 from trunnion.simulation.tools.pieces import revolved_pieces
 from trunnion.simulation.tools.profile import Role, ToolShape

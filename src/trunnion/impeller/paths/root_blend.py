@@ -16,9 +16,9 @@ from trunnion.impeller.blade import Blade
 from trunnion.impeller.fillet import Fillet, Stations, root_fillet
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.paths.around import dense_stations, lay_passes, row_depths, side_end, stations_at
+from trunnion.impeller.paths.ball_clearance import Surroundings, prove_room, surroundings_of
 from trunnion.impeller.paths.blade_finish import root_heights, tip_heights
 from trunnion.impeller.paths.passes import PassFamily, Stepover, Way
-from trunnion.impeller.paths.room import Surroundings, prove_room, surroundings_of
 
 #: Strips go on beyond what was not reached, as a part of the ball's radius.
 _OVERLAP: Final = 0.25

@@ -17,7 +17,6 @@ from trunnion.model.toolpath import (
     Coolant,
     Event,
     Frame,
-    Kind,
     LoadTool,
     Moves,
     Operation,
@@ -78,9 +77,3 @@ def operation_of(
         events.append(Coolant(n, 1, "OFF"))
     events.append(SpindleOff(n, 1))
     return Operation(name, tool, Frame(), moves, Arcs.empty(), tuple(events), 1, tolerance, tolerance)
-
-
-def cut_length(path: LinkedPath) -> float:
-    """Length in mm that the ball's centre moves at the feed of the step."""
-    steps = np.linalg.norm(np.diff(path.centre, axis=0), axis=1)
-    return float(steps[np.isin(path.phase[1:], _CUTTING) & (path.kind[1:] != Kind.RAPID)].sum())

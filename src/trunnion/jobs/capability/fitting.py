@@ -44,7 +44,7 @@ _MOST: Final = 3
 
 
 class FitStatus(StrEnum):
-    """Whether a machine can run it; OPEN where the definition leaves open how far slides go."""
+    """Whether a machine can run it; OPEN where the definition leaves open how far linear axes go."""
 
     FITS = "fits"
     OPEN = "open"
@@ -68,8 +68,8 @@ class MachineFit:
     status     whether it can run it
     reasons    why not, or what is left open, in sentences
     seconds    time of the proven program; None: there is none, or its time is not known
-    margins    of the slides at the place that was found, and of the rotary axes at feed
-    missing    how far the slides are from reaching it at the best place, mm; None where that is not the reason
+    margins    of the linear axes at the place that was found, and of the rotary axes at feed
+    missing    how far the linear axes are from reaching it at the best place, mm; None where that is not the reason
     zero_mm    workpiece zero of the best place, machine frame; None: there is no place, or it was not looked for
     turn_deg   turn of the part there, about Z
     """
@@ -114,7 +114,7 @@ def fit(
     subprograms
         Files of the subprograms that the NC program calls.
     zero : (3,) float, mm
-        Workpiece zero of the NC program on its own machine, where it moves slides to positions of the machine.
+        Workpiece zero of the NC program on its own machine, where it moves linear axes to positions of the machine.
     tool_length
         Of the tool, gauge point to tip, mm, on all machines; by default the greatest that the CL files state for tools
         in the spindle. Where none is known the answer is open at best.
@@ -283,7 +283,7 @@ def _fit(
 
 
 def _without_limits(machine: Machine, toolpaths: Sequence[Toolpath]) -> MachineFit:
-    """On a machine whose slides have no limits only rotary axes and the control can be judged."""
+    """On a machine whose linear axes have no limits only rotary axes and the control can be judged."""
     try:
         posted = post(toolpaths, machine=machine)
     except TrunnionError as error:
@@ -342,7 +342,7 @@ def _travel(use: AxisUse) -> float:
 
 
 def _travel_reason(use: AxisUse) -> str:
-    """Why the travel of a slide is too small, with the lines."""
+    """Why the travel of a linear axis is too small, with the lines."""
     travel, needed = _travel(use), _needed(use)
     if needed > travel:
         return (

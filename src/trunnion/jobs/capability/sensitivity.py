@@ -143,7 +143,7 @@ def _zero_pose(machine: Machine, zero_at: str | Mapping[str, float] | None) -> d
     Raises
     ------
     InputError
-        If it names something else than rotary axes, or no angles, or the slides cannot reach the zero there.
+        If it names something else than rotary axes, or no angles, or the linear axes cannot reach the zero there.
     """
     pose = _stated_pose(machine, zero_at)
     if pose is not None and np.isnan(joints_at_zero(machine, pose)).any():

@@ -11,7 +11,7 @@ from trunnion.errors import InputError, Problem, RefusedError, argument_problem,
 from trunnion.jobs.inputs.reading import read_cl
 from trunnion.jobs.inputs.settings import Settings, as_texts
 from trunnion.jobs.observer import Observer
-from trunnion.jobs.targets import Target
+from trunnion.jobs.result_output import Target
 from trunnion.model.clamping_notices import clamped_notices
 from trunnion.model.toolpath import Toolpath
 

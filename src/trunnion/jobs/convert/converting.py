@@ -27,7 +27,7 @@ from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.post_job import PostJob, prepare
 from trunnion.jobs.post.posting import post_toolpaths
 from trunnion.jobs.post.result import PostResult
-from trunnion.jobs.targets import OutputLike, open_target, written_text
+from trunnion.jobs.result_output import OutputLike, open_target, written_text
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath

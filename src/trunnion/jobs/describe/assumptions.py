@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Final
 
 from trunnion.definitions import Table
-from trunnion.definitions.marked import marked_in
-from trunnion.definitions.marks import ASSUMED, MARKS
+from trunnion.definitions.marked_values import marked_in
+from trunnion.definitions.value_marks import ASSUMED, MARKS
 from trunnion.machines import Axis, Machine
 from trunnion.machines.loading import machine_library
 

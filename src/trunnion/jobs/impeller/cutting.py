@@ -34,10 +34,10 @@ from trunnion.jobs.post.post_job import PostJob, prepare
 from trunnion.jobs.post.posting import post_toolpaths
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.writing import named_run
+from trunnion.jobs.result_output import PaperFiles, open_target
 from trunnion.jobs.simulate.report import simulation_content
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.simulating import simulate
-from trunnion.jobs.targets import PaperFiles, open_target
 from trunnion.machines import Machine
 from trunnion.machines.inverse import inverse
 from trunnion.machines.spindle_range import spindle_speed_fault

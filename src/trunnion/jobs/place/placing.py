@@ -19,7 +19,7 @@ from trunnion.jobs.place.table import standing_on
 from trunnion.machines import Machine
 from trunnion.model.clamped_toolpaths import clamped_after
 from trunnion.placing.body_distances import touch_warnings
-from trunnion.placing.collisions.moments import lengths_of
+from trunnion.placing.collisions.path_samples import lengths_of
 from trunnion.placing.goals import Goal
 from trunnion.placing.place_search import PlaceSearch
 from trunnion.placing.placement import Placement
@@ -61,7 +61,7 @@ def place(
     machine
         A name, a path or a ``Machine``.
     goal
-        What the best place is best for: ``"margin"``, the distance of the slides to their limits; or the least
+        What the best place is best for: ``"margin"``, the distance of the linear axes to their limits; or the least
         ``"rotary"`` or ``"slides"`` travel, ``"time"``, or ``"overspeed"``, fewest rows whose feed the
         axes do not reach; or ``"collisions"``, the largest least distance between bodies of the spindle's side and
         those of the table's. Places with these goals keep a margin of 1 mm where they can.
@@ -99,7 +99,7 @@ def place(
     Raises
     ------
     InputError
-        When a file or an argument cannot be used, or no slide has limits.
+        When a file or an argument cannot be used, or no linear axis has limits.
     RefusedError
         When no plan of the CL files is possible, or a program has words that are not understood.
 
@@ -144,12 +144,12 @@ def place(
     search = PlaceSearch(loaded, given.rows, Goal(goal), grid, standing, None if bodies is None else bodies.guard)
     with observer.progress("placing", len(grid), "turns") as advance:
         found = search.find(advance)
-    found = replace(found, problems=tuple(problems), toolpaths=given.toolpaths, clamping=given.clamping)
+    found = replace(found, remarks=tuple(problems), toolpaths=given.toolpaths, clamping=given.clamping)
     if bodies is None or goal == Goal.COLLISIONS:
         return found
     touching = touch_warnings(found)
     observer.problems(touching)
-    return replace(found, problems=(*found.problems, *touching))
+    return replace(found, remarks=(*found.remarks, *touching))
 
 
 def unknown_length(machine: Machine) -> list[Problem]:

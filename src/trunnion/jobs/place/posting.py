@@ -7,7 +7,7 @@ from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.place.inputs import nc_program_stays
 from trunnion.jobs.post.posting import post_beside
 from trunnion.jobs.post.result import PostResult
-from trunnion.jobs.targets import OutputLike, paper_files
+from trunnion.jobs.result_output import OutputLike, paper_files
 from trunnion.placing.placement import Placement
 
 
@@ -36,7 +36,7 @@ def post_placed(
     Returns
     -------
     PostResult
-        The proven program: its slides keep their limits with the workpiece zero there.
+        The proven program: its linear axes keep their limits with the workpiece zero there.
 
     Raises
     ------

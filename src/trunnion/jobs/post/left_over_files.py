@@ -10,7 +10,7 @@ from typing import Final
 
 from trunnion.errors import Problem, Severity
 from trunnion.files import OutputPlace
-from trunnion.jobs.targets import Target
+from trunnion.jobs.result_output import Target
 from trunnion.wording import counted
 
 _MOST_NAMED: Final = 5

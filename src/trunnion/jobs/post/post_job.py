@@ -23,7 +23,7 @@ from trunnion.jobs.inputs.settings import (
     split_by_operation,
     with_limit_margin,
 )
-from trunnion.jobs.targets import PaperFiles
+from trunnion.jobs.result_output import PaperFiles
 from trunnion.machines import Machine
 from trunnion.model.clamping import Clamping
 from trunnion.model.motion import Decision, MachiningMode, PoleStrategy

@@ -33,7 +33,7 @@ from trunnion.jobs.post.refusals import refused, reported_refusals
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.stages import PlannedProgram, Posting, WrittenProgram
 from trunnion.jobs.post.writing import write_and_read_back
-from trunnion.jobs.targets import OutputLike, PaperFiles, Target, open_target, paper_files
+from trunnion.jobs.result_output import OutputLike, PaperFiles, Target, open_target, paper_files
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.program import Program
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 
 from trunnion.controls import Control
 from trunnion.errors import InputError, Problem
-from trunnion.jobs.targets import Target
+from trunnion.jobs.result_output import Target
 from trunnion.model.template_passage import TemplatePassage
 from trunnion.verification import Check, Place, Verification
 

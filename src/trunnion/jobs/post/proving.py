@@ -10,7 +10,7 @@ from functools import partial
 
 from trunnion.errors import Problem, Severity
 from trunnion.jobs.post.expected_values import Expectation
-from trunnion.jobs.post.forcing import Untold, write_forced
+from trunnion.jobs.post.forced_program import Untold, write_forced
 from trunnion.jobs.post.machining_times import operation_times
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.stages import PlannedProgram, Posting, Proof, WrittenProgram

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.targets import written_text
+from trunnion.jobs.result_output import written_text
 from trunnion.jobs.verify.reports import write_post_report
 from trunnion.model.motion import Decision, Motion, Plan
 from trunnion.model.run import Run

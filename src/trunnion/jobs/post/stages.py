@@ -11,7 +11,7 @@ from trunnion.errors import Problem
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.program_places import ProgramPlaces
-from trunnion.jobs.targets import Target
+from trunnion.jobs.result_output import Target
 from trunnion.model.motion import Plan
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from trunnion.errors import InputError
 from trunnion.jobs.post.papers.manifests import verify_manifest
-from trunnion.jobs.targets import PaperFiles
+from trunnion.jobs.result_output import PaperFiles
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,14 +18,14 @@ from trunnion.files import EarlierJob, output_group, resolve_output
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.writing import named_run
 from trunnion.jobs.post_project.case_papers import StalePaper, stale_papers
-from trunnion.jobs.post_project.dividing import programs_of_operations
+from trunnion.jobs.post_project.operation_programs import programs_of_operations
 from trunnion.jobs.post_project.posting import ProjectResult, check_within, files_of, post_into
 from trunnion.jobs.post_project.setups import ProjectOptions
 from trunnion.jobs.post_project.text_difference import TextDifference, text_difference
 from trunnion.jobs.post_project.watching import State, state_of
 from trunnion.jobs.project.file import load_project, project_inputs
 from trunnion.jobs.project.project import Division, PostedSetup, Project
-from trunnion.jobs.targets import NO_PAPERS
+from trunnion.jobs.result_output import NO_PAPERS
 from trunnion.jobs.verify.comparing import diff
 
 #: What projects are called that are cases, and how the names of others end.

@@ -33,7 +33,7 @@ def _as_simulated(given: SimulationInput, number: int, found: SimulationResult) 
     """A set-up alone, in its own coordinates: its part, fixtures, and the bounds of what the one before has left."""
     from trunnion.simulation.meshes.primitives import box_mesh
 
-    setup = found.simulation.setup
+    setup = found.simulation.model
     stock = given.stock if number == 0 else box_mesh(setup.stock.low, setup.stock.high, "stock")
     part = None if setup.part is None else setup.part.mesh
     return replace(given, stock=stock, setups=[replace(given.setups[number], part=part)])

@@ -19,8 +19,8 @@ from trunnion.jobs.inputs.settings import Settings
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post_project.checks import SetupFindings, check_project
-from trunnion.jobs.post_project.dividing import programs_of_operations
 from trunnion.jobs.post_project.left_over_setups import left_over_setups, remember_setups
+from trunnion.jobs.post_project.operation_programs import programs_of_operations
 from trunnion.jobs.post_project.replaced_files import check_replaced
 from trunnion.jobs.post_project.setups import NO_OPTIONS, PostedPrograms, ProjectOptions, ProjectPosting, post_setups
 from trunnion.jobs.project.file import load_project, project_inputs, told_by_keys

@@ -19,11 +19,11 @@ from trunnion.jobs.post.planning import load_toolpaths
 from trunnion.jobs.post.post_job import prepare
 from trunnion.jobs.post.posting import post_beside
 from trunnion.jobs.post.result import PostResult
-from trunnion.jobs.post_project.dividing import check_tools, operation_programs
+from trunnion.jobs.post_project.operation_programs import check_tools, operation_programs
 from trunnion.jobs.post_project.replaced_files import replaced_file
 from trunnion.jobs.project.project import Division, PostedSetup, Project
 from trunnion.jobs.project.settings import told_in_project
-from trunnion.jobs.targets import NO_PAPERS, PaperFiles
+from trunnion.jobs.result_output import NO_PAPERS, PaperFiles
 from trunnion.machines import Machine
 from trunnion.model.motion import Motion
 

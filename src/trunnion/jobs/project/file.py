@@ -29,7 +29,7 @@ from trunnion.jobs.inputs.simulation_input import SetupInput, SimulationInput, w
 from trunnion.jobs.project.paths import ProjectPaths, is_file
 from trunnion.jobs.project.project import Division, Judgement, PostedSetup, Project, ProjectChecks
 from trunnion.jobs.project.settings import read_settings
-from trunnion.jobs.targets import NO_PAPERS, PAPERS, PaperFiles, paper_files
+from trunnion.jobs.result_output import NO_PAPERS, PAPERS, PaperFiles, paper_files
 from trunnion.machines import shipped_machines
 from trunnion.model.toolpath import Toolpath
 from trunnion.simulation.stock.solids import is_mesh, stock_shape

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from trunnion.jobs.inputs.settings import SettingValue
 from trunnion.jobs.inputs.simulation_input import Places, SimulationInput
-from trunnion.jobs.targets import NO_PAPERS, PaperFiles
+from trunnion.jobs.result_output import NO_PAPERS, PaperFiles
 
 
 class Judgement(StrEnum):

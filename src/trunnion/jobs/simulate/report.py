@@ -13,8 +13,8 @@ import numpy as np
 from trunnion.arrays import Floats
 from trunnion.files import atomic_file
 from trunnion.jobs.inputs.reading import FilePath
+from trunnion.jobs.result_output import check_report_name
 from trunnion.jobs.simulate.result import SimulationResult
-from trunnion.jobs.targets import check_report_name
 from trunnion.model.clamping import Clamping, number
 from trunnion.reporting.simulation_content import (
     DeviationBin,
@@ -128,7 +128,7 @@ def _where(setup: str, file: str, line: int, block: int = -1, last_line: int = 0
 def _state(found: SimulationResult) -> StockState:
     """The stock that a set-up has left, in pictures and numbers."""
     simulated = found.simulation
-    stock, part = simulated.stock, simulated.setup.part
+    stock, part = simulated.stock, simulated.model.part
     lattice = stock.lattice
     design = None
     if part is not None:

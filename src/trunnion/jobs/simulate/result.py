@@ -106,16 +106,16 @@ class SimulationResult:
 
 def make_result(cut: CutSetup) -> SimulationResult:
     """The result of a set-up."""
-    found, own, jobs = cut.simulation, setup_findings(cut), cut.jobs
+    found, own, programs = cut.simulation, setup_findings(cut), cut.programs
     x, y, z = found.stock.lattice.cell.tolist()
     return SimulationResult(
-        programs=tuple(job.run.files[0] for job in jobs),
+        programs=tuple(program.run.files[0] for program in programs),
         machine=cut.setup.machine.key,
         turn=cut.setup.clamping.turn,
         tilt=cut.setup.clamping.tilt,
         cell=(x, y, z),
-        accuracy=found.setup.tolerance + found.error,
-        limit=found.setup.limit,
+        accuracy=found.model.tolerance + found.error,
+        limit=found.model.limit,
         removed=found.start_volume - found.stock.volume,
         left=found.left,
         gouge=found.gouge,

@@ -85,12 +85,12 @@ def verify(
     frame
         Coordinate system of the program: that of the ``first`` operation, or the CAM's ``absolute`` one.
     zero : (3,) float, mm
-        Workpiece zero on the machine; needed to check the travel of the slides against their limits.
+        Workpiece zero on the machine; needed to check the travel of the linear axes against their limits.
     tool_length
         From the gauge point of the spindle to the tip, mm; for programs without TCP.
     recorded
         What the machine did: a recording of ``trunnion record``, or its file. Each of its positions is compared with
-        the path of the program; with the slides in the machine's own coordinates, ``zero`` and ``tool_length`` are
+        the path of the program; with the linear axes in the machine's own coordinates, ``zero`` and ``tool_length`` are
         needed.
     recorded_tolerance
         How far a recorded tip may be off the path, mm, and its tool axis, degrees.

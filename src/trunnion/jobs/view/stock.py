@@ -64,7 +64,7 @@ def with_stock(
         If a file cannot be used, nothing says the form of a tool, or the stock is too large for a picture.
     """
     found = simulate_posted(given, named_run(run, run.files[0]), toolpaths, observer)
-    (job,) = found.simulation.jobs
+    (job,) = found.simulation.programs
     widths = [cutting_width(job.tools[name]) for name in _cutting(run) if name in job.tools]
     stock = StockView(found.simulation, min(widths, default=math.inf))
     warnings = [_short(each) for each in found.remarks if each.severity is not Severity.ERROR]

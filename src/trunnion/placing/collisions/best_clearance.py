@@ -12,14 +12,14 @@ from trunnion.model.clamping import Clamping
 from trunnion.placing.best_turn import KEPT, Grid, TurnResult
 from trunnion.placing.collisions.clearance import ENOUGH, Clearance, Nearest
 from trunnion.placing.collisions.guarded_pairs import Changes, GuardedPair
-from trunnion.placing.collisions.moments import Moments, moments_of
+from trunnion.placing.collisions.path_samples import PathSamples, path_samples
 from trunnion.placing.collisions.search import FarthestSearch
 from trunnion.placing.largest_margin import BestPlace, largest_margin
 from trunnion.placing.rotary_angles import Obstacle
 from trunnion.placing.travel_limits import TABLE, Cut, CutSet
 from trunnion.placing.turns import TurnedPath
 
-#: Moments that are asked first, and rows beside them where bodies were nearest at earlier turns.
+#: PathSamples that are asked first, and rows beside them where bodies were nearest at earlier turns.
 _COARSE: Final = 400
 _MOST_ROWS: Final = 200
 
@@ -79,17 +79,17 @@ class Oriented:
         self._turn, self._tilt = turn, tilt
 
     @cached_property
-    def moments(self) -> Moments:
+    def moments(self) -> PathSamples:
         """All moments."""
         rows, positions = self._path.rows_at(self._turn)
-        return moments_of(self._path.machine, rows, positions, self._guard.tool, self._guard.lengths)
+        return path_samples(self._path.machine, rows, positions, self._guard.tool, self._guard.lengths)
 
     @cached_property
-    def coarse(self) -> Moments:
+    def coarse(self) -> PathSamples:
         """Some of them."""
         return self.moments.some(_COARSE, self._rows)
 
-    def asked(self, moments: Moments, *changes: Changes) -> Clearance:
+    def asked(self, moments: PathSamples, *changes: Changes) -> Clearance:
         """Asks pairs that something changes."""
         turn = Clamping(self._turn, self._tilt).rotation
         return Clearance(self._path.machine, moments, self._guard.that(*changes), turn, self._near)

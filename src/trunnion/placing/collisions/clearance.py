@@ -11,8 +11,8 @@ from trunnion.arrays import Floats, Ints
 from trunnion.machines import Machine
 from trunnion.machines.links import link_chain
 from trunnion.placing.collisions.guarded_pairs import Guarded, GuardedPair, piece_pairs
-from trunnion.placing.collisions.moments import Moments
 from trunnion.placing.collisions.nearest_moment import Course, course_pose, nearest_moment
+from trunnion.placing.collisions.path_samples import PathSamples
 from trunnion.placing.collisions.surfaces import SurfaceGap, SurfacePair
 from trunnion.simulation.collisions.clearance import joint_senses, motion_bounds
 from trunnion.simulation.collisions.hull_pieces import HullPiece
@@ -32,7 +32,7 @@ class Nearest:
     """Where two bodies are nearest to each other.
 
     distance       mm, times the weight of the pair; 0: they touch
-    moment, share  of ``Moments``: on the way to it
+    moment, share  of ``PathSamples``: on the way to it
     one, other     points whose hulls are as far apart there, and no nearer to each other than the bodies at any
                    other zero, in the frames of the bodies
     inside         how deep a point of one body is in the other there, mm, where hulls do not show that they touch
@@ -67,7 +67,7 @@ class Clearance:
     """
 
     def __init__(
-        self, machine: Machine, moments: Moments, pairs: Sequence[GuardedPair], turn: Floats, near: Floats
+        self, machine: Machine, moments: PathSamples, pairs: Sequence[GuardedPair], turn: Floats, near: Floats
     ) -> None:
         self.machine, self.moments, self.turn, self.near = machine, moments, turn, near
         self._chain = link_chain(machine)
@@ -217,7 +217,7 @@ def _is_hollow(guarded: Guarded) -> bool:
     return any(piece.hollow for piece in guarded.pieces)
 
 
-def _course(machine: Machine, moments: Moments, pair: GuardedPair, turn: Floats, near: Floats) -> Course:
+def _course(machine: Machine, moments: PathSamples, pair: GuardedPair, turn: Floats, near: Floats) -> Course:
     """How the first body of a pair moves in the frame of the second, with bounds for zeros around ``near``."""
     chain, body, other = link_chain(machine), pair.one.body, pair.other.body
     columns, senses = joint_senses(machine, body.link, other.link)

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.machines import Machine, Mount
+from trunnion.machines import Machine
 from trunnion.machines.links import BED, WORKPIECE, axes_between, carrier, is_nearer_the_tool
 from trunnion.simulation.collisions.bodies import Body, BodyKind, tool_bodies, tool_pose
 from trunnion.simulation.collisions.hull_pieces import HullPiece, mesh_pieces, section_pieces
@@ -190,8 +190,3 @@ def _changes(machine: Machine, one: Guarded, other: Guarded) -> Changes:
     if (other.carried and slides < len(machine.linear)) or (not other.carried and slides):
         return Changes.PLACE
     return Changes.NOTHING if one.body.kind.is_tool and other.carried else Changes.TURN
-
-
-def has_spindle_side(machine: Machine, bodies: Sequence[Guarded]) -> bool:
-    """Whether some body moves with the spindle."""
-    return any(side_of(machine, each.body.link) is Mount.TOOL for each in bodies)

@@ -27,7 +27,7 @@ _NO_WAY: Final = 1e-3
 class Course(NamedTuple):
     """How the frame of one body moves in that of another along a path.
 
-    angles, normals, offsets, begins  as in ``Moments``
+    angles, normals, offsets, begins  as in ``PathSamples``
     turn      (m,) radians that both rotary axes turn on the way to each moment
     way       (m,) how far points of the bodies can have moved against each other until then, at one zero, mm
     drift     (m,) how much more for each mm that the zero is away from there

@@ -14,8 +14,8 @@ from typing import Final
 import numpy as np
 
 from trunnion.arrays import Floats
-from trunnion.placing.collisions.ceilings import Plane, Witness
 from trunnion.placing.collisions.clearance import ENOUGH, Clearance, Nearest
+from trunnion.placing.collisions.distance_planes import Plane, Witness
 from trunnion.placing.largest_margin import EXACT, linear_program
 from trunnion.placing.travel_limits import TABLE, CutSet
 

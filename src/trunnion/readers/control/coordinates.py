@@ -21,7 +21,7 @@ from trunnion.readers.control.affine_map import AffineMap, affine_matrix
 from trunnion.readers.control.arcs import ArcMap
 from trunnion.readers.control.row_recorder import MAX_POSITION, Note, RowRecorder
 from trunnion.readers.control.rows_in_use import RowsInUse
-from trunnion.readers.control.trailing_modes import Place, TrailingModes
+from trunnion.readers.control.trailing_modes import TrailingModes, WordPlace
 
 #: Millimetres of an inch.
 INCH: Final = 25.4
@@ -229,7 +229,7 @@ class CoordinateControl(RowRecorder):
 
     def set_mode(self, name: str, word: str, before: Hashable, after: Hashable) -> None:
         """Remember a word that sets a mode, for ``report_trailing_modes``; ``name`` is that of the mode."""
-        self._trailing.set(name, word, Place(self.row, self.line, self.modal.file.current), before, after)
+        self._trailing.set(name, word, WordPlace(self.row, self.line, self.modal.file.current), before, after)
 
     def usual(self, name: str) -> Hashable:
         """Return the value of a mode with which any program may end; that of the units is up to the control."""

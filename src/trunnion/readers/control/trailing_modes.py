@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class WordPlace:
     """Where a word stands: the row of the motion that follows it, its line, and its file as in ``Run.file``."""
 
     row: int
@@ -19,7 +19,7 @@ class TrailingMode:
 
     name: str
     word: str
-    place: Place
+    place: WordPlace
     before: Hashable
     after: Hashable
 
@@ -31,7 +31,7 @@ class TrailingModes:
         self._modes: dict[str, TrailingMode] = {}
         self._used = used
 
-    def set(self, name: str, word: str, place: Place, before: Hashable, after: Hashable) -> None:
+    def set(self, name: str, word: str, place: WordPlace, before: Hashable, after: Hashable) -> None:
         """Remember that a word has set a mode: what was in force until then, and what is from now on."""
         known = self._modes.get(name)
         if known is not None and known.place.row >= self._used(name):

@@ -11,7 +11,7 @@ from functools import lru_cache
 from typing import Final
 
 from trunnion.definitions import Table
-from trunnion.definitions.twin_keys import report_twins
+from trunnion.definitions.duplicate_keys import report_duplicates
 from trunnion.machines import Machine
 from trunnion.readers.control.virtual_control import VirtualControl
 from trunnion.readers.program.settings import control_of
@@ -113,7 +113,7 @@ def _read(table: Table, is_own_word: Callable[[str], bool] | None) -> tuple[Know
         elif normal != word.word and word.code is None:
             table.add_problem(key, "begins with a code with leading zeros", f"write {normal}", code="NC190")
         found[normal] = word
-    report_twins(table, lambda key: plain_code(_normal(key)))
+    report_duplicates(table, lambda key: plain_code(_normal(key)))
     table.raise_problems()
     return tuple(found.values())
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.definitions import Table
-from trunnion.definitions.twin_keys import report_twins
+from trunnion.definitions.duplicate_keys import report_duplicates
 from trunnion.readers.program.known_words import plain_code
 from trunnion.readers.program.settings import UNKNOWN
 from trunnion.readers.rs274.block import Block, g_code_text
@@ -90,7 +90,7 @@ def read_word_meanings(
             own.add_problem(
                 key, f"is {value!r}", f"write the {letter} word that means the same, or {others}", code="NC190"
             )
-    report_twins(own, lambda key: _code(key) or key)
+    report_duplicates(own, lambda key: _code(key) or key)
     own.report_unread_keys()
     return WordMeanings(g, m)
 

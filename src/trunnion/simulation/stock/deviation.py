@@ -34,7 +34,7 @@ _BUCKETS: Final = 64
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class ExcessPlace:
     """A place in the workpiece frame, mm, and how thick what is wrong is there, mm."""
 
     at: Annotated[tuple[float, float, float], Figure("place")]
@@ -47,7 +47,7 @@ class Excess:
 
     volume: Annotated[float, Figure(unit="mm3", after="largest_mm")]
     largest: Millimetres
-    places: tuple[Place, ...]
+    places: tuple[ExcessPlace, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -150,16 +150,16 @@ def _excess(stock: Stock, found: Stretches, limit: float) -> Excess:
     return Excess(found.volume, largest, _thickest(found.place, found.thickness, limit, apart))
 
 
-def _thickest(place: Floats, thickness: Floats, limit: float, apart: float) -> tuple[Place, ...]:
+def _thickest(place: Floats, thickness: Floats, limit: float, apart: float) -> tuple[ExcessPlace, ...]:
     """The thickest places, apart from each other."""
-    kept: list[Place] = []
+    kept: list[ExcessPlace] = []
     chosen = np.zeros((0, 3))
     open_ = np.flatnonzero(thickness > limit)
     open_ = open_[np.argsort(-thickness[open_], kind="stable")]
     while len(open_) and len(kept) < _MOST_PLACES:
         at = place[open_[0]]
         x, y, z = at.tolist()
-        kept.append(Place((x, y, z), float(thickness[open_[0]])))
+        kept.append(ExcessPlace((x, y, z), float(thickness[open_[0]])))
         chosen = np.concatenate((chosen, at[None]))
         open_ = open_[np.linalg.norm(place[open_] - at, axis=1) >= apart]
     return tuple(kept)

@@ -22,7 +22,7 @@ from asyncua.crypto.uacrypto import CertProperties
 
 from trunnion.errors import InputError, Problem
 from trunnion.twin.opcua.certificates import client_certificate
-from trunnion.twin.recording.nodes import Column, NodeList, Place
+from trunnion.twin.recording.nodes import Column, NodeList, VariableAddress
 from trunnion.twin.recording.rows import Reading, Value
 
 #: Milliseconds between two messages of the server, and messages without values in a row that it leaves out at most.
@@ -173,7 +173,7 @@ class Connection:
             return None if column.is_optional else missing
         return found
 
-    async def _node(self, place: Place) -> Any:
+    async def _node(self, place: VariableAddress) -> Any:
         """A node; a text says what is there instead."""
         if not place.path:
             return await self._node_by_id(place)
@@ -188,7 +188,7 @@ class Connection:
             way.append(name)
         return node
 
-    async def _node_by_id(self, place: Place) -> Any:
+    async def _node_by_id(self, place: VariableAddress) -> Any:
         spaces = await self._client.get_namespace_array()
         if place.namespace not in spaces:
             return f"its namespaces are {', '.join(spaces[1:]) or 'none'}"

@@ -28,7 +28,7 @@ _MOST_COLUMNS: Final = 200
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class VariableAddress:
     """Where a variable is: by its NodeId in a namespace, or by the names on the way to it from the objects.
 
     identifier  of the NodeId, as OPC UA writes it (``s=…``, ``i=…``); empty: it is found by its path
@@ -53,11 +53,11 @@ class Column:
     """
 
     name: str
-    place: Place
+    place: VariableAddress
     is_text: bool = False
     is_optional: bool = False
     element: int = 0
-    named_by: Place | None = None
+    named_by: VariableAddress | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +113,7 @@ def _column(name: str, table: Table, namespace: str) -> Column:
     named = _place(table, "name_id", "name_path", table.text("namespace", namespace), required=False)
     made = Column(
         name=name,
-        place=place or Place(),
+        place=place or VariableAddress(),
         is_text=table.flag("text", name in TEXTS),
         is_optional=table.flag("optional", False),
         element=table.integer("element", 0, at_least=1, at_most=10_000),
@@ -123,19 +123,21 @@ def _column(name: str, table: Table, namespace: str) -> Column:
     return made
 
 
-def _place(table: Table, identifier: str, path: str, namespace: str, *, required: bool = True) -> Place | None:
+def _place(
+    table: Table, identifier: str, path: str, namespace: str, *, required: bool = True
+) -> VariableAddress | None:
     """The place that one of two keys states."""
     by_id, by_path = table.text(identifier, ""), table.text(path, "")
     if by_id and by_path:
         table.add_problem(path, f"is given beside {identifier}", "write one of them", code="TWN232")
     if by_path:
-        return Place(path=tuple(filter(None, by_path.split("/"))))
+        return VariableAddress(path=tuple(filter(None, by_path.split("/"))))
     if by_id:
         if not namespace:
             table.add_problem(
                 identifier, "has no namespace", 'write namespace = "…", the URI in which the id counts', code="TWN232"
             )
-        return Place(namespace, by_id if re.match(r"[isgb]=", by_id) else f"s={by_id}")
+        return VariableAddress(namespace, by_id if re.match(r"[isgb]=", by_id) else f"s={by_id}")
     if required:
         cure = f"write {identifier} = of a NodeId, or {path} = of names from the objects on"
         table.add_problem("", "does not say which variable it is", cure, code="TWN232")

@@ -10,7 +10,7 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Machine
 from trunnion.model.run import ProgrammedWord, Run, RunEvent
 from trunnion.model.toolpath import Kind
-from trunnion.verification.checks.turns_at_the_part import stands_away
+from trunnion.verification.checks.rotary_moves_at_part import stands_away
 from trunnion.verification.context import Context, check_from_places
 from trunnion.verification.kinematics.home_tolerance import HOME_TOLERANCE, home_tolerance
 from trunnion.verification.kinematics.machine_positions import MachinePositions

@@ -11,8 +11,8 @@ import numpy as np
 
 from trunnion.model.run import Run, RunEvent
 from trunnion.model.toolpath import Coolant, Dwell, Stop
-from trunnion.verification.checks.restarts import Restarts
-from trunnion.verification.checks.turns_at_the_part import stands_away
+from trunnion.verification.checks.restated_modes import RestatedModes
+from trunnion.verification.checks.rotary_moves_at_part import stands_away
 from trunnion.verification.context import MAX_PLACES, ComparedContext, check_from_places
 from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.results import Check, Place
@@ -60,7 +60,7 @@ def check_stops(context: ComparedContext) -> Check:
     found: defaultdict[int, list[_FoundStop]] = defaultdict(list)
     for stop in _stops_outside_holes(context):
         found[context.matching.nc.count_before(stop.event.before_row)].append(stop)
-    restarts = Restarts(context.run)
+    restarts = RestatedModes(context.run)
     places: list[Place] = []
     own: list[_FoundStop] = []
     for pair in sorted(expected.keys() | found.keys()):
@@ -121,7 +121,7 @@ def _stops_outside_holes(context: ComparedContext) -> list[_FoundStop]:
 
 
 def _compare(
-    context: ComparedContext, restarts: Restarts, pair: int, expected: list[_ExpectedStop], stops: list[_FoundStop]
+    context: ComparedContext, restarts: RestatedModes, pair: int, expected: list[_ExpectedStop], stops: list[_FoundStop]
 ) -> Iterator[Place]:
     """What is wrong before one pair."""
     run = context.run
@@ -175,7 +175,7 @@ def _is_in(values: list[float], value: float) -> bool:
     return k < len(values) and values[k] <= value + _TOLERANCE
 
 
-def _fault(run: Run, restarts: Restarts, wanted: _ExpectedStop, stop: _FoundStop) -> str:
+def _fault(run: Run, restarts: RestatedModes, wanted: _ExpectedStop, stop: _FoundStop) -> str:
     """What is wrong with a stop or dwell in the place of one that the CL file wants; empty if it is right."""
     event = stop.event
     if event.kind == "stop" and restarts.spindle_turns(stop.place):

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from trunnion.model.run import Run, RunEvent
-from trunnion.verification.checks.turns_at_the_part import STILL, turn_flags, turns_at_the_part
+from trunnion.verification.checks.rotary_moves_at_part import STILL, rotary_moves_at_part, turn_flags
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, check_from_places
 from trunnion.verification.kinematics.positioning_moves import (
     ROTARY_WORDS,
@@ -44,7 +44,7 @@ class _PlaneChange:
 def check_turns(context: Context) -> Check:
     """Rotary axes turn away from the part and in no plane; planes are off at tool changes and at the end."""
     changes = _plane_changes(context.run)
-    turns = turns_at_the_part(context)
+    turns = rotary_moves_at_part(context)
     places = turns.places + _turns_in_a_plane(context, changes)
     places += list(_planes_left_on(context, changes))[:MAX_PLACES]
     places += _turned_without_plane(context) if isinstance(context, ComparedContext) else []

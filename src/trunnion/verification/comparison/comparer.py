@@ -52,11 +52,11 @@ class Comparer:
         self._largest_tip = self._largest_axis = 0.0
         self._points = 0
         self._count = self._path_count = 0
-        self._first: _Place | DifferentStretch | None = None
-        self._worst: _Place | None = None
+        self._first: _PathDifference | DifferentStretch | None = None
+        self._worst: _PathDifference | None = None
         # Kept by ``follow`` only: motions that go together, and the differences in the order of finding.
         self._together: list[tuple[int, int, int]] | None = None
-        self._noted: list[_Place | DifferentStretch] = []
+        self._noted: list[_PathDifference | DifferentStretch] = []
 
     def follow(self) -> "Alignment":
         """Compare both programs to their ends, and return where they go together and where they differ."""
@@ -154,7 +154,7 @@ class Comparer:
         if one != two:
             self._count += 1
             self._note_first(
-                _Place(*begin, 0.0, f"{', '.join(one) or 'nothing'} against {', '.join(two) or 'nothing'}")
+                _PathDifference(*begin, 0.0, f"{', '.join(one) or 'nothing'} against {', '.join(two) or 'nothing'}")
             )
 
     def _compare_states(self, i: int, j: int, count: int) -> None:
@@ -227,22 +227,22 @@ class Comparer:
         """Note a difference between the paths."""
         self._count += 1
         self._path_count += 1
-        place = _Place(i, j, value, text)
+        place = _PathDifference(i, j, value, text)
         self._note_first(place)
         if self._worst is None or value > self._worst.value:
             self._worst = place
 
-    def _note_first(self, found: "_Place | DifferentStretch") -> None:
+    def _note_first(self, found: "_PathDifference | DifferentStretch") -> None:
         if self._together is not None and len(self._noted) < _MOST_NOTED:
             self._noted.append(found)
         if self._first is None or (found.i, found.j) < (self._first.i, self._first.j):
             self._first = found
 
-    def _difference(self, found: "_Place | DifferentStretch | None") -> Difference | None:
+    def _difference(self, found: "_PathDifference | DifferentStretch | None") -> Difference | None:
         if found is None:
             return None
         blocks = self._one.block_name(found.i), self._two.block_name(found.j)
-        if isinstance(found, _Place):
+        if isinstance(found, _PathDifference):
             return Difference(*blocks, found.value, found.text)
         text = found.text
         if found.last != (found.i, found.j):
@@ -251,7 +251,7 @@ class Comparer:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Place:
+class _PathDifference:
     """A difference between the paths, at motion ``i`` of the first program and ``j`` of the second."""
 
     i: int

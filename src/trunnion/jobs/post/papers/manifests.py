@@ -30,7 +30,7 @@ from trunnion.results import FIRST, Figure, as_json, to_data
 from trunnion.verification import Verification, durations
 
 if TYPE_CHECKING:
-    from trunnion.jobs.targets import Target
+    from trunnion.jobs.result_output import Target
 
 #: Version of the schema. It rises when programs that read older files would be misled.
 SCHEMA: Final = 1

@@ -16,7 +16,7 @@ from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.post.papers import MADE_BY
 from trunnion.jobs.post.post_job import PostJob
 from trunnion.jobs.post.result import PostResult
-from trunnion.jobs.targets import Target
+from trunnion.jobs.result_output import Target
 from trunnion.jobs.verify.reports import add_report
 from trunnion.output.program import Program
 from trunnion.verification import Verification

@@ -16,6 +16,7 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import SAFE_DISTANCE, Machine, Mount, SweptPart, turn_clearance, turns_part_alone
 from trunnion.model.run import Run
 from trunnion.verification.context import MAX_PLACES, Context
+from trunnion.verification.kinematics.cut_extent import cut_extent
 from trunnion.verification.kinematics.home_tolerance import home_tolerance
 from trunnion.verification.kinematics.machine_positions import MachinePositions
 from trunnion.verification.kinematics.positioning_moves import (
@@ -23,7 +24,6 @@ from trunnion.verification.kinematics.positioning_moves import (
     only_positions_rotary_axes,
     rotary_positioning_flags,
 )
-from trunnion.verification.kinematics.worked_part import worked_part
 from trunnion.verification.results import Place
 from trunnion.verification.row_ranges import chunk_bounds
 
@@ -32,7 +32,7 @@ STILL: Final = 1e-3
 
 
 @dataclass(slots=True, eq=False)
-class TurnsAtThePart:
+class RotaryMovesAtPart:
     """What was found: the faults, and how the other turns are safe.
 
     at_home, by_word  turns behind a retract home along the spindle, and behind a word for it
@@ -70,7 +70,7 @@ def stands_away(context: Context) -> Callable[[int], bool]:
     return _Judge(context).stands_away
 
 
-def turns_at_the_part(context: Context) -> TurnsAtThePart:
+def rotary_moves_at_part(context: Context) -> RotaryMovesAtPart:
     """Judge every turn of a rotary axis that positions it with TCP off."""
     return _Judge(context).result()
 
@@ -91,9 +91,9 @@ class _Judge:
         self._part: SweptPart | None = None
         self._part_is_known = False
 
-    def result(self) -> TurnsAtThePart:
+    def result(self) -> RotaryMovesAtPart:
         """Judge all turns."""
-        found, run = TurnsAtThePart(), self._run
+        found, run = RotaryMovesAtPart(), self._run
         positioning = _positioning_rows(run)
         rows = positioning[positioning > 0]
         rows = rows[turn_flags(run, rows)]
@@ -167,7 +167,7 @@ class _Judge:
 
     # By a number
 
-    def _judge_by_number(self, row: int, found: TurnsAtThePart) -> None:
+    def _judge_by_number(self, row: int, found: RotaryMovesAtPart) -> None:
         """Judge a turn by the distance between the tool and the turned part."""
         poses = self._run.positions(np.array([row - 1, row])).joints
         distance = self._distance(poses[0], poses[1])
@@ -185,7 +185,7 @@ class _Judge:
         if (np.abs(after[slides] - before[slides]) > STILL).any() or not self._knows_the_turn(before, after):
             return None
         if not self._part_is_known:
-            self._part, self._part_is_known = worked_part(self._run), True
+            self._part, self._part_is_known = cut_extent(self._run), True
         if self._part is None:
             return None
         return turn_clearance(machine, before, after, self._part)

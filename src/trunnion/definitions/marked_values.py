@@ -1,11 +1,11 @@
-"""Values that count in a merged definition and have a mark behind them (``trunnion.definitions.marks``)."""
+"""Values that count in a merged definition and have a mark behind them (``trunnion.definitions.value_marks``)."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from trunnion.definitions.marks import marked_values
 from trunnion.definitions.source_lines import LocatedValue
+from trunnion.definitions.value_marks import marked_values
 
 
 @dataclass(frozen=True, slots=True)

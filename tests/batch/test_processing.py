@@ -10,9 +10,9 @@ import pytest
 
 import trunnion
 from tests.support.locations import YL569
-from trunnion.batch.keys import program_version
-from trunnion.batch.task import Action, OtherVersionError, Outcome, Status, Task
-from trunnion.batch.work import work
+from trunnion.batch.processing import work
+from trunnion.batch.result_keys import program_version
+from trunnion.batch.worker_task import Action, OtherVersionError, Outcome, Status, Task
 
 CL, NC = (YL569 / "2_hub_rough.cls").read_bytes(), (YL569 / "2_hub_rough.expected.mpf").read_bytes()
 SIMULATED = {
@@ -76,8 +76,8 @@ def test_what_the_computer_hinders_is_no_verdict_on_the_file(
         raise OSError(code, "not now")
 
     names = {
-        "atomic": "trunnion.files.hidden_folders.HiddenFolders._make", "layout": "trunnion.batch.work._lay_out",
-        "folder": "trunnion.batch.work.TemporaryDirectory",
+        "atomic": "trunnion.files.hidden_folders.HiddenFolders._make", "layout": "trunnion.batch.processing._lay_out",
+        "folder": "trunnion.batch.processing.TemporaryDirectory",
     }  # fmt: skip
     monkeypatch.setattr(names[where], refuse)
     found = done(Action.POST, {"machine": "yl569", "settings": {"title": "X"}}, {"a/x.cls": CL})
@@ -90,7 +90,7 @@ def test_full_memory_is_no_verdict_on_the_file(monkeypatch: pytest.MonkeyPatch) 
     def refuse(*_: object, **__: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr("trunnion.batch.work.post_beside", refuse)
+    monkeypatch.setattr("trunnion.batch.processing.post_beside", refuse)
     found = done(Action.POST, {"machine": "yl569"}, {"a/x.cls": CL})
     assert (found.status, found.status.is_final) == (Status.HINDERED, False)
 
@@ -162,7 +162,7 @@ def test_errors_are_those_of_the_library_with_the_names_of_the_jobs(
 
 
 def test_an_error_of_trunnion_is_told_as_such(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("trunnion.batch.work.post_beside", lambda *_, **__: 1 / 0)
+    monkeypatch.setattr("trunnion.batch.processing.post_beside", lambda *_, **__: 1 / 0)
     found = done(Action.POST, {"machine": "yl569"}, {"x.cls": CL})
     assert (found.status, found.problems[0].code) == (Status.BROKEN, "BAT330")
     assert "ZeroDivisionError" in found.problems[0].what

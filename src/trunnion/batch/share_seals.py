@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Final
 
-from trunnion.batch.keys import digest
+from trunnion.batch.result_keys import digest
 from trunnion.batch.stores import Kept, TakenError
 
 #: What a kept share begins with; the longest line that is read.

@@ -17,7 +17,7 @@ from trunnion.machines.inverse import solve_slides_cos_sin
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SlideForms:
+class AxisEquations:
     """m samples of a path: rows, points of arcs, and points between rows where rotary axes turn.
 
     normals  (m, 3, 3)  by slide, in the order of ``Machine.linear``
@@ -37,7 +37,7 @@ class SlideForms:
         return np.asarray(self.normals @ zero + self.offsets)
 
 
-def slide_forms(
+def axis_equations(
     machine: Machine, tip: Floats, angles: Floats, length: Floats | None = None
 ) -> tuple[Floats, Floats, int]:
     """Normals (m, 3, 3), offsets (m, 3), and the first sample whose slides cannot follow, or -1.

@@ -15,9 +15,9 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Ints
 from trunnion.machines import Machine
 from trunnion.model.subdivision import arc_frames, circle_points
+from trunnion.placing.axis_equations import axis_equations
 from trunnion.placing.moving_samples import turning_samples
 from trunnion.placing.path_rows import PathRows
-from trunnion.placing.slide_forms import slide_forms
 
 #: How far chords of arcs are off them, mm.
 CHORD: Final = 0.01
@@ -30,7 +30,7 @@ _REWINDS: Final = 180.001
 
 
 @dataclass(frozen=True, eq=False)
-class Moments:
+class PathSamples:
     """m moments of a path in their order.
 
     angles   (m, 2) positions of the rotary axes, in the order of ``machine.rotary``, degrees
@@ -50,12 +50,12 @@ class Moments:
     def __len__(self) -> int:
         return len(self.row)
 
-    def some(self, count: int, rows: Ints) -> "Moments":
+    def some(self, count: int, rows: Ints) -> "PathSamples":
         """Some of them, and those of certain rows, without ways between: what is found there holds, but is not all."""
         keep = np.isin(self.row, rows)
         keep[:: max(1, len(self) // count)] = True
         which = np.flatnonzero(keep)
-        return Moments(
+        return PathSamples(
             self.angles[which], self.normals[which], self.offsets[which], self.row[which],
             np.ones(len(which), np.bool_), self.tool[which],
         )  # fmt: skip
@@ -79,9 +79,9 @@ class Moments:
         return edges.reshape(-1, 2)
 
 
-def moments_of(
+def path_samples(
     machine: Machine, rows: PathRows, positions: Floats, tool: Ints, lengths: Mapping[int, float]
-) -> Moments:
+) -> PathSamples:
     """The moments of a path.
 
     Parameters
@@ -108,8 +108,8 @@ def moments_of(
     breaks = rows.begins | (rows.straight & (way > _REWINDS))
     is_first = np.append(True, row[1:] != row[:-1])
     own = tool[row]
-    normals, offsets, _ = slide_forms(machine, tip, angles, lengths_of(lengths, own))
-    return Moments(angles, normals, offsets, row, breaks[row] & is_first, own)
+    normals, offsets, _ = axis_equations(machine, tip, angles, lengths_of(lengths, own))
+    return PathSamples(angles, normals, offsets, row, breaks[row] & is_first, own)
 
 
 def lengths_of(lengths: Mapping[int, float], tool: Ints) -> Floats:

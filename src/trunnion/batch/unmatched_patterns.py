@@ -12,7 +12,7 @@ from trunnion.jobs.project.paths import is_file
 _MOST = 100_000
 
 
-def left_out(folder: Path, pattern: str, results: Path | None) -> str:
+def unmatched(folder: Path, pattern: str, results: Path | None) -> str:
     """Which file of a folder a pattern means that is none of the inputs, and why; empty: there is none."""
     looked = 0
     for at, folders, names in os.walk(folder):

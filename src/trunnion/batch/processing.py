@@ -12,11 +12,11 @@ from shutil import copyfile
 from tempfile import TemporaryDirectory
 from typing import Any, Final
 
-from trunnion.batch.figures import block_count, point_count, simulation_figures, verification_figures
 from trunnion.batch.jobs import shipped_machine
-from trunnion.batch.keys import program_version
-from trunnion.batch.sealing import BrokenSealError, unsealed_all
-from trunnion.batch.task import (
+from trunnion.batch.result_keys import program_version
+from trunnion.batch.share_seals import BrokenSealError, unsealed_all
+from trunnion.batch.summary_figures import block_count, point_count, simulation_figures, verification_figures
+from trunnion.batch.worker_task import (
     DEFINITIONS,
     FILES,
     MOST_PROBLEMS,
@@ -35,10 +35,10 @@ from trunnion.jobs.convert.converting import convert_beside
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.post.posting import post_beside
 from trunnion.jobs.post.result import ProofFailedError
+from trunnion.jobs.result_output import paper_files
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.shares import join_shares, simulate_share
 from trunnion.jobs.simulate.simulating import simulate
-from trunnion.jobs.targets import paper_files
 from trunnion.jobs.verify.reports import write_report
 from trunnion.jobs.verify.verifying import verify
 from trunnion.machines import Machine

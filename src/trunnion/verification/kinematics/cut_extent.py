@@ -17,7 +17,7 @@ from trunnion.model.toolpath import Kind
 _STRAIGHT: Final = 1e-6
 
 
-def worked_part(run: Run) -> SweptPart | None:
+def cut_extent(run: Run) -> SweptPart | None:
     """Return the part around the cuts of a program and the stock that it states; None if it has neither.
 
     A line at feed straight out along the tool axis is a retract and does not count.

@@ -10,11 +10,11 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
-from trunnion.batch.keys import digest, key_of
 from trunnion.batch.records import FOLDER, Record
-from trunnion.batch.sealing import BrokenSealError, Seal, sealed, unsealed
+from trunnion.batch.result_keys import digest, key_of
+from trunnion.batch.share_seals import BrokenSealError, Seal, sealed, unsealed
 from trunnion.batch.stores import Kept, Store, TakenError
-from trunnion.batch.task import NO_COSTS, SHARE_FILE, Costs, Outcome, Status, Task
+from trunnion.batch.worker_task import NO_COSTS, SHARE_FILE, Costs, Outcome, Status, Task
 from trunnion.batch.workers import DAMAGED, Assignment, damaged
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.jobs.observer import Observer

@@ -8,7 +8,7 @@ from trunnion.errors import Problem, Severity
 
 
 @dataclass(frozen=True, slots=True)
-class Warned:
+class CountedWarning:
     """Warnings of one code.
 
     files    how many files have one
@@ -22,7 +22,7 @@ class Warned:
     problem: Problem
 
 
-class WarningTally:
+class WarningCounter:
     """Counts warnings of files, in whatever order their work ends."""
 
     def __init__(self) -> None:
@@ -37,9 +37,9 @@ class WarningTally:
             if code not in self._first or number < self._first[code][0]:
                 self._first[code] = number, record.file, problem
 
-    def found(self) -> tuple[Warned, ...]:
+    def found(self) -> tuple[CountedWarning, ...]:
         """Return all codes, those of the most files first."""
-        found = [Warned(code, count, *self._first[code][1:]) for code, count in self._files.items()]
+        found = [CountedWarning(code, count, *self._first[code][1:]) for code, count in self._files.items()]
         return tuple(sorted(found, key=lambda each: (-each.files, each.code)))
 
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Hashable
 from trunnion.definitions.table import Table
 
 
-def report_twins(table: Table, form: Callable[[str], Hashable]) -> None:
+def report_duplicates(table: Table, form: Callable[[str], Hashable]) -> None:
     """Note each key that says the same as an earlier one; ``form`` is equal for such keys."""
     seen: dict[Hashable, str] = {}
     for key in list(table.keys()):

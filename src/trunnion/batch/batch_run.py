@@ -8,11 +8,11 @@ from typing import Any, Final, Literal
 from trunnion.batch.cluster import DaskWorkers, Tls
 from trunnion.batch.jobs import Batch, folder_batch
 from trunnion.batch.jobs_file import load_batch
+from trunnion.batch.processing import work
 from trunnion.batch.running import BatchResult, local_workers, run_jobs
 from trunnion.batch.stores import Store, open_store
 from trunnion.batch.summary import check_summary, write_summary
-from trunnion.batch.task import Action
-from trunnion.batch.work import work
+from trunnion.batch.worker_task import Action
 from trunnion.batch.workers import Workers
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.inputs.arguments import check_choice, check_observer, check_path

@@ -13,7 +13,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any, Final
 
-from trunnion.batch.sealing import Seal
+from trunnion.batch.share_seals import Seal
 from trunnion.batch.stores import Kept
 from trunnion.errors import Problem
 

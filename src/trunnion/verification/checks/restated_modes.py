@@ -42,7 +42,7 @@ class _Words:
         return self.places[k - 1] if k and self.on[k - 1] else -1
 
 
-class Restarts:
+class RestatedModes:
     """The words for spindle and coolant in a run, and the rows that cut."""
 
     def __init__(self, run: Run) -> None:

@@ -21,13 +21,13 @@ from tests.support.batches import (
 from tests.support.dask_clusters import needs_dask
 from tests.support.divided import write_divided, write_jobs
 from trunnion.batch import Status, run_batch
-from trunnion.batch.dividing import SHARES
+from trunnion.batch.divided_files import SHARES
 from trunnion.batch.jobs_file import load_batch
 from trunnion.batch.local import LocalWorkers
+from trunnion.batch.processing import work
 from trunnion.batch.running import BatchResult, run_jobs
 from trunnion.batch.stores import FolderStore, open_store
-from trunnion.batch.task import Outcome, Task
-from trunnion.batch.work import work
+from trunnion.batch.worker_task import Outcome, Task
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.jobs.observer import Observer
 

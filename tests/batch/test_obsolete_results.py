@@ -8,8 +8,8 @@ import pytest
 
 from tests.support.batches import InOrder, Interrupted, StoppingStore, run_simply, simple_batch, tree, write_files
 from trunnion.batch.jobs import Batch
-from trunnion.batch.keys import home_of
 from trunnion.batch.records import FOLDER, parse_record, record_name
+from trunnion.batch.result_keys import home_of
 from trunnion.batch.stores import FolderStore
 from trunnion.errors import Problem
 from trunnion.jobs.observer import Observer

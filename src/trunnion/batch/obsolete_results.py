@@ -6,10 +6,10 @@ is one that somebody may run. What somebody has changed stays, and is told each 
 
 from collections.abc import Iterator, Sequence
 
-from trunnion.batch.dividing import SHARES, share_start
+from trunnion.batch.divided_files import SHARES, share_start
 from trunnion.batch.jobs import Batch, Unit
 from trunnion.batch.records import FOLDER, Record, known_of, parse_record, record_name
-from trunnion.batch.sealing import file_of
+from trunnion.batch.share_seals import file_of
 from trunnion.batch.stores import Store, TakenError
 from trunnion.errors import Problem, Severity
 from trunnion.jobs.observer import Observer
@@ -23,7 +23,7 @@ _MOST_TOLD = 100
 _MOST_HOMES = 5
 
 
-def remove_stale(batch: Batch, units: Sequence[Unit], store: Store, observer: Observer) -> None:
+def remove_obsolete(batch: Batch, units: Sequence[Unit], store: Store, observer: Observer) -> None:
     """Remove what earlier runs of this batch have written of files that no unit owns now."""
     owned = {record_name(unit.place) for unit in units}
     names = [name for name in store.names(FOLDER) if name.endswith(".json") and name not in owned]
@@ -54,7 +54,7 @@ def remove_stale(batch: Batch, units: Sequence[Unit], store: Store, observer: Ob
         observer.problems(told)
 
 
-def remove_stale_shares(batch: Batch, units: Sequence[Unit], store: Store, observer: Observer) -> None:
+def remove_obsolete_shares(batch: Batch, units: Sequence[Unit], store: Store, observer: Observer) -> None:
     """Remove the shares of files of this batch that no unit owns now; those of other batches are told."""
     owned = tuple({share_start(batch.home, unit.place) for unit in units})
     others = set[str]()
