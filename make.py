@@ -3,18 +3,25 @@
 python3 make.py sample     set up, and post a real five-axis toolpath
 python3 make.py simulate   set up, cut a part with its three programs, and draw what comes out
 python3 make.py impeller   set up, and make an impeller from measured points: paths, programs, proof, and the part
-python3 make.py test       set up, and run everything that CI runs
-python3 make.py quick      style, types, import contracts, and the fast half of the tests
+python3 make.py test       set up, and run what judges a change: tests, style, types, the site, the archives
+python3 make.py nightly    what the tests leave out: the rest of the matrix, all draws, fuzzing; a number is the seed
+python3 make.py quick      style, types, import contracts, and the fast tests that the change reaches
 python3 make.py docs       build the documentation site in build/site
 python3 make.py package    build the wheel and the sdist in dist, and try both in environments of their own
 python3 make.py run ...    run a program of the environment, such as pytest
 """
 
+import sys
+
+if sys.version_info < (3, 11):  # noqa: UP036 - people start this file with whatever Python they have
+    sys.exit("Trunnion needs Python 3.11 or later; this is " + sys.version.split()[0])
+
+# Nothing above is unknown to Python 3.6, which parses what is below and runs none of it.
 import hashlib
 import os
+import random
 import shutil
 import subprocess
-import sys
 import tempfile
 import venv
 from collections.abc import Callable, Mapping, Sequence
@@ -26,6 +33,7 @@ HOME = HERE / ".venv"
 SUPPORTED = (11, 12, 13)  # minor versions of Python 3 that the wheel is tried on
 TESTS = ("python", "-m", "pytest", "-n", "auto", "--dist", "worksteal")  # neighbours share what one process has kept
 IMPELLER = Path("examples", "impeller", "impeller.toml")
+FUZZING = "60"  # seconds of each of two campaigns
 CELL = "0.25"  # mm, of the simulation of the impeller
 SAMPLE = Path("tests", "golden", "yl569", "3_blade_finish.cls")
 CUT = ("1_contour_rough", "2_hub_rough", "3_blade_finish")  # programs of one part, in their order
@@ -71,8 +79,6 @@ def install(*what: str | Path, environment: Path = HOME) -> None:
 
 def set_up(what: str) -> None:
     """Create the environment once, and install this checkout into it, again if ``pyproject.toml`` has changed."""
-    if sys.version_info < (3, 11):  # noqa: UP036 - people start this file with whatever Python they have
-        sys.exit("Trunnion needs Python 3.11 or later; this is " + sys.version.split()[0])
     create(HOME)
     installed, asked = HOME / "installed.txt", hashlib.sha256((HERE / "pyproject.toml").read_bytes()).hexdigest()
     before = installed.read_text(encoding="utf-8").split() if installed.exists() else []
@@ -124,14 +130,29 @@ def check() -> None:
 
 
 def quick() -> None:
-    """What to run before a commit."""
+    """What to run before a commit: the fast tests that the change reaches, or all where nothing can be said of it."""
     set_up(".[test]")
     check()
-    run(*TESTS, "-m", "not slow")
+    command = [str(program_of(HOME, "python")), "-m", "tests.support.reached"]
+    reached = subprocess.run(command, cwd=HERE, check=True, stdout=subprocess.PIPE, encoding="utf-8").stdout.split()
+    run(*TESTS, *(reached or ("-m", "not slow")))
+
+
+def nightly(seed: str = "") -> None:
+    """What ``test`` leaves out, from a fresh seed: the rest of the matrix, all draws of properties, and fuzzing."""
+    set_up(".[test]")
+    seed = seed or str(random.SystemRandom().randrange(10**9))
+    print(f"seed {seed}; python3 make.py nightly {seed} draws the same again")
+    campaign = ("python", "-m", "tests.fuzz.campaign", "every", "--seconds", FUZZING, "--patience", "300")
+    with ThreadPoolExecutor(2) as two:
+        campaigns = [two.submit(run, *campaign, "--seed", str(int(seed) + k * 10**9)) for k in range(2)]
+    run(*TESTS, "--nightly", f"--hypothesis-seed={seed}")
+    for each in campaigns:
+        each.result()
 
 
 def test() -> None:
-    """Everything that CI runs."""
+    """Everything that judges a change; CI runs ``nightly`` besides."""
     set_up(".[test,docs]")
     with ThreadPoolExecutor(1) as beside:  # each of its programs keeps one processor busy at most
         others = beside.submit(check_and_build)
@@ -196,9 +217,9 @@ def try_out(archive: Path, python: str, variables: Mapping[str, str] | None = No
         print(f"{archive.name}, {python}: {len(output.read_bytes())} bytes of NC")
 
 
-COMMANDS: dict[str, Callable[[], None]] = {
-    "sample": sample, "simulate": simulate, "impeller": impeller, "test": test, "quick": quick, "docs": docs,
-    "package": package,
+COMMANDS: dict[str, Callable[..., None]] = {
+    "sample": sample, "simulate": simulate, "impeller": impeller, "test": test, "nightly": nightly, "quick": quick,
+    "docs": docs, "package": package,
 }  # fmt: skip
 
 
@@ -207,5 +228,7 @@ if __name__ == "__main__":
         run(*sys.argv[2:])
     elif len(sys.argv) == 2 and sys.argv[1] in COMMANDS:
         COMMANDS[sys.argv[1]]()
+    elif len(sys.argv) == 3 and sys.argv[1] == "nightly" and sys.argv[2].isdigit():
+        nightly(sys.argv[2])
     else:
         sys.exit(__doc__)

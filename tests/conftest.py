@@ -7,21 +7,26 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-from tests.support.slow import SLOW
-
-#: Files and folders of the slow ones.
-PLACES = {Path(__file__).parent / name for name in SLOW}
+from tests.support.examples import DRAWS
+from tests.support.slow import is_slow
 
 # Kernels compile at their first call, and machines are busy: no test depends on time. What a random machine makes
 # impossible is left out by ``assume``, and some draws of machines leave much out. In CI a change is judged by the same
-# examples as the one before it; elsewhere they are new ones each time.
-settings.register_profile(
-    "trunnion",
-    deadline=None,
-    derandomize=bool(os.environ.get("CI")),
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
-)
+# examples as the one before it; elsewhere, and in nightly, they are new ones each time.
+for _name, _draws in DRAWS.items():
+    settings.register_profile(
+        _name,
+        max_examples=_draws,
+        deadline=None,
+        derandomize=_name != "nightly" and bool(os.environ.get("CI")),
+        suppress_health_check=[HealthCheck.too_slow, HealthCheck.filter_too_much],
+    )
 settings.load_profile("trunnion")
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Let ``make.py nightly`` ask for what ``make.py test`` leaves out."""
+    parser.addoption("--nightly", action="store_true", help="the rest of the matrix, and properties with all draws")
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -29,16 +34,29 @@ def pytest_configure(config: pytest.Config) -> None:
     cache = tempfile.TemporaryDirectory(prefix="trunnion-tests-")
     config.add_cleanup(cache.cleanup)
     os.environ["LOCALAPPDATA"] = cache.name
+    if config.getoption("nightly"):
+        settings.load_profile("nightly")
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
     """Do not even import the slow ones where they are left out."""
-    return True if config.getoption("markexpr") == "not slow" and collection_path in PLACES else None
+    return True if config.getoption("markexpr") == "not slow" and is_slow(collection_path) else None
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the slow ones."""
-    slow = {path for path in {item.path for item in items} if not PLACES.isdisjoint((path, *path.parents))}
+@pytest.hookimpl(trylast=True)  # Hypothesis has marked its own
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Mark the slow ones, and part those of nightly from the others."""
+    slow = {path for path in {item.path for item in items} if is_slow(path)}
     for item in items:
         if item.path in slow:
             item.add_marker(pytest.mark.slow)
+    wanted = [item for item in items if is_wanted(item, nightly=config.getoption("nightly"))]
+    if len(wanted) < len(items):
+        config.hook.pytest_deselected(items=[item for item in items if item not in set(wanted)])
+        items[:] = wanted
+
+
+def is_wanted(item: pytest.Item, *, nightly: bool) -> bool:
+    """Whether nightly has a test, or any other run; a property has draws left for nightly."""
+    rest = item.get_closest_marker("nightly") is not None
+    return rest or item.get_closest_marker("hypothesis") is not None if nightly else not rest

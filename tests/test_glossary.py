@@ -3,8 +3,6 @@
 import re
 from importlib import import_module
 
-import pytest
-
 from tests.support.locations import TESTS
 
 PAGE = TESTS.parent / "docs" / "glossary.md"
@@ -38,6 +36,16 @@ def test_every_term_stands_once_and_in_order() -> None:
     assert terms == sorted(terms)
 
 
-@pytest.mark.parametrize("where", sorted({name for _, _, where in ROWS for name in re.findall(r"`([\w.]+)`", where)}))
-def test_the_code_that_the_glossary_names_is_there(where: str) -> None:
-    resolve(where)
+def is_there(name: str) -> bool:
+    """Whether a dotted name is one of the package."""
+    try:
+        resolve(name)
+    except (LookupError, AttributeError):
+        return False
+    return True
+
+
+def test_the_code_that_the_glossary_names_is_there() -> None:
+    names = {name for _, _, where in ROWS for name in re.findall(r"`([\w.]+)`", where)}
+    assert len(names) > 150
+    assert sorted(name for name in names if not is_there(name)) == []

@@ -86,21 +86,21 @@ if TYPE_CHECKING:
     from trunnion.jobs.inputs.reading import read_cl as read_cl
     from trunnion.jobs.inputs.reading import read_program as read_program
     from trunnion.jobs.observer import Observer as Observer
-    from trunnion.jobs.papers.manifests import ManifestCheck as ManifestCheck
-    from trunnion.jobs.papers.manifests import verify_manifest as verify_manifest
-    from trunnion.jobs.papers.reports import write_report as write_report
     from trunnion.jobs.place.placing import place as place
     from trunnion.jobs.place.plot import write_placing_plot as write_placing_plot
     from trunnion.jobs.place.posting import post_placed as post_placed
+    from trunnion.jobs.post.papers.manifests import ManifestCheck as ManifestCheck
+    from trunnion.jobs.post.papers.manifests import verify_manifest as verify_manifest
     from trunnion.jobs.post.planning import plan as plan
     from trunnion.jobs.post.posting import post as post
     from trunnion.jobs.post.result import PostResult as PostResult
     from trunnion.jobs.post.result import ProofFailedError as ProofFailedError
-    from trunnion.jobs.project.posting import ProjectResult as ProjectResult
-    from trunnion.jobs.project.posting import post_project as post_project
+    from trunnion.jobs.post_project.posting import ProjectResult as ProjectResult
+    from trunnion.jobs.post_project.posting import post_project as post_project
     from trunnion.jobs.simulate.result import SimulationResult as SimulationResult
     from trunnion.jobs.simulate.simulating import simulate as simulate
     from trunnion.jobs.verify.comparing import diff as diff
+    from trunnion.jobs.verify.reports import write_report as write_report
     from trunnion.jobs.verify.verifying import verify as verify
     from trunnion.jobs.view.viewing import write_view as write_view
     from trunnion.machines.machine import Axis as Axis
@@ -139,7 +139,7 @@ _MODULES: Final = {
     "Machine": "machines.machine",
     "MachineDescription": "jobs.describe.machines",
     "MachineFit": "jobs.capability.fitting",
-    "ManifestCheck": "jobs.papers.manifests",
+    "ManifestCheck": "jobs.post.papers.manifests",
     "Motion": "model.motion",
     "Observer": "jobs.observer",
     "Operation": "model.toolpath",
@@ -149,7 +149,7 @@ _MODULES: Final = {
     "PointTable": "geometry.point_tables",
     "PostResult": "jobs.post.result",
     "Problem": "errors",
-    "ProjectResult": "jobs.project.posting",
+    "ProjectResult": "jobs.post_project.posting",
     "ProofFailedError": "jobs.post.result",
     "Reach": "capability.reach",
     "RefusedError": "errors",
@@ -178,7 +178,7 @@ _MODULES: Final = {
     "plan": "jobs.post.planning",
     "post": "jobs.post.posting",
     "post_placed": "jobs.place.posting",
-    "post_project": "jobs.project.posting",
+    "post_project": "jobs.post_project.posting",
     "reach": "jobs.capability.reaching",
     "read_cl": "jobs.inputs.reading",
     "read_points": "jobs.impeller.curves",
@@ -186,12 +186,12 @@ _MODULES: Final = {
     "sensitivity": "jobs.capability.sensitivity",
     "simulate": "jobs.simulate.simulating",
     "verify": "jobs.verify.verifying",
-    "verify_manifest": "jobs.papers.manifests",
+    "verify_manifest": "jobs.post.papers.manifests",
     "write_curve_picture": "jobs.impeller.curves",
     "write_impeller_step": "jobs.impeller.models",
     "write_placing_plot": "jobs.place.plot",
     "write_plot": "jobs.describe.plot",
-    "write_report": "jobs.papers.reports",
+    "write_report": "jobs.verify.reports",
     "write_view": "jobs.view.viewing",
 }
 

@@ -32,6 +32,11 @@ def nearest_word(word: str, known: Iterable[str]) -> str:
     return next(iter(get_close_matches(word, list(known), n=1, cutoff=0.6)), "")
 
 
+def position(place: Iterable[float]) -> str:
+    """A position (3,) in mm, such as ``X1.000 Y-2.500 Z0.000``."""
+    return " ".join(f"{name}{value:.3f}" for name, value in zip("XYZ", place, strict=True))
+
+
 def counted(count: int, thing: str) -> str:
     """Return a number of things in words; ``thing`` is the singular of a noun with a regular plural.
 

@@ -1,10 +1,13 @@
 """A small cluster of Dask: the results of a plain loop, although workers die and the scheduler is started again."""
 
 import json
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
+from itertools import count
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -63,7 +66,7 @@ def run_disturbed(cluster: Cluster, batch: Batch, folder: Path, place: str) -> B
     return run_jobs(
         batch,
         store,
-        lambda _: DaskWorkers(cluster.address, simple_work, writing=store.worker_url),
+        lambda _: DaskWorkers(cluster.address, simple_work, writing=store.worker_url, patience=600.0),
         Disturber(9, disturb),
     )
 
@@ -148,16 +151,17 @@ def test_a_scheduler_without_workers_is_told_and_left_in_the_end(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("trunnion.batch.cluster.SILENCE", 0.0)
+    # Its clock goes on by half a second with each look: however busy this computer is, two looks tell and leave.
+    clock = SimpleNamespace(monotonic=count(step=0.5).__next__, sleep=time.sleep)
+    monkeypatch.setattr("trunnion.batch.cluster.time", clock)
     write_files(tmp_path / "in", {"x.cls": "one"})
     listener = Listener()
-    with Cluster(tmp_path, 0) as cluster:
-        monkeypatch.setattr("trunnion.batch.cluster._ATTEMPT", 30.0)  # until the scheduler is there
-        with pytest.raises(InputError, match="BAT240"):
-            run_jobs(
-                simple_batch(tmp_path / "in"),
-                FolderStore(tmp_path / "out"),
-                lambda _: DaskWorkers(cluster.address, simple_work, wait=2.5, observer=listener),
-            )
+    with Cluster(tmp_path, 0) as cluster, pytest.raises(InputError, match="BAT240"):
+        run_jobs(
+            simple_batch(tmp_path / "in"),
+            FolderStore(tmp_path / "out"),
+            lambda _: DaskWorkers(cluster.address, simple_work, wait=2.5, observer=listener),
+        )
     assert listener.codes == ["BAT240"]
 
 

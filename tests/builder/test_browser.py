@@ -55,7 +55,7 @@ def page(address: str, browser: Browser) -> Iterator[Page]:
 
 def wait(page: Page, what: str) -> None:
     """Wait until an expression is true."""
-    page.wait_for_function(f"() => {what}", timeout=60_000)
+    page.wait_for_function(f"() => {what}")
 
 
 def begin(page: Page, base: str = "", chain: str = "", control: str = "sinumerik_840d") -> None:
@@ -375,4 +375,5 @@ def test_it_looks_like_the_picture_of_the_docs(page: Page, browser: Browser) -> 
     wait(page, "document.getElementById('program').dataset.ready === 'true'")
     page.evaluate("builder.jog([30, 40, 0, 0, 60])")
     page.wait_for_timeout(300)
+    page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
     check_picture(browser, page.screenshot(), "builder.png")

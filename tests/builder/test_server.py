@@ -9,6 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from trunnion.builder.server import builder_application
 from trunnion.builder.session import BuilderSession
 from trunnion.viewer.serving import Access
@@ -88,7 +89,7 @@ JSON = st.recursive(
 )
 
 
-@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(150), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     what=st.sampled_from(["begin", "judge", "change", "sample", "save", "other"]),
     body=st.fixed_dictionaries(
@@ -148,7 +149,7 @@ def strange_texts(draw: st.DrawFn) -> str:
     return head + (tables + line if tables else line)
 
 
-@settings(max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
+@settings(max_examples=examples(40), suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None)
 @given(strange_texts(), st.data())
 def test_a_text_of_any_values_is_judged_and_changed(application: Any, text: str, data: Any) -> None:
     status, answer = ask(application, "/judge", json.dumps({"text": text}).encode())

@@ -8,11 +8,12 @@ import pytest
 from tests.support.apt_heads import HEADS
 from tests.support.cl_reading import Fail, Read
 from trunnion.cl.dialects import DIALECTS, recognize_dialect
+from trunnion.cl.writers import WRITERS
+from trunnion.dialect_names import READ_DIALECTS, WRITTEN_DIALECTS
 from trunnion.model.toolpath import (
     Operation,
     UnknownStatement,
 )
-from trunnion.options.words import DIALECTS as LISTED
 
 
 @pytest.mark.parametrize("dialect", HEADS)
@@ -50,8 +51,9 @@ def test_the_dialect_can_be_given(read: Read, fails: Fail) -> None:
     assert problem.cure == f"dialects are {', '.join(DIALECTS)}"
 
 
-def test_the_command_line_knows_all_dialects() -> None:
-    assert tuple(DIALECTS) == LISTED
+def test_the_names_that_need_no_reader_are_those_of_the_registries() -> None:
+    assert tuple(DIALECTS) == READ_DIALECTS
+    assert tuple(WRITERS) == tuple(WRITTEN_DIALECTS)
 
 
 @pytest.mark.parametrize("count", [9, 12])

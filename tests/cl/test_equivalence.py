@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tests.support.cl_dialects import EVERY, Step, Vector, Z, write_in
+from tests.support.examples import examples
 from trunnion.cl import read_cl
 from trunnion.cl.read_back import read_back_problems
 from trunnion.cl.writers import WRITERS as OURS
@@ -150,7 +151,7 @@ def changes(tools: list[tuple[int, float, float]]) -> list[tuple[int, float, flo
     return [tool for k, tool in enumerate(tools) if k == 0 or tools[k - 1][1:] != tool[1:]]
 
 
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(25), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(steps=paths(), inch=st.booleans())
 def test_a_path_is_the_same_in_every_dialect(tmp_path: Path, steps: list[Step], inch: bool) -> None:
     found = {}

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.naive import cl_scan as naive
 from trunnion.arrays import Floats, Lines
 from trunnion.cl.read import read_cl, read_source
@@ -17,7 +18,7 @@ from trunnion.cl.sources import cl_sources
 from trunnion.errors import InputError
 from trunnion.model.toolpath import Toolpath
 
-QUICK = settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+QUICK = settings(max_examples=examples(100), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
 def scan_all(
@@ -33,7 +34,7 @@ def scan_all(
     found = []
     while at < len(data):
         at, number, rows, count = scan(
-            array, at, len(data), True, apt, number, rows, PointColumns(tip, axis, line), room
+            apt, array, at, len(data), True, number, rows, PointColumns(tip, axis, line), room
         )
         for begin, length, where, row, mark in room[:count].tolist():
             found.append((naive.blank(data[begin : begin + length].decode("latin-1")), where, row, mark))
@@ -248,7 +249,7 @@ def test_any_file_reads_the_same_in_pieces_of_any_size(tmp_path: Path, text: str
 
 
 @pytest.mark.filterwarnings("error")
-@settings(QUICK, max_examples=200)
+@settings(QUICK, max_examples=examples(200))
 @given(
     st.lists(
         st.tuples(st.integers(0, len(SAMPLE)), st.integers(0, 8), st.binary(max_size=6) | PIECES.map(str.encode)),

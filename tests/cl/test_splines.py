@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 import trunnion
 from tests.support.cl_reading import Body, Fail, Read
+from tests.support.examples import examples
 from tests.support.naive.splines import points_of
 from trunnion.arrays import Floats
 from trunnion.cl.splines import evaluate
@@ -102,7 +103,7 @@ def test_inches_from_and_the_number_of_points(read: Read) -> None:
     assert f"1 spline (NURBS) with 5 control points: {len(moves)} points within 0.001 mm stand for them" in remark.what
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(
     st.lists(st.integers(1, 999), max_size=6, unique=True),
     st.randoms(use_true_random=False),

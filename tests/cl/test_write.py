@@ -10,6 +10,7 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from tests.support.cl_reading import Body, Read
+from tests.support.examples import examples
 from tests.support.locations import YL569
 from tests.support.toolpath_strategies import OTHERS, SAYABLE, toolpaths
 from trunnion.cl import read_cl
@@ -101,7 +102,7 @@ def arcs_in_cycles(operation: Operation) -> bool:
     return any(isinstance(cycle, CycleOn) for cycle in latest)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 @given(toolpaths(SAYABLE | OTHERS))
 def test_a_toolpath_written_and_read_is_the_same(tmp_path_factory: pytest.TempPathFactory, toolpath: Toolpath) -> None:
     assume(not any(arcs_in_cycles(operation) for operation in toolpath.operations))  # a CL file cannot have them
@@ -111,7 +112,7 @@ def test_a_toolpath_written_and_read_is_the_same(tmp_path_factory: pytest.TempPa
         assert_same(first, second)
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=examples(25))
 @given(toolpaths(SAYABLE | OTHERS), st.sampled_from(list(WRITERS)), st.booleans())
 @example(HALF_WAY, "clsf", True)
 @example(HALF_WAY, "catia", True)
@@ -158,7 +159,7 @@ def _apart(first: bytes, second: bytes) -> float:
     return float(np.abs(a - b).max())
 
 
-@settings(deadline=None, max_examples=80)
+@settings(deadline=None, max_examples=examples(80))
 @given(st.floats(1e-7, 1e-3), st.floats(0, 2 * np.pi), st.permutations([0, 1, 2]), st.sampled_from([-1.0, 1.0]))
 def test_near_a_coordinate_axis_the_direction_of_the_lean_is_kept(
     tmp_path_factory: pytest.TempPathFactory, tilt: float, angle: float, order: list[int], sign: float

@@ -8,7 +8,7 @@ import trunnion
 from tests.support.locations import ROOT
 from tests.support.projects import PROJECT, TWO, contents, operation, project
 from trunnion.cli import main
-from trunnion.jobs.project.cases import posted_case
+from trunnion.jobs.post_project.cases import posted_case
 
 Capture = pytest.CaptureFixture[str]
 

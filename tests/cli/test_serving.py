@@ -32,12 +32,12 @@ def test_it_serves_until_ctrl_c(name: str, tmp_path: Path) -> None:
         assert served.stderr is not None
         address = served.stdout.readline().strip()
         assert address.startswith("http://127.0.0.1:")
-        with urllib.request.urlopen(address, timeout=30) as answer:
+        with urllib.request.urlopen(address, timeout=120) as answer:
             assert b"<title>" in answer.read()
         port = int(address.rsplit(":", 1)[1].rstrip("/"))
         with socket.create_connection(("127.0.0.1", port)) as connection:
             connection.sendall(b"GET / HTTP/1.1\r\n")  # and it goes without a word
-        with urllib.request.urlopen(address, timeout=30) as answer:
+        with urllib.request.urlopen(address, timeout=120) as answer:
             assert answer.status == 200
         served.send_signal(signal.SIGINT)
         assert served.wait(30) == 0

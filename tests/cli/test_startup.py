@@ -30,6 +30,7 @@ def test_arguments_are_understood_without_the_rooms_that_carry_them_out() -> Non
         "trunnion.cli.post_mistakes",
         "trunnion.cli.process",
         "trunnion.cli.terminal_text",
+        "trunnion.dialect_names",
         "trunnion.errors",
         "trunnion.jobs",
         "trunnion.jobs.declarations",

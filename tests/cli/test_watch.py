@@ -16,8 +16,8 @@ from trunnion.cli import main
 from trunnion.cli.parser import parse
 from trunnion.cli.process import Ended
 from trunnion.cli.watch import follow
-from trunnion.jobs.project.posting import ProjectResult, post_into
-from trunnion.jobs.project.watching import FolderNotices
+from trunnion.jobs.post_project.posting import ProjectResult, post_into
+from trunnion.jobs.post_project.watching import FolderNotices
 
 Capture = pytest.CaptureFixture[str]
 Step = Callable[[], object]
@@ -216,7 +216,7 @@ def test_the_system_tells_of_changes_in_the_folders(tmp_path: Path) -> None:
             ended.set()
 
         threading.Thread(target=wait, daemon=True).start()
-        assert ended.wait(60.0)
+        assert ended.wait(240.0)
     finally:
         writing.set()
         writer.join()

@@ -10,6 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from tests.support.conversion import Site, converted, losses, made, paths, posted, roomy, same
+from tests.support.examples import examples
 from trunnion.arrays import Floats
 from trunnion.controls import load_control
 from trunnion.conversion import convert, transfer_settings
@@ -57,7 +58,7 @@ for _family, _site in sites():
 
 
 @pytest.mark.parametrize("source", sorted(SITES))
-@settings(max_examples=3)
+@settings(max_examples=examples(3))
 @given(path=paths())
 def test_every_other_control_makes_the_tool_go_the_same_way_and_back_again(
     tmp_path_factory: pytest.TempPathFactory, source: str, path: Toolpath
@@ -140,7 +141,7 @@ def level_paths(draw: st.DrawFn) -> Toolpath:
 
 
 @pytest.mark.parametrize("source", sorted(SITES))
-@settings(max_examples=3)
+@settings(max_examples=examples(3))
 @given(path=level_paths())
 def test_arcs_holes_and_tilted_planes_are_on_every_other_control_what_the_cl_file_asks_for(
     tmp_path_factory: pytest.TempPathFactory, source: str, path: Toolpath
@@ -257,7 +258,7 @@ VECTORS = sorted(
 
 
 @pytest.mark.parametrize("key", VECTORS)
-@settings(max_examples=5)
+@settings(max_examples=examples(5))
 @given(path=paths())
 def test_orientations_by_vectors_stay_vectors_on_the_same_family(
     tmp_path_factory: pytest.TempPathFactory, key: str, path: Toolpath

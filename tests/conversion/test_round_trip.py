@@ -8,6 +8,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 import trunnion
+from tests.support.examples import examples
 from tests.support.posting import FOOT, HEAD
 from tests.support.toolpath_strategies import SAYABLE, sensible, toolpaths
 from trunnion.cl import read_cl
@@ -92,7 +93,9 @@ def with_tool(given: dict[str, str]) -> dict[str, str]:
     return given if given.get("tool_call") == "name" else given | {"tool": "7"}
 
 
-@settings(deadline=None, max_examples=70, suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow])
+@settings(
+    deadline=None, max_examples=examples(70), suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow]
+)
 @given(sensible(toolpaths(SAYABLE, AXES)), SETTINGS)
 def test_a_program_of_ours_comes_back_with_the_same_bytes(
     tmp_path_factory: pytest.TempPathFactory, toolpath: Toolpath, given: dict[str, str]
@@ -114,7 +117,7 @@ def test_a_program_of_ours_comes_back_with_the_same_bytes(
     assert second.decode().splitlines() == first.decode().splitlines()
 
 
-@settings(deadline=None, max_examples=70)
+@settings(deadline=None, max_examples=examples(70))
 @given(toolpaths(SAYABLE, AXES), SETTINGS)
 def test_whatever_the_toolpath_the_tool_does_the_same(
     tmp_path_factory: pytest.TempPathFactory, toolpath: Toolpath, given: dict[str, str]

@@ -184,10 +184,10 @@ def test_a_file_of_more_than_a_megabyte_is_refused(tmp_path: Path) -> None:
     ids=["keys", "arrays", "tables", "header"],
 )
 def test_a_file_that_nests_without_end_is_refused_at_once(tmp_path: Path, text: str) -> None:
-    begun = time.perf_counter()
+    begun = time.process_time()
     with pytest.raises(InputError, match="nests too deeply"):
         loaded(tmp_path, text)
-    assert time.perf_counter() - begun < 5.0
+    assert time.process_time() - begun < 5.0
 
 
 def test_a_number_of_many_thousand_digits_is_a_mistake_and_no_crash(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from trunnion.controls import load_control
 from trunnion.controls.definition_files import load_control_table
 from trunnion.controls.loading import shipped_controls
@@ -57,7 +58,7 @@ def zero_told(text: str) -> list[str]:
     return told(f'[[control.format]]\nname = "coordinate"\nzero = "{text}"\n')
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(st.text("0123456789+-. eX", max_size=9))
 def test_zero_is_written_as_what_a_control_reads_as_0(text: str) -> None:
     try:

@@ -125,12 +125,13 @@ def one(target: str, seed: int, folder: Path, patience: int) -> str:
 def main() -> int:
     """Run from the command line."""
     parser = argparse.ArgumentParser(description="Fuzz a reader for a while.")
-    parser.add_argument("target", choices=TARGETS)
+    parser.add_argument("target", choices=[*TARGETS, "every"])
     parser.add_argument("--seconds", type=float, default=600.0)
     parser.add_argument("--seed", type=int, default=0, help="first seed; the next ones follow")
     parser.add_argument("--patience", type=int, default=30, help="seconds after which a file is a hang")
     parser.add_argument("--keep", type=Path, help="folder for the files that failed")
     arguments = parser.parse_args()
+    targets = [*TARGETS] if arguments.target == "every" else [arguments.target]
     outcomes: Counter[str] = Counter()
     slowest = 0.0, 0
     end = time.monotonic() + arguments.seconds
@@ -141,14 +142,15 @@ def main() -> int:
         seed = arguments.seed
         while time.monotonic() < end:
             start = time.monotonic()
-            outcome = one(arguments.target, seed, folder, arguments.patience)
+            target = targets[seed % len(targets)]
+            outcome = one(target, seed, folder, arguments.patience)
             slowest = max(slowest, (time.monotonic() - start, seed))
             failed = outcome not in ("READ", "REFUSED")
             if failed and outcome not in outcomes:
-                print(f"seed {seed}: {outcome}", flush=True)
+                print(f"{target}, seed {seed}: {outcome}", flush=True)
                 if arguments.keep:
                     rng = random.Random(seed)
-                    (arguments.keep / f"{arguments.target}-{seed}").write_bytes(TARGETS[arguments.target][0](rng))
+                    (arguments.keep / f"{target}-{seed}").write_bytes(TARGETS[target][0](rng))
             outcomes[outcome] += 1
             seed += 1
     print(

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.support.cl_dialects import EVERY, Step, says
+from tests.support.examples import examples
 from tests.support.fuzz import oracle
 from tests.support.fuzz.mangle import mangle
 from trunnion.model.toolpath import UnknownStatement
@@ -146,7 +147,7 @@ def test_the_seeds_are_read(folder: Path, dialect: str) -> None:
     assert judge(SEEDS[dialect], folder, count=True)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=examples(50), deadline=None)
 @given(head=st.sampled_from(sorted(SEEDS)), lines=st.lists(st.sampled_from(LINES), max_size=12), cut=st.integers(0, 30))
 def test_statements_of_all_dialects_among_each_other_are_read_or_refused(
     folder: Path, head: str, lines: list[str], cut: int

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.fuzz import oracle, pieces, seeds
 from tests.support.fuzz.mangle import mangle
 
@@ -27,20 +28,20 @@ def _grown(draw: st.DrawFn) -> bytes:
     return pieces.cl_file(draw(st.integers(1, 25)), lambda choices: draw(st.sampled_from(choices))).encode()
 
 
-@settings(max_examples=80)
+@settings(max_examples=examples(80))
 @given(data=_grown(), strict=st.booleans())
 def test_a_file_of_random_statements_is_read_or_refused(folder: Path, data: bytes, strict: bool) -> None:
     oracle.judge_cl(data, folder, strict=strict)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(data=st.binary(max_size=400))
 def test_random_bytes_inside_an_operation_are_read_or_refused(folder: Path, data: bytes) -> None:
     oracle.judge_cl(HEAD + data + b"\n" + FOOT, folder)
     oracle.judge_cl(data, folder)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(text=st.text(alphabet="GOTODLA/CIRE0123456789.,-+$ \n\r\tPS", max_size=300))
 def test_random_letters_of_the_language_are_read_or_refused(folder: Path, text: str) -> None:
     oracle.judge_cl(HEAD + text.encode() + b"\n" + FOOT, folder)

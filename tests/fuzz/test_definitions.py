@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.fuzz import oracle
 from tests.support.fuzz.mangle import mangle
 from tests.support.projects import PROJECT, SETUPS, project
@@ -34,7 +35,7 @@ def test_a_mangled_definition_is_a_machine_or_refused(folder: Path, seed: int) -
         oracle.judge_definition(mangle(rng.choice(LIBRARY), LIBRARY, rng), folder)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(text=st.text(alphabet="[]{}=\"'#.,axis_nme019-+einf\n ", max_size=200))
 def test_random_letters_of_the_language_are_refused(folder: Path, text: str) -> None:
     assert oracle.judge_definition(text.encode(), folder) is None

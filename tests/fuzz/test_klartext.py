@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.fuzz import klartext
 from tests.support.fuzz.mangle import mangle
 from trunnion.errors import InputError
@@ -31,19 +32,19 @@ def _grown(draw: st.DrawFn) -> bytes:
     return klartext.program(draw(st.integers(1, 25)), lambda choices: draw(st.sampled_from(choices))).encode()
 
 
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 @given(data=_grown(), key=st.sampled_from(klartext.MACHINES))
 def test_a_program_of_random_words_is_run_or_refused(folder: Path, data: bytes, key: str) -> None:
     klartext.judge(data, folder, key)
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(text=st.text(alphabet="LCXYZABQFMRDNPT0123456789+-.,=;:~\"'*/()<>ENDIFORGOT_ \n\r\t", max_size=300))
 def test_random_letters_of_the_language_are_run_or_refused(folder: Path, text: str) -> None:
     klartext.judge(text.encode(), folder, "dmu65")
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(data=st.binary(max_size=400))
 def test_random_bytes_are_run_or_refused(folder: Path, data: bytes) -> None:
     klartext.judge(data, folder, "dmu65")

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.fuzz import oracle, pieces, seeds
 from tests.support.fuzz.mangle import mangle
 from trunnion.errors import InputError
@@ -34,19 +35,19 @@ def _grown(draw: st.DrawFn) -> bytes:
     return pieces.program(draw(st.integers(1, 25)), lambda choices: draw(st.sampled_from(choices))).encode()
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(data=_grown(), key=st.sampled_from(oracle.MACHINES))
 def test_a_program_of_random_words_is_run_or_refused(folder: Path, data: bytes, key: str) -> None:
     oracle.judge_program(data, folder, key)
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(data=st.binary(max_size=400))
 def test_random_bytes_are_run_or_refused(folder: Path, data: bytes) -> None:
     oracle.judge_program(data, folder)
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(text=st.text(alphabet="NXYZGRLM0123456789=()[]\"';,.+-*/<>ENDIFORGOT_$ \n\r\t", max_size=300))
 def test_random_letters_of_the_language_are_run_or_refused(folder: Path, text: str) -> None:
     oracle.judge_program(text.encode(), folder)

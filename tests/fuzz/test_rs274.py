@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.fuzz.mangle import mangle
 from tests.support.fuzz.rs274 import FANUC, LANGUAGES, LINUXCNC, Language
 
@@ -28,7 +29,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @languages
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(data=st.data())
 def test_a_program_of_random_words_is_run_or_refused(folder: Path, language: Language, data: st.DataObject) -> None:
     program = language.program(data.draw(st.integers(1, 25)), lambda choices: data.draw(st.sampled_from(choices)))
@@ -36,14 +37,14 @@ def test_a_program_of_random_words_is_run_or_refused(folder: Path, language: Lan
 
 
 @languages
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(text=st.text(alphabet="NXYZACGMFOIJKRPQL0123456789=[]#<>;()%/.,+-*IFGOTOWHILEDO \n\r\t", max_size=300))
 def test_random_letters_are_run_or_refused(folder: Path, language: Language, text: str) -> None:
     language.judge(text.encode(), folder)
 
 
 @languages
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(data=st.binary(max_size=400))
 def test_random_bytes_are_run_or_refused(folder: Path, language: Language, data: bytes) -> None:
     language.judge(data, folder)

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from trunnion.arrays import Floats
 from trunnion.errors import InputError
 from trunnion.geometry.approximation import approximate
@@ -64,7 +65,7 @@ def test_the_published_end_tangents_bend_the_first_and_last_span_and_natural_end
         assert all(span.bend < 1e-12 for span in natural.spans)
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(paths(), st.sampled_from(["chord-length", "centripetal"]), st.booleans(), st.booleans())
 def test_a_curve_passes_its_points_and_keeps_its_ends(points: Floats, kind: str, tangent: bool, rational: bool) -> None:
     parameters = parameters_of(points, kind)
@@ -117,7 +118,7 @@ def test_lengths_of_parts_add_up() -> None:
     assert parts[1] == pytest.approx(fine, rel=1e-7)
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(paths(), st.sampled_from([0.001, 0.02, 0.3]))
 def test_no_sample_of_a_curve_is_nearer_than_the_closest_point(points: Floats, away: float) -> None:
     curve = interpolate(points, parameters_of(points))

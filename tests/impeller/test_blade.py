@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.impellers import mixed_flow
 from trunnion.arrays import Floats
 from trunnion.geometry.interpolation import interpolate
@@ -49,7 +50,7 @@ def test_a_lofted_surface_goes_through_its_curves_and_is_ruled_between_two() -> 
     np.testing.assert_allclose(ruled, straight, atol=1e-12)
 
 
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 @given(st.integers(0, 2**31), st.sampled_from([(0.5, 0.5), (-0.1, 0.5), (1.2, 0.4), (0.3, -0.2), (1.1, 1.3)]))
 def test_derivatives_of_a_surface_are_those_of_its_points(seed: int, place: tuple[float, float]) -> None:
     rng = np.random.default_rng(seed)

@@ -6,6 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.linuxcnc.joints import MODULES, theirs
 from tests.support.linuxcnc.joints import kinematics as kinematics
 from tests.support.linuxcnc.kinematics import Kinematics, needs_compiler, needs_modules
@@ -21,7 +22,7 @@ pytestmark = [needs_modules, needs_compiler]
 places = st.tuples(*[st.floats(-300, 300)] * 3)
 
 
-@settings(max_examples=80)
+@settings(max_examples=examples(80))
 @given(
     st.sampled_from(sorted(MODULES)), places, places, st.floats(-100, 100), st.floats(-1000, 1000), st.floats(0, 200)
 )
@@ -44,7 +45,7 @@ def test_our_chains_are_linuxcncs_kinematics(
     np.testing.assert_allclose(back, tips, atol=1e-9)
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(
     st.sampled_from(sorted(MODULES)),
     operations({"dwell": SAYABLE["dwell"]}, st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(0.3, 1))),

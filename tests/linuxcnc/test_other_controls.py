@@ -15,6 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.support.conversion import Site, converted, paths, posted, roomy
+from tests.support.examples import examples
 from tests.support.linuxcnc.interpreter import interpret, needs_linuxcnc
 from tests.support.linuxcnc.joints import MODULES, theirs
 from tests.support.linuxcnc.joints import kinematics as kinematics
@@ -126,7 +127,7 @@ def both(
 
 
 @pytest.mark.parametrize(("family", "asked"), WRITTEN, ids=[" ".join((name, *words)) for name, words in WRITTEN])
-@settings(max_examples=8)
+@settings(max_examples=examples(8))
 @given(name=st.sampled_from(sorted(MODULES)), path=st.one_of(paths(), paths().map(still)))
 def test_programs_of_other_controls_bring_linuxcncs_joints_to_the_cl_points(
     kinematics: dict[str, Kinematics],

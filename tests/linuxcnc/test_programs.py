@@ -9,6 +9,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.linuxcnc.interpreter import (
     SUBROUTINES,
     Canon,
@@ -202,7 +203,7 @@ def judged(name: str, toolpath: Toolpath, folder: Path, subroutines: Path | None
 
 
 @needs_linuxcnc
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(st.sampled_from(sorted(MACHINES)), st.lists(operations(KINDS, AXES), min_size=1, max_size=2))
 def test_linuxcnc_takes_every_program_and_makes_the_motions_that_were_planned(
     tmp_path_factory: pytest.TempPathFactory, name: str, found: list[Operation]
@@ -211,7 +212,7 @@ def test_linuxcnc_takes_every_program_and_makes_the_motions_that_were_planned(
 
 
 @needs_linuxcnc
-@settings(max_examples=12)
+@settings(max_examples=examples(12))
 @given(st.sampled_from(sorted(MACHINES)), st.lists(operations(KINDS, AXES), min_size=1, max_size=3))
 def test_subroutines_in_files_of_their_own_make_the_motions_that_were_planned(
     tmp_path_factory: pytest.TempPathFactory, name: str, found: list[Operation]
@@ -232,7 +233,7 @@ def in_other_planes(operation: Operation, turned: int) -> Operation:
 
 
 @needs_linuxcnc
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(operations(KINDS, st.just((0.0, 0.0, 1.0))), st.integers(1, 2))
 def test_arcs_and_helices_in_the_other_planes_are_those_that_were_planned(
     tmp_path_factory: pytest.TempPathFactory, operation: Operation, turned: int
@@ -243,7 +244,7 @@ def test_arcs_and_helices_in_the_other_planes_are_those_that_were_planned(
 
 
 @needs_linuxcnc
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 @given(st.sampled_from(sorted(MACHINES)), operations({"dwell": SAYABLE["dwell"]}, AXES))
 def test_linuxcnc_takes_programs_without_tcp(
     tmp_path_factory: pytest.TempPathFactory, name: str, operation: Operation

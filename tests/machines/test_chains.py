@@ -5,6 +5,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.machine_strategies import directions, joints, machines
 from tests.support.naive.chains import naive_forward, rotation
 from trunnion.arrays import Floats
@@ -48,7 +49,7 @@ def spread(machine: Machine, values: Floats) -> float:
     return abs(float(np.dot(np.cross(x, y), z)))
 
 
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=examples(100))
 @given(machines(), joints, st.floats(0.0, 300.0))
 def test_the_kernel_puts_the_tool_where_a_product_of_matrices_does(
     machine: Machine, values: list[float], length: float
@@ -59,7 +60,7 @@ def test_the_kernel_puts_the_tool_where_a_product_of_matrices_does(
     np.testing.assert_allclose(axis[0], expected_axis, rtol=0, atol=AXIS)
 
 
-@settings(deadline=None, max_examples=150)
+@settings(deadline=None, max_examples=examples(150))
 @given(machines(), joints, st.floats(0.0, 300.0))
 def test_both_branches_of_any_chain_bring_the_tool_back_to_where_it_was(
     machine: Machine, values: list[float], length: float
@@ -74,7 +75,7 @@ def test_both_branches_of_any_chain_bring_the_tool_back_to_where_it_was(
         np.testing.assert_allclose(again_axis, axis, rtol=0, atol=PARALLEL_WITHIN if found.pole[0] else AXIS)
 
 
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=examples(100))
 @given(machines(), joints)
 def test_one_of_the_branches_is_where_the_axes_were(machine: Machine, values: list[float]) -> None:
     tip, axis = forward(machine, np.array([values]))
@@ -90,7 +91,7 @@ def test_one_of_the_branches_is_where_the_axes_were(machine: Machine, values: li
     assert off.max(axis=1).min() < 1e-6
 
 
-@settings(deadline=None, max_examples=80)
+@settings(deadline=None, max_examples=examples(80))
 @given(machines(), directions())
 def test_a_tool_axis_is_out_of_reach_exactly_when_no_second_angle_leans_it_so_far(
     machine: Machine, direction: Vector
@@ -108,7 +109,7 @@ def test_a_tool_axis_is_out_of_reach_exactly_when_no_second_angle_leans_it_so_fa
     assert bool(status & UNREACHABLE) == bool(np.isnan(out).all())
 
 
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=examples(50))
 @given(machines(), joints)
 def test_displayed_angles_lie_within_half_a_turn_and_are_never_minus_180(machine: Machine, values: list[float]) -> None:
     found = inverse(machine, *forward(machine, np.array([values])))
@@ -116,7 +117,7 @@ def test_displayed_angles_lie_within_half_a_turn_and_are_never_minus_180(machine
     assert ((angles > -180.0) & (angles <= 180.0) | np.isnan(angles)).all()
 
 
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=examples(50))
 @given(machines(), joints)
 def test_slides_solved_for_given_angles_are_those_of_the_branch(machine: Machine, values: list[float]) -> None:
     tip, axis = forward(machine, np.array([values]), 50.0)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 
+from tests.support.examples import examples
 from tests.support.machine_mutants import mutants
 from tests.support.machine_strategies import joints, machines
 from trunnion.cli.machine_text import machine_lines
@@ -123,13 +124,13 @@ def test_the_table_of_a_shipped_machine_agrees_with_the_forward_map(key: str) ->
         agrees(machine, {jog.axis.name: jog.step})
 
 
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=examples(50))
 @given(machines(), joints)
 def test_a_pose_of_any_machine_agrees_with_the_forward_map(machine: Machine, values: list[float]) -> None:
     agrees(machine, dict(zip(machine.names, values, strict=True)))
 
 
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=examples(50))
 @given(machines())
 @example(ALONG_X)
 def test_both_positions_of_the_rotary_axes_point_the_tool_the_same_way(machine: Machine) -> None:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
+from tests.support.examples import examples
 from tests.support.machine_strategies import joints, machines
 from trunnion.machines import Machine, forward, load_machine, shipped_machines
 from trunnion.machines.links import axes_between, carrier, link_transforms
@@ -19,7 +20,7 @@ def tool_at_workpiece(machine: Machine, values: list[float]) -> tuple[np.ndarray
 
 
 @given(machines(), joints)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 def test_spindle_and_workpiece_give_tip_and_tool_axis(machine: Machine, values: list[float]) -> None:
     tip, axis = forward(machine, np.array([values]))
     found_tip, found_axis = tool_at_workpiece(machine, values)
@@ -38,7 +39,7 @@ def test_links_of_shipped_machines_agree_with_the_forward_map(name: str) -> None
 
 
 @given(machines(), joints)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 def test_an_axis_moves_what_stands_on_it_and_nothing_below(machine: Machine, values: list[float]) -> None:
     still, moved = np.array([values]), np.array([values])
     for column, axis in enumerate(machine.axes):

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.machine_strategies import machines
 from trunnion.arrays import Floats
 from trunnion.machines import Axis, AxisKind, Machine, Mount, forward, inverse, load_machine, slide_positions
@@ -132,7 +133,7 @@ def test_a_whole_turn_more_is_within_travel() -> None:
 random_axes = st.lists(st.tuples(*[st.floats(-1.0, 1.0)] * 3), min_size=1, max_size=4)
 
 
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=examples(100))
 @given(machines(), st.floats(-170.0, -5.0), st.floats(5.0, 170.0), st.integers(0, 2**32 - 1))
 def test_tool_axes_of_positions_within_the_travel_are_found(
     machine: Machine, low: float, high: float, seed: int
@@ -152,7 +153,7 @@ def test_tool_axes_of_positions_within_the_travel_are_found(
         assert forward(machine, full)[1] == pytest.approx(np.tile(axes[row], (len(own), 1)), abs=1e-6)
 
 
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=examples(100))
 @given(machines(), st.integers(0, 2**32 - 1))
 def test_bodies_hold_exactly_the_tips_of_the_travel(machine: Machine, seed: int) -> None:
     machine = limited(machine, -170.0, 170.0)
@@ -176,7 +177,7 @@ def test_bodies_hold_exactly_the_tips_of_the_travel(machine: Machine, seed: int)
     assert inside.tolist() == ((needed >= -300.0) & (needed <= 200.0)).all(axis=1).tolist()
 
 
-@settings(deadline=None, max_examples=12)
+@settings(deadline=None, max_examples=examples(12))
 @given(machines(), st.floats(0.2, 3.0), st.integers(0, 2**32 - 1))
 def test_volumes_are_those_that_trials_find(machine: Machine, tilt: float, seed: int) -> None:
     """Random points, each asked of the inverse map: the share that is reached has a known spread."""
@@ -205,7 +206,7 @@ def test_volumes_are_those_that_trials_find(machine: Machine, tilt: float, seed:
         assert found.low <= found.likely <= found.high
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 @given(machines(), random_axes, st.integers(0, 2**32 - 1))
 def test_points_are_reached_where_a_solution_of_the_inverse_map_is_within_the_travel(
     machine: Machine, vectors: list[tuple[float, float, float]], seed: int

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
+from tests.support.examples import examples
 from tests.support.machine_strategies import joints, machines
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, forward, load_machine
@@ -72,7 +73,7 @@ def difference(machine: Machine, number: GeometryNumber, values: Floats) -> tupl
     return (high[0] - low[0]) / (2.0 * step), (high[1] - low[1]) / (2.0 * step)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 @given(machines(), joints)
 def test_derivatives_are_those_of_the_forward_map_with_another_definition(
     machine: Machine, values: list[float]
@@ -87,7 +88,7 @@ def test_derivatives_are_those_of_the_forward_map_with_another_definition(
         assert found.axis == pytest.approx(axis, rel=1e-6, abs=1e-6), found.number.name
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 @given(machines(), joints)
 def test_numbers_that_are_left_out_move_nothing(machine: Machine, values: list[float]) -> None:
     machine = replace(machine, tool_length=_LENGTH_OF_TOOL)
@@ -101,7 +102,7 @@ def test_numbers_that_are_left_out_move_nothing(machine: Machine, values: list[f
 
 
 @given(machines())
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 def test_every_number_is_either_derived_or_idle(machine: Machine) -> None:
     told = [found.number.name for found in derivatives(machine, np.zeros((1, 5)))]
     told += [number.name for number in idle_numbers(machine)]

@@ -1,23 +1,24 @@
 """Every control on every shipped machine: families of paths, written, read back and proven.
 
 A path is proven, or refused for the reason in ``expected``. A control that is not named there may refuse any path, as
-long as it gives a reason and leaves no program.
+long as it gives a reason and leaves no program. ``make.py test`` has a covering array of the matrix.
 """
 
 import io
 from contextlib import redirect_stderr, redirect_stdout
-from itertools import count
+from itertools import count, product
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from tests.support.matrix.covering import ALL_CYCLES, MACHINES, PATHS, cases, covering
 from tests.support.matrix.expected import FAMILIES, PAGE, REFUSED, SOMETIMES, page
 from tests.support.matrix.pairs import CONTROLS, FEW, Pair, check_proven, check_refused, pair_of, posted, simplest
 from tests.support.matrix.paths import CYCLES, cycles, off_the_pole
 from trunnion.cli import main
-from trunnion.machines import load_machine, shipped_machines
+from trunnion.machines import load_machine
 from trunnion.model.motion import MachiningMode
 
 
@@ -26,9 +27,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("matrix")
 
 
-@pytest.mark.parametrize("path", FAMILIES)
-@pytest.mark.parametrize("control", CONTROLS)
-@pytest.mark.parametrize("name", shipped_machines())
+@pytest.mark.parametrize(("name", "control", "path"), cases(tuple(FAMILIES)))
 def test_every_control_moves_every_machine(name: str, control: str, path: str, folder: Path) -> None:
     pair = pair_of(control, name, folder)
     family, asked = FAMILIES[path]
@@ -37,7 +36,7 @@ def test_every_control_moves_every_machine(name: str, control: str, path: str, f
     @FEW
     @given(st.composite(family)(pair.machine))
     def every(text: str) -> None:
-        if next(drawn) == 0 and not meets_simplest(name, control, list(FAMILIES).index(path)):
+        if next(drawn) == 0 and not meets_simplest(name, control, path):
             return
         done = posted(text, pair, folder, asked)
         reasons = REFUSED.get(pair.family)
@@ -51,9 +50,9 @@ def test_every_control_moves_every_machine(name: str, control: str, path: str, f
     every()
 
 
-def meets_simplest(name: str, control: str, path: int = 0) -> bool:
+def meets_simplest(name: str, control: str, path: str) -> bool:
     """Whether a pair also has the simplest path, which is drawn first: a third of each machine's and control's."""
-    return (shipped_machines().index(name) + CONTROLS.index(control) + path) % 3 == 0
+    return (MACHINES.index(name) + CONTROLS.index(control) + PATHS.index(path)) % 3 == 0
 
 
 def stands(text: str, pair: Pair) -> bool:
@@ -62,9 +61,8 @@ def stands(text: str, pair: Pair) -> bool:
     return len(axes) == 1 and MachiningMode.TILTED in pair.control.modes({})
 
 
-@pytest.mark.parametrize("control", CONTROLS)
-@pytest.mark.parametrize("name", shipped_machines())
-def test_all_cycles_that_a_control_has_are_proven(name: str, control: str, folder: Path) -> None:
+@pytest.mark.parametrize(("name", "control", "path"), cases([ALL_CYCLES]))
+def test_all_cycles_that_a_control_has_are_proven(name: str, control: str, path: str, folder: Path) -> None:
     pair = pair_of(control, name, folder)
     refused = REFUSED.get(pair.family)
     if refused is None:
@@ -75,7 +73,7 @@ def test_all_cycles_that_a_control_has_are_proven(name: str, control: str, folde
     @FEW
     @given(st.composite(cycles([mode for mode in CYCLES if mode not in refused]))(pair.machine))
     def every(text: str) -> None:
-        if next(drawn) == 0 and not meets_simplest(name, control):
+        if next(drawn) == 0 and not meets_simplest(name, control, path):
             return
         check_proven(posted(text, pair, folder, ()), pair, ())
 
@@ -93,9 +91,7 @@ def test_cycles_are_refused_for_the_reason_that_is_said(control: str, mode: str,
 
 
 @pytest.mark.parametrize("control", ["heidenhain_tnc640", "linuxcnc", "sinumerik_840d"])
-@pytest.mark.parametrize(
-    "name", [name for name in shipped_machines() if load_machine(name).has_rotary_head] + ["dmu65", "yl569"]
-)
+@pytest.mark.parametrize("name", [name for name in MACHINES if load_machine(name).has_rotary_head] + ["dmu65", "yl569"])
 def test_where_a_head_turns_the_tool_a_program_without_tcp_is_for_one_length(
     name: str, control: str, folder: Path
 ) -> None:
@@ -115,6 +111,12 @@ def test_where_a_head_turns_the_tool_a_program_without_tcp_is_for_one_length(
         assert verified(round(length + more, 3)) != (pair.machine.has_rotary_head and not stands(text, pair))
 
     every()
+
+
+def test_the_array_has_each_machine_and_each_control_with_each_family_of_paths() -> None:
+    array = [(name, control, covering(name, control)) for name in MACHINES for control in CONTROLS]
+    assert {(name, path) for name, _, path in array} == set(product(MACHINES, PATHS))
+    assert {(control, path) for _, control, path in array} == set(product(CONTROLS, PATHS))
 
 
 def test_the_page_says_what_is_refused() -> None:

@@ -4,6 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from trunnion.arrays import Floats
 from trunnion.machines import kinematic_parameters, load_machine
 from trunnion.model.arc_extremes import ArcPaths, Reach, axis_reach, tip_reach
@@ -60,13 +61,13 @@ def agrees(reach: Reach, values: Floats, columns: list[int]) -> None:
     assert (high <= most + between).all()
 
 
-@settings(deadline=None, max_examples=80)
+@settings(deadline=None, max_examples=examples(80))
 @given(any_path())
 def test_the_tip(path: ArcPaths) -> None:
     agrees(tip_reach(path), sampled(path)[1], [0, 1, 2])
 
 
-@settings(deadline=None, max_examples=80)
+@settings(deadline=None, max_examples=examples(80))
 @given(
     any_path(),
     st.sampled_from(sorted(MACHINES)),

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from trunnion.arrays import Floats
 from trunnion.controls import load_control
 from trunnion.machines import load_machine
@@ -30,7 +31,7 @@ def stated(*texts: str) -> HeadNotices:
     return read_place(list(enumerate(texts, 1)))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(
     machine=st.sampled_from(FAMILIES), turn=angles, tilt=angles, zero=st.tuples(lengths, lengths, lengths),
     length=st.none() | lengths.map(abs),
@@ -86,7 +87,7 @@ def test_a_damaged_zero_leaves_the_clamping() -> None:
     assert [line for line, _ in found.faults] == [2, 4]
 
 
-@settings(max_examples=100)
+@settings(max_examples=examples(100))
 @given(
     text=st.sampled_from([TILTED, TURNED, DRAWN, ZERO, LENGTH]), place=st.integers(14, 60),
     letter=st.sampled_from("ABQWZ,.+#"),
@@ -100,7 +101,7 @@ def test_no_letter_of_a_notice_may_be_another_one(text: str, place: int, letter:
     assert (found.clamping, found.zero, found.tool_length) == (None, None, None)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(first=st.tuples(angles, angles), turn=angles, tilt=angles)
 def test_one_clamping_behind_another_is_the_product_of_both(
     first: tuple[float, float], turn: float, tilt: float

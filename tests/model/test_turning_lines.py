@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import trunnion
+from tests.support.examples import examples
 from tests.support.verifying import check
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, forward, inverse, load_machine
@@ -85,7 +86,7 @@ def axis_of(tilt: float, azimuth: float) -> Floats:
     return np.array([math.sin(a) * math.cos(b), math.sin(a) * math.sin(b), math.cos(a)])
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(name=st.sampled_from(MACHINES), ends=st.tuples(directions, directions), tips=st.tuples(points, points))
 def test_even_turns_reach_what_dense_samples_reach(
     name: str, ends: tuple[tuple[float, float], ...], tips: tuple[tuple[float, ...], ...]
@@ -126,7 +127,7 @@ def great_circle_slides(machine: Machine, tip: Floats, axes: Floats, joints: Flo
     return np.array(found)
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=examples(80), deadline=None)
 @given(
     name=st.sampled_from(MACHINES),
     begin=directions,
@@ -173,7 +174,7 @@ def slides_between(machine: Machine, tip: Floats, joints: Floats, count: int) ->
     return found
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(turn=st.floats(0.0, 3.0), radius=st.floats(1.0, 300.0))
 def test_the_bound_holds_a_turn_at_a_radius(turn: float, radius: float) -> None:
     """On the spot a slide at this radius leaves its chord by r (1 - cos (d / 2))."""

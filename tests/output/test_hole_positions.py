@@ -8,6 +8,7 @@ import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.holes import statements
 from tests.support.planes import proven, reachable, sinumeriks
 from tests.support.posting import FOOT, HEAD, Post
@@ -190,7 +191,7 @@ def test_a_way_too_low_is_seen_by_the_proof(tmp_path: Path) -> None:
 HEIGHTS = st.tuples(st.floats(-50.0, 50.0), st.floats(-50.0, 50.0))
 
 
-@settings(max_examples=80, derandomize=True)
+@settings(max_examples=examples(80), derandomize=True)
 @given(HEIGHTS, HEIGHTS)
 def test_the_lowest_place_of_a_way_is_that_of_all_its_places(
     one: tuple[float, float], other: tuple[float, float]
@@ -201,7 +202,7 @@ def test_the_lowest_place_of_a_way_is_that_of_all_its_places(
 
 
 @pytest.mark.parametrize("name", sinumeriks())
-@settings(max_examples=6, derandomize=True, phases=[Phase.explicit, Phase.generate])
+@settings(max_examples=examples(6), derandomize=True, phases=[Phase.explicit, Phase.generate])
 @given(
     words=statements().map(lambda words: re.sub("RTRCTO,[^,]*,", "", words).replace("RAPTO", "RTRCTO,25,RAPTO")),
     share=st.tuples(st.floats(0.2, 0.8), st.floats(0.2, 0.8)),

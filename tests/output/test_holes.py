@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.holes import HEIGHTS, statements
 from tests.support.naive.chains import turned
 from tests.support.planes import proven, reachable, sinumeriks
@@ -209,7 +210,7 @@ POINTS = st.lists(st.tuples(*[st.floats(-40.0, 40.0)] * 3), min_size=1, max_size
 
 
 @pytest.mark.parametrize("name", sinumeriks())
-@settings(max_examples=6, derandomize=True)
+@settings(max_examples=examples(6), derandomize=True)
 @given(
     words=st.lists(statements(), min_size=1, max_size=3),
     shares=st.lists(SHARES, min_size=1, max_size=3),

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from trunnion.arrays import Floats
 from trunnion.controls import load_control
 from trunnion.families import load_reader
@@ -115,7 +116,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("planes")
 
 
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 @given(a=ANGLES, b=ANGLES, c=ANGLES, origin=PLACES)
 def test_any_plane_is_the_same_however_it_is_said(
     folder: Path, a: float, b: float, c: float, origin: tuple[float, float, float]
@@ -126,7 +127,7 @@ def test_any_plane_is_the_same_however_it_is_said(
         np.testing.assert_allclose(shift, origin, rtol=0, atol=1e-9, err_msg=way)
 
 
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 @given(tilt=st.integers(-109999, 109999).map(lambda n: n / 1000), turn=ANGLES)
 def test_the_plane_on_which_the_tool_stands_is_the_same_by_all_spellings(
     folder: Path, tilt: float, turn: float

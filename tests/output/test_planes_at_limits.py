@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.jobs import post_job
 from tests.support.operations import moves_of, operation_of
 from trunnion.controls import load_control
@@ -54,7 +55,7 @@ def at_limit(model: Machine, high: bool, first: float, twist: float) -> Toolpath
     return Toolpath("part.cls", (top, replace(side, frame=frame)))
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(
     st.sampled_from(NAMES),
     st.booleans(),

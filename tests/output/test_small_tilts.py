@@ -8,6 +8,7 @@ import pytest
 from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.jobs import post_job
 from tests.support.operations import moves_of, operation_of, rapids_at
 from trunnion.arrays import Floats
@@ -66,7 +67,7 @@ def digit(name: str) -> float:
     return 10.0 ** -CONTROLS[name].number_formats(three_axis=False)["angle"].decimals
 
 
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 @given(
     name=st.sampled_from(sorted(MACHINES)),
     tilt=st.floats(-6.0, -1.5).map(lambda power: 10.0**power),

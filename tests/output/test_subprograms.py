@@ -11,6 +11,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.locations import YL569
 from tests.support.toolpath_strategies import SAYABLE, operations
 from trunnion.arrays import Floats
@@ -148,7 +149,7 @@ def written(
 
 
 @pytest.mark.parametrize("machine", CONTROLS)
-@settings(max_examples=8)
+@settings(max_examples=examples(8))
 @given(toolpath=TOOLPATHS, largest=st.sampled_from([None, END_RESERVE_BYTES + 1800]))
 def test_a_program_in_several_files_does_what_it_does_in_one(
     tmp_path_factory: pytest.TempPathFactory, machine: str, toolpath: Toolpath, largest: int | None
@@ -212,7 +213,7 @@ def drilling(cycles: list[tuple[tuple[str, ...], list[tuple[int, int, int]]]], a
 
 
 @pytest.mark.parametrize("machine", CONTROLS)
-@settings(max_examples=6)
+@settings(max_examples=examples(6))
 @given(cycles=CYCLES, tilted=st.booleans(), room=st.sampled_from([1800, 3000]))
 def test_holes_are_divided_between_two_of_them(
     tmp_path_factory: pytest.TempPathFactory,
@@ -239,7 +240,7 @@ def test_holes_are_divided_between_two_of_them(
 
 
 @pytest.mark.parametrize("machine", CONTROLS)
-@settings(max_examples=8)
+@settings(max_examples=examples(8))
 @given(toolpath=TOOLPATHS)
 def test_each_operation_can_be_entered_alone(
     tmp_path_factory: pytest.TempPathFactory, machine: str, toolpath: Toolpath

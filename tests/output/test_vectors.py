@@ -10,6 +10,7 @@ from hypothesis import assume, given
 from hypothesis import settings as sized
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.jobs import post_job
 from tests.support.locations import YL569
 from tests.support.path_strategies import short_paths, smooth_paths, winding
@@ -61,7 +62,7 @@ def wound(machine: Machine, rotary: Floats) -> Floats:
     return found
 
 
-@sized(max_examples=25)
+@sized(max_examples=examples(25))
 @given(name=st.sampled_from(sorted(MACHINES)), moves=PATHS)
 def test_axes_stand_where_rotary_words_would_have_them(
     tmp_path_factory: pytest.TempPathFactory, name: str, moves: Moves

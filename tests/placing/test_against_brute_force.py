@@ -8,6 +8,7 @@ from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import minimize  # type: ignore[import-untyped]
 
+from tests.support.examples import examples
 from tests.support.placed_paths import best_turns, brute_margin, limited_machines, random_rows
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, inverse, load_machine
@@ -31,7 +32,7 @@ def well_conditioned(cuts: CutSet | Obstacle) -> bool:
     return isinstance(cuts, Obstacle) or all(np.abs(part.forms.normals).max() < 20.0 for part in cuts.parts)
 
 
-@settings(max_examples=40, deadline=None, phases=PHASES)
+@settings(max_examples=examples(40), deadline=None, phases=PHASES)
 @given(machine=limited_machines(), seed=SEEDS, turn=TURNS, count=st.sampled_from([1, 2, 9, 150]))
 def test_the_margin_of_any_place_is_that_of_its_worst_row(machine: Machine, seed: int, turn: float, count: int) -> None:
     rows = random_rows(seed, count)
@@ -49,7 +50,7 @@ def test_the_margin_of_any_place_is_that_of_its_worst_row(machine: Machine, seed
             assert cuts.at(zero).margins.min() == pytest.approx(brute, abs=1e-6)
 
 
-@settings(max_examples=25, deadline=None, phases=PHASES)
+@settings(max_examples=examples(25), deadline=None, phases=PHASES)
 @given(machine=limited_machines(), seed=SEEDS, turn=TURNS)
 def test_no_place_is_in_the_region_that_does_not_fit_and_none_outside_that_does(
     machine: Machine, seed: int, turn: float
@@ -100,7 +101,7 @@ def walk_uphill(machine: Machine, rows: PathRows, turn: float, at: Floats, seed:
     return best
 
 
-@settings(max_examples=5, deadline=None, phases=PHASES)
+@settings(max_examples=examples(5), deadline=None, phases=PHASES)
 @given(machine=limited_machines(), seed=SEEDS, turn=TURNS)
 def test_no_place_of_a_dense_search_is_better_than_the_best(machine: Machine, seed: int, turn: float) -> None:
     rows = random_rows(seed, 30)
@@ -118,7 +119,7 @@ def test_no_place_of_a_dense_search_is_better_than_the_best(machine: Machine, se
     assert best >= found.best.margin - 0.01 * abs(found.best.margin) - 0.01
 
 
-@settings(max_examples=5, deadline=None, phases=PHASES)
+@settings(max_examples=examples(5), deadline=None, phases=PHASES)
 @given(machine=limited_machines(), seed=SEEDS)
 def test_the_best_turn_is_the_best_of_all_turns(machine: Machine, seed: int) -> None:
     rows = random_rows(seed, 10)

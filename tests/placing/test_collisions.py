@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.support.brute_clearance import BruteBodies, box_body, brute_joints
+from tests.support.examples import examples
 from tests.support.placed_paths import brute_margin, path_rows
 from tests.support.u_shapes import vice
 from trunnion.arrays import Floats
@@ -252,7 +253,7 @@ def clearance(machine: Machine, rows: PathRows, pair: GuardedPair, near: Floats,
     return Clearance(path.machine, moments, [pair], about_z(turn), near)
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=examples(12), deadline=None)
 @given(
     seed=st.integers(0, 10**6), is_hollow=st.booleans(), turn=st.sampled_from([0.0, 33.0, 200.0]),
     name=st.sampled_from(["matsuura_mx330", "generic_head_table_bc", "generic_head_head_ca"]),

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.placed_paths import best_turns, random_rows
 from trunnion.machines import Machine, inverse, load_machine
 from trunnion.placing.goals import Goal, PlaceCost, planned_seconds, rotary_travel
@@ -63,7 +64,7 @@ def plain_cost(goal: Goal, rows: PathRows, positions: np.ndarray, zero: np.ndarr
 
 
 @pytest.mark.parametrize("goal", GOALS)
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=examples(8), deadline=None)
 @given(seed=st.integers(0, 10**6))
 def test_costs_are_the_sums_that_they_say_and_planes_stay_below_them(goal: Goal, seed: int) -> None:
     rows = tilted_rows(seed)

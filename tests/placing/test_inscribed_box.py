@@ -6,6 +6,7 @@ import numpy as np
 from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.placed_paths import brute_margin, limited_machines, random_rows
 from trunnion.machines import Machine, load_machine
 from trunnion.placing.inscribed_box import Box
@@ -31,7 +32,7 @@ def placed(machine: Machine, seed: int, turn: float) -> tuple[PathRows, CutSet, 
     return (rows, cuts, best) if best.margin > 0.1 else None
 
 
-@settings(max_examples=4, deadline=None, phases=[Phase.explicit, Phase.generate])
+@settings(max_examples=examples(4), deadline=None, phases=[Phase.explicit, Phase.generate])
 @given(machine=limited_machines(), seed=st.integers(0, 10**6), turn=st.sampled_from([0.0, 37.0]))
 def test_every_corner_fits_and_no_other_box_is_larger(machine: Machine, seed: int, turn: float) -> None:
     axes = tuple(

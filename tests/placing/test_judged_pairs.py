@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.support.brute_clearance import box_body
+from tests.support.examples import examples
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, MachineBody, load_machine
 from trunnion.model.rotations import about_z
@@ -47,7 +48,7 @@ def placed_pairs(machine: Machine, fixture: TriangleMesh, part: TriangleMesh, ze
     return [pair for pair in pairs if pair not in left_out]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(
     seed=st.integers(0, 10**6), turn=st.sampled_from([0.0, 90.0, 217.0]),
     name=st.sampled_from(

@@ -9,6 +9,7 @@ from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
 
 import trunnion
+from tests.support.examples import examples
 from tests.support.placed_paths import brute_margin, limited_machines, random_rows, turned_by
 from trunnion.arrays import Floats
 from trunnion.errors import Problem
@@ -47,7 +48,7 @@ def test_the_tilt_comes_first_and_both_are_right_handed() -> None:
     assert (Clamping(90.0, 90.0).rotation @ [0.0, 0.0, 1.0]).tolist() == [1.0, 0.0, 0.0]  # to -Y, and on to +X
 
 
-@settings(max_examples=3, deadline=None, phases=PHASES)
+@settings(max_examples=examples(3), deadline=None, phases=PHASES)
 @given(machine=limited_machines(), seed=st.integers(0, 10**6))
 def test_the_best_orientation_is_as_good_by_the_inverse_map_and_as_any_of_the_grid(machine: Machine, seed: int) -> None:
     rows = random_rows(seed, 8)

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from trunnion.arrays import Floats
 from trunnion.errors import InputError
 from trunnion.model.toolpath import Arcs, Dwell, Frame, Kind, Moves, Operation, Tool
@@ -44,7 +45,7 @@ def any_arc(draw: st.DrawFn) -> tuple[Operation, float, float]:
     return arc_operation(start, end, centre, normal, turns), radius, sweep + 2 * np.pi * turns
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=examples(25))
 @given(any_arc(), st.sampled_from([0.001, 0.01, 0.1]))
 def test_lines_for_an_arc_keep_the_chord_tolerance(case: tuple[Operation, float, float], tolerance: float) -> None:
     operation, radius, sweep = case

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import Phase, event, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.naive.poses import AllPaths
 from tests.support.operations import moves_of, operation_of, rapids_at
 from tests.support.path_strategies import directions
@@ -148,14 +149,14 @@ def check_plan(name: str, variant: str, path: Moves, options: PlanOptions) -> No
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-@settings(deadline=None, max_examples=6, phases=[Phase.generate])
+@settings(deadline=None, max_examples=examples(6), phases=[Phase.generate])
 @given(st.sampled_from(NAMES), st.sampled_from(sorted(MACHINES)), st.data())
 def test_with_tcp(family: str, name: str, variant: str, data: st.DataObject) -> None:
     check_plan(name, variant, data.draw(paths(family)), PlanOptions())
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-@settings(deadline=None, max_examples=4, phases=[Phase.generate])
+@settings(deadline=None, max_examples=examples(4), phases=[Phase.generate])
 @given(st.sampled_from(NAMES), st.sampled_from(sorted(MACHINES)), st.sampled_from([0.001, 0.01, 0.1]), st.data())
 def test_without_tcp(family: str, name: str, variant: str, tolerance: float, data: st.DataObject) -> None:
     check_plan(name, variant, data.draw(paths(family)), PlanOptions(tcp=False, tip_tolerance=tolerance))

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import Phase, assume, event, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, forward, inverse, load_machine, shipped_machines, slide_positions
 from trunnion.planning.linearization.intermediate_points import DividedPath, divide_path
@@ -104,7 +105,7 @@ def divided(
     )
 
 
-@settings(deadline=None, max_examples=25, phases=[Phase.generate])
+@settings(deadline=None, max_examples=examples(25), phases=[Phase.generate])
 @given(
     st.sampled_from(NAMES),
     st.lists(st.tuples(steps, leans), min_size=2, max_size=5),
@@ -156,7 +157,7 @@ def fewest(
     return int(count[-1]) if np.isfinite(count[-1]) else nodes
 
 
-@settings(deadline=None, max_examples=15, phases=[Phase.generate])
+@settings(deadline=None, max_examples=examples(15), phases=[Phase.generate])
 @given(
     st.sampled_from(NAMES),
     st.lists(st.tuples(steps, leans), min_size=2, max_size=3),

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.naive.poses import AllPaths, nearest_neighbour
 from tests.support.operations import moves_of, rapids_at
 from tests.support.path_strategies import BC, CA, directions, short_paths, smooth_paths, winding, with_limits
@@ -43,7 +44,7 @@ SMALL = {
 }
 
 
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=examples(50))
 @given(st.sampled_from(sorted(SMALL)), short_paths(), st.sampled_from([-1, 0, 1]))
 def test_no_path_through_the_states_is_cheaper(name: str, moves: Moves, prefer: int) -> None:
     machine = SMALL[name]
@@ -69,7 +70,7 @@ def test_eight_rows_of_six_states() -> None:
     assert every.cost_of(state) == pytest.approx(every.least(), abs=1e-6)
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 @given(smooth_paths(100.0))
 def test_on_the_yl569_the_optimum_is_the_nearest_neighbour_where_that_is_good_enough(moves: Moves) -> None:
     machine = load_machine("yl569")
@@ -89,7 +90,7 @@ def test_most_shipped_machines_have_branches_that_travel_alike() -> None:
     assert not any("nutated" in name for name in ALIKE)
 
 
-@settings(deadline=None, max_examples=120)
+@settings(deadline=None, max_examples=examples(120))
 @given(st.sampled_from(sorted(ALIKE)), smooth_paths(100.0) | smooth_paths(4.0) | short_paths(30), st.booleans())
 def test_without_a_choice_one_pass_finds_the_optimum(name: str, moves: Moves, keep_slide_limits: bool) -> None:
     machine = ALIKE[name]
@@ -105,7 +106,7 @@ def test_without_a_choice_one_pass_finds_the_optimum(name: str, moves: Moves, ke
     assert not wanted.outcome.any()
 
 
-@settings(deadline=None, max_examples=70)
+@settings(deadline=None, max_examples=examples(70))
 @given(st.sampled_from(sorted(ALIKE)), smooth_paths(4.0) | short_paths(30), st.integers(1, 12))
 def test_one_pass_does_not_depend_on_the_size_of_chunks(name: str, moves: Moves, rows: int) -> None:
     whole = choose_poses_in_one_pass(ALIKE[name], moves, False)
@@ -132,7 +133,7 @@ def test_one_pass_is_enough_for_a_usual_path(name: str) -> None:
 IMPARTIAL = [name for name in shipped_machines() if not any(axis.preferred_sign for axis in load_machine(name).axes)]
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 @given(st.sampled_from(IMPARTIAL), smooth_paths(30.0))
 def test_on_every_machine_it_is_the_nearest_neighbour_or_cheaper(name: str, moves: Moves) -> None:
     machine = load_machine(name)
@@ -148,7 +149,7 @@ def test_on_every_machine_it_is_the_nearest_neighbour_or_cheaper(name: str, move
         assert every.cost_of(state) < (every.cost_of(its)[0], every.cost_of(its)[1] + 1e-6)
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=examples(25))
 @given(st.sampled_from(shipped_machines()), smooth_paths(30.0))
 def test_the_nearest_neighbour_of_the_planner_is_that_of_the_tests(name: str, moves: Moves) -> None:
     machine = load_machine(name)
@@ -158,7 +159,7 @@ def test_the_nearest_neighbour_of_the_planner_is_that_of_the_tests(name: str, mo
     assert np.abs(apart - 360.0 * np.rint(apart / 360.0)).max() < 1e-9
 
 
-@settings(deadline=None, max_examples=30)
+@settings(deadline=None, max_examples=examples(30))
 @given(st.sampled_from(shipped_machines()), st.one_of(smooth_paths(35.0), short_paths(30)))
 def test_limits_hold_and_the_tool_points_where_it_should(name: str, moves: Moves) -> None:
     machine = load_machine(name)

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from trunnion.arrays import Floats
 from trunnion.errors import RefusedError, Severity
 from trunnion.machines import Machine, forward, load_machine, shipped_machines, slide_positions
@@ -154,7 +155,7 @@ def test_operations_in_other_coordinate_systems_are_carried_into_the_first_one()
     assert back.moves.tip[0] == pytest.approx([1, 2, 3])
 
 
-@settings(deadline=None, max_examples=20)
+@settings(deadline=None, max_examples=examples(20))
 @given(
     st.sampled_from(shipped_machines()),
     st.lists(st.tuples(st.floats(0, 35), st.floats(-720, 720), *[st.floats(-60, 60)] * 3), min_size=1, max_size=20),

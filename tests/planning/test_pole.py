@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.operations import moves_of, operation_of
 from tests.support.pole_paths import MACHINES, around_pole, passes
 from trunnion.arrays import Flags, Floats
@@ -40,7 +41,7 @@ def degrees_between(a: Floats, b: Floats) -> Floats:
     return np.asarray(np.degrees(2.0 * np.arcsin(np.minimum(0.5 * np.linalg.norm(a - b, axis=1), 1.0))))
 
 
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 @given(st.data(), st.sampled_from(sorted(MACHINES)), st.sampled_from(list(PoleStrategy)[1:]), st.floats(0.005, 1.0))
 def test_the_tool_axis_leans_within_its_limit_and_only_in_the_recorded_rows(
     data: st.DataObject, name: str, mode: PoleStrategy, angle: float
@@ -65,7 +66,7 @@ def test_the_tool_axis_leans_within_its_limit_and_only_in_the_recorded_rows(
     assert (found.poses.rotary <= high + 1e-5).all()
 
 
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 @given(st.data(), st.sampled_from(sorted(MACHINES)), st.floats(0.005, 1.0))
 def test_in_solved_regions_no_rotary_axis_is_too_fast(data: st.DataObject, name: str, angle: float) -> None:
     machine = MACHINES[name]
@@ -83,7 +84,7 @@ def test_in_solved_regions_no_rotary_axis_is_too_fast(data: st.DataObject, name:
     assert share[~lacking & (way >= REST_LENGTH)].max(initial=0.0) <= 1.0
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(st.data(), st.sampled_from(sorted(MACHINES)))
 def test_nothing_is_done_where_nothing_is_too_fast(data: st.DataObject, name: str) -> None:
     machine = MACHINES[name]
@@ -137,7 +138,7 @@ def twin_finds(off: Floats, wanted: Floats, far: Floats, angle: float) -> bool:
     return bool(alive[nearest[-1]])
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(
     st.sampled_from(["generic_head_table_bc", "generic_head_head_ca", "generic_nutated_b45_c", "yl569"]),
     st.floats(0.02, 1.0),

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.jobs import post_job
 from tests.support.path_strategies import short_paths, smooth_paths, winding
 from tests.support.read_back import CONTROL, MACHINES, toolpath_of
@@ -49,7 +50,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 paths = smooth_paths(25.0) | smooth_paths(100.0) | smooth_paths(3.0) | short_paths(12)
 
 
-@settings(max_examples=80)
+@settings(max_examples=examples(80))
 @given(name=st.sampled_from(sorted(MACHINES)), moves=paths)
 def test_plans_are_proven(name: str, moves: Moves, folder: Path) -> None:
     machine, toolpath = MACHINES[name], toolpath_of(moves)
@@ -65,7 +66,7 @@ def test_plans_are_proven(name: str, moves: Moves, folder: Path) -> None:
     assert (rotary <= high + HALF_DIGIT).all()
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(
     name=st.sampled_from(sorted(MACHINES)),
     tilt=st.floats(3.0, 29.0),

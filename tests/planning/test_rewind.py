@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.operations import moves_of, operation_of
 from tests.support.path_strategies import BC, CA, directions, winding, with_limits
 from tests.support.rewind_paths import round_part
@@ -331,7 +332,7 @@ def test_a_path_over_the_pole_is_in_the_log() -> None:
     assert "goes through the pole" in log[1].text
 
 
-@settings(deadline=None, max_examples=25)
+@settings(deadline=None, max_examples=examples(25))
 @given(st.floats(5.0, 80.0), st.floats(-400.0, 400.0), st.floats(-3000.0, 3000.0), st.integers(200, 900))
 def test_inserted_rows_keep_limits_and_points(tilt: float, start: float, sweep: float, n: int) -> None:
     moves = winding(tilt, start, start + sweep, n)

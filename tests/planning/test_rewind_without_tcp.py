@@ -9,6 +9,7 @@ import pytest
 from hypothesis import Phase, event, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.operations import operation_of
 from tests.support.path_strategies import winding
 from tests.support.rewind_paths import round_part
@@ -122,7 +123,7 @@ def test_the_proof_checks_the_tip_during_a_turn(fault: str, asked: bool, tmp_pat
         assert found.passed is passes, [str(c) for c in found.checks if not c.passed]
 
 
-@settings(deadline=None, max_examples=10, phases=[Phase.generate])
+@settings(deadline=None, max_examples=examples(10), phases=[Phase.generate])
 @given(
     st.sampled_from(NAMES),
     st.floats(3.0, 29.0),

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import Phase, assume, event, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.operations import moves_of, operation_of
 from tests.support.without_tcp import NAMES, apart, machine, post, rows_of_points, steps, toolpath, worst_off
 from trunnion.arrays import Codes, Floats
@@ -36,7 +37,7 @@ kinds = st.sampled_from([Kind.LINEAR, Kind.LINEAR, Kind.RAPID])
 rough = st.lists(st.tuples(steps, lean, lean, kinds), min_size=2, max_size=4)
 
 
-@settings(deadline=None, max_examples=25, phases=[Phase.generate])
+@settings(deadline=None, max_examples=examples(25), phases=[Phase.generate])
 @given(
     st.sampled_from(NAMES),
     rough,
@@ -93,7 +94,7 @@ def smooth(form: str, turns: float, tilt: float, n: int) -> tuple[Floats, Floats
     return np.round(tip, 5), axis
 
 
-@settings(deadline=None, max_examples=12, phases=[Phase.generate])
+@settings(deadline=None, max_examples=examples(12), phases=[Phase.generate])
 @given(
     st.sampled_from(NAMES),
     st.sampled_from(["round", "over the pole", "spiral"]),
@@ -121,7 +122,7 @@ def test_smooth_paths_also_past_the_pole_and_over_several_turns(
 # With TCP
 
 
-@settings(deadline=None, max_examples=12, phases=[Phase.generate])
+@settings(deadline=None, max_examples=examples(12), phases=[Phase.generate])
 @given(st.sampled_from(NAMES), rough, st.sampled_from([0.01, 0.1, 1.0]))
 def test_with_tcp_points_keep_the_tool_axis_if_there_is_a_tolerance(
     name: str, path: list[tuple[tuple[float, float, float], float, float, Kind]], tolerance: float

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.locations import TESTS
 from tests.support.naive import reading as naive
 from tests.support.run_comparison import same
@@ -23,7 +24,9 @@ YL569 = load_machine("yl569")
 GOLDEN = sorted((TESTS / "golden" / "yl569").glob("*.mpf"))
 
 
-SETTINGS = settings(deadline=None, max_examples=50, suppress_health_check=[HealthCheck.function_scoped_fixture])
+SETTINGS = settings(
+    deadline=None, max_examples=examples(50), suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 
 
 def twice(path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Run, Run]:
@@ -67,7 +70,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("programs")
 
 
-@settings(deadline=None, max_examples=120)
+@settings(deadline=None, max_examples=examples(120))
 @given(value=st.floats(-99999, 99999), decimals=st.integers(0, 9))
 def test_numbers_are_read_to_the_last_bit(
     value: float, decimals: int, tmp_path_factory: pytest.TempPathFactory
@@ -89,7 +92,7 @@ CODES = {
 angles = st.integers(-20000, 20000).map(lambda n: n / 7.0)
 
 
-@settings(deadline=None, max_examples=120)
+@settings(deadline=None, max_examples=examples(120))
 @given(held=angles, value=st.one_of(st.none(), angles), turn_rule=ways, lowest=st.sampled_from([0.0, -180.0]))
 def test_rotary_words_reach_the_turn_that_the_twin_finds(
     held: float, value: float | None, turn_rule: str, lowest: float
@@ -98,7 +101,7 @@ def test_rotary_words_reach_the_turn_that_the_twin_finds(
     assert got == pytest.approx(naive.angle_reached(held, value, turn_rule, lowest), abs=1e-8)
 
 
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=examples(50))
 @given(
     b=st.lists(st.floats(1.0, 95.0), min_size=1, max_size=6),
     c=st.lists(st.floats(-170.0, 170.0), min_size=6, max_size=6),
@@ -120,7 +123,7 @@ def test_vectors_are_followed_on_the_near_branch(b: list[float], c: list[float])
         np.testing.assert_allclose(got[:, YL569.column("C")], joints[:, YL569.column("C")], atol=1e-6)
 
 
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=examples(50))
 @given(
     angle=st.floats(0.1, 6.2),
     radius=st.floats(0.1, 100.0),
@@ -147,7 +150,7 @@ mutations = st.lists(
 )
 
 
-@settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(deadline=None, max_examples=examples(60), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(which=st.integers(0, 3), changes=mutations)
 def test_damaged_programs_give_a_run_or_an_input_error(
     which: int, changes: list[tuple[int, str, bytes]], tmp_path: Path
@@ -180,7 +183,7 @@ def test_damaged_programs_give_a_run_or_an_input_error(
     assert np.isfinite(run.joints).all()
 
 
-@settings(deadline=None, max_examples=50, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(deadline=None, max_examples=examples(50), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.binary(max_size=300))
 def test_any_bytes_give_a_run_or_an_input_error(data: bytes, tmp_path: Path) -> None:
     path = tmp_path / "P.MPF"

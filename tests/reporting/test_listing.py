@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import trunnion
+from tests.support.examples import examples
 from tests.support.posting import FOOT, HEAD
 from trunnion.reporting.listing import Column, _slow_row_texts, listing, row_texts
 from trunnion.verification.results import OperationRows
@@ -20,7 +21,7 @@ value = st.one_of(
 )
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=examples(40))
 @given(st.lists(st.tuples(value, value, st.integers(0, 99999), st.integers(0, 1)), min_size=1, max_size=40))
 def test_rows_are_written_as_one_by_one(rows: list[tuple[float, float, int, int]]) -> None:
     table = np.array(rows, np.float64)

@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 
 import trunnion
 from tests.support.divided import TOOLS, facts, joined, shares_of, write_divided
+from tests.support.examples import examples
 from tests.support.simulating import HEAD
 from trunnion.errors import InputError
 from trunnion.simulation.cutting import shares as shares_module
@@ -112,7 +113,7 @@ _line = st.one_of(
 )
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=examples(15), deadline=None)
 @given(lines=st.lists(_line, min_size=1, max_size=12), count=st.integers(1, 9), chunk=st.integers(1, 9))
 def test_any_program_in_any_number_of_shares_gives_what_one_process_gives(
     small: Callable[[str], trunnion.SimulationResult], lines: list[str], count: int, chunk: int
@@ -164,7 +165,7 @@ def _tampered(share: bytes, at: float, value: int) -> bytes:
     return share[:k] + bytes([share[k] ^ value]) + share[k + 1 :]
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=examples(20), deadline=None)
 @given(at=st.floats(0.0, 1.0), value=st.integers(1, 255), cuts=st.booleans())
 def test_a_damaged_share_is_told_or_harmless(small: Any, at: float, value: int, cuts: bool) -> None:
     cut = small(HEAD + "G1 X-5 Y3 Z-3 F500\nG1 X8\nG0 Y-9\nM30\n").simulation

@@ -22,6 +22,10 @@ _ARGUMENTS = [
 ]  # fmt: skip
 
 
+#: Milliseconds that a page may take for what takes an instant where the computer is idle.
+PATIENCE = 120_000
+
+
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Browser]:
     with sync_playwright() as playwright:
@@ -37,8 +41,9 @@ def open_page(browser: Browser, address: str, size: tuple[int, int] = (1280, 800
     page = browser.new_page(viewport={"width": size[0], "height": size[1]}, locale="en-GB")
     page.on("pageerror", lambda error: errors.append(str(error)))
     page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
+    page.set_default_timeout(PATIENCE)
     page.goto(address)
-    page.wait_for_selector("html[data-ready=true]", state="attached", timeout=60_000)
+    page.wait_for_selector("html[data-ready=true]", state="attached")
     yield page, errors
     page.close()
 

@@ -5,6 +5,7 @@ import socket
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
 from types import TracebackType
@@ -29,6 +30,7 @@ class Cluster:
         self.port = _free_port()
         self.address = f"tcp://127.0.0.1:{self.port}"
         self.scheduler = self._start_scheduler()
+        self._wait_for_scheduler()
         self.workers = [self.start_worker() for _ in range(workers)]
 
     def __enter__(self) -> "Cluster":
@@ -62,6 +64,14 @@ class Cluster:
 
     def _start_scheduler(self) -> subprocess.Popen[bytes]:
         return self._start("scheduler", "--host", "127.0.0.1", "--port", str(self.port), "--no-dashboard")
+
+    def _wait_for_scheduler(self) -> None:
+        """Wait until it listens: a client that finds none waits for some seconds only, however busy the computer is."""
+        while self.scheduler.poll() is None:
+            with suppress(OSError), socket.create_connection(("127.0.0.1", self.port)):
+                return
+            time.sleep(0.05)
+        raise AssertionError("the scheduler has ended")
 
     def _start(self, what: str, *arguments: str) -> subprocess.Popen[bytes]:
         script = f"from distributed.cli.dask_{what} import main; main()"

@@ -26,6 +26,7 @@ HUB_MPF = "golden/yl569/2_hub_rough.expected.mpf"
 COLLISIONS = ("--turns", "90", "--goal", "collisions")
 SET = ("--set", "zero=-30,0,-80", "--set", "tool_length=120")
 ZERO = ("--zero=-30,0,-80", "--tool-length=120")
+TO_JSON = ("--json", "{}")
 PLATE = "examples/simulation/plate.stl"
 STOCK = ("--stock", "box:100,80,30,-50,-40,-30", "--cell", "1")
 TOOLS = ("--tool", "1=flat:16,length=60,holder=40x50", "--tool", "2=flat:8,length=50", "--near", "5")
@@ -61,6 +62,12 @@ JOBS: dict[str, tuple[str, ...]] = {
     "curve": ("curve", "examples/impeller/blade_points.csv", "--json"),
     "impeller_model": ("impeller", "model", "examples/impeller/impeller.toml", "--tolerance", "0.1", "--json"),
     "batch": ("batch", "examples/batch/jobs.toml", "--workers", "1"),
+    "posted": ("post", HUB, "--machine", "yl569", "--output", "posted.mpf", "--manifest", "listed.json", *TO_JSON),
+    "diff": ("diff", HUB_MPF, "golden/yl569/3_blade_finish.expected.mpf", "--machine", "yl569", "--json", "{}"),
+    "convert": ("convert", HUB_MPF, "--machine", "yl569", "--to-machine", "mikron_600u", "--output", "c.h", *TO_JSON),
+    "convert_to_cl": ("convert", HUB_MPF, "--machine", "yl569", "--to-cl", "--output", "c.cls", *TO_JSON),
+    "manifest_check": ("verify", "listed.json", "--json", "{}"),
+    "machines": ("machines", "--json"),
     "controls": ("controls", "--json"),
     "control": ("controls", "sinumerik_840d", "--json"),
     "check": ("check", "examples/machines/mori_nmv.toml", "--json"),

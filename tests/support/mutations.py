@@ -217,7 +217,7 @@ def _offset_is_lost(run: Run) -> Flags:
     found = np.zeros(len(run), np.bool_)
     for event in run.events:
         if event.kind == "offset":
-            found[event.before_row :] = event.value == "lost"
+            found[event.before_row :] = isinstance(event.value, str)
     return found
 
 

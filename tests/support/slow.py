@@ -1,13 +1,17 @@
 """The tests that take long: ``make.py quick`` leaves them out."""
 
+from pathlib import Path
+
+from tests.support.locations import TESTS
+
 #: Files that take more than some three seconds of processor time, and folders of them: whole matrices, judges, fuzzing,
 #: and long property tests.
 SLOW = (
     "jobs/post/test_arc_travel.py", "jobs/post/test_fastest_feed_proof.py", "jobs/post/test_fastest_feeds.py",
     "jobs/post/test_hole_travel.py",
     "jobs/impeller/test_impeller_cutting.py", "jobs/impeller/test_impellers_on_machines.py",
-    "jobs/papers/test_papers.py",
-    "jobs/project/test_project_papers.py", "jobs/project/test_project_posting.py",
+    "jobs/post/papers/test_papers.py",
+    "jobs/post_project/test_project_papers.py", "jobs/post_project/test_project_posting.py",
     "jobs/test_same_as_command.py",
     "hooks/test_hooks.py", "jobs/post/test_recipes.py", "jobs/post/test_shop_texts.py",
     "jobs/view/test_viewing_stock.py",
@@ -47,3 +51,10 @@ SLOW = (
     "verification/test_turns.py", "viewer/test_bricks.py", "viewer/test_browser.py", "viewer/test_live.py",
     "viewer/test_stock.py", "viewer/test_tools.py",
 )  # fmt: skip
+
+_PLACES = frozenset(TESTS / name for name in SLOW)
+
+
+def is_slow(path: Path) -> bool:
+    """Whether a file of tests, or a folder that it is in, is one of the slow ones."""
+    return not _PLACES.isdisjoint((path, *path.parents))

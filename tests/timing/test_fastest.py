@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.published_path import LIMITS, PATH
 from trunnion.arrays import Flags, Floats
 from trunnion.extras import import_extra
@@ -87,7 +88,7 @@ def s_curve_seconds(length: float, speed: float, acceleration: float, jerk: floa
     return 4.0 * ramp + 2.0 * even + max(rest, 0.0) / top
 
 
-@settings(deadline=None, max_examples=6)
+@settings(deadline=None, max_examples=examples(6))
 @given(
     length=st.floats(0.1, 2000.0),
     speed=st.floats(1.0, 500.0),
@@ -121,7 +122,7 @@ def cubic(knots: Floats, points: Floats) -> SmoothPath:
     return SmoothPath(derivatives, breaks)
 
 
-@settings(deadline=None, max_examples=8)
+@settings(deadline=None, max_examples=examples(8))
 @given(seed=st.integers(0, 2**32 - 1), inner=st.integers(0, 12), pieces=st.integers(1, 60))
 def test_on_any_spline_no_limit_is_exceeded_and_one_is_nearly_reached(seed: int, inner: int, pieces: int) -> None:
     random = np.random.default_rng(seed)

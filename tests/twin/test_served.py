@@ -112,7 +112,7 @@ def address_of(twin: ServedTwin) -> tuple[str, int]:
 
 def is_ended_by_server(sent: bytes, place: tuple[str, int]) -> bool:
     """Whether the server ends a connection on which something was sent."""
-    with socket.create_connection(place, timeout=30) as connection:
+    with socket.create_connection(place, timeout=120) as connection:
         try:
             connection.sendall(sent)
             while connection.recv(65536):
@@ -149,7 +149,7 @@ def test_clients_who_mean_harm_do_none(tmp_path: Path) -> None:
         with socket.create_connection(address_of(twin)) as connection:
             connection.sendall(HELLO)
             twin.process.terminate()
-            _, told = twin.process.communicate(timeout=60)
+            _, told = twin.process.communicate(timeout=120)
         assert (twin.process.returncode, told) == (128 + 15, "")
 
 

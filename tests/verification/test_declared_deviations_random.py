@@ -8,6 +8,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.jobs import post_job
 from tests.support.operations import moves_of, operation_of
 from tests.support.pole_paths import MACHINES, around_pole, passes
@@ -50,7 +51,7 @@ def failed(found: Verification) -> list[str]:
     return [f"{c.key}: {c.summary}" for c in found.checks if not c.passed and c.key != "home"]
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(st.data(), st.sampled_from(NAMES), st.sampled_from(list(PoleStrategy)), st.floats(0.01, 0.5), st.booleans())
 def test_what_is_planned_is_proven(
     data: st.DataObject, name: str, mode: PoleStrategy, angle: float, lower: bool
@@ -88,7 +89,7 @@ def tilting_arcs(past: float, feed: float) -> Operation:
     return replace(operation_of(moves), arcs=arcs)
 
 
-@settings(max_examples=10)
+@settings(max_examples=examples(10))
 @given(st.sampled_from(list(PoleStrategy)), st.booleans(), st.floats(0.01, 0.2), st.floats(500.0, 5000.0))
 def test_arcs_keep_their_tool_axes_and_share_a_feed(mode: PoleStrategy, lower: bool, past: float, feed: float) -> None:
     machine = MACHINES["generic_head_table_bc"]

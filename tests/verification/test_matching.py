@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.jobs import post_job
 from tests.support.operations import moves_of, operation_of
 from tests.support.posting import FOOT, HEAD
@@ -59,7 +60,7 @@ def test_operations_are_matched_each_within_its_own_limits(folder: Path) -> None
     assert failed(START + upright + FOOT + START.replace("OP1", "OP2") + helix + FOOT, "hs664rt", folder) == []
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(
     name=st.sampled_from(["hs664rt", "dmu65", "yl569", "xyzac_trt"]),
     rise=st.sampled_from([0.0, 9e-6, 1.1e-5, 1e-4, 1e-3, 0.01]),

@@ -10,6 +10,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.mutations import (
     AFTER,
     AGAIN,
@@ -126,7 +127,7 @@ def _faults(draw: st.DrawFn) -> tuple[str, Mutation]:
     return name, Mutation("change a character", k + 1, (*lines[:k], changed, *lines[k + 1 :]))
 
 
-@settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(50), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(fault=_faults())
 def test_any_one_character_of_a_number_is_proven_or_harmless(fault: tuple[str, Mutation], tmp_path: Path) -> None:
     name, mutation = fault
@@ -135,7 +136,7 @@ def test_any_one_character_of_a_number_is_proven_or_harmless(fault: tuple[str, M
     assert not outcome.what or outcome.verdict == "CAUGHT" or outcome.what in REASONS
 
 
-@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(15), deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(seed=st.integers(0, 2**32), name=st.sampled_from(CASES))
 def test_several_faults_at_once_do_not_hide_each_other(seed: int, name: str, tmp_path: Path) -> None:
     rng = random.Random(seed)

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import trunnion
+from tests.support.examples import examples
 from trunnion.verification import Check
 
 #: Machine, first line, and the words of the working planes about X, Y and Z.
@@ -68,7 +69,7 @@ def judge(
     return {check.key: check for check in found.checks if check.key in JUDGED}
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=examples(10), deadline=None)
 @given(
     machine=st.sampled_from(sorted(ISO)),
     about=st.sampled_from([0, 1, 2]),

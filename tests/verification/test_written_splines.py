@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 
 import trunnion
+from tests.support.examples import examples
 from tests.support.naive.splines import points_of, splines
 from tests.support.verifying import check
 from trunnion.model.splines import Spline, SplineRows, Splines
@@ -173,7 +174,7 @@ def test_by_default_and_where_it_is_not_certain_splines_are_lines(folder: Path, 
         assert [len(motion.operation.splines) for motion in planned.motions] == [count], setting
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=examples(15), deadline=None)
 @given(splines(weights=(0.25, 1.0, 3.0)))
 def test_dense_points_are_those_of_the_recursion(spline: Spline) -> None:
     twice = Splines.of([SplineRows(1, 3, spline), SplineRows(4, 5, spline)])

@@ -108,7 +108,7 @@ def test_the_statement_of_the_cl_file_stands_beside_its_block(view: Page) -> Non
 def test_play_moves_and_stops_at_the_end(view: Page) -> None:
     view.evaluate("page.goToRow(0); document.getElementById('speed').value = 1")
     view.locator("#play").click()
-    view.wait_for_function("() => !page.playing", timeout=20_000)
+    view.wait_for_function("() => !page.playing")
     assert view.evaluate("page.time === page.program.end")
     assert view.locator("#play").get_attribute("aria-label") == "Play"
 

@@ -102,8 +102,9 @@ def test_the_pose_that_is_shown_is_that_of_the_machine(page_address: str, browse
     with open_page(browser, page_address) as (page, errors):
         page.wait_for_function("() => page.space.values.some(value => value !== 0)")
         shown = page.evaluate(
-            """async () => { const found = [];
-            for (let k = 0; k < 12; k++) {
+            """async () => { const found = [], places = new Set();
+            while (found.length < 12 || places.size < 5) {
+              places.add(page.space.values.join());
               const { tip, axis } = page.space.shownTool();
               found.push([...page.space.values, ...tip, ...axis, page.program.lengthAt(page.row)]);
               await new Promise(done => setTimeout(done, 60)); }

@@ -204,7 +204,7 @@ def test_a_question_ends_when_a_later_one_comes(cut: ViewContent, monkeypatch: p
         """The first question is still being answered when the second one comes."""
         if not cutting.is_set():
             cutting.set()
-            later.wait(20)
+            later.wait(120)
             while go_on():
                 time.sleep(0.001)
         return go_to(replay, rows, go_on)
@@ -212,16 +212,16 @@ def test_a_question_ends_when_a_later_one_comes(cut: ViewContent, monkeypatch: p
     monkeypatch.setattr(Replay, "go_to", wait)
     with ThreadPoolExecutor(2) as threads:
         first = threads.submit(stock.answer, 4, -1)
-        assert cutting.wait(20)
+        assert cutting.wait(120)
         second = threads.submit(stock.answer, 5, -1)
         later.set()
-        assert first.result(20) is None
-        assert second.result(20) is not None
+        assert first.result(120) is None
+        assert second.result(120) is not None
         cutting.clear()
         last = threads.submit(stock.answer, 4, -1)
-        assert cutting.wait(20)
+        assert cutting.wait(120)
         end_of(view_application(cut, Access(NAMES)))
-        assert last.result(20) is None
+        assert last.result(120) is None
 
 
 def end_of(application: Any) -> None:
@@ -269,14 +269,14 @@ def port(content: ViewContent) -> Iterator[int]:
     ],
 )  # fmt: skip
 def test_garbage_leaves_the_server_alive(port: int, garbage: bytes) -> None:
-    with socket.create_connection(("127.0.0.1", port), timeout=10) as connection:
+    with socket.create_connection(("127.0.0.1", port), timeout=120) as connection:
         try:
             connection.sendall(garbage)
             connection.shutdown(socket.SHUT_WR)
             connection.recv(100)
         except OSError:
             pass  # it may hang up
-    with urllib.request.urlopen(f"http://127.0.0.1:{port}/data/text/0", timeout=10) as answer:
+    with urllib.request.urlopen(f"http://127.0.0.1:{port}/data/text/0", timeout=120) as answer:
         assert answer.read() == PROGRAM.read_bytes()
 
 

@@ -201,7 +201,7 @@ def test_a_server_cuts_to_the_block_that_is_asked_for(slot: Path, view: Page, br
         for row in (5, 3, 6, 0, content.scene["stock"]["rows"] - 1):
             for each in (page, view):
                 each.evaluate("row => page.goToRow(row)", row)
-            page.wait_for_function("rows => page.stock.shown === rows", arg=row + 1, timeout=20_000)
+            page.wait_for_function("rows => page.stock.shown === rows", arg=row + 1)
             ours, theirs = page.evaluate(SHAPE), view.evaluate(SHAPE)
             assert ours["count"] == theirs["count"]
             assert ours["volume"] == pytest.approx(theirs["volume"], abs=1e-6)

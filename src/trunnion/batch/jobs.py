@@ -19,6 +19,7 @@ from trunnion.batch.unmatched_patterns import unmatched
 from trunnion.batch.worker_task import DEFINITIONS, FILES, Action
 from trunnion.controls import load_control
 from trunnion.definitions.extends import is_within
+from trunnion.dialect_names import WRITTEN_DIALECTS
 from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jobs.convert.converting import check_conversion_settings
 from trunnion.jobs.inputs.input_files import machine_files
@@ -32,9 +33,6 @@ MOST_FILES: Final = 1_000_000
 
 #: Extensions of CL files.
 CL_EXTENSIONS: Final = (".cls", ".clsf", ".cl", ".clt", ".ncl", ".apt", ".aptsource", ".cldata")
-
-#: Extensions of CL files by the dialects that are written.
-_WRITTEN: Final = {"clsf": ".cls", "catia": ".aptsource", "ncl": ".ncl"}
 
 #: What the results of an action are called that writes no program.
 NOTED: Final = {Action.VERIFY: ".verification", Action.SIMULATE: ".simulation"}
@@ -255,7 +253,7 @@ def _extensions(action: Action, said: Mapping[str, Any], machines: Mapping[str, 
         raise InputError(argument_problem("to_machine", "and to_cl say where a conversion leads", cure, code="CNV110"))
     if said.get("to_cl"):
         check_to_cl(said, machine)
-        return Extensions(read, _WRITTEN[said.get("dialect", "clsf")])
+        return Extensions(read, WRITTEN_DIALECTS[said.get("dialect", "clsf")])
     if machine is None:
         cure = "name the machine of the programs; post makes programs of CL files"
         raise InputError(argument_problem("machine", "is missing", cure, code="CNV110"))

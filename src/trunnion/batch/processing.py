@@ -33,13 +33,13 @@ from trunnion.errors import Problem, RefusedError, Severity, TrunnionError
 from trunnion.files import output_group
 from trunnion.jobs.convert.converting import convert_beside
 from trunnion.jobs.observer import Observer
-from trunnion.jobs.papers.files import paper_files
-from trunnion.jobs.papers.reports import write_report
 from trunnion.jobs.post.posting import post_beside
 from trunnion.jobs.post.result import ProofFailedError
+from trunnion.jobs.result_output import paper_files
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.shares import join_shares, simulate_share
 from trunnion.jobs.simulate.simulating import simulate
+from trunnion.jobs.verify.reports import write_report
 from trunnion.jobs.verify.verifying import verify
 from trunnion.machines import Machine
 from trunnion.simulation.cutting.shares import DamagedShareError, Share

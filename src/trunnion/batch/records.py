@@ -11,12 +11,13 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import PurePosixPath
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
 from trunnion.batch.result_keys import digest
 from trunnion.batch.stores import Store, TakenError
 from trunnion.batch.worker_task import NO_COSTS, Costs, Outcome, Status
 from trunnion.errors import InputError, Problem, Severity
+from trunnion.results import Figure
 
 #: The folder of records within the results; no output has a name that begins with a point.
 FOLDER: Final = ".trunnion-batch"
@@ -54,13 +55,14 @@ class Record:
     status: Status
     problems: tuple[Problem, ...] = ()
     warnings: int = 0
-    outputs: Mapping[str, Written] = field(default_factory=dict)
+    outputs: Annotated[Mapping[str, Written], Figure(take=list)] = field(default_factory=dict)
     figures: Mapping[str, Any] = field(default_factory=dict)
     replaces: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     costs: Costs = NO_COSTS
     home: str = ""
 
     @property
+    @Figure(is_extra=True)
     def error(self) -> Problem | None:
         """The first error."""
         return next((each for each in self.problems if each.severity is Severity.ERROR), None)

@@ -5,8 +5,9 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
+from operator import attrgetter
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import Annotated, Any, ClassVar, Final
 
 from trunnion.batch.divided_files import Divisions
 from trunnion.batch.jobs import Batch, BatchJob, Unit
@@ -32,6 +33,10 @@ from trunnion.definitions.extends import is_within
 from trunnion.errors import InputError, Problem
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.project.paths import is_file
+from trunnion.results import FIRST, NOT_DATA, Figure, to_data
+
+#: What data says of a file.
+_OF_FILE: Final = ("job", "file", "status", "outputs", "error")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,19 +53,28 @@ class BatchResult:
     warned  the warnings of all files by their codes, those of the most files first
     """
 
-    units: Sequence[Unit]
-    store: Store
+    SCHEMA: ClassVar[int] = 1
+
+    units: Annotated[Sequence[Unit], NOT_DATA]
+    store: Annotated[Store, Figure("results", take=attrgetter("label"))]
     counts: Mapping[Status, int]
-    done: int
-    failed: Sequence[int] = field(repr=False)
-    jobs: Sequence[str] = ()
-    new: Sequence[int] = field(default=(), repr=False)
-    warned: Sequence[CountedWarning] = ()
+    done: Annotated[int, Figure("done_before")]
+    failed: Annotated[Sequence[int], NOT_DATA] = field(repr=False)
+    jobs: Annotated[Sequence[str], NOT_DATA] = ()
+    new: Annotated[Sequence[int], NOT_DATA] = field(default=(), repr=False)
+    warned: Annotated[Sequence[CountedWarning], NOT_DATA] = ()
 
     @property
+    @Figure(after=FIRST)
     def passed(self) -> bool:
         """Whether every file is done, and may run."""
         return not self.failed
+
+    @property
+    @Figure()
+    def files(self) -> Any:
+        """What became of each file, as data."""
+        return to_data(list(self.records()), only=_OF_FILE)
 
     def records(self) -> Iterator[Record]:
         """What became of each file, in the order of the places of results."""

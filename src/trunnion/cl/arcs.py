@@ -22,7 +22,7 @@ _NORMAL_TOLERANCE = 0.01
 
 
 def complete_circles(circles: list[CircleStatement], kind: Codes, diagnostics: Diagnostics) -> list[CircleStatement]:
-    """Return the circles that have an end point; ``kind`` (n,) tells which rows are rapids."""
+    """Return the circles that have an end point; ``kind`` (n,) gives the rows that are rapids."""
     if circles and circles[-1].row >= len(kind):
         cure = "write GOTO/ with the end point of the arc"
         diagnostics.error(circles[-1].line, "CIRCLE without a GOTO after it", cure, code="CL560")
@@ -112,7 +112,7 @@ def _check(
 def _check_angles(
     arcs: Arcs, circles: Sequence[CircleStatement], start: Floats, end: Floats, diagnostics: Diagnostics
 ) -> None:
-    """Report arcs that turn by another angle than their statement says, as about a normal that points the wrong way.
+    """Report arcs whose angle is not that of their statement, such as arcs about a normal that points the wrong way.
 
     start, end  (m, 3) float64, mm
     """
@@ -133,7 +133,7 @@ def report_open_ends(
     """Report an operation in which each arc is followed by a line to another point of its circle, ahead of it.
 
     Some systems write several points of an arc, and others only its end. One arc whose next line leaves the circle
-    tells that each point is an end.
+    shows that each point is an end.
     """
     may_go_on = {circle.row: circle.line for circle in circles if circle.may_go_on}
     lines = []

@@ -46,7 +46,7 @@ def assemble_operation(
     modal_axis : (3,) float64
         The last tool axis of the operation before; on return that of this one.
     diagnostics
-        Takes what is wrong with it.
+        Takes the errors and remarks.
     """
     rows = slice(builder.first, builder.stop)
     n = builder.stop - builder.first
@@ -111,7 +111,7 @@ def _inverse_to_per_minute(
 ) -> None:
     """Turn feeds that are one over the minutes of a move into mm/min by the length of each move.
 
-    Those of holes become NaN, as none: a cycle has moves of its own.
+    Feeds of holes become NaN, since a cycle has moves of its own.
     """
     if not any(change.inverse for change in builder.feeds):
         return
@@ -151,7 +151,7 @@ def _report_unknown_colours(builder: OperationBuilder, diagnostics: Diagnostics)
 def _report_far_points(
     tip: Floats, line: Lines, builder: OperationBuilder, unit: float, diagnostics: Diagnostics
 ) -> None:
-    """Refuse coordinates of a size that no machine has: ``tip`` (n, 3) in mm, and the origin of the frame."""
+    """Refuse coordinates beyond the reach of any machine: ``tip`` (n, 3) in mm, and the origin of the frame."""
     if len(tip) and max(float(tip.max()), -float(tip.min())) > _MAX_COORDINATE:
         for row in np.flatnonzero((np.abs(tip) > _MAX_COORDINATE).any(axis=1))[: MAX_LISTED + 1].tolist():
             diagnostics.error(
@@ -206,7 +206,7 @@ def _in_mm(centre: tuple[float, float] | None, unit: float) -> tuple[float, floa
 
 
 def _report_tool(builder: OperationBuilder, tool: Tool, diagnostics: Diagnostics) -> None:
-    """Report sizes of a tool that cannot be, with the line that states them."""
+    """Report impossible sizes of a tool, with the line that states them."""
     line, _ = builder.stated.get("tool", (builder.line, None))
     for what, cure, severity in tool_faults(tool):
         report = diagnostics.error if severity is Severity.ERROR else diagnostics.remark

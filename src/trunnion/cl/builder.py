@@ -142,12 +142,12 @@ class AxisStatement(NamedTuple):
 class OperationBuilder:
     """An operation while it is read. Rows count from ``first``, the row of the columns at which it begins.
 
-    continues  it goes on where the one before ends: with its last point and tool axis
+    continues  it starts with the last point and tool axis of the operation before
     colours    (row, colour) of each PAINT/COLOR
     rapids     rows before which a RAPID stands
     axes       statements about the tool axis
     upright    (row, line, word) of statements that are understood for the tool axis (0, 0, 1) only
-    tilted     why no row may have another one, empty if it may: what to do instead
+    tilted     the cure for a tilted tool axis, which the operation must not have; empty if it may
     named      the file gives it its name
     joined     names of the operations that were joined to it
     stated     what is true of the whole operation: the line that states it, and its value

@@ -9,11 +9,11 @@ from dataclasses import replace
 from trunnion.cl.builder import MoveColumns, OperationBuilder
 from trunnion.cl.diagnostics import Diagnostics, StatementError
 from trunnion.cl.dialect import Dialect, Handler
+from trunnion.cl.glued_statements import GluedStatements
 from trunnion.cl.scan import COMMENT, MAKES_ROW
 from trunnion.cl.state import COORDINATE_SYSTEM, MM_PER_INCH, ReaderState
-from trunnion.cl.statement import Statement, comments_of, parse
+from trunnion.cl.statement import Statement, comments_of
 from trunnion.cl.statements.operations import LENGTH_UNITS
-from trunnion.cl.swallowed import SwallowedStatements
 from trunnion.cl.word_classes import acts_on_machine, drives_tool, words_that_count
 from trunnion.model.clamping import Clamping
 from trunnion.model.clamping_notices import may_be_notice, read_place
@@ -65,7 +65,8 @@ class ClInterpreter:
         self._diagnostics = diagnostics
         self._encoding = encoding
         self._words = words_that_count(dialect)
-        self._swallowed = SwallowedStatements(dialect)
+        self._glued = GluedStatements(dialect) if dialect.text.has_words else None
+        self._is_behind_comment = False
         self._known_statements = 0
         self._unknown_statements = 0
         self._parse_cache: dict[bytes, tuple[Handler | None, Statement]] = {}
@@ -106,14 +107,18 @@ class ClInterpreter:
         try:
             if mark & COMMENT:
                 comment = raw[2:].decode(self._encoding, "replace").rstrip()
-                self._swallowed.refuse_in_comment(comment)
+                if self._glued is not None:
+                    self._glued.refuse_in_comment(comment)
                 if not row and len(self._notices) < _MOST_NOTICES and may_be_notice(comment):
                     self._notices.append((line, comment))
+                self._is_behind_comment = True
                 if self._dialect.comment is not None:
                     self._dialect.comment(self._state, comment)
                 return
-            if self._dialect.after_comment is not None:
-                self._dialect.after_comment(self._state)
+            if self._is_behind_comment:
+                self._is_behind_comment = False
+                if self._dialect.after_comment is not None:
+                    self._dialect.after_comment(self._state)
             handler, statement = self._parse_cache.get(raw) or self._look_up(raw)
             if handler is None:
                 self._unknown_statement(statement)
@@ -187,10 +192,11 @@ class ClInterpreter:
 
     def _report_cut_off(self, complete: bool, lines: int) -> None:
         where = "" if complete else f", and ends in the middle of line {lines}"
+        end = self._dialect.end
         self._diagnostics.error(
             lines,
-            f"the file has no FINI behind its last motion{where}",
-            "it is cut off: write it out again; if it is known to be whole, write FINI at its end",
+            f"the file has no {end} behind its last motion{where}",
+            f"it is cut off: write it out again; if it is known to be whole, write {end} at its end",
             code="CL130",
         )
 
@@ -228,9 +234,10 @@ class ClInterpreter:
         return 1.0
 
     def _look_up(self, raw: bytes) -> tuple[Handler | None, Statement]:
-        statement = parse(raw, self._encoding)
-        in_comments = () if statement.text or b"$$" not in raw else comments_of(raw.decode(self._encoding, "replace"))
-        self._swallowed.refuse(statement, in_comments)
+        statement = self._dialect.text.parse(raw, self._encoding)
+        if self._glued is not None:
+            has_comments = not statement.text and b"$$" in raw
+            self._glued.refuse(statement, comments_of(raw.decode(self._encoding, "replace")) if has_comments else ())
         entry = self._dialect.handlers.get(statement.major), statement
         if len(raw) <= _CACHED_STATEMENT_BYTES and len(self._parse_cache) < _CACHE_SIZE:
             self._parse_cache[raw] = entry
@@ -242,6 +249,9 @@ class ClInterpreter:
         self._unknown_statements += 1
         if self._unknown_statements > _MAX_UNKNOWN_STATEMENTS and self._known_statements == 0 and self._state.row == 0:
             raise self._diagnostics.nothing_known(_NOT_CL, _GIVE_CL, code="CL110")
+        if self._glued is None:
+            self._state.note_unknown(statement, f"{statement.major} is not known")
+            return
         why = acts_on_machine(statement.major, self._words)
         if statement.major.startswith("->") and not why and not self._state.strict:
             what = f"$${statement.major[:40]} is a comment to all but the system that wrote it"

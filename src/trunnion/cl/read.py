@@ -19,9 +19,10 @@ from trunnion.cl.dialects import DIALECTS, Recognition, recognize_dialect
 from trunnion.cl.interpreter import ClInterpreter
 from trunnion.cl.joining import join_cuts, join_first_tool
 from trunnion.cl.kept_states import report_kept_states
-from trunnion.cl.scan import MAX_STATEMENT_BYTES, SPAN_COLUMNS, TOO_LONG, UNFINISHED, scan
+from trunnion.cl.scan import MAX_STATEMENT_BYTES, SPAN_COLUMNS, TOO_LONG, UNFINISHED
 from trunnion.cl.sources import ClSource, cl_sources, not_one_file
 from trunnion.cl.splines import with_spline_points
+from trunnion.cl.text_format import TextFormat
 from trunnion.cl.unknown import unknown_statement_remarks
 from trunnion.encoding import EncodingDetector
 from trunnion.model.toolpath import Toolpath
@@ -33,7 +34,7 @@ _SURVEY_CHUNK = CHUNK
 _HEAD = 1 << 16
 #: Statements that one call of the scan writes down at most.
 _MAX_SPANS = 1 << 15
-#: No statement that makes a row is shorter.
+#: No statement of APT that makes a row is shorter; a file with more rows has its columns grow.
 _MIN_ROW_BYTES = len("GOTO/\n")
 _BOM = b"\xef\xbb\xbf"
 
@@ -100,7 +101,7 @@ def read_cl_files(
     units
         Length unit of the file, ``"mm"`` or ``"inch"``; None: as the file says.
     dialect
-        A key of ``trunnion.cl.dialects.DIALECTS``; None: told by the content of the file.
+        A key of ``trunnion.cl.dialects.DIALECTS``; None: the content of the file decides.
     strict
         Make an unknown statement an error instead of a remark.
     spline_tolerance
@@ -150,7 +151,7 @@ def read_source(
             recognized = Recognition(DIALECTS[dialect], "as it was asked for")
         columns = MoveColumns.allocate(survey.rows)
         interpreter = ClInterpreter(columns, diagnostics, recognized.dialect, survey.encoding, strict)
-        scanner = _Scanner(columns, interpreter, diagnostics, apt=not recognized.dialect.in_sections)
+        scanner = _Scanner(recognized.dialect.text, columns, interpreter, diagnostics)
         with source.open() as file:
             file.read(survey.bom_bytes)
             scanner.read(file, chunk, survey.bom_bytes, progress)
@@ -238,14 +239,14 @@ class _Scanner:
     """
 
     def __init__(
-        self, columns: MoveColumns, interpreter: ClInterpreter, diagnostics: Diagnostics, *, apt: bool
+        self, text: TextFormat, columns: MoveColumns, interpreter: ClInterpreter, diagnostics: Diagnostics
     ) -> None:
         self.rows = 0
         self.line = 1
         self._columns = columns
         self._interpreter = interpreter
         self._diagnostics = diagnostics
-        self._apt = apt
+        self._text = text
         self._spans = np.empty((_MAX_SPANS, SPAN_COLUMNS), np.int64)
 
     def read(self, file: BinaryIO, chunk: int, done: int, progress: Callable[[int], None] | None) -> None:
@@ -280,8 +281,8 @@ class _Scanner:
         at = 0
         while at < stop:
             before = at
-            at, self.line, self.rows, count = scan(
-                array, at, stop, last, self._apt, self.line, self.rows, self._columns.points(), self._spans
+            at, self.line, self.rows, count = self._text.scan(
+                array, at, stop, last, self.line, self.rows, self._columns.points(), self._spans
             )
             self._interpret(data, self._spans[:count])
             if self.rows == len(self._columns.line):
@@ -296,7 +297,7 @@ class _Scanner:
                 raise self._too_long(line)
             if mark & UNFINISHED:
                 cure = "write the rest of the statement"
-                self._diagnostics.error(line, "the file ends after a continuation sign $", cure, code="CL130")
+                self._diagnostics.error(line, self._text.unfinished, cure, code="CL130")
             self._interpreter.interpret(bytes(data[begin : begin + length]), line, row, mark)
 
     def _too_long(self, line: int) -> Exception:

@@ -1,7 +1,7 @@
 """Whether a CL file that was written says what the toolpath does: it is read again and compared, row by row.
 
-What dialects say in different words is the same here: a tool that is loaded again, a cycle or radius compensation that
-ends with its operation, a depth with or without its sign, a retract that is that of the rapid height.
+What dialects say in different words is the same here: a tool that is loaded again, or a depth with or without its
+sign. So is a cycle or radius compensation that ends with its operation, and a retract to the rapid height.
 """
 
 import math

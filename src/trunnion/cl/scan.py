@@ -71,13 +71,13 @@ class PointColumns(NamedTuple):
 
 @kernel(writes="columns spans")
 def scan(
-    data: Bytes, start: int, stop: int, last: bool, apt: bool, line: int, row: int, columns: PointColumns, spans: Ints2
+    apt: bool, data: Bytes, start: int, stop: int, last: bool, line: int, row: int, columns: PointColumns, spans: Ints2
 ) -> tuple[int, int, int, int]:
     """Read the lines of ``data[start:stop]`` until these, the rows or the spans are used up.
 
+    apt      comments with an arrow are statements, and GOFWD and RETRCT are motions
     data     (b,)   uint8      whole lines: ``data[stop - 1]`` is a newline
     last     the file ends at ``stop``
-    apt      comments with an arrow are statements, and GOFWD and RETRCT are motions
     line     line of the file that begins at ``start``
     row      first row of ``columns`` to write
     spans    (s, 5) int64      written from 0 on, see ``SPAN_COLUMNS``

@@ -3,11 +3,10 @@
 In:     a path or a binary stream.
 Out:    ``ClSource``: the texts of the CL files in it, each of which can be read from its beginning again and again.
 
-What a file is, its first bytes say, and never its name. Nothing is unpacked to disk. What grows beyond all measure
-while it is unpacked is refused.
+The first bytes of a file decide how it is packed, never its name. Nothing is unpacked to disk. A text that grows out
+of proportion while it is unpacked is refused.
 """
 
-import bz2
 import gzip
 import io
 import re
@@ -20,6 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, Final, cast
 
+from trunnion.cl.byte_streams import Bzip2Stream, SharedStream
 from trunnion.cl.dialects import recognize_dialect
 from trunnion.encoding import EncodingDetector
 from trunnion.errors import InputError, Problem, Severity, unusable_file
@@ -143,7 +143,7 @@ def cl_sources(file: Path | BinaryIO, name: str = "stdin") -> list[ClSource]:
 
         def open_packed() -> BinaryIO:
             spool.seek(0)
-            return cast("BinaryIO", _Shared(spool))
+            return cast("BinaryIO", SharedStream(spool))
 
         head = open_packed().read(1024)
     if head.startswith(_ZIP):
@@ -175,7 +175,7 @@ def _unpacker(head: bytes) -> Callable[[BinaryIO], BinaryIO] | None:
     if head.startswith(_GZIP):
         return lambda packed: cast("BinaryIO", gzip.GzipFile(fileobj=packed, mode="rb"))
     if head.startswith(_BZIP2) and head[3:4].isdigit():
-        return lambda packed: cast("BinaryIO", _Bzip2(packed))
+        return lambda packed: cast("BinaryIO", Bzip2Stream(packed))
     return None
 
 
@@ -319,59 +319,6 @@ def _spooled(stream: BinaryIO, name: str) -> BinaryIO:
 def _temporary_file() -> BinaryIO:
     """A file without a name, which goes when nothing reads it any more."""
     return cast("BinaryIO", tempfile.TemporaryFile())
-
-
-class _Shared(io.RawIOBase):
-    """A stream from its beginning, which stays open when this is closed."""
-
-    def __init__(self, stream: BinaryIO) -> None:
-        self._stream = stream
-
-    def readable(self) -> bool:
-        return True
-
-    def seekable(self) -> bool:
-        return True
-
-    def seek(self, offset: int, whence: int = io.SEEK_SET, /) -> int:
-        return self._stream.seek(offset, whence)
-
-    def tell(self) -> int:
-        return self._stream.tell()
-
-    def readinto(self, buffer: memoryview, /) -> int:  # type: ignore[override]
-        piece = self._stream.read(len(buffer))
-        buffer[: len(piece)] = piece
-        return len(piece)
-
-
-class _Bzip2(io.RawIOBase):
-    """A text packed by bzip2, in one stream or several behind each other, as programs with several threads write it.
-
-    ``bz2.BZ2File`` ends in silence at what is no stream, and loses all that follows.
-    """
-
-    def __init__(self, packed: BinaryIO) -> None:
-        self._packed = packed
-        self._stream = bz2.BZ2Decompressor()
-
-    def readable(self) -> bool:
-        return True
-
-    def readinto(self, buffer: memoryview, /) -> int:  # type: ignore[override]
-        while True:
-            rest = self._stream.unused_data if self._stream.eof else b""
-            given = rest or (self._packed.read(_PIECE) if self._stream.needs_input or self._stream.eof else b"")
-            if self._stream.eof:
-                if not given:
-                    return 0
-                self._stream = bz2.BZ2Decompressor()
-            elif self._stream.needs_input and not given:
-                raise EOFError("it ends in the middle")
-            piece = self._stream.decompress(given, len(buffer))
-            if piece:
-                buffer[: len(piece)] = piece
-                return len(piece)
 
 
 class _Unpacked(io.RawIOBase):

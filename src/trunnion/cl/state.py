@@ -1,11 +1,11 @@
 """The state of the CL reader between two statements: the operation being read, the row, and what is modal."""
 
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
-from trunnion.cl.builder import AxisStatement, MoveColumns, NoAxis, OperationBuilder, SplineStatement, SurfaceSpeed
+from trunnion.cl.builder import AxisStatement, MoveColumns, NoAxis, OperationBuilder, SurfaceSpeed
+from trunnion.cl.conventions import Conventions
 from trunnion.cl.diagnostics import Diagnostics, StatementError
-from trunnion.cl.dialect import Dialect
 from trunnion.cl.statement import Statement
 from trunnion.model.toolpath import CycleOn, Event, LoadTool, SpindleOn, UnknownStatement
 
@@ -33,6 +33,8 @@ COORDINATE_SYSTEM = "coordinate system"
 #: Numbers of a coordinate system are printed with five decimals or more.
 _SAME_SYSTEM = 2e-5
 
+_Own = TypeVar("_Own")
+
 
 class ArcDirection(NamedTuple):
     """An INDIRV: the row of the arc that must follow, and the direction in which that begins."""
@@ -51,7 +53,7 @@ class ArcDirection(NamedTuple):
 class ReaderState:
     """What the handlers of statements (``trunnion.cl.statements``) read and change.
 
-    dialect          what the words of the file mean
+    dialect          the conventions of the dialect
     strict           an unknown statement is an error
     builders         the operations that are complete
     builder          the operation being read; outside of operations one without a name, which the next one takes over
@@ -69,28 +71,18 @@ class ReaderState:
     first_inch_feed  line of the first feed in inches, 0 if there is none
     spindle, cycle   last ones of the operation, which SPINDL/ON and CYCLE/ON repeat
     cycle_line       line where the cycle began that is on, 0 if none is
-    spline           the last spline, which KNOT and CNTRL go on
-    spline_reported  the statements that follow belong to a spline that an error has named
     tool             the last LoadTool of the file
-    cutter_row       row before which a statement last told the form of a tool, -1 if none has
-    name_row         the same of its name
-    length_row       the same of its length in the spindle
     no_axis          the tool axis of a point that gives none
     vectors          what points give behind their coordinates are tool axes
     direction        the INDIRV whose arc has not followed yet
     turns            turns of all arcs so far
     clearance        height of the clearance plane
     system           the coordinate system of the points as the file gives it, empty if it gives none
-    matrix           lines of a coordinate system in comments, while they are collected
-    matrix_line      line of the comment that announces them
-    note             line and text of the last note
-    setup_axis       where the Z of a setup points in the model, empty if it is not known
-    turned           angles by which an operation turns its setup, as far as they are read
     """
 
     columns: MoveColumns
     diagnostics: Diagnostics
-    dialect: Dialect
+    dialect: Conventions
     strict: bool
     builders: list[OperationBuilder] = field(default_factory=list)
     builder: OperationBuilder = field(default_factory=lambda: OperationBuilder("", 0, 0))
@@ -110,23 +102,14 @@ class ReaderState:
     spindle: SpindleOn | SurfaceSpeed | None = None
     cycle: CycleOn | None = None
     cycle_line: int = 0
-    spline: SplineStatement | None = None
-    spline_reported: bool = False
     tool: LoadTool | None = None
-    cutter_row: int = -1
-    name_row: int = -1
-    length_row: int = -1
     no_axis: NoAxis = NoAxis.MODAL
     vectors: bool = True
     direction: ArcDirection | None = None
     turns: int = 0
     clearance: float | None = None
     system: tuple[float, ...] = ()
-    matrix: list[str] | None = None
-    matrix_line: int = 0
-    note: tuple[int, str] | None = None
-    setup_axis: tuple[float, ...] = ()
-    turned: tuple[float, ...] = ()
+    _own: dict[type, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.no_axis, self.vectors = self.dialect.no_axis, self.dialect.vectors
@@ -134,6 +117,13 @@ class ReaderState:
             self.builder.name, self.builder.line = "OPERATION 1", 1
             self.builder.axes.append(AxisStatement(0, 0, None, self.no_axis, self.vectors))
             self.builder.tilted = self.dialect.upright
+
+    def own(self, kind: type[_Own]) -> _Own:
+        """Return what the handlers of one dialect or one module keep: by its class, made when it is first asked for."""
+        found: _Own | None = self._own.get(kind)
+        if found is None:
+            found = self._own[kind] = kind()
+        return found
 
     @property
     def operation_row(self) -> int:
@@ -170,18 +160,18 @@ class ReaderState:
         self.builders.append(before)
 
     def name_operation(self, name: str) -> None:
-        """Begin an operation with a name; what was stated of one without motion counts no more."""
+        """Begin an operation with a name; what was stated for one without motion no longer counts."""
         self.split_operation()
         self.builder.name, self.builder.line, self.builder.named = name, self.line, True
         self.builder.stated.clear()
 
     def state_once(self, what: str, value: object) -> None:
-        """Note what is true of the whole operation, also of its rows before this line.
+        """Note what holds for the whole operation, also for its rows before this line.
 
         Raises
         ------
         StatementError
-            If the operation has stated another value: nobody knows which of them is meant.
+            If the operation has stated another value: which of them is meant is unknown.
         """
         line, before = self.builder.stated.setdefault(what, (self.line, value))
         if before != value:
@@ -240,7 +230,7 @@ class ReaderState:
         self.system = numbers
 
     def note_feed_unit(self, word: str) -> None:
-        """Remember the first line with a feed in mm, and in inches: they tell the unit of a file without UNITS."""
+        """Note the first line with a feed in mm, and in inches: they give the unit of a file without UNITS."""
         if FEED_UNITS[word][0] == 1.0:
             self.first_mm_feed = self.first_mm_feed or self.line
         else:

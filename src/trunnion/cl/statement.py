@@ -31,7 +31,7 @@ class Statement(NamedTuple):
     major   the word before the slash, in capitals without blanks
     values  words in capitals, and numbers; none if the statement carries text
     text    the text of a statement that carries one (PPRINT, INSERT, ...)
-    source  the statement as it stands in the file
+    source  the statement as it stands in an APT file
     """
 
     major: str
@@ -56,7 +56,7 @@ class Statement(NamedTuple):
         return [value for value in self.values if isinstance(value, str)]
 
     def refuse_contradictions(self, *choices: Iterable[str]) -> None:
-        """Refuse two different words of one of the ``choices``: nobody knows which of them is meant.
+        """Refuse two different words of one of the ``choices``: which of them is meant is unknown.
 
         Raises
         ------

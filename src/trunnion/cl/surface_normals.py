@@ -6,9 +6,9 @@
 In:     a toolpath that has been read, and its file, which is read once more.
 Out:    the same toolpath with the column ``Moves.normal``.
 
-A tool with a round corner touches a surface along the normal of the surface: the direction from the contact point to
-the nearest point of the tool's core, which is the cylinder bounded by the circle of the corner's centre. Stock left on
-the part lies along the same direction.
+A tool with a round corner touches a surface along its normal, the direction from the contact point to the nearest point
+of the tool's core. The core is the cylinder bounded by the circle of the corner's centre. Stock left on the part lies
+along the same direction.
 """
 
 from dataclasses import replace

@@ -1,8 +1,8 @@
 """Which statements that the reader does not follow may have changed the machine.
 
-A word that nobody knows is left out of a program with a warning. A word that is known to move the machine, to turn an
-axis, to change a tool or to switch something is not: its program would be another one. Nor is a word that looks like a
-damaged one of these.
+An unknown word is left out of a program with a warning. A word that is known to move the machine, to turn an axis, to
+change a tool or to switch something is refused: without it the program would be another one. So is a word that looks
+like a damaged one of these.
 """
 
 import re

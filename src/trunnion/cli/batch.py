@@ -12,7 +12,6 @@ from trunnion.batch.cluster import Tls
 from trunnion.batch.records import Record
 from trunnion.batch.running import BatchResult
 from trunnion.batch.worker_task import Status
-from trunnion.cli.data import batch_data
 from trunnion.cli.progress import progress, progress_lines
 from trunnion.cli.results import show, tell
 from trunnion.cli.terminal import Terminal
@@ -49,7 +48,7 @@ def run(given: Given) -> int:
     except KeyboardInterrupt:
         tell("the batch goes on where it was stopped when it is run again")
         raise
-    show(given, lambda: batch_data(result), result_lines(result))
+    show(given, lambda: result, result_lines(result))
     return 0 if result.passed else 1
 
 

@@ -8,7 +8,7 @@ from trunnion.cli.results import print_result, show, tell
 from trunnion.cli.wording import problem_line
 from trunnion.errors import InputError, RefusedError, TrunnionError
 from trunnion.jobs.job import Given
-from trunnion.jobs.project.cases import Case, ChangedProgram, find_cases, posted_case
+from trunnion.jobs.post_project.cases import Case, ChangedProgram, find_cases, posted_case
 from trunnion.wording import counted, one_line
 
 

@@ -4,14 +4,13 @@ import shlex
 import sys
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Final
 
 from trunnion.cli.cl_files import result_stem
-from trunnion.cli.data import conversion_data
 from trunnion.cli.results import show, tell
 from trunnion.cli.terminal import ConversionTerminal, check_unnamed, output_folder, output_place
 from trunnion.cli.terminal_text import warning_line
 from trunnion.controls import load_control
+from trunnion.dialect_names import WRITTEN_DIALECTS
 from trunnion.errors import InputError, argument_problem
 from trunnion.files import check_outputs
 from trunnion.jobs.convert.converting import convert
@@ -20,16 +19,13 @@ from trunnion.jobs.inputs.reading import load_machine, read_cl
 from trunnion.jobs.job import STDIN, Given
 from trunnion.wording import counted
 
-#: Extensions of CL files by their dialects.
-_CL_EXTENSIONS: Final = {"clsf": ".cls", "catia": ".aptsource", "ncl": ".ncl"}
-
 
 def run(given: Given) -> int:
     """Convert one program; 1 if what came of it is forced."""
     machine = load_machine(given.machine) if given.machine else None
     to_machine = load_machine(given.to_machine) if given.to_machine else None
     dialect = _dialect(given)
-    extension = _CL_EXTENSIONS[dialect] if to_machine is None else load_control(to_machine.control).extension
+    extension = WRITTEN_DIALECTS[dialect] if to_machine is None else load_control(to_machine.control).extension
     target = _target_file(given, extension)
     own = {
         "machine": machine, "to_machine": to_machine, "output": output_place(target), "dialect": dialect,
@@ -48,7 +44,7 @@ def run(given: Given) -> int:
         rows = sum(len(operation.moves) for operation in operations)
         tell(f"{target}: {counted(rows, 'point')}, {counted(len(operations), 'operation')}")
     if given.json is not None:
-        show(given, lambda: conversion_data(converted), ())
+        show(given, lambda: converted, ())
     return 0 if converted.passed else 1
 
 

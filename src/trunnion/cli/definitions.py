@@ -2,9 +2,10 @@
 
 from collections.abc import Sequence
 from pathlib import Path, PurePath
+from typing import Final
 
 from trunnion.cli.controls import control_lines
-from trunnion.cli.data import machines_data, plain_data
+from trunnion.cli.data import plain_data
 from trunnion.cli.machine_list import machine_list
 from trunnion.cli.machine_text import machine_data, machine_lines
 from trunnion.cli.results import print_result, show
@@ -23,7 +24,11 @@ from trunnion.jobs.job import Given
 from trunnion.machines import load_machine, shipped_machines
 from trunnion.machines.loading import machine_library
 from trunnion.readers import check_reading
+from trunnion.results import to_data
 from trunnion.schemas import first_line
+
+#: What a list says of a machine.
+_OF_LIST: Final = ("key", "name", "description", "axes")
 
 
 def machines(given: Given) -> int:
@@ -51,7 +56,7 @@ def machines(given: Given) -> int:
         print_result(text, end="")
         return 0
     found = [load_machine(key) for key in shipped_machines()]
-    show(given, lambda: machines_data(found), machine_list(found))
+    show(given, lambda: to_data(found, only=_OF_LIST), machine_list(found))
     return 0
 
 

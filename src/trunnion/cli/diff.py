@@ -1,6 +1,5 @@
 """``trunnion diff``: what two NC programs make the tool do, not how they say it."""
 
-from trunnion.cli.data import difference_data
 from trunnion.cli.results import show
 from trunnion.jobs.job import Given
 from trunnion.jobs.verify.comparing import diff
@@ -10,5 +9,5 @@ def run(given: Given) -> int:
     """Compare two programs; 0 if they do the same, 1 if not."""
     first, second = given.files
     found = diff(first, second, **given.arguments())
-    show(given, lambda: difference_data(found), found.lines())
+    show(given, lambda: found, found.lines())
     return 0 if found.same else 1

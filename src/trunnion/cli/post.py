@@ -6,7 +6,6 @@ from itertools import chain, islice
 from pathlib import Path
 
 from trunnion.cli.cl_files import result_stem
-from trunnion.cli.data import posts_data
 from trunnion.cli.results import show, tell
 from trunnion.cli.terminal import Terminal, check_unnamed, output_folder, output_place, warn_of_old
 from trunnion.controls import load_control
@@ -16,9 +15,9 @@ from trunnion.jobs.guard import files_read
 from trunnion.jobs.inputs.reading import load_machine
 from trunnion.jobs.job import Given
 from trunnion.jobs.observer import Observer
-from trunnion.jobs.papers.files import PAPERS, paper_files
 from trunnion.jobs.post.posting import post_beside
 from trunnion.jobs.post.result import PostResult
+from trunnion.jobs.result_output import PAPERS, paper_files
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Toolpath
 from trunnion.wording import counted
@@ -80,7 +79,7 @@ def post(
         if observer is None:
             print_summary(target, result)
     if given.json is not None and observer is None:
-        show(given, lambda: posts_data(results), ())
+        show(given, lambda: {"schema": 1, "programs": results}, ())
     return 0 if all(result.passed for result in results) else 1
 
 

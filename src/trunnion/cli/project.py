@@ -2,15 +2,14 @@
 
 from pathlib import Path
 
-from trunnion.cli.data import posts_data
 from trunnion.cli.post import old_files_told, print_dialects, print_summary
 from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
 from trunnion.files import check_outputs
 from trunnion.jobs.job import Given
+from trunnion.jobs.post_project.operation_programs import programs_of_operations
+from trunnion.jobs.post_project.posting import ProjectResult, post_project
 from trunnion.jobs.project.file import load_project, project_inputs
-from trunnion.jobs.project.operation_programs import programs_of_operations
-from trunnion.jobs.project.posting import ProjectResult, post_project
 from trunnion.jobs.project.project import Division, Project
 
 
@@ -31,7 +30,7 @@ def run(given: Given) -> int:
         )
     _print_files(result)
     if given.json is not None:
-        show(given, lambda: posts_data(result.results), ())
+        show(given, lambda: {"schema": 1, "programs": result.results}, ())
     return 0
 
 

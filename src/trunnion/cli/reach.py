@@ -15,7 +15,7 @@ from trunnion.jobs.capability.reach_report import write_reach_plot
 from trunnion.jobs.capability.reaching import reach
 from trunnion.jobs.job import Given
 from trunnion.machines.reach import ReachedVolume
-from trunnion.wording import counted
+from trunnion.wording import counted, position
 
 _DM3: Final = 1e6
 
@@ -122,11 +122,10 @@ def _part_lines(part: PartReach, found: Reach) -> Iterator[str]:
             lost = 100.0 * float(part.area[which].sum() / part.area.sum())
             yield f"  {why}: {lost:.1f} %, normals tilted from {tilts.min():.1f}° to {tilts.max():.1f}°"
     for k in missed[:_MOST].tolist():
-        x, y, z = part.centre[k]
         i, j, n = part.normal[k] + 0.0
         why = "beyond the travel of the slides" if part.axis[k] else "no such tool axis"
         yield (
-            f"  facet {k + 1}: {part.area[k]:.1f} mm² at X{x:.3f} Y{y:.3f} Z{z:.3f},"
+            f"  facet {k + 1}: {part.area[k]:.1f} mm² at {position(part.centre[k])},"
             f" normal {i:.3f} {j:.3f} {n:.3f}: {why}"
         )
     if len(missed) > _MOST:

@@ -8,7 +8,7 @@ from trunnion.cli.results import show
 from trunnion.cli.terminal import Terminal
 from trunnion.errors import Severity
 from trunnion.jobs.job import Given
-from trunnion.jobs.papers.simulation_report import write_simulation_report
+from trunnion.jobs.simulate.report import write_simulation_report
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.simulating import simulate
 from trunnion.model.clamping import Clamping, number
@@ -16,7 +16,7 @@ from trunnion.simulation.meshes import save_mesh
 from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
 from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.stock.surface import stock_surface
-from trunnion.wording import counted, format_duration
+from trunnion.wording import counted, format_duration, position
 
 #: Findings that the text shows of each kind; the data has all.
 _MOST: Final = 20
@@ -75,25 +75,19 @@ def _of_setup(name: str) -> str:
 
 def _finding_line(finding: SimulationFinding) -> str:
     last = f" to line {finding.last_line}" if finding.last_line != finding.line else ""
-    x, y, z = finding.place
     block = f" N{finding.block}" if finding.block >= 0 else ""
-    return (
-        f"{_of_setup(finding.setup)}{finding.file}:{finding.line}:{block} {finding.kind}:"
-        f" {finding.between[0]}, {finding.between[1]}: {finding.depth:.3f} mm deep at X{x:.3f} Y{y:.3f} Z{z:.3f}{last}"
-    )
+    return f"{_of_setup(finding.setup)}{finding.file}:{finding.line}:{block} {finding}{last}"
 
 
 def _near_line(miss: NearMiss) -> str:
-    x, y, z = miss.place
     block = f" N{miss.block}" if miss.block >= 0 else ""
-    where = f"X{x:.3f} Y{y:.3f} Z{z:.3f}"
     return (
         f"{_of_setup(miss.setup)}{miss.file}:{miss.line}:{block} near: {' and '.join(miss.between)}:"
-        f" {miss.distance:.3f} mm apart at {where}"
+        f" {miss.distance:.3f} mm apart at {position(miss.place)}"
     )
 
 
 def _excess_line(what: str, excess: Excess) -> str:
     at = excess.places[0].at if excess.places else None
-    where = f" at X{at[0]:.3f} Y{at[1]:.3f} Z{at[2]:.3f}" if at else ""
+    where = f" at {position(at)}" if at else ""
     return f"{what}: {excess.largest:.3f} mm at most{where}, {excess.volume:.2f} mm³"

@@ -3,15 +3,15 @@
 from typing import Final
 
 from trunnion.cli.cl_reading import as_read
-from trunnion.cli.data import manifest_data, report_data
+from trunnion.cli.data import report_data
 from trunnion.cli.results import show, tell
 from trunnion.cli.terminal import Terminal
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Severity, argument_problem
 from trunnion.jobs.inputs.reading import load_machine
 from trunnion.jobs.job import Given, streams
-from trunnion.jobs.papers.manifests import verify_manifest
-from trunnion.jobs.papers.reports import write_report
+from trunnion.jobs.post.papers.manifests import verify_manifest
+from trunnion.jobs.verify.reports import write_report
 from trunnion.jobs.verify.verifying import verify
 from trunnion.verification import Verification, check_lines, place_lines, time_lines
 from trunnion.wording import counted, one_line
@@ -53,7 +53,7 @@ def _run_manifest(given: Given) -> int:
         what, cure = "says nothing about a manifest", "leave it out; --cl compares CL files, too"
         raise InputError(argument_problem(wrong[0].name, what, cure, code="ARG130"))
     found = verify_manifest(given.nc, cl=given.cl)
-    show(given, lambda: manifest_data(found), map(str, found.files))
+    show(given, lambda: found, map(str, found.files))
     for name in found.not_compared:
         tell(one_line(f"{name}: not compared, and the program was made from it: --cl FILE compares it"))
     if not found.proven:

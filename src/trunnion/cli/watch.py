@@ -21,10 +21,11 @@ from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import load_machine
 from trunnion.jobs.job import Given
 from trunnion.jobs.observer import Observer
+from trunnion.jobs.post_project.posting import post_into
+from trunnion.jobs.post_project.setups import ProjectOptions
+from trunnion.jobs.post_project.watching import FolderNotices, Waiting, mentioned_files, watch
 from trunnion.jobs.project.file import load_project, project_inputs
-from trunnion.jobs.project.posting import post_into
 from trunnion.jobs.project.project import Project
-from trunnion.jobs.project.watching import FolderNotices, Waiting, mentioned_files, watch
 from trunnion.jobs.simulate.posted import simulation_files
 from trunnion.wording import counted, one_line
 
@@ -151,10 +152,8 @@ class _ProjectWork:
     def post(self, group: OutputGroup) -> tuple[bool, list[str]]:
         """Post the project."""
         given = self._given
-        result = post_into(
-            group, load_project(Path(self.name)), settings=dict(given.settings), strict=given.strict, explain=False,
-            observer=_Warnings(),
-        )  # fmt: skip
+        options = ProjectOptions(dict(given.settings), given.strict)
+        result = post_into(group, load_project(Path(self.name)), options, _Warnings())
         return True, [str(file) for file in result.files]
 
     def outputs(self) -> list[str]:

@@ -6,6 +6,7 @@
 from typing import Final
 
 from trunnion.encoding import ENCODINGS
+from trunnion.options.groups import POSTING
 
 #: Values that the templates of every family may print, besides the settings.
 COMMON_TEMPLATE_FIELDS: Final = frozenset(
@@ -79,6 +80,7 @@ RUN_ONLY_SETTINGS: Final = frozenset(
         "cl_units", "dialect", "spline_tolerance", "zero", "tcp", "tool_length", "tip_tolerance", "axis_tolerance",
         "numbers", "programs", "split", "rewind", "frame", "mode", "cycles", "tool_retract", "limit_margin",
         "clearance", "pole", "pole_angle", "lower_feed", "feed", "feed_limit", "first_number", "listing",
+        *(option.setting for option in POSTING),
     }
 )  # fmt: skip
 

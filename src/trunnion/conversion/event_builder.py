@@ -35,6 +35,7 @@ class EventBuilder:
     phase_comments   comments that name phases, in capitals, and are no messages
     coolants         M number -> CL word
     template_lines   lines written from templates: every program of the control has their comments and messages
+    smoothing        as ``FamilyReader.lost_smoothing``
     """
 
     def __init__(
@@ -43,6 +44,7 @@ class EventBuilder:
         phase_comments: Collection[str],
         coolants: Mapping[int, str],
         template_lines: Collection[int],
+        smoothing: Mapping[str, tuple[str, str]],
         warn: Warnings,
     ) -> None:
         self.tool = ""
@@ -50,6 +52,7 @@ class EventBuilder:
         self._phase_comments = phase_comments
         self._coolants = coolants
         self._template_lines = template_lines
+        self._smoothing = smoothing
         self._warn = warn
         self._rpm = 0.0
         self._sense: Sense | None = None
@@ -186,14 +189,9 @@ class EventBuilder:
                 self._warn.refuse(
                     line, "DL or DR of TOOL CALL, which a toolpath does not hold", cure, event.file, code="CNV173"
                 )
-            case "cycle32":
-                self._warn(
-                    line, "cycle 32 is not carried over", "see the setting tolerance=…", event.file, code="CNV140"
-                )
-            case "cycle832":
-                self._warn(
-                    line, "CYCLE832 is not carried over", "see setting cycle832=… and tolerance=…", code="CNV140"
-                )
+            case kind if kind in self._smoothing:
+                name, cure = self._smoothing[kind]
+                self._warn(line, f"{name} is not carried over", cure, event.file, code="CNV140")
 
 
 def _one_line(text: str) -> str:

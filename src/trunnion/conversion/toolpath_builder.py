@@ -135,7 +135,9 @@ class _ToolpathBuilder:
     ) -> tuple[Operation, ...]:
         template_lines = self._headers.template_lines
         assigned = assign_events(events, sections, self._coolants, template_lines)
-        builder = EventBuilder(self._run, phases.phase_of, self._coolants, template_lines, self._warn)
+        builder = EventBuilder(
+            self._run, phases.phase_of, self._coolants, template_lines, self._reader.lost_smoothing, self._warn
+        )
         return tuple(
             self._operation(section, own, phases, builder) for section, own in zip(sections, assigned, strict=True)
         )

@@ -1,4 +1,4 @@
-"""Where a result goes: to a file, to a stream, or into memory."""
+"""Where a result goes: to a file, to a stream, or into memory; and where its papers go."""
 
 import io
 import os
@@ -6,11 +6,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import BinaryIO, TypeAlias
+from typing import BinaryIO, Final, TypeAlias
 
 from trunnion.errors import InputError, Problem
 from trunnion.files import OutputFiles, OutputGroup, OutputPlace, atomic_output, check_stream, resolve_output
 from trunnion.jobs.inputs.arguments import check_path
+from trunnion.jobs.inputs.reading import FilePath
 
 #: A file by its path, a stream that takes bytes, or None: the result keeps the text.
 OutputLike: TypeAlias = str | os.PathLike[str] | BinaryIO | None
@@ -51,6 +52,17 @@ def check_output_name(argument: str, file: object, endings: Sequence[str], what:
     if Path(place.name).suffix.lower() not in endings:
         raise InputError(Problem(place.name, 0, what, f"let its name end in {' or '.join(endings)}", code="FIL260"))
     return place
+
+
+def check_report_name(file: FilePath) -> OutputPlace:
+    """The place of a report, which is found out before any work.
+
+    Raises
+    ------
+    InputError
+        If it is of an unknown form, or cannot be written.
+    """
+    return check_output_name("report", file, (".html", ".json"), "a report is a page or data")
 
 
 @contextmanager
@@ -105,3 +117,59 @@ def written_text(path: Path | None, memory: io.BytesIO | None, encoding: str = "
     if memory is not None:
         return memory.getvalue().decode(encoding)
     return None if path is None else path.read_bytes().decode(encoding)
+
+
+@dataclass(frozen=True, slots=True)
+class PaperFiles:
+    """Where the papers of a post go; None: there is no such paper.
+
+    report    ``.html`` or ``.json``
+    sheet     the setup sheet, ``.html`` or ``.json``
+    listing   of the motions, of any name
+    manifest  ``.json``, beside the program
+    """
+
+    report: Path | None = None
+    sheet: Path | None = None
+    listing: Path | None = None
+    manifest: Path | None = None
+
+    def by_name(self) -> dict[str, Path]:
+        """The papers that there are."""
+        return {name: getattr(self, name) for name in PAPERS if getattr(self, name) is not None}
+
+    @property
+    def need_columns(self) -> bool:
+        """Whether one of them takes the columns of the verification."""
+        return any(each is not None for each in (self.report, self.sheet, self.manifest))
+
+
+#: No papers at all.
+NO_PAPERS: Final = PaperFiles()
+
+#: The papers by their names, and what each is called in a sentence.
+PAPERS: Final = {"report": "report", "sheet": "setup sheet", "listing": "listing", "manifest": "manifest"}
+
+
+def paper_files(
+    report: FilePath | None, sheet: FilePath | None, listing: FilePath | None, manifest: FilePath | None, output: object
+) -> PaperFiles:
+    """The papers of a post, whose places are found out before any work.
+
+    Raises
+    ------
+    InputError
+        If one is of an unknown form or cannot be written, or a manifest is not beside its program.
+    """
+    if report is not None:
+        check_report_name(report)
+    if sheet is not None:
+        check_output_name("sheet", sheet, (".html", ".json"), "a setup sheet is a page or data")
+    if manifest is not None:
+        place = check_output_name("manifest", manifest, (".json",), "a manifest is data")
+        program = Path(output) if isinstance(output, str | os.PathLike) else None
+        if program is None or program.parent.resolve() != Path(manifest).parent.resolve():
+            cure = "name a file in the folder of the program, and write the program to a file"
+            raise InputError(Problem(place.name, 0, "a manifest tells of the files beside it", cure, code="FIL320"))
+    places = (None if each is None else Path(each) for each in (report, sheet, listing, manifest))
+    return PaperFiles(*places)

@@ -9,6 +9,8 @@ Limits, home and all axis values are those that the control displays and the pro
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
+from functools import partial
+from typing import Annotated, Final
 
 import numpy as np
 
@@ -16,6 +18,7 @@ from trunnion.arrays import Floats
 from trunnion.definitions import LocatedValue, Table
 from trunnion.machines.bodies import MachineBody
 from trunnion.machines.bodies import Vector as Vector
+from trunnion.results import Figure, to_data
 
 #: Greatest component along the tool of a slide that is across it.
 _ACROSS = 1e-9
@@ -79,7 +82,7 @@ class Axis:
 
     name: str
     kind: AxisKind
-    mount: Mount
+    mount: Annotated[Mount, Figure(), Figure("carries", is_extra=True)]
     direction: Vector
     point: Vector = (0.0, 0.0, 0.0)
     low: float = -np.inf
@@ -95,6 +98,13 @@ class Axis:
     home_is_stated: bool = True
 
     @property
+    @Figure(is_extra=True)
+    def limits(self) -> tuple[float, float]:
+        """Low and high end of its travel."""
+        return self.low, self.high
+
+    @property
+    @Figure(is_extra=True)
     def is_rotary(self) -> bool:
         """Whether the joint turns."""
         return self.kind is AxisKind.ROTARY
@@ -160,6 +170,10 @@ def _no_control() -> Table:
     return Table(LocatedValue({}, "", 0), "control")
 
 
+#: What the data of a list of machines says of an axis.
+_OF_AXIS: Final = ("name", "is_rotary", "carries", "endless", "limits")
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Machine:
     """A five-axis machine: three linear axes and two rotary axes, FROM THE WORKPIECE TO THE TOOL.
@@ -178,7 +192,7 @@ class Machine:
 
     key: str
     name: str
-    axes: tuple[Axis, ...]
+    axes: Annotated[tuple[Axis, ...], Figure(take=partial(to_data, only=_OF_AXIS))]
     spindle_direction: Vector = (0.0, 0.0, 1.0)
     spindle_point: Vector = (0.0, 0.0, 0.0)
     workpiece_zero: Vector | None = None

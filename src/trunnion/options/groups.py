@@ -2,10 +2,11 @@
 
 from typing import Final
 
+from trunnion.dialect_names import READ_DIALECTS
 from trunnion.options.kinds import Choice, FileIn, FileOut, Number, Setting, Switch, Text, angle, length, whole
 from trunnion.options.limits import LONGEST_RATE, SHORTEST_RATE
 from trunnion.options.option import Group, Level, Many, Option
-from trunnion.options.words import DIALECTS, FEEDS
+from trunnion.options.words import FEEDS
 
 PAGE_OR_DATA: Final = (".html", ".json")
 
@@ -43,7 +44,10 @@ READING: Final = Group(
     (
         Option("units", "--units", Choice(("mm", "inch")), "length unit of the CL files, whatever they state"),
         Option(
-            "dialect", "--dialect", Choice(DIALECTS, "NAME"), f"what the CL files are written in: {', '.join(DIALECTS)}"
+            "dialect",
+            "--dialect",
+            Choice(READ_DIALECTS, "NAME"),
+            f"what the CL files are written in: {', '.join(READ_DIALECTS)}",
         ),
         Option(
             "strict", "--strict", Switch(), "unknown CL statements are errors at once", key="strict", level=Level.WHOLE
@@ -59,6 +63,20 @@ READING_AS_SETTINGS: Final = READING.but(units={"setting": "cl_units"}, dialect=
 
 FEED: Final = Option(
     "feed", "--feed", Choice(FEEDS), "fastest: of each block what the axes reach, within the feed of the CL file"
+)
+
+#: Options of a post that are settings of the same name: declared here, and read as settings where they act.
+POSTING: Final = Group(
+    "limits of a post",
+    (
+        Option(
+            "max_tilt",
+            "--max-tilt",
+            angle("a tilt", 0.0, 180.0, "30"),
+            "refuse operations whose tool axis leans more than this from Z of the program",
+            setting="max_tilt",
+        ),
+    ),
 )
 
 ZERO: Final = Option("zero", "--zero", Text("X,Y,Z"), "the workpiece zero on the machine, mm", key="zero_mm")

@@ -2,10 +2,6 @@
 
 from typing import Final
 
-#: Dialects that CL files are read in, and those that they are written in.
-DIALECTS: Final = ("clsf", "ncl", "solidworks", "clt", "catia", "fusion", "apt")
-WRITTEN_DIALECTS: Final = ("clsf", "catia", "ncl")
-
 #: Values of the setting ``feed``.
 FEEDS: Final = ("programmed", "fastest")
 

@@ -20,7 +20,7 @@ from trunnion.simulation.stock.deviation import Excess
 from trunnion.simulation.stock.solids import StockShape
 from trunnion.simulation.tool_deltas import SIZES, is_told_of_length
 from trunnion.simulation.tools.profile import ToolShape, cutting_width
-from trunnion.wording import counted
+from trunnion.wording import counted, position
 
 #: Sizes that differ by less are the same, mm.
 _SAME: Final = 1e-3
@@ -224,8 +224,7 @@ def part_remarks(model: CuttingModel, lacking: Excess | None, slack: float, *, i
             Problem("part", 0, what, "check the pose, and the zero of the part" if is_later else cure, code="SIM131")
         ]
     if lacking is not None and lacking.largest > model.limit + slack:
-        x, y, z = lacking.places[0].at
-        what = f"is missing {lacking.largest:.3f} mm deep at X{x:.3f} Y{y:.3f} Z{z:.3f} before {before}"
+        what = f"is missing {lacking.largest:.3f} mm deep at {position(lacking.places[0].at)} before {before}"
         if is_later:
             cure = "check what the earlier set-ups took there, the pose, and the zero of the part"
         return [Problem("part", 0, what, cure, code="SIM132")]

@@ -20,6 +20,7 @@ from trunnion.simulation.tools.choice import NO_CALL
 from trunnion.simulation.tools.profile import Role
 from trunnion.verification import Verification
 from trunnion.verification import verify as verify_run
+from trunnion.wording import position
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +57,10 @@ class SimulationFinding:
     cl_file: Annotated[str, Figure(none="", after="cl_line")] = ""
     setup: OptionalText = ""
     row: Annotated[int, NOT_DATA] = -1
+
+    def __str__(self) -> str:
+        """Return what does what, how deep and where."""
+        return f"{self.kind}: {self.between[0]}, {self.between[1]}: {self.depth:.3f} mm deep at {position(self.place)}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,7 +170,7 @@ def setup_findings(cut: CutSetup) -> CutFindings:
                 _finding(verified[one.program], finding, _moment(programs[one.program], finding, at, slack))
             )
         for finding in one.near:
-            misses.append(_near_stock(run, finding, _moment(programs[one.program], finding, at, slack + finding.depth)))
+            misses.append(_near(run, finding, _moment(programs[one.program], finding, at, slack + finding.depth)))
         idle = list(_air(run, one, lengths[one.program]))
         air += idle
         seconds_taken = float(at[one.end - 1]) - (float(at[one.first - 1]) if one.first else 0.0)
@@ -176,11 +181,12 @@ def setup_findings(cut: CutSetup) -> CutFindings:
         operations.append(_operation(run, one, seconds_taken, lines, air_length, count, blocks))
     for number, collisions in enumerate(touched):
         run, at = programs[number].run, seconds[number]
-        hits = [each for each in collisions if not each.is_near]
-        for each in hits:
-            finding = _of_collision(each)
-            findings.append(_finding(verified[number], finding, _moment(programs[number], finding, at, slack)))
-        misses += (_near_miss(run, each, at) for each in collisions if each.is_near)
+        for finding in map(_of_collision, collisions):
+            moment = _moment(programs[number], finding, at, slack)
+            if finding.what is What.NEAR:
+                misses.append(_near(run, finding, moment))
+            else:
+                findings.append(_finding(verified[number], finding, moment))
     return CutFindings(_named(findings, setup), _named(misses, setup), _named(operations, setup), _named(air, setup))
 
 
@@ -247,24 +253,17 @@ def _finding(verified: Verification, finding: Finding, seconds: float) -> Simula
 
 
 def _of_collision(each: Collision) -> Finding:
-    rows = each.row, each.last_row
-    return Finding(What.BODY, each.between, rows, each.worst_row, each.depth_mm, each.place, each.worst_fraction)
+    rows, (what, size) = (each.row, each.last_row), (What.BODY, each.depth_mm)
+    if each.is_near:
+        what, size = What.NEAR, each.distance_mm
+    return Finding(what, each.between, rows, each.worst_row, size, each.place, each.worst_fraction)
 
 
-def _near_stock(run: Run, each: Finding, seconds: float) -> NearMiss:
+def _near(run: Run, each: Finding, seconds: float) -> NearMiss:
     row, last = each.worst, each.rows[1]
     return NearMiss(
         each.between, file_of_row(run, row), int(run.line[row]), int(run.block_number[row]), int(run.line[last]),
         int(run.block_number[last]), seconds, each.depth, each.place, row=row,
-    )  # fmt: skip
-
-
-def _near_miss(run: Run, each: Collision, seconds: Any) -> NearMiss:
-    row, last = each.worst_row, each.last_row
-    return NearMiss(
-        each.between, file_of_row(run, row), int(run.line[row]), int(run.block_number[row]), int(run.line[last]),
-        int(run.block_number[last]), _at_fraction(seconds, row, each.worst_fraction), each.distance_mm, each.place,
-        row=row,
     )  # fmt: skip
 
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -11,27 +11,9 @@ from trunnion.arrays import Flags, Floats, Lines
 from trunnion.model.recording import Recording
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Operation, Toolpath
-from trunnion.verification.checks.compensation_checks import check_compensation
-from trunnion.verification.checks.coolant_checks import check_coolant
-from trunnion.verification.checks.feed_checks import check_feed
-from trunnion.verification.checks.hole_checks import check_holes
-from trunnion.verification.checks.home_checks import check_home
-from trunnion.verification.checks.linearization_check import check_between_points
-from trunnion.verification.checks.machine_checks import check_acceleration, check_speed, check_travel
-from trunnion.verification.checks.modal_checks import check_modal_state
-from trunnion.verification.checks.motion_checks import check_kind, check_order
-from trunnion.verification.checks.normal_checks import check_normals
-from trunnion.verification.checks.position_checks import check_axis, check_tip
-from trunnion.verification.checks.reach_check import check_reach
-from trunnion.verification.checks.spindle_checks import check_spindle
-from trunnion.verification.checks.spindle_range_check import check_spindle_range
-from trunnion.verification.checks.stop_checks import check_stops
-from trunnion.verification.checks.tool_checks import check_tool
-from trunnion.verification.checks.turn_checks import check_turns
-from trunnion.verification.checks.word_checks import check_words
-from trunnion.verification.checks.work_offset_checks import check_work_offset
+from trunnion.verification.checks.table import Compared, Measured, all_checks
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Context, ExpectedValues
-from trunnion.verification.deviations.declared_deviations import AcceptedDeviations, accept_deviations
+from trunnion.verification.deviations.declared_deviations import accept_deviations
 from trunnion.verification.deviations.linearization import DefaultLimits, LinearizationErrors
 from trunnion.verification.deviations.point_deviations import PointDeviations
 from trunnion.verification.deviations.reached_rows import with_feeds_of_program, worthwhile_feeds
@@ -44,7 +26,7 @@ from trunnion.verification.matching.hole_matching import match_holes
 from trunnion.verification.matching.pairs import Matching
 from trunnion.verification.matching.path_matching import match_by_count, match_by_position
 from trunnion.verification.matching.spline_matching import written_splines
-from trunnion.verification.results import Check, OperationRows, Verification
+from trunnion.verification.results import OperationRows, Verification
 
 
 def verify(
@@ -81,22 +63,14 @@ def verify(
     run = restore_rapids(run, settings.rapid_feed)
     analyzer = AxisMotionAnalyzer(run, MAX_PLACES, times=columns)
     if toolpaths:
-        checked = _check_against(_expected_path(run, toolpaths, tolerances, settings), run, settings, analyzer)
+        seen: Measured = _compare_all(_expected_path(run, toolpaths, tolerances, settings), run, settings, analyzer)
     else:
-        checked = _check_alone(run, settings, analyzer)
-    context, motion = checked.context, analyzer.result()
-    checks = (
-        *checked.checks,
-        check_between_points(context, motion, checked.errors),
-        check_travel(context, motion),
-        check_speed(context, motion),
-        check_acceleration(context, motion),
-        *checked.general,
-    )
+        seen = _measure_alone(run, settings, analyzer)
+    context, motion = seen.context, seen.motion
     cl_line = _cl_lines(context) if columns else np.zeros(0, np.int32)
     operations = tuple(_operation_rows(context))
     return Verification(
-        run.files[0], run.machine, run, checks, motion.seconds, motion.tip_feed, cl_line, operations,
+        run.files[0], run.machine, run, all_checks(seen), motion.seconds, motion.tip_feed, cl_line, operations,
         waiting=motion.waiting,
     )  # fmt: skip
 
@@ -160,38 +134,23 @@ def with_recording(verification: Verification, recording: Recording, tolerance: 
     return replace(verification, checks=(*verification.checks, check), recorded=compared)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Checked:
-    """The checks of a program but those of its axis motion; ``general`` are those of any program."""
-
-    context: Context
-    errors: LinearizationErrors
-    checks: list[Check]
-    general: list[Check]
-
-
-def _check_alone(run: Run, settings: ExpectedValues, analyzer: AxisMotionAnalyzer) -> _Checked:
-    """Checks of a program without CL files."""
+def _measure_alone(run: Run, settings: ExpectedValues, analyzer: AxisMotionAnalyzer) -> Measured:
+    """What is known of a program without CL files."""
     context = Context(run, settings)
     errors = _linearization_errors(context, [Tolerances()])
     _add_rows(run, analyzer, errors)
-    return _Checked(context, errors, [check_work_offset(context)], _general_checks(context))
+    return Measured(context, errors, analyzer.result())
 
 
-def _check_against(
-    expected: ExpectedPath, run: Run, settings: ExpectedValues, analyzer: AxisMotionAnalyzer
-) -> _Checked:
-    """Checks of a program against its expected path, which has the feeds and tool axes of the CL files."""
+def _compare_all(original: ExpectedPath, run: Run, settings: ExpectedValues, analyzer: AxisMotionAnalyzer) -> Compared:
+    """What is known of a program beside its expected path, which has the feeds and tool axes of the CL files."""
     if settings.fastest_feed and settings.feeds_as_programmed:
-        compared, _, _ = _compare(expected, run, settings)
-        expected = with_feeds_of_program(run, expected, compared.matching, settings.feed_limit)
-    accepted = accept_deviations(expected, run.machine)
+        compared, _, _ = _compare(original, run, settings)
+        original = with_feeds_of_program(run, original, compared.matching, settings.feed_limit)
+    accepted = accept_deviations(original, run.machine)
     context, errors, deviations = _compare(accepted.expected, run, settings, analyzer)
-    order, others, general = _checks_without_positions(context, accepted, expected)
-    others += check_reach(context, expected)
     tip, axis = deviations.result()
-    checks = [order, check_tip(context, tip), check_axis(context, axis, accepted), *others]
-    return _Checked(context, errors, checks, general)
+    return Compared(context, errors, analyzer.result(), original, accepted, tip, axis)
 
 
 def _compare(
@@ -217,31 +176,6 @@ def _match_by_position(expected: ExpectedPath, run: Run, settings: ExpectedValue
         least = math.degrees(2.0 * math.sqrt(math.radians(0.5 * min(tolerance.cutting, tolerance.finishing))))
         return match_by_position(run, expected, axis_deviation=tolerance.cutting, least_turn=least)
     return match_by_position(run, expected, axis_deviation=180.0 if settings.span is None else settings.span)
-
-
-def _checks_without_positions(
-    context: ComparedContext, accepted: AcceptedDeviations, original: ExpectedPath
-) -> tuple[Check, list[Check], list[Check]]:
-    """Checks that do not need the positions of all rows: that of the order, the others, and those of any program."""
-    others = [
-        check_kind(context),
-        check_feed(context, accepted, original),
-        check_spindle(context),
-        check_tool(context),
-        check_coolant(context),
-        check_compensation(context),
-        check_stops(context),
-        check_work_offset(context),
-        check_home(context),
-        check_holes(context),
-        *check_normals(context),
-    ]
-    return check_order(context), others, _general_checks(context)
-
-
-def _general_checks(context: Context) -> list[Check]:
-    """Checks of any program."""
-    return [check_spindle_range(context), check_turns(context), check_modal_state(context), check_words(context)]
 
 
 def _measure(

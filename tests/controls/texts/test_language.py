@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from trunnion.controls.template import Budget, Printing, Value
 from trunnion.controls.texts.template import text_template
 from trunnion.controls.texts.values import Fault, Length, Record
@@ -133,9 +134,16 @@ ESCAPES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("text", ESCAPES, ids=range(len(ESCAPES)))
-def test_what_templates_cannot_do(text: str) -> None:
-    assert refused(text)
+def answer(text: str) -> str:
+    """What a template is refused with; nothing, if it is taken."""
+    try:
+        return refused(text)
+    except pytest.fail.Exception:
+        return ""
+
+
+def test_what_templates_cannot_do() -> None:
+    assert [text[:80] for text in ESCAPES if not answer(text)] == []
 
 
 def test_a_program_has_a_budget_for_all_its_texts() -> None:
@@ -195,7 +203,7 @@ PIECES = (
 )  # fmt: skip
 
 
-@settings(max_examples=150)
+@settings(max_examples=examples(150))
 @given(st.lists(st.sampled_from(PIECES), max_size=14).map("".join), st.booleans())
 def test_whatever_is_written_prints_plain_lines_or_is_refused(text: str, tagged: bool) -> None:
     template, fault = text_template("program_end", f"{{{{ {text} }}}}" if tagged else text, "ours.toml", 7)

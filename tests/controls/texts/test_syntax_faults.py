@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from trunnion.controls.template import Budget, Printing
 from trunnion.controls.texts.template import text_template
 from trunnion.controls.texts.values import Fault
@@ -120,7 +121,7 @@ PIECES = [
 ]  # fmt: skip
 
 
-@settings(max_examples=400, deadline=None)
+@settings(max_examples=examples(400), deadline=None)
 @given(st.lists(st.sampled_from(PIECES), max_size=14).map("".join))
 def test_whatever_stands_in_a_template_no_word_of_the_parser_is_told(text: str) -> None:
     template, fault = text_template("program_end", text, "ours.toml", 7)

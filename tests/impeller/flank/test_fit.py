@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.flanks import PUBLISHED, RuledBlade, ruled
 from trunnion.arrays import Floats
 from trunnion.errors import InputError
@@ -63,7 +64,7 @@ def test_a_developable_flank_comes_out_exact(rails: Rails, slope: float) -> None
 
 
 @given(st.integers(0, 10_000), st.sampled_from([0.0, 0.08, -0.05]))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 def test_deviations_are_those_of_the_slow_twin(seed: int, slope: float) -> None:
     path = wavy(seed, slope)
     points = np.random.default_rng(seed + 1).uniform((-8.0, -8.0, -8.0), (48.0, 25.0, 40.0), (60, 3))
@@ -75,7 +76,7 @@ def test_deviations_are_those_of_the_slow_twin(seed: int, slope: float) -> None:
 
 
 @given(st.integers(0, 10_000), st.sampled_from([0.0, 0.08]))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=examples(20), deadline=None)
 def test_changes_are_those_of_finite_differences(seed: int, slope: float) -> None:
     path = wavy(seed, slope)
     lower, axis = path.poses(np.linspace(0.2, 0.8, 7))
@@ -144,7 +145,7 @@ def test_a_flank_has_two_sides() -> None:
     st.floats(0.3, 0.65),
     st.floats(0.2, 0.65),
 )
-@settings(max_examples=4, deadline=None)
+@settings(max_examples=examples(4), deadline=None)
 def test_blades_of_the_family_are_fitted_far_better_than_they_begin(
     inner: float, growth: float, height: float, span: float, wrap: float, twist: float
 ) -> None:

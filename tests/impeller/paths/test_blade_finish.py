@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.impellers import mixed_flow_cases, nearest_on_path
 from trunnion.arrays import Floats
 from trunnion.errors import InputError
@@ -85,7 +86,7 @@ def test_rows_by_scallop_are_as_far_apart_as_it_lets_them(published: Impeller) -
     assert rows[1] - 1 == pytest.approx(2 * (rows[0] - 1), abs=2)
 
 
-@settings(max_examples=4)
+@settings(max_examples=examples(4))
 @given(mixed_flow_cases(), st.sampled_from(list(Way)), st.floats(0.0, 0.5))
 def test_balls_touch_blades_of_a_family_with_their_allowance(
     case: tuple[ImpellerDefinition, float], way: Way, allowance: float

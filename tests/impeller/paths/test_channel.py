@@ -7,6 +7,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.impellers import mixed_flow, mixed_flow_cases, nearest_on_path
 from trunnion.arrays import Floats
 from trunnion.errors import InputError
@@ -100,7 +101,7 @@ def test_passes_are_dense_without_doubles_and_places_are_within_0_and_1(
     assert layers == sorted(layers)
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=examples(6), deadline=None)
 @given(mixed_flow_cases(), st.sampled_from([0.8, 1.6]), st.booleans())
 def test_nothing_is_cut_and_nothing_is_left(
     case: tuple[ImpellerDefinition, float], step: float, is_roughing: bool

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from trunnion.arrays import Floats
 from trunnion.errors import InputError
 from trunnion.extras import import_extra
@@ -78,7 +79,7 @@ def parts(shape: ToolShape, radius: float) -> dict[Role, list[tuple[float, float
     return found
 
 
-@settings(max_examples=12)
+@settings(max_examples=examples(12))
 @given(st.integers(0, 2**31))
 def test_distances_are_those_of_dense_samples(impeller: Impeller, obstacles: Obstacles, seed: int) -> None:
     """Balls of blade 2 and points of the hub, half a mm apart, against the tool's outline; less is never told."""
@@ -116,7 +117,7 @@ def test_distances_are_those_of_dense_samples(impeller: Impeller, obstacles: Obs
             assert found >= sampled - (2.5 if name == "blade 2" else 0.1)
 
 
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 @given(st.integers(0, 2**31))
 def test_a_curved_body_is_as_far_as_its_samples(seed: int) -> None:
     rng = np.random.default_rng(seed)

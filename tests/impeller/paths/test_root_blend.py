@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.impellers import mixed_flow_cases, nearest_on_path
 from trunnion.arrays import Floats
 from trunnion.errors import InputError
@@ -77,7 +78,7 @@ def test_fillet_and_what_the_ball_of_the_hub_left_keep_no_more_than_a_scallop(
         assert left.min() > -0.01
 
 
-@settings(max_examples=4)
+@settings(max_examples=examples(4))
 @given(mixed_flow_cases(), st.sampled_from(list(Way)))
 def test_balls_as_large_as_the_fillet_stay_clear_in_a_family(case: tuple[ImpellerDefinition, float], way: Way) -> None:
     definition, radius = case

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from trunnion.errors import InputError
 from trunnion.impeller.definition import read_impeller
 from trunnion.impeller.impeller import build_impeller
@@ -91,7 +92,7 @@ def test_what_would_come_into_the_stock_is_refused_with_its_line(
     assert problem.line > 60
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(
     tilt=st.floats(0.0, 80.0), across=st.floats(5.0, 70.0), height=st.floats(0.0, 40.0), wide=st.floats(6.0, 20.0),
     turn=st.floats(0.0, 6.0),

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.support.example_impellers import changed
+from tests.support.examples import examples
 from trunnion.arrays import Floats
 from trunnion.errors import InputError
 from trunnion.extras import import_extra
@@ -86,7 +87,7 @@ def check(body: Body) -> None:
     assert all(sorted(ways[k]) == [False, True] or edge.curve is None for k, edge in enumerate(body.edges))
 
 
-@settings(max_examples=5, deadline=None)
+@settings(max_examples=examples(5), deadline=None)
 @given(
     number=st.integers(2, 6),
     fillet=st.floats(0.5, 2.0),

@@ -11,10 +11,12 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 import trunnion
+from tests.support.examples import examples
 from tests.support.reports import waves
 from tests.support.simulating import SLOT, cuboid, simulate
+from trunnion.jobs.inputs.simulation_input import SetupInput
 from trunnion.jobs.observer import SILENT
-from trunnion.jobs.simulate.setups import SetupInput, prepare_setup
+from trunnion.jobs.simulate.setups import prepare_setup
 from trunnion.machines import load_machine
 from trunnion.model.clamping import Clamping
 from trunnion.model.columns import StepColumn
@@ -124,7 +126,7 @@ places = st.tuples(st.floats(-8.0, 8.0), st.floats(-8.0, 8.0), st.floats(-4.0, 1
 
 
 @settings(
-    max_examples=6, deadline=None, phases=[Phase.explicit, Phase.generate],
+    max_examples=examples(6), deadline=None, phases=[Phase.explicit, Phase.generate],
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )  # fmt: skip
 @given(
@@ -163,7 +165,7 @@ def test_a_turned_program_with_its_angles_does_what_the_unturned_one_does(
         assert each.kind == "collision" or min(abs(its.depth - each.depth) for its in same) < 0.1
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(
     machine=st.sampled_from(["yl569", "xyzac_trt", "xyzbc_trt", "dmu65"]),
     turn=st.floats(-360.0, 360.0),

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.machine_strategies import machines
 from trunnion.arrays import Floats
 from trunnion.machines import Machine, link_transforms
@@ -48,7 +49,7 @@ def meshes() -> tuple[TriangleMesh, TriangleMesh]:
 
 
 @given(machines(), paths, links, links)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 def test_no_point_moves_further_than_the_bound(machine: Machine, path: list[list[float]], one: str, other: str) -> None:
     if not axes_between(machine, one, other):
         return
@@ -72,7 +73,7 @@ def test_no_point_moves_further_than_the_bound(machine: Machine, path: list[list
 
 
 @given(machines(), paths, links, links)
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=examples(10), deadline=None)
 def test_what_dense_sampling_finds_is_found(machine: Machine, path: list[list[float]], one: str, other: str) -> None:
     if not axes_between(machine, one, other):
         return

@@ -9,6 +9,7 @@ from scipy.spatial import ConvexHull  # type: ignore[import-untyped]
 from scipy.spatial.transform import Rotation  # type: ignore[import-untyped]
 
 from tests.support.brute_clearance import model_of
+from tests.support.examples import examples
 from tests.support.u_shapes import vice
 from trunnion.arrays import Floats
 from trunnion.placing.collisions.surfaces import SurfacePair
@@ -55,7 +56,7 @@ def random_pose(random: np.random.Generator, away: float) -> Floats:
     return pose
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(seed=st.integers(0, 10**9), kind=st.sampled_from(["boxes", "cylinders", "points"]))
 def test_hulls_are_as_far_apart_as_their_meshes(seed: int, kind: str) -> None:
     random = np.random.default_rng(seed)

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.sweeps import block, bundle_volumes, cut_path, divided, path, ray_points, stamped_depth
 from trunnion.arrays import Floats
 from trunnion.simulation.cutting.removal import Cutter
@@ -80,7 +81,7 @@ def leaning(draw: st.DrawFn) -> tuple[Floats, Floats]:
     return np.array(tips), np.array(axes)
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(leaning(), st.sampled_from([flat(6.0, **BODY), ball(6.0, **BODY), bull(6.0, 1.0, **BODY)]))
 def test_five_axis_strokes_are_as_dense_stamping_has_them(motions: tuple[Floats, Floats], shape: ToolShape) -> None:
     stock = block((-6.0, -6.0, -6.0), (6.0, 6.0, 0.0), 0.9)

@@ -9,6 +9,7 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.solid_booleans import as_solid
 from tests.support.sweeps import block, cut_path, path
 from trunnion.simulation.meshes import TriangleMesh, load_mesh, save_mesh
@@ -76,7 +77,7 @@ def test_a_shallow_groove_leaves_the_faces_of_the_stock_where_they_are(cell: flo
     assert np.abs(off[np.abs(aside) > 5.0]).max() == 0.0
 
 
-@settings(max_examples=12)
+@settings(max_examples=examples(12))
 @given(st.integers(0, 10_000))
 def test_whatever_was_cut_the_surface_is_closed(seed: int) -> None:
     stock = cut_by_chance(seed)

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.tools import cutter_radius, cutter_sizes, piece_radius, pieces_volume
 from trunnion.simulation.tools.pieces import RevolvedPieces, revolved_pieces
 from trunnion.simulation.tools.shapes import BodyPiece, ToolKind, ball, bull, flat, tool_shape
@@ -57,7 +58,7 @@ def off_corner(pieces: RevolvedPieces, corner: float, core: float) -> float:
 
 
 @pytest.mark.parametrize("kind", ToolKind)
-@settings(max_examples=12)
+@settings(max_examples=examples(12))
 @given(st.data())
 def test_a_cutter_has_the_volume_that_its_sizes_mean(kind: ToolKind, data: st.DataObject) -> None:
     sizes = data.draw(cutter_sizes(kind))
@@ -73,7 +74,7 @@ def test_a_cutter_has_the_volume_that_its_sizes_mean(kind: ToolKind, data: st.Da
 
 
 @pytest.mark.parametrize("kind", ToolKind)
-@settings(max_examples=12)
+@settings(max_examples=examples(12))
 @given(st.data(), st.sampled_from([1e-4, 0.1]), st.lists(SIZES, min_size=2, max_size=6))
 def test_every_piece_is_convex(kind: ToolKind, data: st.DataObject, tolerance: float, above: list[float]) -> None:
     sizes = data.draw(cutter_sizes(kind))

@@ -4,6 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from trunnion.errors import InputError
 from trunnion.simulation.tools.shapes import BodyPiece, ToolKind, ToolShape, ToolSizes, ball, tool_shape
 from trunnion.simulation.tools.text import parse_tool
@@ -110,7 +111,7 @@ def test_what_is_no_tool_is_refused_with_a_cure(text: str, said: str) -> None:
     assert all(problem.cure for problem in raised.value.problems)
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(st.text("0123456789=:,./x-ball flutehodrngt_sk", max_size=40))
 def test_any_text_is_a_tool_or_is_refused(text: str) -> None:
     try:

@@ -65,7 +65,7 @@ def wait_for_last_motion(journal: Path, recorder: subprocess.Popen[str]) -> None
 
 async def run_program(address: str) -> None:
     """Run the program of a twin to its end."""
-    async with Client(address) as client:
+    async with Client(address, timeout=120) as client:
         index = await client.get_namespace_index("urn:trunnion:twin")
         twin = client.get_node(ua.NodeId("Twin", index))
         state = client.get_node(ua.NodeId("Twin.State", index))

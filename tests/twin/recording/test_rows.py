@@ -4,6 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from trunnion.model.recording import Mark
 from trunnion.twin.recording.rows import Reading, Row, RowMaker
 
@@ -42,7 +43,7 @@ def rows_of(maker: RowMaker, messages: list[tuple[list[Reading], bool]]) -> list
     return rows + maker.flush()
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(told())
 def test_each_time_has_a_row_with_what_all_columns_show_then(
     given_: tuple[list[Reading], list[tuple[list[Reading], bool]]],
@@ -58,7 +59,7 @@ def test_each_time_has_a_row_with_what_all_columns_show_then(
     assert not any(row.marks for row in rows)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 @given(told(), told(), st.integers(3_000_000, 10**12))
 def test_a_clock_that_is_set_back_is_marked_and_loses_nothing(
     before: tuple[list[Reading], list[tuple[list[Reading], bool]]],

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.recordings import blade, recorded, with_values
 from trunnion.arrays import Floats, Ints
 from trunnion.errors import InputError
@@ -132,7 +133,7 @@ def test_elapsed_time_goes_by_the_machine_and_across_gaps_by_arrival() -> None:
     assert recording.elapsed().tolist() == pytest.approx([0.0, 1.0, 4.0, 8.0, 8.1, 9.1])
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(
     at=st.floats(0.0, 1.0), off=st.tuples(*[st.floats(-2.0, 2.0)] * 3), turn=st.floats(-1.0, 1.0),
     row=st.integers(10, 140),
@@ -286,7 +287,7 @@ def test_positions_off_the_path_fail_in_another_program_too() -> None:
     assert not checked(Recording("x.csv", good.source, good.received, {}, {**good.values, "Z": z}, program)).passed
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=examples(8), deadline=None)
 @given(
     share=st.floats(0.1, 0.6), off=st.sampled_from([-200.0, -60.0, 10.0, 20.0, 50.0, 100.0, 200.0]),
     axis=st.sampled_from("XYZ"),

@@ -14,7 +14,7 @@ from trunnion.cl.dialects.solidworks import SOLIDWORKS
 
 __all__ = ["DIALECTS", "Dialect", "Recognition", "recognize_dialect"]
 
-#: By their names. The last one is told by words that the others have as well.
+#: By their names, those of ``trunnion.dialect_names.READ_DIALECTS``.
 DIALECTS: Final[dict[str, Dialect]] = {
     dialect.name: dialect for dialect in (CLSF, NCL, SOLIDWORKS, CAMWORKS, CATIA, FUSION, APT)
 }
@@ -22,4 +22,4 @@ DIALECTS: Final[dict[str, Dialect]] = {
 
 def recognize_dialect(head: bytes) -> Recognition:
     """The dialect of a file by the lines at its head; a file without any mark is taken as an NX CLSF."""
-    return recognize(head, (CLSF, NCL, SOLIDWORKS, CAMWORKS, CATIA, FUSION), APT, CLSF)
+    return recognize(head, DIALECTS.values(), CLSF)

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from typing import Final
 
-from trunnion.cl.builder import NoAxis
-from trunnion.cl.dialect import CycleWords, Dialect, Handler, marks
+from trunnion.cl.conventions import CycleWords
+from trunnion.cl.dialect import Dialect, Handler, marks
 from trunnion.cl.statements import HANDLERS, apt_arcs, apt_motion, apt_refused, apt_tools, events, motion, operations
 
 #: What the statements of all APT dialects mean.
@@ -66,5 +66,5 @@ APT: Final = Dialect(
     ),
     handlers={**APT_HANDLERS, "MULTAX": apt_motion.multax},
     cycles=CYCLES,
-    no_axis=NoAxis.MODAL,
+    is_general=True,
 )  # fmt: skip

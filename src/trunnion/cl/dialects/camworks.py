@@ -2,6 +2,7 @@
 
 import math
 import re
+from dataclasses import dataclass
 from typing import Final
 
 from trunnion.cl.builder import NoAxis
@@ -25,15 +26,23 @@ _CYCLE: Final = re.compile(
 )
 
 
+@dataclass(slots=True)
+class _Setup:
+    """The setup of an operation: where its Z points in the model, empty if unknown, and the angles that turn it."""
+
+    axis: tuple[float, ...] = ()
+    turned: tuple[float, ...] = ()
+
+
 def _begin(state: ReaderState, statement: Statement) -> None:
     """Begin an operation under its name, in a setup that is not turned yet."""
     state.name_operation(statement.source.partition("/")[2].strip())
-    state.turned = ()
+    state.own(_Setup).turned = ()
 
 
 def _end(state: ReaderState, statement: Statement) -> None:
     """Refuse an operation whose setup is not known: its points may belong to another one."""
-    if len(state.turned) < len(_AXES):
+    if len(state.own(_Setup).turned) < len(_AXES):
         raise StatementError(
             "OPFEATEND of an operation without ROTABL for three axes", "output the file again", code="CL430"
         )
@@ -42,7 +51,7 @@ def _end(state: ReaderState, statement: Statement) -> None:
 def _tlaxis(state: ReaderState, statement: Statement) -> None:
     """Note where the Z of the setup points in the model; points are in the setup, where the tool stands upright."""
     i, j, k = statement.numbers(3)
-    state.setup_axis = (i, j, k)
+    state.own(_Setup).axis = (i, j, k)
 
 
 def _rotabl(state: ReaderState, statement: Statement) -> None:
@@ -54,18 +63,19 @@ def _rotabl(state: ReaderState, statement: Statement) -> None:
             what, "write ROTABL/radians,AAXIS,TABLE,CCLW, with BAXIS and CAXIS behind it", code="CL430"
         )
     angles = numbers("ROTABL", values[:1], 1)
-    if len(state.turned) == len(_AXES):
+    setup = state.own(_Setup)
+    if len(setup.turned) == len(_AXES):
         return  # the setup is turned back
-    if values[1] != _AXES[len(state.turned)]:
+    if values[1] != _AXES[len(setup.turned)]:
         raise StatementError(
             "ROTABL turns other axes than A, B and C, in this order", "output the file again", code="CL430"
         )
-    state.turned += angles
-    if len(state.turned) == len(_AXES):
-        state.set_system(_setup(state.turned, state.setup_axis))
+    setup.turned += angles
+    if len(setup.turned) == len(_AXES):
+        state.set_system(_system(setup.turned, setup.axis))
 
 
-def _setup(angles: tuple[float, ...], axis: tuple[float, ...]) -> tuple[float, ...]:
+def _system(angles: tuple[float, ...], axis: tuple[float, ...]) -> tuple[float, ...]:
     """The axes of a setup in the model, in rows of four; its origin is not in the file.
 
     angles  A, B, C in radians, of which one may turn: the order of several is not settled

@@ -2,13 +2,15 @@
 
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from trunnion.cl.builder import NoAxis
+from trunnion.cl.conventions import CycleWords
 from trunnion.cl.diagnostics import StatementError
-from trunnion.cl.dialect import CycleWords, Dialect, marks
+from trunnion.cl.dialect import Dialect, marks
 from trunnion.cl.dialects.apt import APT_HANDLERS, CYCLES
 from trunnion.cl.state import TOOL_NUMBER, ReaderState
 from trunnion.cl.statement import Statement, whole_number
@@ -32,26 +34,35 @@ _WITH_MATRIX: Final = "let the table of words (PPTable) write NC_MACHINING_AXIS 
 _MILLING: Final = "output the milling operations alone"
 
 
+@dataclass(slots=True)
+class _Matrix:
+    """A machining axis system while its comments are read: those behind ``$$*CATIA0``, and the line of this one."""
+
+    lines: list[str] | None = None
+    line: int = 0
+
+
 def _comment(state: ReaderState, text: str) -> None:
     """Lines of comment that name an operation, or give the machining axis system."""
-    if state.matrix is not None and state.line != state.matrix_line + 1 + len(state.matrix):
+    matrix = state.own(_Matrix)
+    if matrix.lines is not None and state.line != matrix.line + 1 + len(matrix.lines):
         _end_matrix(state)
     if name := _NAME.fullmatch(text):
         _end_matrix(state)
         state.name_operation(name[1].strip())
-    elif matrix := _MATRIX.fullmatch(text):
+    elif begin := _MATRIX.fullmatch(text):
         _end_matrix(state)
-        if matrix[1] != "0":
+        if begin[1] != "0":
             what = f"$${text}: only $$*CATIA0 is known to announce a machining axis system"
             raise StatementError(what, "output the file with NC_MACHINING_AXIS as $$*CATIA0", code="CL430")
-        state.matrix, state.matrix_line = [], state.line
-    elif state.matrix is not None:
-        state.matrix.append(text)
-        if len(state.matrix) == 2 and not _NUMBER.search(text):
+        matrix.lines, matrix.line = [], state.line
+    elif matrix.lines is not None:
+        matrix.lines.append(text)
+        if len(matrix.lines) == 2 and not _NUMBER.search(text):
             _miss_system(state)
-        elif len(state.matrix) == 4:  # an identifier, and three lines of four numbers
-            numbers = _numbers_of(state.matrix[1:])
-            state.matrix = None
+        elif len(matrix.lines) == 4:  # an identifier, and three lines of four numbers
+            numbers = _numbers_of(matrix.lines[1:])
+            matrix.lines = None
             _set_system(state, numbers)
 
 
@@ -73,21 +84,22 @@ def _damaged_matrix() -> StatementError:
 
 
 def _end_matrix(state: ReaderState) -> None:
-    """Judge the lines behind ``$$*CATIA0`` where other lines follow: they are whole, or there is none of the matrix."""
-    if state.matrix is None:
+    """Check the lines behind ``$$*CATIA0`` where other lines follow: the matrix is whole, or missing altogether."""
+    matrix = state.own(_Matrix)
+    if matrix.lines is None:
         return
-    lines, state.matrix = state.matrix, None
+    lines, matrix.lines = matrix.lines, None
     try:
         if any(_ROW.fullmatch(line) for line in lines) or len(lines) > 1:
             raise _damaged_matrix()
         _miss_system(state)
     except StatementError as error:
-        state.diagnostics.error(state.matrix_line, error.what, error.cure, code=error.code)
+        state.diagnostics.error(matrix.line, error.what, error.cure, code=error.code)
 
 
 def _miss_system(state: ReaderState) -> None:
-    """Go on without the matrix that a table of words leaves out; where it may be another one, it is needed."""
-    state.matrix = None
+    """Go on without the matrix that a table of words leaves out; refuse that where it may be another one."""
+    state.own(_Matrix).lines = None
     if state.system or state.row:
         what = "$$*CATIA0 without its matrix: the machining axis system may be another one than before"
         raise StatementError(what, _WITH_MATRIX, code="CL430")
@@ -97,7 +109,7 @@ def _set_system(state: ReaderState, numbers: tuple[float, ...]) -> None:
     """Set the machining axis system of the points that follow; that of the file is the first one.
 
     Columns are axes and origin in the model. Operations of a later system have their frame in the first one, and
-    nothing that was said in the coordinates before holds on: last point, tool axis, clearance plane.
+    nothing in the coordinates before goes on: last point, tool axis, clearance plane.
     """
     if not state.system and state.row:
         what = "$$*CATIA0 behind points whose machining axis system nothing states"

@@ -3,10 +3,12 @@
 import re
 from typing import Final
 
+from trunnion.cl.conventions import CycleWords
 from trunnion.cl.diagnostics import StatementError
-from trunnion.cl.dialect import CycleWords, Dialect, marks
+from trunnion.cl.dialect import Dialect, marks
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statements import HANDLERS
+from trunnion.cl.text_format import CLSF_TEXT
 
 _MODES: Final = (
     "DRILL", "DEEP", "BRKCHP", "CSINK", "TAP", "BORE", "DRAG", "NODRAG", "MANUAL", "FACE", "REAM", "THRU", "BACK",
@@ -31,5 +33,6 @@ CLSF: Final = Dialect(
     handlers=HANDLERS,
     cycles=CycleWords({word: (word,) for word in _MODES}),
     in_sections=True,
+    text=CLSF_TEXT,
     comment=_comment,
 )

@@ -1,6 +1,6 @@
 """APT exports of Autodesk Fusion and HSMWorks.
 
-Their posts write the points of a tilted operation in the coordinates of its plane, and say nothing of the plane.
+Their posts write the points of a tilted operation in the coordinates of its plane, and do not state the plane.
 """
 
 from typing import Final
@@ -17,7 +17,7 @@ _POST: Final = "output the NC program by the CAM system's post, or CL data with 
 
 
 def _partno(state: ReaderState, statement: Statement) -> None:
-    """The name of the part, in quotation marks; and what nothing in the file tells."""
+    """Set the name of the part, and warn of tilted operations, which the file may not show."""
     what = "some revisions of this export write operations in tilted planes without their tool axes"
     state.diagnostics.remark(state.line, what, "make sure that all operations of the file are upright", code="CL460")
     operations.partno(state, statement._replace(text=statement.text.strip("'")))

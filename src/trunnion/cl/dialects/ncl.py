@@ -3,8 +3,9 @@
 from typing import Final
 
 from trunnion.cl.builder import NoAxis
+from trunnion.cl.conventions import CycleParts, CycleWords
 from trunnion.cl.diagnostics import StatementError
-from trunnion.cl.dialect import CycleParts, CycleWords, Dialect, marks
+from trunnion.cl.dialect import Dialect, marks
 from trunnion.cl.dialects.apt import APT_HANDLERS
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, parse

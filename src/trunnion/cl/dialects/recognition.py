@@ -1,6 +1,6 @@
-"""Which dialect a CL file is written in, told by its lines and never by its name."""
+"""Recognizes the dialect of a CL file by its lines, never by its name."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Final
 
@@ -9,41 +9,40 @@ from trunnion.cl.dialect import Dialect
 #: Bytes of a line that marks are looked for in: the same line comes often.
 _COMPARED: Final = 48
 
-#: Text behind these words is anybody's, and no mark; points look alike in most dialects, and there are many.
+#: Text behind these words may be anything, so it is no mark; points look alike in most dialects, and there are many.
 _NO_MARKS: Final = (b"PPRINT", b"INSERT", b"DISPLY", b"DISPLAY", b"TPRINT", b"GOTO")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Recognition:
-    """The dialect of a file, and why it is taken for that; ``marked``: by a mark, and not for want of any."""
+    """The dialect of a file, and why; ``marked``: a line has a mark of it, so that it is no mere default."""
 
     dialect: Dialect
     why: str
     marked: bool = True
 
 
-def recognize(head: bytes, dialects: Sequence[Dialect], general: Dialect, default: Dialect) -> Recognition:
+def recognize(head: bytes, dialects: Iterable[Dialect], default: Dialect) -> Recognition:
     """The dialect with most different marks in the lines of ``head``, the first one among equals.
 
-    Without any mark it is the ``general`` one, if that has a mark, else the ``default``.
+    A general one counts where no other has a mark; without any mark it is the ``default``.
     """
-    lines = head.splitlines()
     seen: dict[bytes, int] = {}
-    for number, line in enumerate(lines, 1):
+    for number, line in enumerate(head.splitlines(), 1):
         if not line.lstrip()[:7].upper().startswith(_NO_MARKS):
             seen.setdefault(line[:_COMPARED], number)
     best, why, most = default, "no line shows which CAM system wrote it", 0
-    for dialect in dialects:
+    for dialect in sorted(dialects, key=lambda dialect: dialect.is_general):
+        if dialect.is_general and most:
+            break
         found = _marks(dialect, seen)
         if len(found) > most:
             best, why, most = dialect, min(found)[1], len(found)
-    if not most and (found := _marks(general, seen)):
-        best, why, most = general, min(found)[1], 1
     return Recognition(best, why, most > 0)
 
 
 def _marks(dialect: Dialect, lines: dict[bytes, int]) -> list[tuple[int, str]]:
-    """The first line with each of its marks, and what it says."""
+    """The first line with each mark of a dialect, and the mark as it stands there."""
     found = []
     for mark in dialect.marks:
         for line, number in lines.items():

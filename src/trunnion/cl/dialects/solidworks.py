@@ -1,13 +1,15 @@
 """SolidWorks CAM and CAMWorks APT."""
 
 import re
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from trunnion.cl.builder import NoAxis
+from trunnion.cl.conventions import CycleParts, CycleWords
 from trunnion.cl.diagnostics import StatementError
-from trunnion.cl.dialect import CycleParts, CycleWords, Dialect, marks
+from trunnion.cl.dialect import Dialect, marks
 from trunnion.cl.dialects.apt import APT_HANDLERS
 from trunnion.cl.state import COORDINATE_SYSTEM, ReaderState
 from trunnion.cl.statement import Statement
@@ -20,21 +22,31 @@ _SQUARE: Final = 1e-3
 _Z: Final = (0.0, 0.0, 1.0)
 
 #: A note that names a tool: ``[HOLDER=C40-M20EM3] 20MM CRB 2FL 38 LOC``.
-_NOTE: Final = re.compile(r"(?:\[HOLDER=([^\]]*)\]\s*)?(.*)", re.DOTALL)
+_NAME_IN_NOTE: Final = re.compile(r"(?:\[HOLDER=([^\]]*)\]\s*)?(.*)", re.DOTALL)
+
+
+@dataclass(slots=True)
+class _Note:
+    """The last note, and its line."""
+
+    line: int = 0
+    text: str = ""
 
 
 def _insert(state: ReaderState, statement: Statement) -> None:
     """A note: it begins an operation, and names the tool if CUTTER follows. It never goes into the program as it is."""
     state.split_operation()
-    state.note = (state.line, statement.text.strip())
-    events.message(state, statement._replace(major="PPRINT", text=statement.text.strip()))
+    note = state.own(_Note)
+    note.line, note.text = state.line, statement.text.strip()
+    events.message(state, statement._replace(major="PPRINT", text=note.text))
 
 
 def _cutter(state: ReaderState, statement: Statement) -> None:
     """The tool, under the name of the note before it, which may begin with its holder."""
     apt_tools.cutter(state, statement)
-    if state.note and state.note[0] + 1 == state.line:
-        holder, name = _NOTE.findall(state.note[1])[0]
+    note = state.own(_Note)
+    if note.line and note.line + 1 == state.line:
+        holder, name = _NAME_IN_NOTE.findall(note.text)[0]
         apt_tools.name_tool(state, name, holder)
 
 
@@ -101,7 +113,7 @@ def _extension(state: ReaderState, statement: Statement) -> None:
 def _settle_cycle(found: CycleParts) -> None:
     """The first peck, and then pecks of one length: as first, decrease and minimum.
 
-    Pecks that grow cannot be said so; shorter ones are kind to the drill.
+    Pecks that grow have no words; shorter ones are safe for the drill.
     """
     first, others = found.take("1STPECK"), found.take("SUBPECK")
     if first is not None and others is not None:

@@ -1,6 +1,6 @@
 """Tools of APT dialects: CUTTER with its seven parameters, LOADTL in its forms, names."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from trunnion.cl.diagnostics import StatementError
@@ -23,25 +23,34 @@ _OF_CUTTER: Final = ("kind", "diameter", "corner_radius", "length", "taper_angle
 _REGISTERS: Final = frozenset({"OSETNO", "OFFSET", "ADJUST"})
 
 
+@dataclass(slots=True)
+class _Stated:
+    """Rows before which a statement last described a tool: its form, its name, its length in the spindle; -1: none."""
+
+    form: int = -1
+    name: int = -1
+    length: int = -1
+
+
 def cutter(state: ReaderState, statement: Statement) -> None:
     """Set the form of the tool: CUTTER/d[,r[,e,f,a,b,h]].
 
-    d diameter, r corner radius, e and f the centre of the corner's circle from the axis and above the tip, a the angle
-    of the tip from the horizontal, b that of the side from the axis, h the height.
+    d diameter; r corner radius; e, f centre of the corner's circle from the axis and above the tip; h height.
+    a is the angle of the tip from the horizontal, b that of the side from the axis, both in degrees.
     """
-    tool = _form(statement)
+    tool, stated = _form(statement), state.own(_Stated)
     now = state.builder.tool
     form = Tool(**{field: getattr(now, field) for field in _OF_CUTTER})
     if form != tool:
         state.split_operation()
     state.state_once("tool", tool)
     if form != tool:
-        if state.name_row == state.row:
+        if stated.name == state.row:
             tool = replace(tool, name=now.name, holder=now.holder)
-        if state.length_row == state.row:
+        if stated.length == state.row:
             tool = replace(tool, set_length=now.set_length)
         state.builder.tool = tool
-    state.cutter_row = state.row
+    stated.form = state.row
 
 
 def cutter_in_section(state: ReaderState, statement: Statement) -> None:
@@ -77,13 +86,13 @@ def name_tool(state: ReaderState, name: str, holder: str = "") -> None:
         state.split_operation()
         state.builder.tool = replace(state.builder.tool, name=name, holder=holder)
     state.state_once("name of the tool", name)
-    state.name_row = state.row
+    state.own(_Stated).name = state.row
 
 
 def set_length_of(state: ReaderState, field: str, statement: Statement) -> None:
     """Set ``flute_length`` or ``extension`` where a tool has just been described."""
     (length,) = statement.numbers(1)
-    if state.cutter_row == state.row:
+    if state.own(_Stated).form == state.row:
         state.state_once(field.replace("_", " "), length)
         sizes: dict[str, Any] = {field: length}
         state.builder.tool = replace(state.builder.tool, **sizes)
@@ -131,7 +140,7 @@ def loadtl(state: ReaderState, statement: Statement) -> None:
     if length:
         state.state_once("length of the tool in the spindle", length)
         state.builder.tool = replace(state.builder.tool, set_length=length)
-        state.length_row = state.row
+        state.own(_Stated).length = state.row
     if unknown:
         state.note_unknown(statement, f"LOADTL with {','.join(unknown)} is not known", *unknown)
 
@@ -157,7 +166,8 @@ def _load(state: ReaderState, number: int, adjust: int) -> None:
     state.load_tool(number, adjust)
     if before is None or before.number == number:
         return
-    if state.cutter_row != state.row:
+    stated = state.own(_Stated)
+    if stated.form != state.row:
         state.builder.tool = Tool(name=state.builder.tool.name, holder=state.builder.tool.holder)
-    if state.name_row != state.row:
+    if stated.name != state.row:
         state.builder.tool = replace(state.builder.tool, name="", holder="")

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from trunnion.cl.assemble import CYCLE_LENGTHS
+from trunnion.cl.conventions import CycleParts
 from trunnion.cl.diagnostics import StatementError
-from trunnion.cl.dialect import CycleParts
 from trunnion.cl.state import FEED_UNITS, ReaderState
 from trunnion.cl.statement import Statement, numbers
 from trunnion.cl.statements.motion import refuse_in_circle
@@ -117,7 +117,7 @@ def _refuse_unused(found: CycleParts) -> None:
 
 
 def _refuse_repetitions(found: CycleParts) -> None:
-    """Refuse a number that is given twice: nobody knows which of them is meant."""
+    """Refuse a number that is given twice: which of them is meant is unknown."""
     names = ["a feed" if word in ("MMPM", "MMPR") else word for word, _ in found.couplets]
     if twice := next((name for n, name in enumerate(names) if name in names[:n]), ""):
         raise StatementError(f"CYCLE has {twice} twice", "write the one that is meant", code="CL320")

@@ -1,6 +1,6 @@
 """Statements that become feeds and events: spindle, tool, coolant, stops, texts.
 
-Words are told apart by their meaning, not by their place: some systems write ``SPINDL/RPM,n``, others ``SPINDL/n,RPM``.
+Words are recognized by their meaning, not by their place: some systems write ``SPINDL/RPM,n``, others ``SPINDL/n,RPM``.
 """
 
 from dataclasses import replace

@@ -1,8 +1,9 @@
 """Statements of motion: points, circles, and motion that cannot be read."""
 
 import math
+from dataclasses import dataclass
 
-from trunnion.cl.builder import CircleStatement, FromStatement, NoAxis
+from trunnion.cl.builder import CircleStatement, FromStatement, NoAxis, SplineStatement
 from trunnion.cl.diagnostics import StatementError
 from trunnion.cl.state import ReaderState
 from trunnion.cl.statement import Statement, is_whole, numbers
@@ -18,6 +19,14 @@ MAX_TURNS = 10000
 TURNS_IN_ANY_CASE = 50_000
 TURNS_PER_LINE = 50
 MOST_TURNS = 2_000_000
+
+
+@dataclass(slots=True)
+class SplineState:
+    """The spline that KNOT and CNTRL go on; ``is_refused``: those that follow belong to one that an error has named."""
+
+    spline: SplineStatement | None = None
+    is_refused: bool = False
 
 
 def rapid(state: ReaderState, statement: Statement) -> None:
@@ -124,7 +133,7 @@ def begin_circle(
 
 
 def _count_turns(state: ReaderState, turns: int) -> None:
-    """Refuse more turns than anybody cuts: every one of them is looked at."""
+    """Refuse more turns than any job has: each of them takes time."""
     most = TURNS_IN_ANY_CASE + min(TURNS_PER_LINE * state.line, MOST_TURNS)
     state.turns += turns
     if state.turns > most >= state.turns - turns:
@@ -134,9 +143,10 @@ def _count_turns(state: ReaderState, turns: int) -> None:
 
 def unsupported(state: ReaderState, statement: Statement) -> None:
     """Refuse motion that is neither lines nor circles in the coordinates of the operation."""
-    if statement.major in ("KNOT", "CNTRL", "MOVNRB") and state.spline_reported:
+    splines = state.own(SplineState)
+    if statement.major in ("KNOT", "CNTRL", "MOVNRB") and splines.is_refused:
         return  # part of a spline that was refused already
-    state.spline_reported = True
+    splines.is_refused = True
     raise StatementError(
         f"{statement.major} is motion that cannot be read",
         "turn off spline output in the CAM system, and write lines and circles in the machining coordinates",

@@ -188,7 +188,7 @@ def _tolerance(state: ReaderState, statement: Statement) -> float:
 
 
 def paint(state: ReaderState, statement: Statement) -> None:
-    """Note the colour of the path, which tells the phase; other PAINT statements only say how it is drawn."""
+    """Note the colour of the path, which gives the phase; other PAINT statements only say how it is drawn."""
     if statement.values[:1] == ("COLOR",):
         state.builder.colours.append((state.operation_row, whole_number("PAINT/COLOR", statement.values[1:])))
 

@@ -17,8 +17,8 @@ _CURE: Final = "output splines as NX does for three axes, or turn spline output 
 
 def nurbs(state: ReaderState, statement: Statement) -> None:
     """Begin a spline in the last point."""
-    state.spline = None
-    state.spline_reported = True  # until it is certain that this one can be read
+    splines = state.own(motion.SplineState)
+    splines.spline, splines.is_refused = None, True  # until it is certain that this one can be read
     if not state.in_operation:
         raise StatementError("NURBS outside any operation", "write TOOL PATH/name,TOOL,tool before it", code="CL350")
     if statement.values:
@@ -32,30 +32,31 @@ def nurbs(state: ReaderState, statement: Statement) -> None:
         raise StatementError("RAPID before a NURBS", "remove the RAPID", code="CL580")
     if motion.current_tip(state) is None:
         raise StatementError("NURBS without a point to begin in", "write FROM/ or GOTO/ before it", code="CL510")
-    state.spline_reported = False
-    state.spline = SplineStatement(state.operation_row, state.line)
-    state.builder.splines.append(state.spline)
+    splines.spline, splines.is_refused = SplineStatement(state.operation_row, state.line), False
+    state.builder.splines.append(splines.spline)
 
 
 def knot(state: ReaderState, statement: Statement) -> None:
     """Add knots to the spline that has begun."""
-    if state.spline_reported:
+    splines = state.own(motion.SplineState)
+    if splines.is_refused:
         return
-    if state.spline is None or state.spline.points:
+    if splines.spline is None or splines.spline.points:
         raise StatementError("KNOT without a NURBS before it", _CURE, code="CL600")
-    state.spline.knots += _numbers(state, statement)
+    splines.spline.knots += _numbers(state, statement)
 
 
 def cntrl(state: ReaderState, statement: Statement) -> None:
     """Add a control point, in a row of its own until the spline is evaluated."""
-    if state.spline_reported:
+    splines = state.own(motion.SplineState)
+    if splines.is_refused:
         return
     if len(statement.values) == 6:
         _give_up(state)
         raise StatementError("CNTRL with a tool axis: what it means along a spline is not known", _CURE, code="CL600")
     values = _numbers(state, statement, 3)
     motion.write_row(state, values)
-    spline = state.spline
+    spline = splines.spline
     if spline is None or state.operation_row != spline.row + spline.points:
         _give_up(state)
         raise StatementError("CNTRL that follows neither KNOT nor another CNTRL", _CURE, code="CL600")
@@ -73,7 +74,8 @@ def _numbers(state: ReaderState, statement: Statement, *counts: int) -> tuple[fl
 
 def _give_up(state: ReaderState) -> None:
     """Report no more of a spline that an error has named."""
-    state.spline_reported = True
-    if state.spline is not None:
-        state.builder.splines.remove(state.spline)
-        state.spline = None
+    splines = state.own(motion.SplineState)
+    splines.is_refused = True
+    if splines.spline is not None:
+        state.builder.splines.remove(splines.spline)
+        splines.spline = None

@@ -105,7 +105,7 @@ class AptWriter(ClWriter):
         return [number_text(n / unit if k % 4 == 3 else n, 10) for k, n in enumerate(self.source.system)]
 
     def _remark_phases(self, operations: Sequence[Operation]) -> None:
-        """Say that colours are lost, which tell approach, engage and the like."""
+        """Report that colours are lost, which give phases such as approach and engage."""
         for operation in operations:
             moves = operation.moves
             plain = np.where(moves.kind == Kind.RAPID, Phase.RAPID, Phase.CUT)
@@ -116,7 +116,7 @@ class AptWriter(ClWriter):
                 return
 
     def _remark_tolerances(self, operations: Sequence[Operation]) -> None:
-        """Say where a tolerance goes on that an operation does not have."""
+        """Report where a tolerance goes on that an operation does not have."""
         for before, operation in pairwise(operations):
             pairs = ((before.intol, operation.intol), (before.outtol, operation.outtol))
             if any(was is not None and now is None for was, now in pairs):
@@ -124,7 +124,7 @@ class AptWriter(ClWriter):
                 self.remark(operation.line, what, "write INTOL/ and OUTTOL/ into it")
 
     def _remark_tool(self, operation: Operation) -> None:
-        """Say which sizes of a tool CUTTER has no place for."""
+        """Report the sizes of a tool for which CUTTER has no place."""
         tool = operation.tool
         sizes = {
             "flute length": tool.flute_length,

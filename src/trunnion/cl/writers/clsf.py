@@ -23,7 +23,7 @@ _IDENTITY: Final = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
 
 class ClsfWriter(ClWriter):
-    """Operations between TOOL PATH and END-OF-PATH; colours tell the phase."""
+    """Operations between TOOL PATH and END-OF-PATH; colours give the phase."""
 
     name = "clsf"
     title = "NX CLSF"
@@ -42,7 +42,7 @@ class ClsfWriter(ClWriter):
         return toolpath
 
     def losses(self, operation: Operation) -> Iterator[Problem]:
-        """A name that cannot be told from that of the tool."""
+        """Report a name that cannot be distinguished from that of the tool."""
         if ",TOOL," in operation.name:
             what = f"operation name {operation.name!r} has ',TOOL,' in it, which ends the name in a CL file"
             yield Problem(self.source.file, operation.line, what, "rename the operation", code="CL910")

@@ -1,4 +1,4 @@
-"""Full circles as two arcs, for dialects that tell an arc by its end point."""
+"""Full circles as two arcs, for dialects that give an arc by its end point."""
 
 from dataclasses import replace
 

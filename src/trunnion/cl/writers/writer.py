@@ -199,7 +199,7 @@ class ClWriter(ABC):
         """The lines at its end."""
 
     def colours(self, operation: Operation) -> list[tuple[int, str]]:
-        """Rows, and the statements before them that tell the phase."""
+        """Rows, and the statements before them that give the phase."""
         return []
 
     def feed(self, value: float, *, per_rev: bool) -> list[str]:

@@ -24,6 +24,7 @@ from trunnion.impeller.profiles import Profile
 from trunnion.impeller.solid.shapes import SplineSurface
 from trunnion.impeller.solid.splines import surface_through
 from trunnion.impeller.solid.turned import profile_parameters
+from trunnion.wording import position
 
 #: Parts of a loop.
 PARTS: Final = 6
@@ -180,8 +181,8 @@ def _heights(impeller: Impeller, blade: Blade, stations: Stations, fillet: Fille
     over = gap(fillet.v)
     k = int(over.argmax())
     if over[k] >= 0.0:
-        x, y, z = fillet.centre[k] + impeller.definition.fillet * fillet.to_blade[k]
-        what = f"the fillet reaches the shroud near X{x:.3f} Y{y:.3f} Z{z:.3f}, so that no solid of it is made"
+        place = position(fillet.centre[k] + impeller.definition.fillet * fillet.to_blade[k])
+        what = f"the fillet reaches the shroud near {place}, so that no solid of it is made"
         raise InputError(
             Problem(impeller.definition.file, 0, what, "make the fillet smaller, or write a mesh", code="IMP420")
         )

@@ -4,7 +4,7 @@ import io
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import BinaryIO
+from typing import Annotated, BinaryIO, ClassVar
 
 import numpy as np
 
@@ -32,6 +32,7 @@ from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind, Toolpath
 from trunnion.placing.program_heads import damaged_notices, placed_notices, stated_place
+from trunnion.results import FIRST, Figure
 from trunnion.wording import counted
 
 #: Places that are not understood which an error names one by one.
@@ -52,10 +53,16 @@ class ConvertResult:
     output    file of the result; None: it was not written to a file
     """
 
-    toolpath: Toolpath
-    settings: Mapping[str, str]
-    problems: tuple[Problem, ...]
-    posted: PostResult | None
+    SCHEMA: ClassVar[int] = 1
+
+    toolpath: Annotated[
+        Toolpath,
+        Figure("operations", take=lambda toolpath: len(toolpath.operations), after="output"),
+        Figure("points", take=lambda toolpath: sum(len(each.moves) for each in toolpath.operations)),
+    ]
+    settings: Annotated[Mapping[str, str], Figure(after="points")]
+    problems: Annotated[tuple[Problem, ...], Figure("remarks", after="posted")]
+    posted: Annotated[PostResult | None, Figure(after="settings")]
     output: Path | None
     _memory: io.BytesIO | None
 
@@ -65,6 +72,7 @@ class ConvertResult:
         return f"ConvertResult({result})"
 
     @property
+    @Figure(after=FIRST)
     def passed(self) -> bool:
         """Whether all was understood and, with another machine, the program is proven and may run there."""
         understood = all(problem.severity is not Severity.ERROR for problem in self.problems)

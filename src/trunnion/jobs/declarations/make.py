@@ -2,6 +2,7 @@
 
 from typing import Final
 
+from trunnion.dialect_names import WRITTEN_DIALECTS
 from trunnion.jobs.job import Job, job
 from trunnion.options.groups import (
     BODIES,
@@ -13,6 +14,7 @@ from trunnion.options.groups import (
     MACHINE,
     OTHER_MACHINE,
     OUTPUT,
+    POSTING,
     READING,
     READING_AS_SETTINGS,
     REPORT,
@@ -24,7 +26,7 @@ from trunnion.options.groups import (
 )
 from trunnion.options.kinds import Choice, FileIn, FileOut, Switch, Text, angle
 from trunnion.options.option import Level, Many, Option
-from trunnion.options.words import GOALS, WRITTEN_DIALECTS
+from trunnion.options.words import GOALS
 
 _SIMULATING: Final = "with --simulate"
 
@@ -43,6 +45,7 @@ _POST: Final = job(
     HOOKS,
     READING_AS_SETTINGS,
     FEED.but(setting="feed"),
+    POSTING,
     Option("force", "--force", Switch(), "write a program that must not run; its head says so"),
     Option("explain", "--explain", Switch(), "say why the axes were planned as they are"),
     REPORT,
@@ -86,7 +89,10 @@ _CONVERT: Final = job(
     Option("to_cl", "--to-cl", Switch(), "write a CL file", either="target!"),
     OTHER_MACHINE.but(help="write a program for this machine", either="target!"),
     Option(
-        "to_dialect", "--to-dialect", Choice(WRITTEN_DIALECTS), "what the CL file is written in; by default clsf",
+        "to_dialect",
+        "--to-dialect",
+        Choice(tuple(WRITTEN_DIALECTS)),
+        "what the CL file is written in; by default clsf",
         own=True,
     ),
     READING,

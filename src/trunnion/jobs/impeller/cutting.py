@@ -30,13 +30,12 @@ from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, read_cl
 from trunnion.jobs.inputs.settings import Settings, check_tolerance
 from trunnion.jobs.observer import SILENT, Observer
-from trunnion.jobs.papers.files import PaperFiles
-from trunnion.jobs.papers.simulation_report import simulation_content
 from trunnion.jobs.post.post_job import PostJob, prepare
 from trunnion.jobs.post.posting import post_toolpaths
 from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.writing import named_run
-from trunnion.jobs.result_output import open_target
+from trunnion.jobs.result_output import PaperFiles, open_target
+from trunnion.jobs.simulate.report import simulation_content
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.simulating import simulate
 from trunnion.machines import Machine

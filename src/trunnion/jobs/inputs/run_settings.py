@@ -10,6 +10,9 @@ from typing import Final
 from trunnion.cl import DIALECTS
 from trunnion.controls.vocabulary import PROGRAM_CHOICES, PROGRAM_MEANINGS
 from trunnion.model.motion import PoleStrategy
+from trunnion.options.groups import POSTING
+from trunnion.options.kinds import Number
+from trunnion.options.option import Option
 from trunnion.output.subprograms import MIN_SUBPROGRAM_BYTES
 from trunnion.planning import PlanOptions
 from trunnion.planning.options import AXIS_TOLERANCE_WITHOUT_TCP
@@ -59,6 +62,14 @@ class RunSetting:
 
 def _choice(meaning: str, *choices: str, default: str = "") -> RunSetting:
     return RunSetting(meaning, default or choices[0], choices)
+
+
+def _declared(option: Option) -> RunSetting:
+    """The setting for which an option of numbers stands, as the option is declared."""
+    assert isinstance(option.kind, Number)
+    meaning = f"{option.help[:1].upper()}{option.help[1:]}."
+    bounds = option.kind.least, option.kind.most
+    return RunSetting(meaning, bounds=bounds, form=option.kind.metavar, example=option.kind.how.rpartition(" ")[2])
 
 
 #: Settings of the post by their names; all others belong to the control, whose templates print them.
@@ -197,5 +208,6 @@ RUN_SETTINGS: Final[Mapping[str, RunSetting]] = {
         form="MM_MIN",
         example="8000",
     ),
+    **{option.setting: _declared(option) for option in POSTING},
     **{key: RunSetting(PROGRAM_MEANINGS[key], words[0], words) for key, words in PROGRAM_CHOICES.items()},
 }

@@ -4,11 +4,10 @@ from trunnion.errors import InputError, Problem
 from trunnion.jobs.inputs.reading import FilePath, MachineLike
 from trunnion.jobs.inputs.settings import Settings, as_texts
 from trunnion.jobs.observer import SILENT, Observer
-from trunnion.jobs.papers.files import paper_files
 from trunnion.jobs.place.inputs import nc_program_stays
 from trunnion.jobs.post.posting import post_beside
 from trunnion.jobs.post.result import PostResult
-from trunnion.jobs.result_output import OutputLike
+from trunnion.jobs.result_output import OutputLike, paper_files
 from trunnion.placing.placement import Placement
 
 

@@ -10,10 +10,10 @@ from trunnion.jobs.inputs.arguments import checked_angles
 from trunnion.jobs.inputs.bodies import MeshLike, read_mesh
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.inputs.settings import SettingValue
+from trunnion.jobs.inputs.simulation_input import SimulationInput
 from trunnion.jobs.place.bodies import BodiesInput, stock_mesh
 from trunnion.jobs.project.file import load_project, project_inputs
 from trunnion.jobs.project.project import PostedSetup, Project
-from trunnion.jobs.simulate.setups import SimulationInput
 from trunnion.model.clamping import Clamping
 
 

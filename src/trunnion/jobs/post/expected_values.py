@@ -5,17 +5,16 @@ Out:    tolerances and settings for ``trunnion.verification.verify``.
 """
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from trunnion.controls import Control
-from trunnion.jobs.inputs.settings import m_code, work_offset_setting
 from trunnion.jobs.post.tolerances import program_tolerances
+from trunnion.jobs.verify.expected_values import expected_values
 from trunnion.model.motion import MachiningMode
 from trunnion.output.program import Program
 from trunnion.planning import PlanOptions
-from trunnion.verification import ExpectedValues, OperationSettings, Tolerances
+from trunnion.verification import ExpectedValues, Tolerances
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,41 +40,27 @@ def expectation(program: Program, options: PlanOptions | None = None) -> Expecta
 
 
 def _expected_settings(program: Program, options: PlanOptions) -> ExpectedValues:
-    """What the settings of the post say and the CL files do not."""
-    without_tcp = any(motion.mode is MachiningMode.WITHOUT_TCP for motion in program.motions)
-    axis_tolerance = options.axis_tolerance_between_points
-    values = program.effective_settings()
+    """What the settings of the post say and the CL files do not, with what only a post knows of its program."""
+    control, settings = program.control, program.effective_settings()
     operations = {motion.operation.name: motion.operation for motion in program.motions}
-    by_operation = {
-        name: OperationSettings(*_operation_settings(program, program.effective_settings(operation)))
-        for name, operation in operations.items()
-        if name in program.own_settings
-    }
-    every = [values, *(program.effective_settings(motion.operation) for motion in program.motions)]
-    tool, work_offset, edge = _operation_settings(program, values)
-    inverse_time = program.control.formats.get("inverse_time")
-    rapid_feed = float(values["rapid_feed"]) if values.get("rapid_feed") else None
-    return ExpectedValues(
-        tool=tool,
-        work_offset=work_offset,
-        edge=edge,
-        by_operation=by_operation,
+    by_operation = {name: program.effective_settings(operation) for name, operation in operations.items()}
+    own = {name: values for name, values in by_operation.items() if name in program.own_settings}
+    every = [settings, *by_operation.values()]
+    without_tcp = any(motion.mode is MachiningMode.WITHOUT_TCP for motion in program.motions)
+    axis_tolerance, inverse_time = options.axis_tolerance_between_points, control.formats.get("inverse_time")
+    return replace(
+        expected_values(control, program.machine, settings, own),
         span=axis_tolerance if without_tcp or math.isfinite(axis_tolerance) else None,
         span_tip=options.tip_tolerance if without_tcp else None,
-        blocks_in_compensation=program.control.blocks_in_compensation,
-        stops_in_compensation=program.control.stops_in_compensation,
         axis_tolerance=options.default_axis_tolerance,
         absolute=options.absolute_frame,
         max_inverse_time_feed=inverse_time.five_axis.greatest if inverse_time else None,
-        max_feed=program.control.formats["feed"].five_axis.greatest,
+        max_feed=control.formats["feed"].five_axis.greatest,
         fastest_feed=options.fastest_feed,
         feed_limit=options.feed_limit,
-        rapid_feed=rapid_feed,
-        below_rapid_feed=None if rapid_feed is None else rapid_feed - program.control.formats["feed"].five_axis.digit,
         smoothing=max(float(each.get(key) or 0.0) for each in every for key in _SMOOTHING),
-        rigid_tap=m_code(values.get("rigid_tap", "")),
         tool_deltas={
-            word: tuple({_as_printed(program.control, key, float(each[key])) for each in every if each.get(key)})
+            word: tuple({_as_printed(control, key, float(each[key])) for each in every if each.get(key)})
             for key, word in _TOOL_DELTAS.items()
         },
     )
@@ -88,9 +73,3 @@ def _as_printed(control: Control, name: str, value: float) -> float:
         control.formats[number_format] for field, number_format in sorted(fields) if field == name and number_format
     ]
     return formats[0].three_axis.rounded(value) if formats else value
-
-
-def _operation_settings(program: Program, values: Mapping[str, str]) -> tuple[str, int | None, int | None]:
-    """Tool, work offset and edge as settings give them."""
-    edge = int(values["edge"]) if "edge" in values else None
-    return values["tool"].strip('"'), work_offset_setting(values["work_offset"], program.machine), edge

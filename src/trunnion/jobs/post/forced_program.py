@@ -6,39 +6,20 @@ Out:    the program with notices in its head, and the proof of it.
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from dataclasses import replace
+from typing import Final
 
 from trunnion import readers
 from trunnion.controls.vocabulary import FORCED_NOTICE
 from trunnion.jobs.observer import Observer
-from trunnion.jobs.post.post_job import PostJob
+from trunnion.jobs.post.stages import Posting, Proof
 from trunnion.jobs.post.writing import write
-from trunnion.jobs.result_output import Target
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
 from trunnion.output.program import Program
-from trunnion.output.subprograms import SubprogramOutput
-from trunnion.verification import Check, Verification
-
-if TYPE_CHECKING:  # imported where a program is simulated: others start sooner
-    from trunnion.jobs.simulate.result import SimulationResult
 
 #: Notices quote numbers of blocks, and may need more lines with larger ones; soon they do not.
 _MOST_WRITINGS: Final = 4
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Proof:
-    """What was found of a program; None: no reader knows its control, or it was not simulated."""
-
-    verification: Verification | None
-    simulation: "SimulationResult | None"
-
-    @property
-    def failed(self) -> list[Check]:
-        """The checks that failed."""
-        return [] if self.verification is None else [check for check in self.verification.checks if not check.passed]
 
 
 class Untold(Observer):
@@ -53,29 +34,27 @@ class Untold(Observer):
 
 
 def write_forced(
+    posting: Posting,
     program: Program,
     proof: Proof,
     prove: Callable[[Run | None, Sequence[OperationStart]], Proof],
-    job: PostJob,
-    target: Target,
-    subprograms: SubprogramOutput | None,
 ) -> Proof:
     """Write a program with a notice for each check that failed, and return the proof of what is written.
 
     Notices move lines and numbers of blocks, which they quote themselves: the program is read back and proven again
     with them, and what the second proof says of it stands in the notices that stay.
     """
+    job, files = posting.job, posting.target.files
     notices = _notices(proof)
     for _ in range(_MOST_WRITINGS):
-        starts = _write(program, notices, target, subprograms)
-        files = target.files
+        starts = _write(posting, program, notices)
         others = [*files.other_paths, *job.beside]
         run = readers.run_program(files.path, job.machine, subprograms=others, encoding=job.encoding)
         proof = prove(run, starts)
         before, notices = notices, _notices(proof)
         if _line_count(program, notices) == _line_count(program, before):
             if notices != before:
-                _write(program, notices, target, subprograms)
+                _write(posting, program, notices)
             break
     return proof
 
@@ -84,11 +63,10 @@ def _notices(proof: Proof) -> list[str]:
     return [f"{FORCED_NOTICE}, written by --force: {check.title}: {check.summary}" for check in proof.failed]
 
 
-def _write(
-    program: Program, notices: Sequence[str], target: Target, subprograms: SubprogramOutput | None
-) -> tuple[OperationStart, ...]:
-    target.files.restart()
-    return write(replace(program, notices=[*program.notices, *notices]), target.files.main, subprograms=subprograms)
+def _write(posting: Posting, program: Program, notices: Sequence[str]) -> tuple[OperationStart, ...]:
+    files = posting.target.files
+    files.restart()
+    return write(replace(program, notices=[*program.notices, *notices]), files.main, subprograms=posting.subprograms)
 
 
 def _line_count(program: Program, notices: Sequence[str]) -> int:

@@ -65,10 +65,8 @@ _STEP_LIMIT: Final = 20_000
 #: Places behind the words with which an operation chooses its modes, at which no text is tried.
 _BEHIND_MODES: Final = ("same_tool", "preselect", "after_approach", "between_planes", "stop")
 
-#: Words of a text, and those of which the path shows nothing either although readers follow them.
+#: Words of a text.
 _WORD: Final = re.compile(r"(?<![A-Z0-9_.])([A-Z_]+)([0-9]*(?:\.[0-9]+)?)")
-_SMOOTHS: Final = re.compile(r"ORI[A-Z]+|CYCLE832")
-_SMOOTHING_CYCLE: Final = re.compile(r"CYCL[ \t]+DEF[ \t]+32(?![0-9])")
 
 _MOST_LISTED: Final = 20
 _TEMPLATE_CURE: Final = (
@@ -138,11 +136,14 @@ def _modes_at(name: str, program: Program) -> list[Problem]:
 
 def _mode_in(words: str, reader: FamilyReader) -> str:
     """The first word of a block that changes a mode which the path does not show; empty if there is none."""
-    cycle = _SMOOTHING_CYCLE.search(words)
-    if cycle:
-        return cycle[0]
-    found = (match[1] + match[2].lstrip("0") for match in _WORD.finditer(words))
-    return next((each for each in found if each in reader.words_without_path or _SMOOTHS.match(each)), "")
+    for match in _WORD.finditer(words):
+        word = match[1] + match[2].lstrip("0")
+        if word in reader.words_without_path:
+            return word
+        smoothing = reader.smoothing.match(words, match.start()) if reader.smoothing else None
+        if smoothing:
+            return smoothing[0]
+    return ""
 
 
 def _is_remark(event: Insert, program: Program) -> bool:

@@ -2,6 +2,9 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from typing import Final
+
+import numpy as np
 
 from trunnion import planning, readers
 from trunnion.controls.vocabulary import FORCED_NOTICE, INCH
@@ -13,6 +16,7 @@ from trunnion.jobs.inputs.settings import Settings, check_operation_names, numbe
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.inserts import insert_problems
 from trunnion.jobs.post.post_job import PostJob, prepare
+from trunnion.jobs.post.stages import PlannedProgram
 from trunnion.model.motion import Plan
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.place_texts import with_place_texts
@@ -20,6 +24,9 @@ from trunnion.output.program import Program
 from trunnion.output.validation import check_program
 from trunnion.output.validation.tools import tool_conflicts
 from trunnion.planning.retracts.tool_retract import with_tool_retract
+
+#: Tilts that differ by less are one, degrees.
+_SAME_ANGLE: Final = 1e-6
 
 
 def plan(
@@ -156,19 +163,8 @@ def _settings_of_twins(own: Mapping[str, object], cut: Sequence[tuple[str, str]]
     ]
 
 
-def plan_program(
-    toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer = SILENT
-) -> tuple[Program, Plan, list[Problem]]:
+def plan_program(toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer = SILENT) -> PlannedProgram:
     """Plan a program and check that it can be written, and may.
-
-    Returns
-    -------
-    program
-        With a notice in its head for each problem that ``force`` overrules.
-    plan
-        Its motions and decisions.
-    problems
-        Warnings about program and plan, and what ``force`` overrules; they have been reported.
 
     Raises
     ------
@@ -195,14 +191,31 @@ def plan_program(
     unproven = _missing_reader(job)
     by_register = readers.can_read(job.machine) and readers.reader_of(job.machine).uses_length_numbers
     conflicts = tool_conflicts(program, uses_length_numbers=by_register)
-    found = [*merge_repeated(planned.problems), *conflicts, *insert_problems(program)]
+    leaning = _leaning_operations(planned, number_setting(job.settings, "max_tilt"))
+    found = [*merge_repeated(planned.problems), *conflicts, *insert_problems(program), *leaning]
     blocking = [problem for problem in found if problem.severity is Severity.ERROR] + unproven
     if blocking and not job.force:
         refused = Problem(file, 0, "no program is written", job.forcing, code="CTL940")
         raise RefusedError((*found, *unproven, refused))
     observer.problems(found)
     notices = [f"{FORCED_NOTICE}, written by --force: {problem.what}" for problem in blocking]
-    return replace(program, notices=[*job.notices, *notices]), planned, [*problems, *found]
+    return PlannedProgram(replace(program, notices=[*job.notices, *notices]), planned, [*problems, *found])
+
+
+def _leaning_operations(planned: Plan, most: float | None) -> list[Problem]:
+    """An error for each operation whose tool axis leans more from Z of the program than the setting allows, degrees."""
+    if most is None:
+        return []
+    found: dict[tuple[str, int], Problem] = {}
+    for operation in (motion.operation for motion in planned.motions if len(motion.operation.moves)):
+        tilt = np.degrees(np.arccos(np.clip(operation.moves.axis[:, 2], -1.0, 1.0)))
+        worst = int(tilt.argmax())
+        if tilt[worst] > most + _SAME_ANGLE:
+            what = f"operation {operation.name}: the tool axis leans {tilt[worst]:.3f} degrees from Z, over {most:g}"
+            cure = "allow it with the setting max_tilt, or lean the tool less in the CAM system"
+            line = int(operation.moves.line[worst])
+            found.setdefault((operation.file, operation.line), Problem(operation.file, line, what, cure, code="PLN340"))
+    return list(found.values())
 
 
 def new_problems(program: Program, observer: Observer, known: Sequence[Problem] = ()) -> list[Problem]:

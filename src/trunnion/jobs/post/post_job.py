@@ -23,7 +23,7 @@ from trunnion.jobs.inputs.settings import (
     split_by_operation,
     with_limit_margin,
 )
-from trunnion.jobs.papers.files import PaperFiles
+from trunnion.jobs.result_output import PaperFiles
 from trunnion.machines import Machine
 from trunnion.model.clamping import Clamping
 from trunnion.model.motion import Decision, MachiningMode, PoleStrategy
@@ -33,7 +33,7 @@ from trunnion.planning import Clearance, ClearanceSurface, ControlCapabilities, 
 from trunnion.readers import check_reading
 
 if TYPE_CHECKING:  # imported where a program is simulated
-    from trunnion.jobs.simulate.setups import SimulationInput
+    from trunnion.jobs.inputs.simulation_input import SimulationInput
 
 #: Values of the setting ``mode``.
 _MODES: Final = {

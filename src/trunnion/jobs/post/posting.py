@@ -6,13 +6,10 @@ Out:    the program: planned, written, read back, run and compared with its tool
 """
 
 from collections.abc import Iterable, Sequence
-from concurrent.futures import Future
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from trunnion.controls.vocabulary import HOOKS_NOTICE
-from trunnion.errors import Problem, Severity, TrunnionError
 from trunnion.files import OutputGroup, file_on_disk
 from trunnion.hooks.calling import Hooks
 from trunnion.hooks.files import load_hooks
@@ -23,26 +20,22 @@ from trunnion.jobs.inputs.input_files import cl_files, machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.jobs.inputs.settings import Settings
 from trunnion.jobs.observer import SILENT, Observer
-from trunnion.jobs.papers.files import PaperFiles, paper_files
-from trunnion.jobs.papers.reports import write_refusal
-from trunnion.jobs.papers.writing import PostPapers, post_papers
-from trunnion.jobs.post.expected_values import Expectation, expectation
-from trunnion.jobs.post.forced_program import Proof, Untold, write_forced
+from trunnion.jobs.post.expected_values import expectation
 from trunnion.jobs.post.left_over_files import left_over
-from trunnion.jobs.post.machining_times import new_time_token, operation_times, prints_times, write_times
+from trunnion.jobs.post.machining_times import new_time_token, prints_times, write_times
+from trunnion.jobs.post.papers.writing import PostPapers, post_papers
 from trunnion.jobs.post.planning import load_toolpaths, new_problems, plan_program
 from trunnion.jobs.post.post_job import FORCING, PostJob, prepare
 from trunnion.jobs.post.program_places import ProgramPlaces
-from trunnion.jobs.post.result import PostResult, ProofFailedError
-from trunnion.jobs.post.writing import named_verification, read_back_while_writing, write
-from trunnion.jobs.result_output import OutputLike, Target, open_target
-from trunnion.jobs.verify.program_warnings import program_warnings, stated_words
-from trunnion.model.clamped_toolpaths import clamped_after, stated_clamping, turned_toolpaths
-from trunnion.model.operation_start import OperationStart
-from trunnion.model.run import Run
-from trunnion.model.toolpath import Message, Toolpath
-from trunnion.placing.program_heads import placed_notices
-from trunnion.verification import Verification, rows_from_starts, verify, without_columns
+from trunnion.jobs.post.proving import prove, report_proof
+from trunnion.jobs.post.reading import as_clamped
+from trunnion.jobs.post.refusals import refused, reported_refusals
+from trunnion.jobs.post.result import PostResult
+from trunnion.jobs.post.stages import PlannedProgram, Posting, WrittenProgram
+from trunnion.jobs.post.writing import write_and_read_back
+from trunnion.jobs.result_output import OutputLike, PaperFiles, Target, open_target, paper_files
+from trunnion.model.toolpath import Toolpath
+from trunnion.output.program import Program
 
 if TYPE_CHECKING:  # imported where a program is simulated: others start sooner
     from trunnion.jobs.simulate.posted import SimulationLike
@@ -205,33 +198,9 @@ def post_beside(
         job.subprograms(target.files, target.path)  # settings that contradict each other are found before any reading
         changes = Hooks(load_hooks(hook_files), job.machine.name, job.control.name, job.settings)
         toolpaths = load_toolpaths(cl, job, strict, observer, changes.change)
-        stated = stated_clamping(toolpaths)
-        clamping = clamped_after(stated, angles, toolpaths[0].file if toolpaths else target.name)
-        toolpaths, carried = _without_notices(toolpaths, job)
-        toolpaths = turned_toolpaths(toolpaths, *angles, absolute=job.options.absolute_frame)
-        decisions = tuple(changes.decisions) if job.options.explain else ()
-        notices: tuple[str, ...] = ()
-        if is_placed or stated is not None or not clamping.is_as_drawn:
-            notices = placed_notices(clamping, job.machine.workpiece_zero, job.machine.tool_length)
-        job = replace(job, notices=(*notices, *carried, *changes.notices), decisions=decisions, clamping=clamping)
-        if simulation is not None and job.simulation is not None:
-            from trunnion.jobs.simulate.posted import simulated_as_clamped
-
-            job = replace(job, simulation=simulated_as_clamped(job.simulation, clamping))
+        toolpaths, job = as_clamped(toolpaths, job, changes, angles, is_placed=is_placed)
         target.files.protect(file_on_disk(toolpath.file) for toolpath in toolpaths)
         return post_toolpaths(toolpaths, job, target, observer, later)
-
-
-def _without_notices(toolpaths: list[Toolpath], job: PostJob) -> tuple[list[Toolpath], tuple[str, ...]]:
-    """Toolpaths without the notices of hooks that they were converted with, and these for the head of the program."""
-    operations = (operation for toolpath in toolpaths for operation in toolpath.operations)
-    texts = (event.text for operation in operations for event in operation.events if isinstance(event, Message))
-    if not any(text.strip().upper().startswith(HOOKS_NOTICE) for text in texts):
-        return toolpaths, ()
-    from trunnion.conversion import take_notices  # few CL files have some
-
-    taken = [take_notices(toolpath, job.control.family) for toolpath in toolpaths]
-    return [toolpath for toolpath, _ in taken], tuple(dict.fromkeys(text for _, found in taken for text in found))
 
 
 def post_toolpaths(
@@ -243,80 +212,51 @@ def post_toolpaths(
 ) -> PostResult:
     """Plan, write and prove a program; errors as ``post`` raises them, ``later`` as ``post_beside`` takes it."""
     subprograms = job.subprograms(target.files, target.path)
-    divided = subprograms is not None
-    reading = partial(
-        read_back_while_writing, target.files, job.machine, encoding=job.encoding, divided=divided, beside=job.beside
-    )
-    places = ProgramPlaces(target)
-    try:
-        with reading() as (progress, running):
-            program, planned, problems = plan_program(toolpaths, job, observer)
-            program = replace(program, time_token=new_time_token() if prints_times(program) else "")
-            starts = write(program, target.files.main, progress, subprograms, observer, places.passages)
-        run = _run_of(running, job, places)
+    posting = Posting(toolpaths, job, target, observer, subprograms, ProgramPlaces(target))
+    with reported_refusals(posting):
+        written = write_and_read_back(posting, partial(_planned, posting))
         if job.options.fastest_feed:
-            from trunnion.jobs.post.fastest_feeds import (
-                raised_feeds,
-                unlimited_axes,
-                with_reached_feeds,
-            )  # few posts ask for it
-
-            program = with_reached_feeds(program, run, toolpaths, job.options)
-            found = [*unlimited_axes(job.machine), *raised_feeds(program, toolpaths)]
-            observer.problems(found)
-            problems += [*found, *new_problems(program, observer, problems)]
-            planned = replace(planned, motions=tuple(program.motions))
-            del run, running
+            planned = _with_reached_feeds(posting, written)
+            del written  # two runs would take twice the memory
             target.files.restart()
-            with reading() as (progress, running):
-                starts = write(program, target.files.main, progress, subprograms, observer, places.passages)
-            run = _run_of(running, job, places)
-        expected = expectation(program, job.options)
-    except TrunnionError as error:
-        if job.papers.report is not None:
-            write_refusal(error.problems, job.machine, target.name, job.papers.report)
-            target.files.remember_alone(job.papers.report)
-        raise
-    columns = job.columns or bool(program.time_token)
-
-    def prove(run: Run | None, starts: Sequence[OperationStart]) -> Proof:
-        verification = _prove(run, toolpaths, expected, target, starts, job, columns=columns)
-        # What may get notices in its head is told when lines are those of the file that stays.
-        quiet = Untold(observer) if job.force else observer
-        return _with_simulation(job, run, target.name, toolpaths, verification, quiet)
-
-    proof = prove(run, starts)
-    if job.force and proof.failed:
-        proof = write_forced(program, proof, prove, job, target, subprograms)
-    verification, simulated = proof.verification, proof.simulation
-    times = operation_times(program, verification) if program.time_token else []
-    if verification is not None and not job.columns:
-        verification = without_columns(verification)
-    if verification is None:
-        problems.append(_nothing_checked(job, target))
-        observer.problems(problems[-1:])
-    if simulated is not None:
-        if job.force:
-            observer.problems(simulated.remarks)
-        problems += [remark for remark in simulated.remarks if remark.severity is Severity.WARNING]
-    if verification is not None:
-        words = program_warnings(verification.run, stated_words(job.control, {**job.control.settings, **job.settings}))
-        problems += words
-        observer.problems(words)
-        observer.verified(verification)
-    remarks = [remark for toolpath in toolpaths for remark in toolpath.remarks]
-    result = PostResult(tuple(toolpaths), planned, verification, (*remarks, *problems), simulation=simulated)
+            written = write_and_read_back(posting, lambda: planned)
+        expected = expectation(written.planned.program, job.options)
+    proof = prove(posting, written, expected)
+    result = report_proof(posting, written.planned, proof)
     if proof.failed and not job.force:
-        assert verification is not None
-        result = replace(result, verification=places.explained(verification, job.control))
-        if job.papers.report is not None:
-            result.write_report(job.papers.report)
-            target.files.remember_alone(job.papers.report)
-        raise _proof_failed(result, job.forcing, places.cause(proof.failed, job.control))
+        raise refused(posting, proof, result)
+    program = written.planned.program
     if program.time_token:
-        write_times(target.files, program, times)
+        write_times(target.files, program, proof.times)
+    return _with_papers(posting, program, result, later)
+
+
+def _planned(posting: Posting) -> PlannedProgram:
+    """The program as it is planned, with a token in the place of each machining time in its text."""
+    planned = plan_program(posting.toolpaths, posting.job, posting.observer)
+    if not prints_times(planned.program):
+        return planned
+    return planned._replace(program=replace(planned.program, time_token=new_time_token()))
+
+
+def _with_reached_feeds(posting: Posting, written: WrittenProgram) -> PlannedProgram:
+    """The program with the feeds that its axes reach in the run with the greatest feeds."""
+    from trunnion.jobs.post.fastest_feeds import raised_feeds, unlimited_axes, with_reached_feeds  # for few posts
+
+    planned, toolpaths, job = written.planned, posting.toolpaths, posting.job
+    program = with_reached_feeds(planned.program, written.run, toolpaths, job.options)
+    found = [*unlimited_axes(job.machine), *raised_feeds(program, toolpaths)]
+    posting.observer.problems(found)
+    found += new_problems(program, posting.observer, planned.problems)
+    plan = replace(planned.plan, motions=tuple(program.motions))
+    return PlannedProgram(program, plan, [*planned.problems, *found])
+
+
+def _with_papers(posting: Posting, program: Program, result: PostResult, later: list[PostPapers] | None) -> PostResult:
+    """The result of a program that is complete, with its papers: they are written, or go into the list ``later``."""
+    target = posting.target
     if target.papers:
-        papers = post_papers(target, program, job, result, verification)
+        papers = post_papers(target, program, posting.job, result)
         if later is None:
             papers.write()
         else:
@@ -324,72 +264,12 @@ def post_toolpaths(
     stay = left_over(
         target, target.papers.values() if later is not None else [place for _, place in target.files.papers]
     )
-    observer.problems(stay)
+    posting.observer.problems(stay)
     return replace(
         result,
         problems=(*result.problems, *stay),
-        encoding=job.encoding,
+        encoding=posting.job.encoding,
         output=target.path,
         subprograms=target.subprograms,
         _memory=target.memory,
     )
-
-
-def _with_simulation(
-    job: PostJob,
-    run: Run | None,
-    name: str,
-    toolpaths: Sequence[Toolpath],
-    found: Verification | None,
-    observer: Observer,
-) -> Proof:
-    """The proof of a program with what it cuts and hits, if that is asked for."""
-    if job.simulation is None:
-        return Proof(found, None)
-    from trunnion.jobs.simulate.posted import simulate_posted, simulation_checks
-
-    simulated = simulate_posted(job.simulation, run, name, toolpaths, observer)
-    if found is not None:
-        found = replace(found, checks=(*found.checks, *simulation_checks(simulated)))
-    return Proof(found, simulated)
-
-
-def _prove(
-    run: Run | None,
-    toolpaths: Sequence[Toolpath],
-    expected: Expectation,
-    target: Target,
-    starts: Sequence[OperationStart],
-    job: PostJob,
-    *,
-    columns: bool,
-) -> Verification | None:
-    """What the proof of a program finds; None without its run."""
-    if run is None:
-        return None
-    found = verify(run, toolpaths, tolerances=expected.tolerances, settings=expected.settings, columns=columns)
-    found = named_verification(found, target.name, job.beside)
-    return replace(found, operations=rows_from_starts(run, found.operations, starts), clamping=job.clamping)
-
-
-def _nothing_checked(job: PostJob, target: Target) -> Problem:
-    """The warning of a forced program that no reader can read."""
-    what = "it is written by force, and nothing has been checked"
-    without = ["setup sheet" if name == "sheet" else name for name in job.papers.by_name() if name != "manifest"]
-    lost = f": there is no {' and no '.join(without)}" if without else ""
-    return Problem(target.name, 0, f"{what}{lost}", severity=Severity.WARNING, code="CTL930")
-
-
-def _run_of(running: Future[Run | None], job: PostJob, places: ProgramPlaces) -> Run | None:
-    """The run of a program; what cannot be followed in it is told by the names that its files will have."""
-    with places.told(job.control):
-        return running.result()
-
-
-def _proof_failed(result: PostResult, forcing: str, cause: str) -> ProofFailedError:
-    """The error for a program that fails its proof; ``cause`` is the template that is likely to be why."""
-    failed = "; ".join(f"{check.summary} ({check.key})" for check in result.checks if not check.passed)
-    what = "; ".join(filter(None, (f"the program fails its proof: {failed}", cause)))
-    cure = "; ".join(filter(None, ("no program is written", forcing)))
-    problem = Problem(result.toolpaths[0].file, 0, what, cure, code="CTL910")
-    return ProofFailedError(problem, result)

@@ -3,15 +3,16 @@
 import io
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 from trunnion.errors import InputError, Problem, RefusedError, Severity
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.papers.reports import write_post_report
 from trunnion.jobs.result_output import written_text
+from trunnion.jobs.verify.reports import write_post_report
 from trunnion.model.motion import Decision, Motion, Plan
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
+from trunnion.results import NOT_DATA, Figure
 from trunnion.verification import Check, Verification
 from trunnion.wording import counted
 
@@ -33,14 +34,18 @@ class PostResult:
     encoding      of its files
     """
 
-    toolpaths: tuple[Toolpath, ...]
-    plan: Plan
-    verification: Verification | None
-    problems: tuple[Problem, ...]
+    toolpaths: Annotated[tuple[Toolpath, ...], NOT_DATA]
+    plan: Annotated[
+        Plan,
+        Figure("operations", take=lambda plan: sum(one.starts_operation for one in plan.motions), after="passed"),
+        Figure("points", take=lambda plan: sum(len(one.operation.moves) for one in plan.motions)),
+    ]
+    verification: Annotated[Verification | None, NOT_DATA]
+    problems: Annotated[tuple[Problem, ...], Figure("remarks", after="checks")]
     output: Path | None = None
     subprograms: tuple[Path, ...] = ()
-    simulation: "SimulationResult | None" = None
-    encoding: str = "utf-8"
+    simulation: Annotated["SimulationResult | None", NOT_DATA] = None
+    encoding: Annotated[str, NOT_DATA] = "utf-8"
     _memory: io.BytesIO | None = None
 
     def __repr__(self) -> str:
@@ -50,12 +55,14 @@ class PostResult:
         return f"PostResult(passed={self.passed}, {rows}{place})"
 
     @property
+    @Figure(after="subprograms")
     def passed(self) -> bool:
         """Whether the program is proven and may run."""
         overruled = any(problem.severity is Severity.ERROR for problem in self.problems)
         return self.verification is not None and self.verification.passed and not overruled
 
     @property
+    @Figure(after="points", take=lambda checks: {check.key: check.passed for check in checks})
     def checks(self) -> tuple[Check, ...]:
         """The questions that were put to the program, and their answers; none where nothing is proven."""
         return () if self.verification is None else self.verification.checks

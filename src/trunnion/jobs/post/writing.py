@@ -4,7 +4,7 @@ In:     a planned program.
 Out:    its file, and the run of what is on the disk.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
@@ -14,6 +14,7 @@ from typing import BinaryIO
 from trunnion import readers
 from trunnion.files import OutputFiles, WriteProgress
 from trunnion.jobs.observer import SILENT, Observer
+from trunnion.jobs.post.stages import PlannedProgram, Posting, WrittenProgram
 from trunnion.machines import Machine
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
@@ -22,6 +23,24 @@ from trunnion.output.program import Program
 from trunnion.output.program_writer import write_program
 from trunnion.output.subprograms import SubprogramOutput
 from trunnion.verification import Check, Verification
+
+
+def write_and_read_back(posting: Posting, plan: Callable[[], PlannedProgram]) -> WrittenProgram:
+    """Plan a program, write it and read it back; the reader gets ready during the plan and follows the writer.
+
+    Raises
+    ------
+    InputError
+        If its reader cannot follow it.
+    """
+    files, job, divided = posting.target.files, posting.job, posting.subprograms is not None
+    reading = read_back_while_writing(files, job.machine, encoding=job.encoding, divided=divided, beside=job.beside)
+    with reading as (progress, running):
+        planned = plan()
+        passages = posting.places.passages
+        starts = write(planned.program, files.main, progress, posting.subprograms, posting.observer, passages)
+    with posting.places.told(job.control):
+        return WrittenProgram(planned, starts, running.result())
 
 
 @contextmanager

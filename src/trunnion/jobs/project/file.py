@@ -25,11 +25,11 @@ from trunnion.jobs.inputs.bodies import listed
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import FilePath, as_machine
 from trunnion.jobs.inputs.settings import work_offset_setting
-from trunnion.jobs.papers.files import NO_PAPERS, PAPERS, PaperFiles, paper_files
+from trunnion.jobs.inputs.simulation_input import SetupInput, SimulationInput, with_place
 from trunnion.jobs.project.paths import ProjectPaths, is_file
 from trunnion.jobs.project.project import Division, Judgement, PostedSetup, Project, ProjectChecks
 from trunnion.jobs.project.settings import read_settings
-from trunnion.jobs.simulate.setups import SetupInput, SimulationInput, with_place
+from trunnion.jobs.result_output import NO_PAPERS, PAPERS, PaperFiles, paper_files
 from trunnion.machines import shipped_machines
 from trunnion.model.toolpath import Toolpath
 from trunnion.simulation.stock.solids import is_mesh, stock_shape

@@ -6,8 +6,8 @@ from enum import StrEnum
 from pathlib import Path
 
 from trunnion.jobs.inputs.settings import SettingValue
-from trunnion.jobs.papers.files import NO_PAPERS, PaperFiles
-from trunnion.jobs.simulate.setups import Places, SimulationInput
+from trunnion.jobs.inputs.simulation_input import Places, SimulationInput
+from trunnion.jobs.result_output import NO_PAPERS, PaperFiles
 
 
 class Judgement(StrEnum):

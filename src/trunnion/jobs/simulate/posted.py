@@ -15,11 +15,10 @@ from trunnion.definitions.messages import did_you_mean
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.jobs.inputs.arguments import check_path, checked_angles
 from trunnion.jobs.inputs.reading import FilePath, as_machine
+from trunnion.jobs.inputs.simulation_input import SetupInput, SimulationInput
 from trunnion.jobs.observer import Observer
-from trunnion.jobs.post.writing import named_run
 from trunnion.jobs.project.file import is_project, library_files, project_files, read_project
 from trunnion.jobs.simulate.result import SimulationResult
-from trunnion.jobs.simulate.setups import SetupInput, SimulationInput
 from trunnion.jobs.simulate.steps import simulate_setups
 from trunnion.machines import Machine
 from trunnion.model.clamping import Clamping, are_one_angle, number
@@ -31,7 +30,7 @@ from trunnion.simulation.setup_findings import SimulationFinding
 from trunnion.simulation.stock.solids import is_mesh, stock_shape
 from trunnion.simulation.turned_parts import as_clamped
 from trunnion.verification import Check, Place
-from trunnion.wording import counted
+from trunnion.wording import counted, position
 
 #: Arguments of ``simulate`` by their names, or the path of a project file.
 SimulationLike: TypeAlias = Mapping[str, Any] | FilePath
@@ -154,9 +153,9 @@ def simulation_files(given: SimulationLike) -> list[FilePath]:
 
 
 def simulate_posted(
-    given: SimulationInput, run: Run | None, name: str, toolpaths: Sequence[Toolpath], observer: Observer
+    given: SimulationInput, run: Run | None, toolpaths: Sequence[Toolpath], observer: Observer
 ) -> SimulationResult:
-    """Simulate the program that was posted; ``name`` is what messages call it, as its file has no name yet.
+    """Simulate the program that was posted; its run has the names of files as messages call them.
 
     Raises
     ------
@@ -166,9 +165,7 @@ def simulate_posted(
     if run is None:
         what = "nobody reads programs of this control, and what is not read cannot be simulated"
         raise InputError(argument_problem("simulation", what, "leave it out", code="SIM115"))
-    setup = replace(
-        given.setups[0], programs=(named_run(run, name),), machine=run.machine, cl=toolpaths, cl_is_turned=True
-    )
+    setup = replace(given.setups[0], programs=(run,), machine=run.machine, cl=toolpaths, cl_is_turned=True)
     return simulate_setups(replace(given, setups=[setup]), observer)
 
 
@@ -225,8 +222,7 @@ def _gouge_check(found: SimulationResult, findings: Sequence[SimulationFinding])
 
 def _places(findings: Sequence[SimulationFinding]) -> Iterator[Place]:
     for each in sorted(findings, key=lambda finding: -finding.depth)[:_MOST_PLACES]:
-        x, y, z = each.place
-        text = f"{_words(each)}, {each.depth:.3f} mm deep at X{x:.3f} Y{y:.3f} Z{z:.3f}"
+        text = f"{_words(each)}, {each.depth:.3f} mm deep at {position(each.place)}"
         yield Place(each.line, each.block, each.depth, text, each.cl_file, each.cl_line if each.cl_file else 0)
 
 

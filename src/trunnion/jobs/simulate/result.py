@@ -99,7 +99,7 @@ class SimulationResult:
         InputError
             When the name ends otherwise, the file cannot be written, or it is one of the programs.
         """
-        from trunnion.jobs.papers.simulation_report import write_simulation_report
+        from trunnion.jobs.simulate.report import write_simulation_report
 
         write_simulation_report(self, file)
 

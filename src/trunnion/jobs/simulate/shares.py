@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from trunnion.jobs.inputs.reading import FilePath
+from trunnion.jobs.inputs.simulation_input import SimulationInput
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.simulate.result import SimulationResult
-from trunnion.jobs.simulate.setups import SimulationInput
 from trunnion.jobs.simulate.simulating import as_simulation_input
 from trunnion.jobs.simulate.steps import cut_setup_share, simulate_setups
 from trunnion.simulation.cutting.shares import JoinedShares, Share

@@ -9,10 +9,10 @@ from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.inputs.arguments import check_observer
 from trunnion.jobs.inputs.bodies import listed
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike
+from trunnion.jobs.inputs.simulation_input import Places, SetupInput, SimulationInput
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.project.file import is_project, read_project
 from trunnion.jobs.simulate.result import SimulationResult
-from trunnion.jobs.simulate.setups import Places, SetupInput, SimulationInput
 from trunnion.jobs.simulate.steps import simulate_setups
 from trunnion.model.run import Run
 from trunnion.simulation.meshes import TriangleMesh

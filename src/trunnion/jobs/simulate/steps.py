@@ -9,9 +9,10 @@ from trunnion.errors import InputError, Problem, argument_problem
 from trunnion.jit import compile_ahead
 from trunnion.jobs.inputs.arguments import check_choice, check_whole
 from trunnion.jobs.inputs.settings import check_tolerance
+from trunnion.jobs.inputs.simulation_input import SimulationInput, told_with_places
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.simulate.result import SimulationResult, join_results, make_result
-from trunnion.jobs.simulate.setups import SimulationInput, prepare_setup, told_with_places
+from trunnion.jobs.simulate.setups import prepare_setup
 from trunnion.machines.forward import tool_axis_rows
 from trunnion.simulation.cutting.shares import JoinedShares, Share
 from trunnion.simulation.meshes import DEVIATION

@@ -13,11 +13,11 @@ from trunnion.errors import InputError, Problem, RefusedError
 from trunnion.extras import import_extra
 from trunnion.files import atomic_file
 from trunnion.jobs.inputs.arguments import check_path, check_paths, wrong_argument
+from trunnion.jobs.inputs.control_settings import rapid_feed_of
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run
 from trunnion.jobs.inputs.settings import set_up_machine
 from trunnion.jobs.result_output import check_output_name
-from trunnion.jobs.verify.verifying import rapid_feed_of
 from trunnion.model.run import Run
 from trunnion.options.limits import FASTEST, LONGEST_RATE, SHORTEST_RATE, SLOWEST
 from trunnion.timing import time_run

@@ -5,9 +5,9 @@ from typing import Final
 
 from trunnion import readers
 from trunnion.jit import compile_ahead
+from trunnion.jobs.inputs.control_settings import rapid_feed_of
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run
 from trunnion.jobs.inputs.settings import check_tolerance
-from trunnion.jobs.verify.verifying import rapid_feed_of
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.verification import restore_rapids

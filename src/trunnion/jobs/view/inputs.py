@@ -16,13 +16,14 @@ from trunnion.controls import load_control
 from trunnion.encoding import decode
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.jobs.inputs.arguments import checked_angles, is_stream
+from trunnion.jobs.inputs.control_settings import rapid_feed_of
 from trunnion.jobs.inputs.reading import ToolpathLike, as_run, as_toolpaths
 from trunnion.jobs.inputs.settings import Settings
+from trunnion.jobs.inputs.simulation_input import SetupInput
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.post.posting import post
 from trunnion.jobs.project.file import read_project
-from trunnion.jobs.simulate.setups import SetupInput
-from trunnion.jobs.verify.verifying import rapid_feed_of, verify
+from trunnion.jobs.verify.verifying import verify
 from trunnion.machines import Machine
 from trunnion.model.clamped_toolpaths import stated_clamping
 from trunnion.model.clamping import Clamping

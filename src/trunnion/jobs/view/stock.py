@@ -14,10 +14,11 @@ from typing import Any, Final
 import numpy as np
 
 from trunnion.errors import InputError, Problem, Severity, argument_problem
+from trunnion.jobs.inputs.simulation_input import SimulationInput
 from trunnion.jobs.observer import Observer
+from trunnion.jobs.post.writing import named_run
 from trunnion.jobs.simulate.posted import simulate_posted, simulation_checks, simulation_input
 from trunnion.jobs.simulate.result import SimulationResult
-from trunnion.jobs.simulate.setups import SimulationInput
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
@@ -25,6 +26,7 @@ from trunnion.simulation.setup_findings import NearMiss, SimulationFinding
 from trunnion.simulation.tools.profile import cutting_width
 from trunnion.viewer.content import ViewContent
 from trunnion.viewer.stock import StockView
+from trunnion.wording import position
 
 #: Arguments that mean nothing without stock.
 _OF_STOCK: Final = ("near", "cell", "accuracy")
@@ -61,7 +63,7 @@ def with_stock(
     InputError
         If a file cannot be used, nothing says the form of a tool, or the stock is too large for a picture.
     """
-    found = simulate_posted(given, run, run.files[0], toolpaths, observer)
+    found = simulate_posted(given, named_run(run, run.files[0]), toolpaths, observer)
     (job,) = found.simulation.programs
     widths = [cutting_width(job.tools[name]) for name in _cutting(run) if name in job.tools]
     stock = StockView(found.simulation, min(widths, default=math.inf))
@@ -112,8 +114,7 @@ def _short(problem: Problem) -> str:
 
 
 def _between(one: SimulationFinding | NearMiss) -> str:
-    x, y, z = one.place
-    return f"{' and '.join(one.between)} at X{x:.3f} Y{y:.3f} Z{z:.3f}"
+    return f"{' and '.join(one.between)} at {position(one.place)}"
 
 
 def _mark(run: Run, kind: str, row: int, text: str, place: tuple[float, float, float] | None) -> dict[str, Any]:

@@ -1,6 +1,7 @@
 """The motions of a drilling cycle at one hole."""
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -46,12 +47,67 @@ class HoleMotion:
         return replace(self, height=height, lateral=(self.lateral[0] / unit, self.lateral[1] / unit))
 
 
+#: The height of a depth; and the motions from a depth on before the next feed.
+Height = Callable[[float], float]
+Between = Callable[[float], list[HoleMotion]]
+
+
 def check_pecks(depth: float, peck: float, word: str) -> None:
     """Refuse pecks, given by ``word``, that would not get to a depth within ``MAX_PECKS`` pecks."""
     if peck <= 0.0:
         raise CycleExecutionError(f"has a {word} that is not above 0")
     if depth / peck > MAX_PECKS:
         raise CycleExecutionError(f"would peck more than {MAX_PECKS} times")
+
+
+def peck_depths(total: float, first: float, less: float = 0.0, least: float = 0.0) -> list[float]:
+    """Return the depths of the pecks: each peck is shorter by ``less``, but not shorter than ``least``.
+
+    A first peck that is not positive, or longer than the total, is the total.
+    """
+    if not 0.0 < first < total:
+        return [total]
+    depths = [first]
+    peck = first
+    while total - depths[-1] > 1e-9:
+        peck = max(peck - less, least)
+        if peck <= 0.0 or len(depths) >= MAX_PECKS:
+            raise CycleExecutionError(f"would peck more than {MAX_PECKS} times")
+        depths.append(min(depths[-1] + peck, total))
+    depths[-1] = total
+    return depths
+
+
+def full_retract(top: float, height: Height, gap: float, *, dwell: float = 0.0, least: float = -math.inf) -> Between:
+    """Return a retract to a height, with a dwell, and the approach to a gap above the depth, from ``least`` on."""
+    return lambda depth: [HoleMotion(True, top, dwell=dwell), HoleMotion(True, height(max(depth - gap, least)))]
+
+
+def chip_break(
+    height: Height, gap: float, feed: float | None = None, *, rapid: bool = False, least: float = -math.inf
+) -> Between:
+    """Return the way back by a gap, no farther than to the depth ``least``."""
+    return lambda depth: [HoleMotion(rapid, height(max(depth - gap, least)), feed)]
+
+
+def descent(
+    depths: Sequence[float],
+    height: Height,
+    between: Between,
+    feed: float | None = None,
+    dwells: tuple[float, float] = (0.0, 0.0),
+) -> list[HoleMotion]:
+    """Return the feeds from depth to depth, and what is between two of them.
+
+    feed     as that of ``HoleMotion``
+    dwells   after a peck, and after the last one
+    """
+    motions: list[HoleMotion] = []
+    for count, depth in enumerate(depths, 1):
+        if motions:
+            motions += between(depths[count - 2])
+        motions.append(HoleMotion(False, height(depth), feed, dwell=dwells[count == len(depths)]))
+    return motions
 
 
 def finite(value: float | None) -> float | None:

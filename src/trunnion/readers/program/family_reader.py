@@ -1,7 +1,8 @@
 """What a family of controls contributes to reading: one record, in the module ``reader`` of the family's folder."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,9 @@ class FamilyReader:
     raw_words            the words that may stand in raw text
     is_own_word          whether a declared word, in capitals, begins with one that the control has itself
     offsets_of           makes ``work_offsets`` for controls of the family that have other words; None: all have these
+    smoothing            regular expression of calls and definitions, besides words, that set how the control follows
+                         the path; None: there are none
+    lost_smoothing       kind of the event that such a cycle makes -> its name, and the settings that stand for it
     check_reading        raises InputError for what is wrong in ``[control.reading]``; by default any key is
     """
 
@@ -39,9 +43,6 @@ class FamilyReader:
     uses_length_numbers: bool = False
     raw_words: RawWords = NO_RAW_WORDS
     offsets_of: Callable[[Machine], WorkOffsetWords] | None = None
+    smoothing: re.Pattern[str] | None = None
+    lost_smoothing: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     check_reading: Callable[[Machine], object] = no_reading
-
-
-def g_words(tenths: frozenset[int]) -> frozenset[str]:
-    """Return G words for codes in tenths: 541 is G54.1."""
-    return frozenset(f"G{code / 10:g}" for code in tenths)

@@ -11,6 +11,7 @@ from trunnion.errors import Severity
 from trunnion.readers.control import arcs
 from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.control.virtual_control import LINEAR, Circle, VirtualControl
+from trunnion.readers.rs274.word_meanings import NO_WORDS, WordMeanings
 
 #: Motions in force besides rapid and lines: G2 and G3.
 CLOCKWISE: Final = 2
@@ -22,6 +23,9 @@ MAX_TURNS: Final = 1000
 
 class Rs274Control(VirtualControl):
     """A control whose circles have a centre I J K or a radius R."""
+
+    #: Words that the control has in place of the family's.
+    own_words: WordMeanings = NO_WORDS
 
     #: Whether I J K count from the start of the circle; else they are absolute.
     relative_centres = True

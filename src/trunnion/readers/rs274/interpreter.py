@@ -3,7 +3,6 @@
 import math
 import re
 from abc import abstractmethod
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Final, TypeVar
 
@@ -14,28 +13,18 @@ from trunnion.errors import Severity
 from trunnion.model.run import ProgrammedWord
 from trunnion.readers.control import iso_m_codes
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
-from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
 from trunnion.readers.control.row_recorder import ScannedRows
 from trunnion.readers.control.virtual_control import LINEAR, RAPID
 from trunnion.readers.program import interpreter
 from trunnion.readers.program.interpreter import Interpreter, ProgramEnd
-from trunnion.readers.program.modal_groups import same_group
 from trunnion.readers.program.source_text import SourceText
-from trunnion.readers.program.word_values import Values, fault_of_value
-from trunnion.readers.rs274.block import Block, g_code_text, split_line
+from trunnion.readers.rs274.block import Block, split_line
 from trunnion.readers.rs274.control import CLOCKWISE, COUNTER_CLOCKWISE, Rs274Control
 from trunnion.readers.rs274.expressions import BlockError
-from trunnion.readers.rs274.word_meanings import WordMeanings
 from trunnion.readers.scan.letter_blocks import read_blocks
 
-#: G codes, in tenths, and what they set.
+#: G codes, in tenths: those of motions and what they set, and the one that ends cycles.
 MOTIONS: Final = {0: RAPID, 10: LINEAR, 20: CLOCKWISE, 30: COUNTER_CLOCKWISE}
-PLANES: Final = {170: 2, 180: 1, 190: 0}
-FEED_MODES: Final = {930: 93, 940: 94, 950: 95}
-
-#: Cutter radius compensation: left of the path, right of it, off.
-RADIUS_COMPENSATION: Final = {400: 0, 410: 1, 411: 1, 412: 1, 420: -1, 421: -1, 422: -1}
-COMPENSATION_IN_SPACE: Final = frozenset({412, 422})
 CANCEL: Final = 800
 
 #: Letters of axes; a machine has five of them.
@@ -172,74 +161,6 @@ class Rs274Interpreter(Interpreter[A]):
     def _report_repeated_word(self, letter: str) -> None:
         self._note(f"{letter} is written twice: the last one counts", Severity.ERROR, "NC212")
 
-    def _translate(self, block: Block, meanings: WordMeanings) -> None:
-        """Put the family's words in place of the control's own; report those that the control does not have."""
-        for word in meanings.translate(block):
-            self._note(f"unknown word {word}", Severity.ERROR, "NC211")
-
-    def _report_same_group(self, codes: Sequence[int], groups: Iterable[Collection[int]]) -> None:
-        """Report two G codes of a block, in tenths, that set one mode; ``groups`` are those that set one each."""
-        for fault in same_group(codes, groups, g_code_text):
-            self._note(fault, Severity.ERROR, "NC212")
-
-    def _modal_g_code(self, code: int) -> bool:
-        """Execute a G code that all these languages share; False if it is another one."""
-        control = self.control
-        if code in MOTIONS:
-            self.motion_code = code
-        elif code in PLANES:
-            control.set_mode("plane", g_code_text(code), control.plane_axis, PLANES[code])
-            control.plane_axis = PLANES[code]
-        elif code in (200, 210):
-            self._set_units(code, inches=code == 200)
-        elif code in (900, 910):
-            control.set_mode("distances", g_code_text(code), control.absolute, code == 900)
-            control.absolute = code == 900
-        elif code in FEED_MODES:
-            control.set_mode("feed", g_code_text(code), control.modal.feed_mode.current, FEED_MODES[code])
-            control.modal.feed_mode.set(control.row, FEED_MODES[code])
-        else:
-            return False
-        return True
-
-    def _set_units(self, code: int, *, inches: bool) -> None:
-        """Count in inches or millimetres from now on, as a G code says."""
-        self.control.set_mode("units", g_code_text(code), bool(self.control.modal.inches.current), inches)
-        self.control.set_units(inches, True)
-
-    def _report_g_code(
-        self, code: int, not_simulated: Mapping[int, tuple[str, bool]], without_path_effect: Collection[int]
-    ) -> None:
-        """Report a G code that is not simulated or unknown; the tables are those of the family's ``words``."""
-        if code in RADIUS_COMPENSATION:
-            side = self.control.modal.compensation
-            self.control.set_mode("compensation", g_code_text(code), side.current, RADIUS_COMPENSATION[code])
-            side.set(self.control.row, RADIUS_COMPENSATION[code])
-            self.control.compensates_in_space = code in COMPENSATION_IN_SPACE
-        if code in not_simulated:
-            text, changes_path = not_simulated[code]
-            self._note(
-                f"{g_code_text(code)}: {text}",
-                Severity.ERROR if changes_path else Severity.WARNING,
-                "NC220" if changes_path else "NC221",
-            )
-        elif code not in without_path_effect:
-            self._note(f"unknown word {g_code_text(code)}", Severity.ERROR, "NC211")
-
-    def _report_values(self, block: Block, values: Mapping[tuple[int, str], Values]) -> None:
-        """Report values that a word cannot have; ``values`` by G code in tenths and letter."""
-        for (code, letter), known in values.items():
-            if code in block.g and letter in block.words:
-                fault = fault_of_value(g_code_text(code), letter, block.words[letter].value, known)
-                if fault:
-                    self._note(fault, Severity.ERROR, "NC215")
-
-    def _take_radius(self, code: int, block: Block) -> None:
-        """Note the register D of G41 and G42; without one, the radius is that of the tool."""
-        if code in (410, 420):
-            number = block.words["D"].value if "D" in block.words else -1.0
-            self.control.modal.radius.set(self.control.row, int(number) if abs(number) < 1e6 else 0)
-
     def _axis_words(self, block: Block) -> dict[str, AxisWord]:
         """Return the words of the machine's axes; report those of other axes."""
         axes: dict[str, AxisWord] = {}
@@ -313,28 +234,3 @@ class Rs274Interpreter(Interpreter[A]):
                 what = "a line" if control.motion == LINEAR else "a circle"
                 self._note(f"{what} without a feed", Severity.ERROR, "NC240")
         return written
-
-    # Cycles
-
-    def _report_rotary_words(self, axes: Collection[str], where: str = "a cycle") -> None:
-        if set(axes) - set("XYZ"):
-            self._note(f"rotary words in {where}: they are not executed", Severity.ERROR, "NC213")
-
-    @staticmethod
-    def _require_words(words: Collection[str], letters: str) -> None:
-        """Refuse a cycle that lacks one of the words that it needs."""
-        for letter in letters:
-            if letter not in words:
-                raise BlockError(f"the cycle has no {letter}")
-
-    def _check_cycle_feed(self) -> None:
-        if not self.control.programmed_feed > 0.0:
-            self._note("a cycle without a feed", Severity.ERROR, "NC240")
-
-    @staticmethod
-    def _cycle_motions(motions: Callable[[], list[HoleMotion]]) -> list[HoleMotion]:
-        """Return the motions of a cycle at a hole; BlockError if it cannot be executed."""
-        try:
-            return motions()
-        except CycleExecutionError as error:
-            raise BlockError(f"the cycle {error}", code=error.code) from None

@@ -22,6 +22,7 @@ from trunnion.simulation.meshes.stl import read_stl
 from trunnion.simulation.meshes.three_mf import read_three_mf
 from trunnion.simulation.meshes.triangle_mesh import TriangleMesh
 from trunnion.simulation.meshes.trimesh_formats import read_by_trimesh
+from trunnion.wording import position
 
 #: Larger files are refused unread, bytes.
 MAX_BYTES: Final = 1_000_000_000
@@ -227,7 +228,7 @@ def _problems(mesh: TriangleMesh, findings: MeshFindings, label: str, guessed: b
     problems = []
     severity = Severity.ERROR if refused else Severity.WARNING
     if findings.open_edges:
-        near = "; ".join(f"X{x:.3f} Y{y:.3f} Z{z:.3f}" for x, y, z in findings.places)
+        near = "; ".join(map(position, findings.places))
         what = f"leaks: {findings.open_edges} edges of its surface are open, at {near}"
         problems.append(
             Problem(label, 0, what, "close the surface in CAD and export it as one solid", severity, code="SIM214")

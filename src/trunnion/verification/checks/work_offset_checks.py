@@ -29,16 +29,16 @@ def check_work_offset(context: Context) -> Check:
 
 
 def _lost_offsets(context: Context) -> Iterator[Place]:
-    """Where the control clears the work offset, and the tool works before it is selected again."""
+    """Where a word clears the work offset, and the tool works before it is selected again."""
     run = context.run
     events = [event for event in run.events if event.kind == "offset"]
     ends = [*(event.before_row for event in events[1:]), len(run)]
     for event, end in zip(events, ends, strict=True) if events else ():
-        row = first_workpiece_position(run, event.before_row, end) if event.value == "lost" else None
+        row = first_workpiece_position(run, event.before_row, end) if isinstance(event.value, str) else None
         if row is not None:
             name = _name(context, int(run.state.work_offset[row]))
             what = f"clears {name}, and {context.block_name(row)} works before it is selected again"
-            yield context.place_of_event(event, 0.0, f"TRAORI {what}: write {name} after it")
+            yield context.place_of_event(event, 0.0, f"{event.value} {what}: write {name} after it")
 
 
 def _check_selected(context: Context) -> Check:

@@ -2,9 +2,10 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final
+from typing import ClassVar, Final
 
 from trunnion.arrays import Ints
+from trunnion.results import FIRST, Figure
 from trunnion.wording import counted
 
 #: Words that are not understood which a result names one by one.
@@ -61,6 +62,8 @@ class Comparison:
     unknown_words  words of either program that are not understood: then they cannot be called the same
     """
 
+    SCHEMA: ClassVar[int] = 1
+
     programs: tuple[str, str]
     points: int
     tip: float
@@ -71,6 +74,7 @@ class Comparison:
     unknown_words: tuple[str, ...] = ()
 
     @property
+    @Figure(after=FIRST)
     def same(self) -> bool:
         """Whether both programs make the tool do the same; those that move nothing, or are not understood, do not."""
         return self.count == 0 and self.points > 0 and not self.unknown_words

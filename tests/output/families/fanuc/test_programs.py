@@ -9,6 +9,7 @@ import pytest
 from hypothesis import Phase, assume, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.fanuc import CONTROL, FANUC, MACHINES, SLOW, body, machine, posted, proven, read
 from tests.support.fidia import CYCLES, END, HEIGHTS, START, circles, holes_in
 from tests.support.jobs import post_job
@@ -39,7 +40,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("name", MACHINES)
-@settings(max_examples=5, suppress_health_check=SLOW, phases=[Phase.generate])
+@settings(max_examples=examples(5), suppress_health_check=SLOW, phases=[Phase.generate])
 @given(moves=smooth_paths(60.0) | short_paths(12))
 def test_simultaneous_motion_is_proven(name: str, moves: Moves, folder: Path) -> None:
     try:
@@ -51,7 +52,7 @@ def test_simultaneous_motion_is_proven(name: str, moves: Moves, folder: Path) ->
 
 
 @pytest.mark.parametrize("name", MACHINES)
-@settings(max_examples=4, suppress_health_check=SLOW, phases=[Phase.generate])
+@settings(max_examples=examples(4), suppress_health_check=SLOW, phases=[Phase.generate])
 @given(moves=smooth_paths(40.0) | short_paths(6))
 def test_motion_without_tcp_is_proven(name: str, moves: Moves, folder: Path) -> None:
     model = machine(name)
@@ -65,7 +66,7 @@ def test_motion_without_tcp_is_proven(name: str, moves: Moves, folder: Path) -> 
 
 
 @pytest.mark.parametrize("name", MACHINES)
-@settings(max_examples=4, suppress_health_check=SLOW, phases=[Phase.generate])
+@settings(max_examples=examples(4), suppress_health_check=SLOW, phases=[Phase.generate])
 @given(data=st.data(), shares=st.lists(SHARES, min_size=1, max_size=2))
 def test_milling_in_planes_with_circles_is_proven(
     name: str, data: st.DataObject, shares: list[tuple[float, float]], folder: Path
@@ -77,7 +78,7 @@ def test_milling_in_planes_with_circles_is_proven(
 
 
 @pytest.mark.parametrize("name", MACHINES)
-@settings(max_examples=4, suppress_health_check=SLOW, phases=[Phase.generate])
+@settings(max_examples=examples(4), suppress_health_check=SLOW, phases=[Phase.generate])
 @given(data=st.data(), shares=st.lists(SHARES, min_size=1, max_size=3))
 def test_holes_of_all_cycles_are_proven(
     name: str, data: st.DataObject, shares: list[tuple[float, float]], folder: Path
@@ -314,7 +315,7 @@ def test_the_work_offset_that_is_asked_for_is_the_one_that_is_proven(
     assert again.settings.get("work_offset") == name
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(st.text())
 def test_comments_are_what_the_control_has_characters_for(text: str) -> None:
     for line in comment(text):

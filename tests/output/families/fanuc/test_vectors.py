@@ -10,6 +10,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, assume, event, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.fanuc import CONTROL, MACHINES, SLOW, body, machine, proven, read
 from tests.support.fidia import END
 from tests.support.jobs import post_job
@@ -106,7 +107,7 @@ PATHS = st.one_of(
 
 
 @pytest.mark.parametrize("name", MACHINES)
-@settings(max_examples=6, suppress_health_check=SLOW, phases=[Phase.generate])
+@settings(max_examples=examples(6), suppress_health_check=SLOW, phases=[Phase.generate])
 @given(moves=PATHS)
 def test_the_axes_stand_where_rotary_words_would_have_them(name: str, moves: Moves, folder: Path) -> None:
     model, path = machine(name), toolpath_of(moves)
@@ -170,7 +171,7 @@ def chosen(model: Machine, vector: Floats, stands: Floats, inside: bool) -> Floa
     return np.asarray(min(candidates, key=key))
 
 
-@settings(max_examples=100, suppress_health_check=[HealthCheck.filter_too_much])
+@settings(max_examples=examples(100), suppress_health_check=[HealthCheck.filter_too_much])
 @given(
     name=st.sampled_from(MACHINES),
     stands=st.tuples(st.floats(-100.0, 100.0), st.floats(-170.0, 170.0)),
@@ -204,7 +205,7 @@ def test_where_it_is_said_to_lead_there_the_control_chooses_so(
         assert np.abs(goes - 360.0 * np.rint(goes / 360.0)).max() < 0.3
 
 
-@settings(max_examples=60)
+@settings(max_examples=examples(60))
 @given(
     name=st.sampled_from(MACHINES),
     stands=st.tuples(st.floats(-60.0, 60.0), st.floats(-170.0, 170.0)),

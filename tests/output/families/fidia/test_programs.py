@@ -10,6 +10,7 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.fidia import CYCLES, END, HEIGHTS, START, circles, holes_in
 from tests.support.jobs import post_job
 from tests.support.locations import FIDIA, FIDIA_HEAD
@@ -94,7 +95,7 @@ def proven(toolpath: Toolpath, folder: Path, machine: Machine = MACHINE, **asked
     return text
 
 
-@settings(max_examples=12, suppress_health_check=SLOW)
+@settings(max_examples=examples(12), suppress_health_check=SLOW)
 @given(moves=smooth_paths(25.0) | smooth_paths(100.0) | short_paths(12))
 def test_simultaneous_motion_is_proven(moves: Moves, folder: Path) -> None:
     try:
@@ -125,7 +126,7 @@ def read(text: str, folder: Path) -> Toolpath:
     return read_cl(file)
 
 
-@settings(max_examples=12, suppress_health_check=SLOW)
+@settings(max_examples=examples(12), suppress_health_check=SLOW)
 @given(data=st.data(), turns=st.lists(AXES | st.just((0.0, 0.0)), min_size=1, max_size=3))
 def test_milling_in_planes_with_circles_is_proven(
     data: st.DataObject, turns: list[tuple[float, float]], folder: Path
@@ -139,7 +140,7 @@ def test_milling_in_planes_with_circles_is_proven(
     assert not re.search(r"G[23] .*Z.*I.*J", written), "circles in G17 do not rise"
 
 
-@settings(max_examples=20, suppress_health_check=SLOW)
+@settings(max_examples=examples(20), suppress_health_check=SLOW)
 @given(
     data=st.data(),
     turns=st.lists(AXES | st.just((0.0, 0.0)), min_size=1, max_size=4),

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import event, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.klartext import CONTROLS, OWN, Post, motion, proven, toolpath_of
 from tests.support.operations import moves_of
 from tests.support.posting import FOOT, HEAD
@@ -86,7 +87,7 @@ def circles(draw: st.DrawFn, flat: bool = False) -> tuple[Moves, Arcs]:
     return moves, Arcs(rows, np.array(centre), np.array(sense), np.array(radius), np.array(turns))
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(path=circles())
 def test_arcs_and_helices_are_proven(path: tuple[Moves, Arcs], folder: Path) -> None:
     machine = OWN["ucp800"]  # whose slides have no limits
@@ -100,7 +101,7 @@ def by_radius(control: Control) -> Control:
     return replace(control, arcs=replace(control.arcs, by_radius=True))
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(path=circles() | circles(flat=True))
 def test_circles_by_radius_are_those_that_were_planned(path: tuple[Moves, Arcs], folder: Path) -> None:
     """The reader finds the centre by the radius; where it would be off, the writer gives the centre."""

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.klartext import CONTROLS, MACHINES, MODES, SHARES, Post, motion, proven
 from tests.support.planes import reachable
 from tests.support.posting import CLEAR, FOOT
@@ -128,7 +129,7 @@ HEIGHT = st.integers(0, 800).map(lambda n: n / 100.0)
 HOLE = st.tuples(*[st.integers(-6000, 6000).map(lambda n: n / 100.0)] * 2, st.sampled_from([0.0, 12.5, -4.0]))
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(
     name=st.sampled_from(sorted(MACHINES)),
     mode=st.sampled_from(MODES),

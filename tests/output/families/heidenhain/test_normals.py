@@ -9,6 +9,7 @@ import pytest
 from hypothesis import assume, event, example, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.klartext import CONTROLS, MACHINES, PATHS, SHARES, Post, motion, proven, toolpath_of
 from tests.support.operations import moves_of, rapids_at
 from tests.support.path_strategies import directions, winding
@@ -130,7 +131,7 @@ NEAR_POLE = rapids_at(
 )
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(name=st.sampled_from(sorted(MACHINES)), moves=PATHS, seed=st.integers(0, 99))
 @example(name="dmu65", moves=NEAR_POLE, seed=0)
 @example(name="generic_head_head_ca", moves=winding(12.0, 0.0, 700.0, 30), seed=0)  # draws back to turn
@@ -160,7 +161,7 @@ def test_normals_beside_a_tool_axis_that_changes_are_proven(name: str, moves: Mo
     assert (f"{len(printed)} normal" in summary(found)) == bool(len(wanted))
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(
     name=st.sampled_from(sorted(MACHINES)),
     share=SHARES,

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.klartext import CONTROLS, DMU65, MACHINES, PATHS, SHARES, TCP, TILTED, Post, proven, toolpath_of
 from tests.support.planes import reachable, text_of
 from trunnion.cl import read_cl
@@ -53,7 +54,7 @@ def test_a_plane_in_every_spelling(way: str, block: str, move: str, words: str, 
     assert block + ("" if way == "cycle19" else f"{words} {solution}+") in blocks
 
 
-@settings(max_examples=35)
+@settings(max_examples=examples(35))
 @given(name=st.sampled_from(sorted(MACHINES)), moves=PATHS, way=st.sampled_from(sorted(TCP)))
 def test_what_is_planned_is_proven(name: str, moves: Moves, way: str, folder: Path) -> None:
     shift = 20.0 * np.sin(np.arange(len(moves)))[:, None] * [1.0, 0.5, 0.2]
@@ -67,7 +68,7 @@ def test_what_is_planned_is_proven(name: str, moves: Moves, way: str, folder: Pa
 TIPS = st.tuples(*[st.floats(-80.0, 80.0)] * 3)
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(
     name=st.sampled_from(sorted(MACHINES)),
     way=st.sampled_from(sorted(SAYING)),

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.klartext import CONTROLS, MODES, OWN, proven
 from tests.support.planes import reachable
 from trunnion.cl import read_cl
@@ -92,7 +93,7 @@ def placed(machine: Machine) -> Machine:
     return replace(machine, axes=axes, workpiece_zero=(3.0, -4.0, 50.0), tool_length=90.0)
 
 
-@settings(max_examples=20)
+@settings(max_examples=examples(20))
 @given(name=st.sampled_from(sorted(OWN)), operations=st.lists(OPERATION, min_size=1, max_size=4), said=SETTINGS)
 def test_programs_of_all_manners_are_proven_on_every_machine_of_these_controls(
     name: str, operations: list[tuple[str, tuple[float, float], str, int, int]], said: dict[str, str], folder: Path

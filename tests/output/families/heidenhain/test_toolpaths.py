@@ -7,6 +7,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.klartext import CONTROLS, MACHINES, SHARES, SIMULTANEOUS, TCP, TILTED, Post, motion, proven
 from tests.support.planes import reachable, text_of
 from tests.support.posting import FOOT, HEAD
@@ -182,7 +183,7 @@ def test_the_tool_can_leave_along_its_own_axis(text: str, post: Post) -> None:
 ENDED = sorted(name for name, each in MACHINES.items() if np.isfinite(each.limits[list(each.linear)]).all())
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(
     name=st.sampled_from(ENDED),
     shares=st.lists(SHARES, min_size=1, max_size=2),

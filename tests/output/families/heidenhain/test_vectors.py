@@ -9,6 +9,7 @@ import pytest
 from hypothesis import assume, event, example, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.klartext import CONTROLS, MACHINES, PATHS, SIMULTANEOUS, TCP, Post, motion, proven, toolpath_of
 from tests.support.operations import moves_of, rapids_at
 from tests.support.path_strategies import directions
@@ -62,7 +63,7 @@ def test_three_axis_operations_and_planes_stay_as_they_are(post: Post) -> None:
     assert post(HEAD + FOOT, *VECTOR) == post(HEAD + FOOT)
 
 
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(name=st.sampled_from(sorted(MACHINES)), moves=PATHS, way=st.sampled_from(sorted(TCP)))
 def test_what_is_planned_is_proven(name: str, moves: Moves, way: str, folder: Path) -> None:
     shift = 20.0 * np.sin(np.arange(len(moves)))[:, None] * [1.0, 0.5, 0.2]
@@ -107,7 +108,7 @@ def resting(tilt: list[float], azimuth: list[float], *rapids: int) -> Moves:
     return rapids_at(moves, list(rapids))
 
 
-@settings(max_examples=15)
+@settings(max_examples=examples(15))
 @given(name=st.sampled_from(sorted(MACHINES)), moves=PATHS)
 # A repeated rapid makes no block, and the turn at the pole, or a point of a coarse step, makes up the number of blocks.
 @example(name="xyzbc_trt", moves=resting([0.0, 0.0, 12.0], [30.0, 30.0, 90.0], 0, 1))

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import Phase, assume, event, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.klartext import CONTROLS, MACHINES, SIMULTANEOUS, Post, proven, toolpath_of
 from tests.support.operations import moves_of
 from tests.support.without_tcp import steps
@@ -48,7 +49,7 @@ def seconds_by_hand(run: Run, row: int) -> float:
     return 60.0 * float(np.sqrt((steps**2).sum())) / float(run.feed[row])
 
 
-@settings(max_examples=25, phases=[Phase.generate])
+@settings(max_examples=examples(25), phases=[Phase.generate])
 @given(
     name=st.sampled_from(sorted(MACHINES)),
     path=st.lists(st.tuples(steps, LEAN, LEAN), min_size=2, max_size=4),
@@ -124,7 +125,7 @@ def test_a_head_has_no_m116(post: Post) -> None:
     assert "B turns in the head" in err
 
 
-@settings(max_examples=8, phases=[Phase.generate])
+@settings(max_examples=examples(8), phases=[Phase.generate])
 @given(name=st.sampled_from(sorted(MACHINES)), share=st.sampled_from([0.5, 0.98, 1.03, 2.0]), at=st.floats(0.0, 0.999))
 def test_another_f_in_any_block_that_turns_is_found(name: str, share: float, at: float, folder: Path) -> None:
     machine = placed(MACHINES[name])
@@ -144,7 +145,7 @@ def test_another_f_in_any_block_that_turns_is_found(name: str, share: float, at:
     assert [check.key for check in failures(found)] == ["feed"]
 
 
-@settings(max_examples=6, phases=[Phase.generate])
+@settings(max_examples=examples(6), phases=[Phase.generate])
 @given(name=st.sampled_from(sorted(MACHINES)), feed=st.floats(20.0, 3000.0).map(lambda f: round(f, 1)))
 def test_on_the_way_back_the_tip_has_the_feed_that_was_asked_for(name: str, feed: float, folder: Path) -> None:
     """Converted to a CL file again."""

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.holes import HEIGHTS
 from tests.support.jobs import post_job
 from tests.support.linuxcnc.interpreter import canonical, needs_linuxcnc
@@ -146,7 +147,7 @@ def drilled(draw: st.DrawFn) -> str:
 
 
 @needs_linuxcnc
-@settings(max_examples=30)
+@settings(max_examples=examples(30))
 @given(text=drilled())
 def test_holes_of_all_cycles_are_proven_and_linuxcnc_makes_them_as_our_reader_does(
     text: str, tmp_path_factory: pytest.TempPathFactory

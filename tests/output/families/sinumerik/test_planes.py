@@ -9,6 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.naive.chains import turned
 from tests.support.planes import ANGLES, SHARES, proven, reachable, sinumeriks, text_of
 from tests.support.posting import FOOT, HEAD, Post
@@ -41,7 +42,7 @@ TIPS = st.tuples(*[st.floats(-80.0, 80.0)] * 3)
 
 @pytest.mark.parametrize("name", sinumeriks())
 @pytest.mark.parametrize("way", ["cycle800", "frames"])
-@settings(max_examples=6, derandomize=True, suppress_health_check=list(HealthCheck))
+@settings(max_examples=examples(6), derandomize=True, suppress_health_check=list(HealthCheck))
 @given(shares=st.lists(SHARES, min_size=1, max_size=3), tips=st.lists(TIPS, min_size=1, max_size=3), mode=st.data())
 def test_planes_are_proven_on_every_machine_that_reaches_them(
     tmp_path_factory: pytest.TempPathFactory,

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 
+from tests.support.examples import examples
 from tests.support.naive.splines import points_of, splines
 from tests.support.reading import Runner, close
 from trunnion.arrays import Floats
@@ -96,7 +97,7 @@ def test_a_curve_that_does_not_end_is_named(run: Runner, fanuc: Machine) -> None
     assert any("without its last knots" in error.text for error in found.errors), found.diagnostics
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=examples(15), deadline=None)
 @example(OUT_AND_BACK)
 @given(splines(degrees=(1, 2, 3), weights=(0.5, 1.0, 2.125), repeats=1))
 def test_what_is_written_is_read(tmp_path_factory: pytest.TempPathFactory, fanuc: Machine, spline: Spline) -> None:
@@ -116,7 +117,7 @@ def test_what_is_written_is_read(tmp_path_factory: pytest.TempPathFactory, fanuc
     assert off_chords(dense, found.tip[first - 1 : last + 1]) <= 0.00101
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(splines(degrees=(1, 2, 3), weights=(0.5, 1.0, 4.0), repeats=1))
 def test_no_point_of_a_curve_is_far_from_its_chords(spline: Spline) -> None:
     dense = points_of(spline, np.linspace(0.0, 1.0, 101))

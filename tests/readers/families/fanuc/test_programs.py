@@ -9,6 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.reading import Runner, close, slides
 from tests.support.run_comparison import same
 from trunnion.arrays import Floats
@@ -45,7 +46,7 @@ def about(axis: int, angle: float) -> Floats:
 # Numbers
 
 
-@settings(max_examples=30, suppress_health_check=FRESH)
+@settings(max_examples=examples(30), suppress_health_check=FRESH)
 @given(n=st.integers(-200000, 200000), inches=st.booleans())
 def test_whole_numbers_count_least_increments(n: int, inches: bool, run: Runner) -> None:
     got = fanuc(run, f"{'G20' if inches else 'G21'} G90 G0 X{n} B{n % 90000}\nX{n}.\n")
@@ -82,7 +83,7 @@ def test_circles_helices_and_planes(run: Runner) -> None:
     assert got.diagnostics == ()
 
 
-@settings(max_examples=30, suppress_health_check=FRESH)
+@settings(max_examples=examples(30), suppress_health_check=FRESH)
 @given(b=st.floats(5.0, 80.0), c=st.floats(-170.0, 170.0))
 def test_vectors_and_rotary_words_stand_the_tool_alike(b: float, c: float, run: Runner) -> None:
     b, c = round(b, 3), round(c, 3)
@@ -97,7 +98,7 @@ def test_vectors_and_rotary_words_stand_the_tool_alike(b: float, c: float, run: 
     assert by_words.diagnostics == by_vector.diagnostics == ()
 
 
-@settings(max_examples=30, suppress_health_check=FRESH)
+@settings(max_examples=examples(30), suppress_health_check=FRESH)
 @given(
     euler=st.tuples(st.floats(-180, 180), st.floats(1.0, 90), st.floats(-180, 180)),
     origin=st.tuples(*[st.floats(-50, 50)] * 3),
@@ -145,7 +146,7 @@ def test_the_axes_turn_to_a_plane_inside_their_travel_by_whole_turns(run: Runner
     close(got.rotary, [[44.844, 195.792]] * 2, atol=0.005)
 
 
-@settings(max_examples=20, suppress_health_check=FRESH)
+@settings(max_examples=examples(20), suppress_health_check=FRESH)
 @given(angle=st.floats(-360, 360), x=st.floats(-50, 50), y=st.floats(-50, 50))
 def test_g68_turns_about_its_point(angle: float, x: float, y: float, run: Runner) -> None:
     angle, x, y = round(angle, 3), round(x, 3), round(y, 3)
@@ -424,7 +425,7 @@ words = st.sampled_from(
 )  # fmt: skip
 
 
-@settings(max_examples=80, suppress_health_check=FRESH)
+@settings(max_examples=examples(80), suppress_health_check=FRESH)
 @given(lines=st.lists(st.lists(words, max_size=5).map(" ".join), max_size=8), glue=st.booleans())
 def test_the_kernel_and_the_interpreter_read_any_words_alike(
     lines: list[str], glue: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

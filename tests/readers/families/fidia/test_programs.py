@@ -9,6 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.locations import TESTS
 from tests.support.reading import Runner, close
 from tests.support.run_comparison import same
@@ -75,7 +76,7 @@ def test_the_published_program_drills_the_holes_of_its_cl_file() -> None:
     assert [event.kind for event in run.events][-3:] == ["coolant", "retract", "end"]
 
 
-@settings(max_examples=30, suppress_health_check=FRESH)
+@settings(max_examples=examples(30), suppress_health_check=FRESH)
 @given(a=st.floats(-105, 105), c=st.floats(-180, 540), x=st.floats(-50, 50), y=st.floats(-50, 50), z=st.floats(-50, 50))
 def test_g154_takes_the_plane_of_the_present_rotary_position(
     a: float, c: float, x: float, y: float, z: float, run: Runner
@@ -165,7 +166,7 @@ words = st.sampled_from(
 )  # fmt: skip
 
 
-@settings(max_examples=60, suppress_health_check=FRESH)
+@settings(max_examples=examples(60), suppress_health_check=FRESH)
 @given(lines=st.lists(st.lists(words, max_size=5).map(" ".join), max_size=8), glue=st.booleans())
 def test_the_kernel_and_the_interpreter_read_any_words_alike(
     lines: list[str], glue: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

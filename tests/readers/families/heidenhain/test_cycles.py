@@ -4,12 +4,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.reading import Runner, close
 from trunnion.errors import Severity
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Kind
-from trunnion.readers.control.hole_motion import CycleExecutionError
-from trunnion.readers.families.heidenhain.cycles import peck_depths
+from trunnion.readers.control.hole_motion import CycleExecutionError, peck_depths
 
 BEFORE = "TOOL CALL 1 Z S1000\nL X+3 Y+4 Z+100 R0 FMAX M3\n"
 
@@ -203,7 +203,7 @@ def test_cycles_drill_along_a_tilted_tool(run: Runner) -> None:
     close(drilled, -17.0 * found.axis[-1], atol=1e-9)
 
 
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 @given(
     total=st.integers(1, 500).map(float),
     first=st.integers(1, 100).map(float),

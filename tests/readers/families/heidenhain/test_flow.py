@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.reading import Runner
 from trunnion.errors import InputError
 from trunnion.machines import load_machine
@@ -112,7 +113,7 @@ formulas = st.recursive(
 )
 
 
-@settings(max_examples=80)
+@settings(max_examples=examples(80))
 @given(text=formulas)
 def test_formulas_are_those_of_arithmetic(text: str) -> None:
     try:

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.klartext_reading import of_blocks
 from tests.support.locations import TESTS
 from tests.support.naive.klartext import matrix
@@ -77,7 +78,7 @@ def spellings(a: float, b: float, c: float) -> list[str]:
     ]  # fmt: skip
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(a=angle, b=angle, c=anywhere, point=st.tuples(*[st.integers(-50, 50)] * 3))
 def test_one_plane_in_every_spelling_is_one_plane(
     a: float, b: float, c: float, point: tuple[int, int, int], tmp_path_factory: pytest.TempPathFactory
@@ -92,7 +93,7 @@ def test_one_plane_in_every_spelling_is_one_plane(
         close(run.tip[-1], wanted @ np.array(point) + [10, -20, 5], atol=1e-7)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(a=angle, b=angle, c=anywhere, manner=st.sampled_from(["TURN", "MOVE", "MOVE DIST25", "STAY"]))
 def test_turn_keeps_the_slides_and_move_the_point(
     a: float, b: float, c: float, manner: str, tmp_path_factory: pytest.TempPathFactory
@@ -312,7 +313,7 @@ def test_vectors_of_ln_are_the_tool_axis(run: Runner) -> None:
     close(found.tip, [[1, 2, 3], [2, 2, 3]], atol=1e-9)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(a=angle, b=angle, c=anywhere)
 def test_spatial_angles_of_tcpm_are_the_tool_axis(
     a: float, b: float, c: float, tmp_path_factory: pytest.TempPathFactory

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.klartext_reading import of_blocks
 from tests.support.machines import at_zero
 from tests.support.naive import klartext as naive
@@ -28,7 +29,7 @@ def ran(text: str, factory: pytest.TempPathFactory) -> Run:
     return of_blocks(run_program(path, DMU65))
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=examples(80), deadline=None)
 @given(program=naive.programs())
 def test_blocks_lead_where_the_twin_says(program: naive.Program, tmp_path_factory: pytest.TempPathFactory) -> None:
     run = ran("\n".join(program.lines), tmp_path_factory)
@@ -54,7 +55,7 @@ poses = st.lists(
 )
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(poses=poses, shorter=st.booleans(), word=st.sampled_from(["M128", "FUNCTION TCPM F TCP AXIS POS"]))
 def test_with_tcp_the_tip_is_what_is_programmed(
     poses: list[tuple[float, ...]], shorter: bool, word: str, tmp_path_factory: pytest.TempPathFactory
@@ -92,7 +93,7 @@ words = st.sampled_from(
 )  # fmt: skip
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 @given(
     lines=st.lists(st.tuples(st.sampled_from(["", "L ", "LN "]), st.lists(words, max_size=6)), max_size=8),
     numbered=st.booleans(),
@@ -114,7 +115,7 @@ def test_the_kernel_and_the_interpreter_read_any_words_alike(
         np.testing.assert_array_equal(getattr(fast, name), getattr(slow, name), err_msg=name)
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=examples(80), deadline=None)
 @given(value=st.floats(-99999, 99999), decimals=st.integers(0, 9))
 def test_numbers_are_read_to_the_last_bit(
     value: float, decimals: int, tmp_path_factory: pytest.TempPathFactory

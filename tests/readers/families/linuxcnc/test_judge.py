@@ -9,6 +9,7 @@ import pytest
 from hypothesis import HealthCheck, Phase, example, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.linuxcnc.interpreter import RefusedByLinuxcncError, canonical, needs_linuxcnc
 from tests.support.linuxcnc.judge import MACHINE, agree
 from tests.support.locations import SHARED
@@ -267,7 +268,9 @@ def programs(draw: st.DrawFn) -> str:
     return "\n".join([*writer.lines, "M2", ""])
 
 
-@settings(max_examples=60, phases=[Phase.generate], suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=examples(60), phases=[Phase.generate], suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 @given(text=programs())
 def test_the_reader_makes_the_motions_that_linuxcnc_makes(text: str, tmp_path: Path) -> None:
     path = tmp_path / "part.ngc"
@@ -339,7 +342,9 @@ CODES = (
 )  # fmt: skip
 
 
-@settings(max_examples=60, phases=[Phase.generate], suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=examples(60), phases=[Phase.generate], suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 @given(pair=st.tuples(st.sampled_from(CODES), st.sampled_from(CODES)))
 @example(pair=("G80", "G80"))
 @example(pair=("G43.1", "G49"))

@@ -11,6 +11,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.locations import SHARED
 from tests.support.reading import Runner, close
 from tests.support.run_comparison import same
@@ -25,7 +26,7 @@ FOLDER = SHARED / "data" / "linuxcnc"
 XYZAC = load_machine("xyzac_trt")
 XYZBC = load_machine("xyzbc_trt")
 
-QUICK = settings(max_examples=30, suppress_health_check=[HealthCheck.function_scoped_fixture])
+QUICK = settings(max_examples=examples(30), suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
 def trt(machine: str, x: float, y: float, z: float, tilt: float, c: float) -> list[float]:
@@ -110,7 +111,7 @@ words = st.sampled_from(
 )  # fmt: skip
 
 
-@settings(max_examples=80, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(80), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(lines=st.lists(st.lists(words, max_size=5).map(" ".join), max_size=8), glue=st.booleans())
 def test_the_kernel_and_the_interpreter_read_any_words_alike(
     lines: list[str], glue: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

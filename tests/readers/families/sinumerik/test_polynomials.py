@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 
+from tests.support.examples import examples
 from tests.support.naive.splines import points_of, splines
 from tests.support.reading import Runner, close
 from trunnion.controls.words import NumberFormat
@@ -76,7 +77,7 @@ def test_what_is_not_certain_is_an_error(run: Runner, block: str, named: str) ->
     assert any(named in error.text for error in found.errors), found.diagnostics
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=examples(15), deadline=None)
 @given(splines(degrees=(2, 3), repeats=2))
 def test_what_is_written_is_read(tmp_path_factory: pytest.TempPathFactory, yl569: Machine, spline: Spline) -> None:
     assert takes_spline(spline)

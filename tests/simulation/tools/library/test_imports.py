@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from tests.support.examples import examples
 from tests.support.tools import pieces_volume
 from trunnion.errors import InputError
 from trunnion.simulation.tools.library import ToolLibrary, read_tools
@@ -461,7 +462,7 @@ JSON = st.recursive(
 )  # fmt: skip
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(st.lists(st.builds(lambda base, more: {**base, **more}, st.just(entry()), st.dictionaries(
     st.sampled_from(["unit", "geometry", "holder", "shaft", "post-process", "description"]), JSON, max_size=3,
 )), max_size=3))  # fmt: skip

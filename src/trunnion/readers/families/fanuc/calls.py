@@ -17,7 +17,8 @@ from trunnion.readers.program.interpreter import ProgramEnd
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.rs274.block import Block, Number
 from trunnion.readers.rs274.expressions import BlockError, Value
-from trunnion.readers.rs274.interpreter import Rs274Interpreter
+from trunnion.readers.rs274.word_interpreter import WordInterpreter
+from trunnion.readers.rs274.word_table import Word
 
 #: How often a subprogram may be repeated by one call.
 _MAX_REPEATS: Final = 1_000_000_000
@@ -26,7 +27,7 @@ _MAX_REPEATS: Final = 1_000_000_000
 _MAX_MACRO_DEPTH: Final = 4
 
 
-class CallInterpreter(Rs274Interpreter[ActiveProgram]):
+class CallInterpreter(WordInterpreter[ActiveProgram]):
     """Executes calls and returns."""
 
     control: FanucControl
@@ -39,6 +40,8 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
         super().__init__(path, machine, options)
         self._variables = Variables(self._system_value, self._set_system_value)
         self._flow = Flow(self._note, self._variables)
+        # The program and the line of the present block.
+        self._here: tuple[ActiveProgram, int]
 
     def _lines_of(self, active: ActiveProgram) -> tuple[int, int | None]:
         return active.source.program_lines(max(active.source.line - 1, active.line))
@@ -88,11 +91,12 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
             self._note(f"argument {letter} without a point: taken as it is written", Severity.WARNING, "NC217")
         return word.value
 
-    def _call_modal_macro(self, active: ActiveProgram) -> None:
-        if active.modal is not None:
-            self._enter_subprogram(active.modal.number, active.modal.repeats, dict(active.modal.arguments))
+    def _call_modal_macro(self) -> None:
+        modal = self._here[0].modal
+        if modal is not None:
+            self._enter_subprogram(modal.number, modal.repeats, dict(modal.arguments))
 
-    def _call(self, block: Block) -> None:
+    def _call(self, word: Word, block: Block) -> None:
         """M98: P is the program, L the number of repeats; without L the digits of P before those of the program."""
         number, repeats = block.take("P"), block.take("L")
         if number is None:
@@ -104,8 +108,9 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
             program %= programs
         self._enter_subprogram(program, _repeats(repeats), None)
 
-    def _local_call(self, active: ActiveProgram, line: int, block: Block) -> None:
+    def _local_call(self, word: Word, block: Block) -> None:
         """Call the part of this program from block number P to its M99, L times."""
+        active, line = self._here
         number, repeats = block.take("P"), _repeats(block.take("L"))
         if number is None:
             raise BlockError("the call of a local subprogram needs P, the number of its first block")
@@ -118,14 +123,13 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
         part.source.jump(begin)
         self._stack.append(part)
 
-    def _report_jump_on_input(self, block: Block) -> None:
+    def _jump_on_input(self, word: Word, block: Block) -> None:
         """Report a jump that depends on an input of the machine: it cannot be followed."""
         target, number = block.take("P"), block.take("Q")
-        own = self.control.settings.words.m.items()
-        word = next(f"M{code}" for code, meaning in own if meaning == words.JUMP_ON_INPUT)
+        own = next(f"M{code}" for code, meaning in self.control.own_words.m.items() if meaning == word.code)
         where = "" if target is None else f" to N{target:g}"
         which = "an input" if number is None else f"input {number:g}"
-        what = f"{word} jumps{where} unless {which} is on, which only the machine knows: it is not followed"
+        what = f"{own} jumps{where} unless {which} is on, which only the machine knows: it is not followed"
         self._note(f"{what}; leave the jump out", Severity.ERROR, "NC222")
 
     def _enter_subprogram(self, number: int, repeats: int, arguments: dict[int, float] | None) -> None:
@@ -159,8 +163,9 @@ class CallInterpreter(Rs274Interpreter[ActiveProgram]):
         assert isinstance(source, FanucText)
         return ActiveProgram(source, file, repeats), source.program(number) or 1
 
-    def _return(self, active: ActiveProgram, line: int, block: Block) -> None:
+    def _return(self, word: Word, block: Block) -> None:
         """M99: return, to block P of the caller; the main program would start again without end."""
+        active, line = self._here
         target = block.take("P")
         if len(self._stack) < 2:
             if target is not None:

@@ -37,6 +37,7 @@ class FanucControl(Rs274Control):
     def __init__(self, machine: Machine, note: Note, settings: Settings, *, shortest: bool | None = None) -> None:
         super().__init__(machine, note, shortest=shortest)
         self.settings = settings
+        self.own_words = settings.words
         self.reset_by = f"whether a reset ends it depends on {settings.kept_by}"
         self._letter_tables = {
             (whole_feeds, vectors, turning): self._make_table(whole_feeds, vectors, turning)

@@ -14,7 +14,6 @@ from trunnion.readers.families.fanuc.offsets_and_frames import OffsetInterpreter
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.rs274.block import Block
 from trunnion.readers.rs274.expressions import BlockError
-from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS
 
 #: More holes of one block are mistakes of the program.
 _MAX_HOLES: Final = 10_000
@@ -25,9 +24,7 @@ class CycleInterpreter(OffsetInterpreter):
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         super().__init__(path, machine, options)
-        self._to_initial = True
         self._initial: float | None = None
-        self._modal_words: dict[str, float] = {}
         # What was reported of the cycle in force, which has no words yet.
         self._waiting: Diagnostic | None = None
         # What has stopped the spindle besides M5, if the program has not started it since; else empty.
@@ -36,25 +33,19 @@ class CycleInterpreter(OffsetInterpreter):
         self._not_stated: frozenset[str] = frozenset()
 
     def _select_motion(self, code: int) -> None:
-        """Select a motion or a cycle, or cancel the cycle."""
         control = self.control
-        if self.motion_code in cycles.THREADS and code not in cycles.THREADS:
-            self._spindle_stands = "a thread has stopped it" if control.settings.threads_stop_spindle else ""
-        if code in cycles.THREADS:
+        if code in words.THREADS:
             self._spindle_stands = ""  # the cycle turns it
-        if code in cycles.CYCLES:
-            if self._initial is None:
-                self._initial = float(control.programmed_position[control.plane_axis])
-                self._modal_words = {}
-            self.motion_code = code
-            return
-        self._initial = None
-        self._waiting = None
-        self.motion_code = control.motion * 10 if code == CANCEL else code
-        if code in MOTIONS:
-            control.motion = MOTIONS[code]
+        elif self.motion_code in words.THREADS:
+            self._spindle_stands = "a thread has stopped it" if control.settings.threads_stop_spindle else ""
+        super()._select_motion(code)
+        if code not in self.table.cycles:
+            self._initial = None
+            self._waiting = None
+        elif self._initial is None:
+            self._initial = float(control.programmed_position[control.plane_axis])
 
-    def _cycle(self, block: Block, axes: dict[str, AxisWord]) -> None:
+    def _drill_block(self, block: Block, axes: dict[str, AxisWord]) -> None:
         """Drill at the position of a block; those without one and without R and Z drill nothing, and no word stays."""
         control = self.control
         along = "XYZ"[control.plane_axis]
@@ -76,7 +67,7 @@ class CycleInterpreter(OffsetInterpreter):
         repeats = block.take(letter)
         block.take("L")
         self._report_rotary_words(axes)
-        self._require_words(self._modal_words, "ZR" + "Q" * (self.motion_code in cycles.NEED_Q))
+        self._require_words(self._modal_words)
         holes = 1 if repeats is None else int(repeats)
         if not 0 <= holes <= _MAX_HOLES:
             raise BlockError(f"{letter} of a cycle is how often it drills")
@@ -127,7 +118,7 @@ class CycleInterpreter(OffsetInterpreter):
                 self._note(f"cuts in a new plane before {missing} is stated at rapid there", Severity.ERROR, "NC351")
                 self._not_stated = frozenset()
             self._not_stated -= set(axes)
-        if self._spindle_stands and self.motion_code not in (0, *cycles.THREADS):
+        if self._spindle_stands and self.motion_code not in (0, *words.THREADS):
             self._note(f"cuts while the spindle stands still: {self._spindle_stands}", Severity.ERROR, "NC370")
             self._spindle_stands = ""
 

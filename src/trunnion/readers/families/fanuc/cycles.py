@@ -7,19 +7,17 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.model.run import SpindleTask, SpindleWork
-from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion, check_pecks
-
-#: Canned cycles, by their G code in tenths.
-CYCLES: Final = frozenset({730, 740, 760, 810, 820, 830, 840, 850, 860, 870, 880, 890})
-
-#: Threads.
-THREADS: Final = frozenset({740, 840})
+from trunnion.readers.control.hole_motion import (
+    CycleExecutionError,
+    HoleMotion,
+    check_pecks,
+    chip_break,
+    descent,
+    peck_depths,
+)
 
 #: The one whose I and J shift the tool off the wall.
 FINE_BORE: Final = 760
-
-#: Those that need Q.
-NEED_Q: Final = frozenset({730, 830})
 
 #: Words of cycles that hold until the cycles end.
 MODAL_WORDS: Final = "RZPQIJ"
@@ -104,18 +102,16 @@ def _peck(hole: Hole, full: bool) -> list[HoleMotion]:
     total = abs(hole.retract - hole.bottom)
     check_pecks(total, hole.peck, "Q")
     down = -1.0 if hole.bottom < hole.retract else 1.0
-    motions: list[HoleMotion] = []
-    depth = hole.peck
-    while depth < total - 1e-9:
-        motions.append(HoleMotion(False, hole.retract + down * depth))
-        if full:
-            motions.append(HoleMotion(True, hole.retract))
-            if depth > ABOVE * hole.units:
-                motions.append(HoleMotion(True, hole.retract + down * (depth - ABOVE * hole.units)))
-        else:
-            motions.append(HoleMotion(True, hole.retract + down * max(depth - CHIP_BREAK * hole.units, 0.0)))
-        depth += hole.peck
-    return [*motions, HoleMotion(False, hole.bottom)]
+
+    def height(depth: float) -> float:
+        return hole.bottom if depth == total else hole.retract + down * depth
+
+    def out(depth: float) -> list[HoleMotion]:
+        above = depth - ABOVE * hole.units
+        return [HoleMotion(True, hole.retract), *([HoleMotion(True, height(above))] if above > 0.0 else [])]
+
+    back = chip_break(height, CHIP_BREAK * hole.units, rapid=True, least=0.0)
+    return descent(peck_depths(total, hole.peck), height, out if full else back)
 
 
 def _back_bore(hole: Hole) -> list[HoleMotion]:

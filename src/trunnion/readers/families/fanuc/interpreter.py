@@ -1,5 +1,6 @@
 """Interpreter of Fanuc programs."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -8,10 +9,9 @@ from trunnion.arrays import Codes, Floats
 from trunnion.errors import Severity
 from trunnion.machines import Machine, Mount
 from trunnion.model.run import Orientation
-from trunnion.readers.control import iso_m_codes
 from trunnion.readers.control.axis_word import PositionMode
 from trunnion.readers.control.row_recorder import MAX_POSITION
-from trunnion.readers.families.fanuc import cycles, words
+from trunnion.readers.families.fanuc import words
 from trunnion.readers.families.fanuc.cycle_blocks import CycleInterpreter
 from trunnion.readers.families.fanuc.flow import ActiveProgram, assign
 from trunnion.readers.families.fanuc.nurbs import NurbsBlocks
@@ -20,18 +20,17 @@ from trunnion.readers.families.fanuc.variables import ARITHMETIC
 from trunnion.readers.program.interpreter import ProgramEnd
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
-from trunnion.readers.program.word_values import fault_of_value
-from trunnion.readers.rs274.block import Block, block_reader, g_code_text, read_block
+from trunnion.readers.rs274.block import Block, block_reader
 from trunnion.readers.rs274.expressions import BlockError
-from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS
+from trunnion.readers.rs274.interpreter import MOTIONS
+from trunnion.readers.rs274.word_table import Word
 from trunnion.wording import counted
-
-#: G codes that are executed before the other words of a block: units and feed modes, which scale them.
-_SCALING = frozenset({200, 210, 930, 940, 950})
 
 
 class FanucInterpreter(CycleInterpreter):
     """Runs one Fanuc program on one machine."""
+
+    table = words.TABLE
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         super().__init__(path, machine, options)
@@ -86,13 +85,15 @@ class FanucInterpreter(CycleInterpreter):
         if self._flow.accept(active, line, reader):
             self._nurbs.break_off()
             return
-        block = read_block(reader, self._report_repeated_word)
-        self._translate(block, self.control.settings.words)
-        self._report_same_group(block.g, words.GROUPS)
+        block = self._read_block(reader)
+        self._here = active, line
         if words.NURBS in block.g or self._nurbs.is_open:
             self._add_to_nurbs(block)
+        elif words.MACROS.isdisjoint(block.g):
+            self._execute_words(block)
         else:
-            self._execute_words(active, line, block)
+            self._macro(active, block)
+            assign(self._variables, block)
 
     def _add_to_nurbs(self, block: Block) -> None:
         """Execute a block of a NURBS, the first of which has G6.2; no other motion may follow without G0 to G3."""
@@ -135,150 +136,106 @@ class FanucInterpreter(CycleInterpreter):
             raise ProgramEnd
         self._leave_program()
 
-    def _execute_words(self, active: ActiveProgram, line: int, block: Block) -> None:
-        control = self.control
-        if words.MACRO in block.g or words.MODAL_MACRO in block.g:
-            self._macro(active, block)
-            assign(self._variables, block)
-            return
-        self._scale_words(block)
-        self._feed_and_speed(block)
-        tool = block.take("T")
-        if tool is not None:
-            control.select_tool(f"{tool:g}")
-        last = control.settings.m_codes_last
-        if last and len(block.m) > 1:
-            self._note("two M words in a block: the control takes one", Severity.ERROR, "NC212")
-        for code in block.m:
-            if not last and code not in words.AFTER_MOTION:
-                self._m_code(code)
-        with_axis_words = self._g_codes(block)
-        number = block.take("H")
-        if number is not None and 0 <= number < 1e6:
-            self._length_number = int(number)
-        # The control keeps H after G49, but no length is in force.
-        control.modal.edge.set(control.row, self._length_number if control.length_active else -1)
-        radius = block.take("D")
-        if radius is not None and 0 <= radius < 1e6:
-            control.modal.radius.set(control.row, int(radius))
-        if with_axis_words is not None:
-            self._execute_with_axis_words(with_axis_words, block)
-        elif not any(code in words.NO_MOTION for code in block.g):
-            self._execute_motion(active, block)
-        if words.ALIGN_TOOL in block.g:
-            self._align_with_plane(block)
-        assign(self._variables, block)
-        for code in block.m:
-            if last or code in words.AFTER_MOTION:
-                self._m_code_after_motion(active, line, code, block)
-        self._report_unused_words(block)
+    def _execute_words(self, block: Block) -> None:
+        super()._execute_words(block)
+        self._report_unused_words(block)  # behind the M codes after the motion, which take some
 
     def _scale_words(self, block: Block) -> None:
         """Set units and feed mode, and scale the numbers without a point accordingly."""
+        super()._scale_words(block)
         control = self.control
-        for code in block.g:
-            if code in _SCALING:
-                self._modal_g_code(code)
-        in_cycle = self.motion_code in cycles.CYCLES or not cycles.CYCLES.isdisjoint(block.g)
+        cycles = self.table.cycles
+        in_cycle = self.motion_code in cycles or any(code in cycles for code in block.g)
         if words.DWELL in block.g or (in_cycle and not words.takes_number(block)):
             control.settings.scale_dwell(block)
         if words.DWELL not in block.g:
             angles = "IJKR" if words.TILT in block.g else ""
             mode, inches = control.modal.feed_mode.current, control.length_unit != 1.0
-            plain = {letter for code, letter in words.VALUES if code in block.g}
+            plain = {letter for word in self.table.words("G", block.g) for letter in word.values}
             if in_cycle:
                 plain.add(control.settings.repeat_letter)
             if words.JUMP_ON_INPUT in block.m:
                 plain.add("Q")
             control.settings.scale(block, mode, inches, angles=angles, plain=plain)
 
-    def _g_codes(self, block: Block) -> int | None:
-        """Execute the modal G codes; returns the one that takes the axis words, if any."""
-        with_axis_words = None
-        self._report_values(block, words.VALUES)
-        for code in block.g:
-            if code in words.TAKING_AXIS_WORDS:
-                if with_axis_words is not None:
-                    raise BlockError("two G words want the words of the block")
-                with_axis_words = code
-            elif code in MOTIONS or code in cycles.CYCLES or code == CANCEL:
-                self._select_motion(code)
-            elif code != words.MACHINE and code not in _SCALING:
-                self._g_code(code, block)
-        return with_axis_words
+    def _late_words(self, codes: Sequence[Word]) -> Sequence[Word]:
+        if not self.control.settings.m_codes_last:
+            return super()._late_words(codes)
+        if len(codes) > 1:
+            self._note("two M words in a block: the control takes one", Severity.ERROR, "NC212")
+        return codes
 
-    def _g_code(self, code: int, block: Block) -> None:
-        control = self.control
-        if code == words.CONTOUR and "Q" not in block.words:
+    def _before_motion(self, codes: Sequence[Word], block: Block) -> None:
+        """Take the numbers of the tool's length and of its radius."""
+        modal, row = self.control.modal, self.control.row
+        number = block.take("H")
+        if number is not None and 0 <= number < 1e6:
+            self._length_number = int(number)
+        # The control keeps H after G49, but no length is in force.
+        modal.edge.set(row, self._length_number if self.control.length_active else -1)
+        radius = block.take("D")
+        if radius is not None and 0 <= radius < 1e6:
+            modal.radius.set(row, int(radius))
+
+    def _close_block(self, block: Block) -> None:
+        assign(self._variables, block)
+
+    # Words
+
+    def _contour_control(self, word: Word, block: Block) -> None:
+        if "Q" not in block.words:
             self._note("G5.1 needs Q1 for on, or Q0 for off", Severity.ERROR, "NC215")
-        taken = [letter for letter in words.WORDS_OF_CODE.get(code, "") if block.take(letter) is not None]
-        if code in words.STROKE_LIMIT_SWITCHES:
-            control.set_mode("limits", g_code_text(code), self._limits_off, code != words.STROKE_LIMITS)
-            self._limits_off = code != words.STROKE_LIMITS
-        if code == words.STROKE_LIMITS and taken:
+
+    def _exact_stop(self, word: Word, block: Block) -> None:
+        self.control.add_exact_stop(word.sets)
+
+    def _stroke_limits(self, word: Word, block: Block) -> None:
+        self.control.set_mode("limits", word.text, self._limits_off, word.sets)
+        self._limits_off = word.sets
+        if any(letter in block.words for letter in word.letters):
             self._note("G22 with positions limits where the axes may go: not simulated", Severity.ERROR, "NC220")
-        if code in words.OFFSETS or code == words.MORE_OFFSETS:
-            self._work_offset(code, block)
-        elif code in (words.TCP, words.TCP_VECTOR):
-            self._tcp(code, block)
-        elif code == words.PLANE_OF_POSE:
-            control.take_plane_of_pose()
-            self._not_stated = frozenset("XYZ")
-        elif code == words.SMOOTHNESS:
-            self._smoothness(block)
-        elif code == words.LOOK_AHEAD:
-            self._look_ahead(block)
-        elif code in words.EXACT_STOPS:
-            control.add_exact_stop(words.EXACT_STOPS[code])
-        elif code == words.NO_PLANE_OF_POSE:
-            control.leave_plane_of_pose()
-            self._not_stated = frozenset()
-        elif code in (words.LENGTH_OFF, 430, 440):
-            block.take("H")
-            control.vectors = False
-            control.length_ended_at = 0
-            control.set_tcp(False)
-            on = code != words.LENGTH_OFF and self._numbers_length(block)
-            control.set_mode("length", g_code_text(code), control.length_active, on)
-            control.set_length(on)
-            if code == 440:
-                self._note("G44: the tool length with the other sign is not simulated", Severity.ERROR, "NC220")
-        elif code == words.ROTATION_OFF:
-            control.cancel_rotation()
-        elif code in (980, 990):
-            self._to_initial = code == 980
-        elif code == words.MODAL_MACRO_OFF:
-            self._stack[-1].modal = None
-        elif code in words.TAKEN_AS_LINES:
-            self._report_g_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
-            self._select_motion(10)
-        elif code == 960:
-            control.modal.feed_mode.set(control.row, 95)
-            self._report_g_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
-        elif code != words.ALIGN_TOOL and not self._modal_g_code(code):
-            self._report_g_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
-            if code in (410, 420):
-                self._check_look_ahead()
+
+    def _take_plane_of_pose(self, word: Word, block: Block) -> None:
+        self.control.take_plane_of_pose()
+        self._not_stated = frozenset("XYZ")
+
+    def _leave_plane_of_pose(self, word: Word, block: Block) -> None:
+        self.control.leave_plane_of_pose()
+        self._not_stated = frozenset()
+
+    def _length(self, word: Word, block: Block) -> None:
+        control = self.control
+        control.vectors = False
+        control.length_ended_at = 0
+        control.set_tcp(False)
+        on = word.sets and self._numbers_length(block)
+        control.set_mode("length", word.text, control.length_active, on)
+        control.set_length(on)
+        if word.text == "G44":
+            self._note("G44: the tool length with the other sign is not simulated", Severity.ERROR, "NC220")
+
+    def _cancel_rotation(self, word: Word, block: Block) -> None:
+        self.control.cancel_rotation()
+
+    def _end_modal_macro(self, word: Word, block: Block) -> None:
+        self._stack[-1].modal = None
+
+    def _begin_compensation(self, block: Block) -> None:
+        self._check_look_ahead()
 
     def _numbers_length(self, block: Block) -> bool:
         """Whether the H in force names a tool length: H0 is none."""
         number = block.words["H"].value if "H" in block.words else float(self._length_number)
         return number != 0.0
 
-    def _smoothness(self, block: Block) -> None:
-        """Execute the word that chooses a smoothness, P, and how far corners may be rounded, E."""
-        control = self.control
-        degree, rounding = block.take("P"), block.take("E")
-        if degree is not None and (fault := fault_of_value("smoothness", "P", degree, words.SMOOTHNESSES)):
-            self._note(fault, Severity.ERROR, "NC215")
+    def _smoothness(self, word: Word, block: Block) -> None:
+        rounding = block.take("E")
         if rounding is not None:
-            control.add_tolerance(rounding * control.length_unit)
+            self.control.add_tolerance(rounding * self.control.length_unit)
 
-    def _look_ahead(self, block: Block) -> None:
-        """Execute the word that limits how many blocks are read ahead, P; it changes no path but a compensated one."""
+    def _look_ahead(self, word: Word, block: Block) -> None:
+        """Limit how many blocks are read ahead, which changes no path but a compensated one."""
         blocks = block.take("P") or 0.0
-        if fault := fault_of_value("look-ahead", "P", blocks, words.BLOCKS_AHEAD):
-            self._note(fault, Severity.ERROR, "NC215")
         self._blocks_ahead = int(blocks) if abs(blocks) < 1e6 else 0
         self._check_look_ahead()
 
@@ -289,15 +246,14 @@ class FanucInterpreter(CycleInterpreter):
             what = f"radius compensation while the control reads only {ahead} ahead hides the next corner"
             self._note(f"{what}: end the limit before it", Severity.ERROR, "NC220")
 
-    def _tcp(self, code: int, block: Block) -> None:
+    def _tcp(self, word: Word, block: Block) -> None:
         """G43.4 and G43.5; P selects how the tool axis moves within blocks."""
         control = self.control
-        block.take("H")
         posture = block.take("P")
         if posture not in (None, 0.0, 1.0):
             self._note(f"P{posture:g} of G43.4 and G43.5 is not known", Severity.ERROR, "NC215")
         control.length_ended_at = 0
-        vectors = code == words.TCP_VECTOR
+        vectors = word.sets
         if control.tcp and control.vectors != vectors:
             self._note(
                 "G43.4 and G43.5 change without G49 between them: taken as if it were there", Severity.WARNING, "NC341"
@@ -314,7 +270,7 @@ class FanucInterpreter(CycleInterpreter):
         control.vectors = vectors
 
     def _may_be_left_on(self) -> list[str]:
-        left = [g_code_text(self.motion_code)] if self.motion_code in cycles.CYCLES else []
+        left = super()._may_be_left_on()
         left += ["G66"] if self._stack[0].modal is not None or self._stack[-1].modal is not None else []
         return left
 
@@ -322,34 +278,19 @@ class FanucInterpreter(CycleInterpreter):
     def _only_head_turns(self) -> bool:
         return all(self._machine.axes[column].mount is Mount.TOOL for column in self._machine.rotary)
 
-    def _m_code(self, code: int) -> None:
-        if code in iso_m_codes.SPINDLE:
+    def _iso(self, word: Word, block: Block) -> None:
+        if word.group == "spindle":
             self._spindle_stands = ""
-        elif code == words.RIGID_TAP and self.motion_code not in cycles.THREADS:
-            self._spindle_stands = "M29 has stopped it for a thread"
-        if not self._common_m_code(code):
-            self.control.add_builders_word("M", float(code))
+        super()._iso(word, block)
 
-    def _m_code_after_motion(self, active: ActiveProgram, line: int, code: int, block: Block) -> None:
-        if code == words.CALL:
-            self._call(block)
-        elif code == words.LOCAL_CALL:
-            self._local_call(active, line, block)
-        elif code == words.JUMP_ON_INPUT:
-            self._report_jump_on_input(block)
-        elif code == words.RETURN:
-            self._return(active, line, block)
-        elif code == words.CALL_FILE:
-            for letter in "PL":
-                block.take(letter)
-            self._note("M198: programs of other folders are not called", Severity.ERROR, "NC132")
-        else:
-            self._m_code(code)
+    def _stop_for_thread(self, word: Word, block: Block) -> None:
+        if self.motion_code not in words.THREADS:
+            self._spindle_stands = f"{word.text} has stopped it for a thread"
+        self._execute_unknown(word)
 
     # Motion
 
-    def _execute_motion(self, active: ActiveProgram, block: Block) -> None:
-        """Execute the motion or cycle in force."""
+    def _execute_motion(self, codes: Sequence[Word], block: Block) -> None:
         control = self.control
         axes = self._axis_words(block)
         if axes:
@@ -361,10 +302,10 @@ class FanucInterpreter(CycleInterpreter):
             self._note("rotary axes turn in the plane of the rotary position: end it first", Severity.ERROR, "NC340")
         if self.motion_code == words.NURBS and words.MACHINE not in block.g and (axes or vector is not None):
             raise BlockError("a position behind the last knot of G6.2, where only G6.2 goes on", code="NC322")
-        if self.motion_code in cycles.CYCLES:
-            self._cycle(block, axes)
+        if self.motion_code in self.table.cycles:
+            self._drill_block(block, axes)
             if axes:
-                self._call_modal_macro(active)
+                self._call_modal_macro()
             return
         circle = self.motion_code in (20, 30) and any(letter in block.words for letter in "IJKR")
         if not axes and vector is None and not circle:
@@ -380,7 +321,7 @@ class FanucInterpreter(CycleInterpreter):
             control.move(axes, vector, feed_written=self._check_feed(block))
         else:
             self._move(block, axes)
-        self._call_modal_macro(active)
+        self._call_modal_macro()
 
     def _vector(self, block: Block) -> Floats | None:
         """G43.5: return the tool axis I J K; components that are not written are 0."""

@@ -15,6 +15,7 @@ from trunnion.readers.families.fanuc.work_offsets import extended_offset, offset
 from trunnion.readers.program.word_values import fault_of_value
 from trunnion.readers.rs274.block import Block
 from trunnion.readers.rs274.expressions import BlockError
+from trunnion.readers.rs274.word_table import Word
 
 #: The word of extended work offsets of the family, where G54 P means the same.
 _FAMILY_WORD: Final = "G54.1"
@@ -23,50 +24,25 @@ _FAMILY_WORD: Final = "G54.1"
 class OffsetInterpreter(CallInterpreter):
     """Executes G codes that take the axis words of their block."""
 
-    def _work_offset(self, code: int, block: Block) -> None:
-        control = self.control
-        system = words.OFFSETS.index(code) + 1 if code in words.OFFSETS else 1
-        word, highest = control.settings.extended_word, control.settings.extended_offsets
-        takes_number = {words.MORE_OFFSETS, words.OFFSETS[0]} if word == _FAMILY_WORD else {words.MORE_OFFSETS}
-        more = block.take("P") if code in takes_number else None
-        if code == words.MORE_OFFSETS and more is None:
-            raise BlockError(f"{word} needs P")
+    def _work_offset(self, word: Word, block: Block) -> None:
+        control, system = self.control, word.sets
+        extended, highest = control.settings.extended_word, control.settings.extended_offsets
+        takes_number = word.numbered or (word.text == "G54" and extended == _FAMILY_WORD)
+        more = block.take("P") if takes_number else None
+        if word.numbered and more is None:
+            raise BlockError(f"{extended} needs P")
         if more is not None:
             if more != int(more) or not extended_offset(int(more), highest):
-                raise BlockError(f"P of {word} is not from 1 to {highest}", code="NC215")
+                raise BlockError(f"P of {extended} is not from 1 to {highest}", code="NC215")
             system = 6 + int(more)
         control.system = system
         offset = 53 + system if system <= 6 else extended_offset(system - 6)
-        name = offset_name(offset, word)
+        name = offset_name(offset, extended)
         control.set_mode("offset", name, control.modal.work_offset.current, offset)
         control.set_offset(offset, name)
         control.update_frame()
 
-    def _execute_with_axis_words(self, code: int, block: Block) -> None:
-        """Execute a G code of ``words.TAKING_AXIS_WORDS``, except for macros."""
-        control = self.control
-        if control.tilted and code in (words.LOCAL, words.PRESET):
-            self._note("shifts in a tilted plane are not simulated", Severity.ERROR, "NC220")
-        match code:
-            case words.DWELL:
-                self._dwell(block)
-            case words.SET_DATA:
-                self._set_data(block)
-            case words.HOME | words.OTHER_HOME:
-                self._go_home(code, block)
-            case words.LOCAL:
-                control.local = _changed(control.local, self._shifted(block))
-                control.note_shift()
-                control.update_frame()
-            case words.PRESET:
-                self._preset(block)
-            case words.ROTATE:
-                self._rotate(block)
-            case _:
-                assert code == words.TILT
-                self._tilt(block)
-
-    def _dwell(self, block: Block) -> None:
+    def _dwell(self, word: Word, block: Block) -> None:
         number = block.words.get("X") or block.words.get("U")
         if number is not None and self.control.settings.point_is_seconds:
             raise BlockError("the time of a dwell is P on this control")
@@ -96,6 +72,10 @@ class OffsetInterpreter(CallInterpreter):
             raise BlockError("a shift is larger than any machine", code="NC215")
         return scaled
 
+    def _refuse_tilted(self) -> None:
+        if self.control.tilted:
+            self._note("shifts in a tilted plane are not simulated", Severity.ERROR, "NC220")
+
     def _shifted(self, block: Block) -> list[float | None]:
         """Return X, Y and Z of a shift in mm; one of the axes must be there."""
         rotary = any(name in block.words for name in self.control.rotary_names)
@@ -104,9 +84,17 @@ class OffsetInterpreter(CallInterpreter):
             raise BlockError("G52 and G92 need the axes that they shift")
         return values
 
-    def _preset(self, block: Block) -> None:
+    def _local_shift(self, word: Word, block: Block) -> None:
+        control = self.control
+        self._refuse_tilted()
+        control.local = _changed(control.local, self._shifted(block))
+        control.note_shift()
+        control.update_frame()
+
+    def _preset(self, word: Word, block: Block) -> None:
         """G92: give the present position new coordinates."""
         control = self.control
+        self._refuse_tilted()
         for axis, value in enumerate(self._shifted(block)):
             if value is not None:
                 control.preset[axis] += float(control.programmed_position[axis]) - value
@@ -116,7 +104,7 @@ class OffsetInterpreter(CallInterpreter):
             self._note("G92 in a turned frame is not simulated", Severity.ERROR, "NC220")
         control.update_frame()
 
-    def _set_data(self, block: Block) -> None:
+    def _set_data(self, word: Word, block: Block) -> None:
         """G10: set a work offset; what writes data of tools is an error, as the path does not show it."""
         control = self.control
         kind, number = block.take("L"), block.take("P")
@@ -155,13 +143,13 @@ class OffsetInterpreter(CallInterpreter):
 
     # Home
 
-    def _go_home(self, code: int, block: Block) -> None:
+    def _go_home(self, word: Word, block: Block) -> None:
         """G28 and G30: through the programmed point to the reference position."""
         control = self.control
         axes, settings = self._axis_words(block), control.settings
         if not axes and not settings.home_takes_all:
             raise BlockError("G28 and G30 need the axes that go home")
-        if code == words.OTHER_HOME:
+        if word.numbered:
             which = block.take("P")
             self._note(f"G30 P{which or 2:g}: taken as the reference position of G28", Severity.WARNING, "NC224")
         self._counter.count_motions(1)
@@ -200,7 +188,7 @@ class OffsetInterpreter(CallInterpreter):
 
     # Rotations and planes
 
-    def _rotate(self, block: Block) -> None:
+    def _rotate(self, word: Word, block: Block) -> None:
         """G68: rotate in the working plane, or with I J K about any axis."""
         control = self.control
         angle = block.take("R")
@@ -216,7 +204,7 @@ class OffsetInterpreter(CallInterpreter):
             raise BlockError("G68 needs an angle R, and an axis that has a direction")
         control.rotate(centre, axis / length, angle)
 
-    def _tilt(self, block: Block) -> None:
+    def _tilt(self, word: Word, block: Block) -> None:
         """G68.2: tilt the plane by its origin and Euler angles."""
         kind = block.take("P")
         block.take("R")
@@ -229,9 +217,7 @@ class OffsetInterpreter(CallInterpreter):
             raise BlockError("an angle is not one that a plane has", code="NC215")
         self.control.tilt(origin, (angles[0], angles[1], angles[2]))
 
-    def _align_with_plane(self, block: Block) -> None:
-        """G53.1: turn the rotary axes to the tilted plane."""
-        block.take("P")
+    def _align_with_plane(self, word: Word, block: Block) -> None:
         self._counter.count_motions(1)
         self.control.align_with_plane()
 

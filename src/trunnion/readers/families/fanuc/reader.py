@@ -3,11 +3,10 @@
 from typing import Final
 
 from trunnion.readers.families.fanuc.interpreter import FanucInterpreter
-from trunnion.readers.families.fanuc.own_words import is_own_word
 from trunnion.readers.families.fanuc.settings import settings_of
-from trunnion.readers.families.fanuc.words import WITHOUT_PATH_EFFECT
+from trunnion.readers.families.fanuc.words import TABLE, is_own_word
 from trunnion.readers.families.fanuc.work_offsets import WORK_OFFSETS, offsets_of
-from trunnion.readers.program.family_reader import FamilyReader, g_words
+from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.raw_text import NUMBER, RS274_COMMENT, RS274_VALUE, raw_words
 
 #: Common variables are the program's; those from 1000 on are the control's. M48 and M49 switch overrides.
@@ -29,7 +28,7 @@ RAW_WORDS: Final = raw_words(
 
 READER: Final = FamilyReader(
     FanucInterpreter,
-    g_words(WITHOUT_PATH_EFFECT),
+    TABLE.without_path,
     WORK_OFFSETS,
     is_own_word,
     uses_length_numbers=True,

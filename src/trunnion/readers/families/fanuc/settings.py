@@ -5,8 +5,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.machines import Machine
-from trunnion.readers.families.fanuc.own_words import is_own_word
-from trunnion.readers.families.fanuc.words import MEANINGS, MORE_OFFSETS
+from trunnion.readers.families.fanuc.words import MORE_OFFSETS, TABLE, is_own_word
 from trunnion.readers.program.settings import reading_of, unit_of
 from trunnion.readers.rs274.block import Block, Number, g_code_text
 from trunnion.readers.rs274.word_meanings import NO_WORDS, WordMeanings, read_word_meanings
@@ -131,7 +130,7 @@ def settings_of(machine: Machine) -> Settings:
         numbers == "calculator",
         increment,
         unit,
-        read_word_meanings(table, is_own_word, MEANINGS),
+        read_word_meanings(table, is_own_word, TABLE.meanings),
         point_is_seconds=table.text("dwells", "milliseconds", one_of=("milliseconds", "point")) == "point",
         m_codes_last=table.text("m_codes", "each", one_of=("each", "last")) == "last",
         repeat_letter=table.text("cycles_repeat_with", "K", one_of=("K", "L")),

@@ -1,182 +1,181 @@
-"""The words of a Fanuc that the reader knows, by their effect; G codes are in tenths."""
+"""The words of a Fanuc, by their meaning in its manuals."""
 
 from typing import Final
 
-from trunnion.readers.families.fanuc.cycles import CYCLES
 from trunnion.readers.program.word_values import one_of, whole
 from trunnion.readers.rs274.block import Block
+from trunnion.readers.rs274.iso_words import COMMON_WORDS, COMPENSATION
+from trunnion.readers.rs274.word_table import Effect, When, Word, WordTable
 
-#: Work offsets G54 to G59.
-OFFSETS: Final = (540, 550, 560, 570, 580, 590)
-MORE_OFFSETS: Final = 541
+_NONE, _WARNING, _ERROR = Effect.NONE, Effect.WARNING, Effect.ERROR
+_BEHIND, _AFTER = When.BEHIND_MODES, When.AFTER_MOTION
 
-DWELL: Final = 40
-SET_DATA: Final = 100
-HOME: Final = 280
-OTHER_HOME: Final = 300
-LOCAL: Final = 520
-MACHINE: Final = 530
-ALIGN_TOOL: Final = 531
-MACRO: Final = 650
-MODAL_MACRO: Final = 660
-MODAL_MACRO_OFF: Final = 670
-ROTATE: Final = 680
-TILT: Final = 682
-ROTATION_OFF: Final = 690
-PRESET: Final = 920
-TCP: Final = 434
-TCP_VECTOR: Final = 435
-LENGTH_OFF: Final = 490
+_POSITION: Final = "tool position offsets are not simulated"
+_REGISTER: Final = whole(0, 999)
 
-#: AI contour control.
-CONTOUR: Final = 51
+#: G5.1 Q2 and Q3 (smooth interpolation, nano smoothing) round within the tolerance of the control. P1 and P2 of G53.1
+#: choose another of the two positions of the rotary axes than the nearest.
+TABLE: Final = WordTable(
+    *COMMON_WORDS,
+    Word("G4", "dwell", act="dwell", letters="PXU", when=_BEHIND, moves=False),
+    Word("G5", effect=_NONE, letters="P", values={"P": one_of(0, 10000)}, moves=False),
+    Word(
+        "G5.1", "AI contour control", effect=_NONE, act="contour_control", letters="QRXYZABC",
+        values={"Q": whole(0, 3), "R": whole(1, 10)}, moves=False,
+    ),
+    Word("G5.3", "what it chooses is not known", effect=_ERROR, letters="P", moves=False),
+    Word("G6.1", "a smooth curve is not simulated", effect=_ERROR, letters="XYZPR", moves=False),
+    Word("G6.2", "a NURBS: see below", group="motion", letters="PKXYZR"),
+    Word("G7.1", "cylindrical interpolation is not simulated", effect=_ERROR, letters="ABC"),
+    Word("G8", effect=_NONE, letters="P", values={"P": one_of(0, 1)}, moves=False),
+    Word("G9", "event `exact_stop`: `block`", effect=_NONE, act="exact_stop", sets="block"),
+    Word("G10", "sets a work offset", act="set_data", letters="LP", when=_BEHIND, moves=False, numbered=True),
+    Word("G11", effect=_NONE),
+    Word("G12.1", "polar coordinate interpolation is not simulated", effect=_ERROR, group="polar interpolation"),
+    Word("G13.1", effect=_NONE, group="polar interpolation"),
+    Word("G15", effect=_NONE, group="polar positions"),
+    Word("G16", "polar positions are not simulated", effect=_ERROR, group="polar positions"),
+    Word(
+        "G22", "stroke limits on; with positions, which limit the axes, an error", effect=_NONE, act="stroke_limits",
+        sets=False, group="limits", letters="XYZIJK", moves=False,
+    ),
+    Word("G23", "stroke limits off", effect=_NONE, act="stroke_limits", sets=True, group="limits"),
+    Word(
+        "G27", "a check of the reference position: where it goes is not simulated", effect=_ERROR, letters="XYZABC",
+        moves=False,
+    ),
+    Word("G28", "home, by the programmed point", act="go_home", when=_BEHIND, moves=False),
+    Word("G29", "back from the reference position: not simulated", effect=_ERROR, letters="XYZABC", moves=False),
+    Word(
+        "G30", "home as by `G28`, and a warning", act="go_home", when=_BEHIND, values={"P": whole(2, 4)}, moves=False,
+        numbered=True,
+    ),
+    Word("G31", "a skip is taken as a straight line", effect=_ERROR, act="line", letters="P"),
+    Word("G33", "thread cutting is taken as a straight line", effect=_ERROR, act="line", group="motion", letters="Q"),
+    Word(
+        "G41 G42", COMPENSATION, effect=_WARNING, act="compensation", sets=(1, -1), group="compensation", letters="D",
+        values={"D": _REGISTER},
+    ),
+    Word(
+        "G41.2 G42.2", "radius compensation in space is not simulated", effect=_WARNING, act="compensation_in_space",
+        sets=(1, -1), group="compensation", letters="DIJK",
+    ),
+    Word(
+        "G43 G44", "tool length on; the other sign of `G44` is not simulated: an error", effect=_NONE, act="length",
+        sets=True, group="length", letters="H", values={"H": _REGISTER},
+    ),
+    Word("G49", "tool length and TCP off", act="length", sets=False, group="length", letters="H"),
+    Word(
+        "G43.1", "the tool length along the tool axis is not simulated", effect=_ERROR, group="length", letters="H",
+    ),
+    Word(
+        "G43.2", "dynamic fixture offsets and rotary tool lengths are not simulated", effect=_ERROR, group="length",
+        letters="H",
+    ),
+    Word(
+        "G43.4 G43.5", "TCP with rotary words, with `I` `J` `K` as tool axis; `P1`: on a great circle", act="tcp",
+        sets=(False, True), group="length", letters="HP", numbered=True,
+    ),
+    Word("G45 G46 G47 G48", _POSITION, effect=_ERROR, letters="D"),
+    Word("G50", effect=_NONE, group="scaling"),
+    Word("G50.1", effect=_NONE, group="mirror images", letters="XYZ", moves=False),
+    Word("G51", "scaling is not simulated", effect=_ERROR, group="scaling", letters="XYZPIJK", moves=False),
+    Word("G51.1", "mirror images are not simulated", effect=_ERROR, group="mirror images", letters="XYZ", moves=False),
+    Word("G52", "local shift", act="local_shift", when=_BEHIND, moves=False),
+    Word("G53", "positions of the machine, with `G90`"),
+    Word(
+        "G53.1", "turns the rotary axes so that the tool is perpendicular to the plane", act="align_with_plane",
+        letters="P", values={"P": one_of(0)}, when=_AFTER, numbered=True,
+    ),
+    Word(
+        "G53.6", "turning the tool upright while the tip stays is not simulated", effect=_ERROR, letters="HPR",
+        moves=False,
+    ),
+    Word("G54 G55 G56 G57 G58 G59", "work offset", act="work_offset", sets=(1, 2, 3, 4, 5, 6), group="offset"),
+    Word("G54.1", "work offset `P`", act="work_offset", sets=1, group="offset", letters="P", numbered=True),
+    Word("G54.4", "workpiece setting errors are not simulated", effect=_ERROR, letters="P"),
+    Word("G60", "positioning from one side, past its end and back, is not simulated", effect=_ERROR),
+    Word("G61", "event `exact_stop`: `on`", effect=_NONE, act="exact_stop", sets="on", group="exact stop"),
+    Word("G62", "another feed at inside corners is not simulated", effect=_ERROR, group="exact stop"),
+    Word("G63", effect=_NONE, group="exact stop"),
+    Word("G64", "event `exact_stop`: `off`", effect=_NONE, act="exact_stop", sets="off", group="exact stop"),
+    Word("G65", "calls a macro", letters="PL", when=_BEHIND, moves=False, numbered=True, calls=True),
+    Word(
+        "G66", "calls a macro after every motion", group="modal macro", letters="PL", when=_BEHIND,
+        moves=False, numbered=True,
+    ),
+    Word(
+        "G66.1", "a modal macro call at every block is not simulated", effect=_ERROR, group="modal macro",
+        letters="PL", moves=False,
+    ),
+    Word("G67", "ends `G66`", act="end_modal_macro", group="modal macro"),
+    Word("G68", "rotation by `R`", act="rotate", group="rotation", letters="XYZIJKR", when=_BEHIND, moves=False),
+    Word(
+        "G68.2", "tilted plane by Euler angles", act="tilt", group="rotation", letters="XYZIJKPQR", when=_BEHIND,
+        moves=False, numbered=True,
+    ),
+    Word(
+        "G68.3", "a plane by the tool's direction is not simulated", effect=_ERROR, group="rotation", letters="XYZR",
+        moves=False,
+    ),
+    Word(
+        "G68.4", "a plane on top of another is not simulated", effect=_ERROR, group="rotation", letters="XYZIJK",
+        moves=False,
+    ),
+    Word("G69", "rotation and tilted plane off", act="cancel_rotation", group="rotation"),
+    Word("G74 G76 G81 G82 G84 G85 G86 G87 G88 G89", "cycle", act="cycle", group="motion", needs="ZR"),
+    Word("G73 G83", "cycle with pecks", act="cycle", group="motion", needs="ZRQ"),
+    Word("G92", "gives the present position new values", act="preset", when=_BEHIND, moves=False),
+    Word("G92.1", "a preset of the work coordinates is not simulated", effect=_ERROR, letters="XYZABC", moves=False),
+    Word(
+        "G96", "constant surface speed is not simulated", effect=_ERROR, act="surface_speed", group="speed",
+        letters="PRS",
+    ),
+    Word(
+        "G: plane of the rotary position", "X Y Z along the machine's axes, as the rotary position has turned them",
+        act="take_plane_of_pose", group="plane of the rotary position",
+    ),
+    Word(
+        "G: no plane of the rotary position", "ends that plane", act="leave_plane_of_pose",
+        group="plane of the rotary position",
+    ),
+    Word(
+        "G: smoothness", "degree `P`, rough to fine; `E`: how far corners may be rounded", act="smoothness",
+        letters="PE", values={"P": whole(1, 3)}, numbered=True,
+    ),
+    Word(
+        "G: look-ahead", "how many blocks the control reads ahead; 0: as many as it can", act="look_ahead",
+        letters="P", values={"P": whole(0, 15)}, numbered=True,
+    ),
+    Word("M29", "stops the spindle for a rigid thread; event `m`", act="stop_for_thread", own=False),
+    Word("M98", "calls a subprogram", act="call", letters="PL", when=_AFTER, numbered=True, calls=True),
+    Word("M99", "returns from a subprogram", act="return", letters="P", when=_AFTER, numbered=True),
+    Word(
+        "M198", "programs of other folders are not called", effect=_ERROR, letters="PL", when=_AFTER, numbered=True,
+        calls=True, problem="NC132",
+    ),
+    Word("M: local subprogram", "calls the part from block `P` to `M99`", act="local_call", when=_AFTER, numbered=True),
+    Word(
+        "M: jump on an input", "a jump that only the machine can decide: an error", act="jump_on_input", when=_AFTER,
+        numbered=True,
+    ),
+)  # fmt: skip
 
-NURBS: Final = 62
+#: G codes, in tenths, that decide how the whole block is taken.
+DWELL: Final = TABLE.code("G4")
+NURBS: Final = TABLE.code("G6.2")
+MACHINE: Final = TABLE.code("G53")
+MORE_OFFSETS: Final = TABLE.code("G54.1")
+MACROS: Final = frozenset({TABLE.code("G65"), TABLE.code("G66")})
+MODAL_MACRO: Final = TABLE.code("G66")
+TILT: Final = TABLE.code("G68.2")
 
-#: Meanings for which the family has no words, only some of its controls: codes that no program can write.
-PLANE_OF_POSE: Final = -1
-NO_PLANE_OF_POSE: Final = -2
-SMOOTHNESS: Final = -3
-LOOK_AHEAD: Final = -4
-LOCAL_CALL: Final = -1
-JUMP_ON_INPUT: Final = -2
-MEANINGS: Final = {
-    "G": {
-        "plane of the rotary position": PLANE_OF_POSE,
-        "no plane of the rotary position": NO_PLANE_OF_POSE,
-        "smoothness": SMOOTHNESS,
-        "look-ahead": LOOK_AHEAD,
-    },
-    "M": {"local subprogram": LOCAL_CALL, "jump on an input": JUMP_ON_INPUT},
-}
+#: Threads.
+THREADS: Final = frozenset({TABLE.code("G74"), TABLE.code("G84")})
 
-#: G codes that take the axis words of their block, which then makes no other motion.
-TAKING_AXIS_WORDS: Final = frozenset(
-    {DWELL, SET_DATA, HOME, OTHER_HOME, LOCAL, MACRO, MODAL_MACRO, ROTATE, TILT, PRESET}
-)
-
-#: G codes that the path does not depend on.
-WITHOUT_PATH_EFFECT: Final = frozenset(
-    {50, 51, 80, 90, 110, 131, 150, 220, 230, 400, 430, 440, 500, 501, 610, 630, 640, 970}
-)
-
-#: How the control goes through the ends of blocks, by G code: ``RowRecorder.add_exact_stop``.
-EXACT_STOPS: Final = {90: "block", 610: "on", 640: "off"}
-
-#: G codes that are not simulated: the message, and whether the path is wrong without them.
-NOT_SIMULATED: Final = {
-    53: ("what it chooses is not known", True),
-    61: ("a smooth curve is not simulated", True),
-    71: ("cylindrical interpolation is not simulated", True),
-    121: ("polar coordinate interpolation is not simulated", True),
-    160: ("polar positions are not simulated", True),
-    270: ("a check of the reference position: where it goes is not simulated", True),
-    290: ("back from the reference position: not simulated", True),
-    310: ("a skip is taken as a straight line", True),
-    330: ("thread cutting is taken as a straight line", True),
-    410: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
-    420: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
-    412: ("radius compensation in space is not simulated", False),
-    422: ("radius compensation in space is not simulated", False),
-    431: ("the tool length along the tool axis is not simulated", True),
-    432: ("dynamic fixture offsets and rotary tool lengths are not simulated", True),
-    450: ("tool position offsets are not simulated", True),
-    460: ("tool position offsets are not simulated", True),
-    470: ("tool position offsets are not simulated", True),
-    480: ("tool position offsets are not simulated", True),
-    510: ("scaling is not simulated", True),
-    511: ("mirror images are not simulated", True),
-    536: ("turning the tool upright while the tip stays is not simulated", True),
-    544: ("workpiece setting errors are not simulated", True),
-    600: ("positioning from one side, past its end and back, is not simulated", True),
-    620: ("another feed at inside corners is not simulated", True),
-    661: ("a modal macro call at every block is not simulated", True),
-    683: ("a plane by the tool's direction is not simulated", True),
-    684: ("a plane on top of another is not simulated", True),
-    921: ("a preset of the work coordinates is not simulated", True),
-    960: ("constant surface speed is not simulated", True),
-}
-
-#: Motions that are taken as straight lines.
-TAKEN_AS_LINES: Final = frozenset({310, 330})
-
-#: G codes whose axis words are no positions: their block makes no motion.
-NO_MOTION: Final = frozenset({50, 51, 53, 61, 80, 220, 270, 290, 501, 510, 511, 536, 661, 683, 684, 921})
-
-#: Words that belong to a G code and have no effect here.
-WORDS_OF_CODE: Final = {
-    50: "P",
-    51: "QRXYZABC",
-    53: "P",
-    61: "XYZPR",
-    80: "P",
-    71: "ABC",
-    220: "XYZIJK",
-    270: "XYZABC",
-    290: "XYZABC",
-    310: "P",
-    330: "Q",
-    410: "D",
-    420: "D",
-    412: "DIJK",
-    422: "DIJK",
-    430: "H",
-    440: "H",
-    431: "H",
-    432: "H",
-    450: "D",
-    460: "D",
-    470: "D",
-    480: "D",
-    501: "XYZ",
-    510: "XYZPIJK",
-    511: "XYZ",
-    536: "HPR",
-    544: "P",
-    661: "PL",
-    683: "XYZR",
-    684: "XYZIJK",
-    921: "XYZABC",
-    960: "PRS",
-}
-
-#: What the values of these words may be, by G code and letter. They count as written, also without a point. G5.1 Q2 and
-#: Q3 (smooth interpolation, nano smoothing) round within the tolerance of the control.
-VALUES: Final = {
-    (50, "P"): one_of(0, 10000),
-    (CONTOUR, "Q"): whole(0, 3),
-    (CONTOUR, "R"): whole(1, 10),
-    (80, "P"): one_of(0, 1),
-    (430, "H"): whole(0, 999),
-    (440, "H"): whole(0, 999),
-    (410, "D"): whole(0, 999),
-    (420, "D"): whole(0, 999),
-    # P1 and P2 choose another of the two positions of the rotary axes than the nearest.
-    (ALIGN_TOOL, "P"): one_of(0),
-    (OTHER_HOME, "P"): whole(2, 4),
-}
-
-#: Forbids an area, if words of positions follow; and the words that have such areas watched, and not.
-STROKE_LIMITS: Final = 220
-STROKE_LIMIT_SWITCHES: Final = frozenset({STROKE_LIMITS, 230})
-
-#: The degrees of smoothness, rough to fine.
-SMOOTHNESSES: Final = whole(1, 3)
-
-#: How many blocks a control reads ahead; 0, as many as it can.
-BLOCKS_AHEAD: Final = whole(0, 15)
-
-#: Words whose P is a number of something, also where a cycle is in force.
-_WITH_NUMBER: Final = frozenset(
-    {SET_DATA, OTHER_HOME, MORE_OFFSETS, ALIGN_TOOL, MACRO, MODAL_MACRO, TILT, TCP, TCP_VECTOR, SMOOTHNESS, LOOK_AHEAD}
-)
-_WITH_NUMBER_M: Final = frozenset({98, 99, 198, LOCAL_CALL, JUMP_ON_INPUT})
-
-
-def takes_number(block: Block) -> bool:
-    """Whether P of a block is the number of a program, a block or an offset, or chooses something: no time."""
-    return not (_WITH_NUMBER.isdisjoint(block.g) and _WITH_NUMBER_M.isdisjoint(block.m))
-
+#: M codes that lead to other blocks on the controls that have them.
+LOCAL_CALL: Final = TABLE.code("M: local subprogram")
+JUMP_ON_INPUT: Final = TABLE.code("M: jump on an input")
 
 #: G10: what it writes into the data of tools, by L.
 TOOL_DATA: Final = {
@@ -191,16 +190,6 @@ TOOL_DATA: Final = {
 #: G10: what P may be, by L.
 DATA_NUMBERS: Final = {2: whole(1, 6), 20: whole(1, 300), **dict.fromkeys(TOOL_DATA, whole(1, 999))}
 
-#: M codes that act after the motion of their block.
-AFTER_MOTION: Final = frozenset({0, 1, 2, 5, 9, 30, 98, 99, 198, LOCAL_CALL, JUMP_ON_INPUT})
-
-#: Stops the spindle, for a rigid thread.
-RIGID_TAP: Final = 29
-
-CALL: Final = 98
-RETURN: Final = 99
-CALL_FILE: Final = 198
-
 #: Local variables of a macro by the letter of its call.
 ARGUMENTS: Final = {
     "A": 1, "B": 2, "C": 3, "I": 4, "J": 5, "K": 6, "D": 7, "E": 8, "F": 9, "H": 11, "M": 13, "Q": 17, "R": 18,
@@ -211,28 +200,15 @@ ARGUMENTS: Final = {
 MESSAGE_VARIABLE: Final = 3006
 ALARM_VARIABLE: Final = 3000
 
-#: G codes of which the control takes one a block, the last, for the whole block (groups 1 to 16 of the manuals).
-GROUPS: Final = (
-    frozenset({0, 10, 20, 30, NURBS, 330, *CYCLES}),
-    frozenset({170, 180, 190}),
-    frozenset({900, 910}),
-    frozenset({930, 940, 950}),
-    frozenset({200, 210}),
-    frozenset({400, 410, 412, 420, 422}),
-    frozenset({430, 431, 432, TCP, TCP_VECTOR, 440, LENGTH_OFF}),
-    frozenset({980, 990}),
-    frozenset({*OFFSETS, MORE_OFFSETS}),
-    frozenset({610, 620, 630, 640}),
-    frozenset({ROTATE, TILT, 683, 684, ROTATION_OFF}),
-    frozenset({MODAL_MACRO, 661, MODAL_MACRO_OFF}),
-    frozenset({220, 230}),
-    frozenset({500, 510}),
-    frozenset({501, 511}),
-    frozenset({150, 160}),
-    frozenset({121, 131}),
-    frozenset({960, 970}),
-    frozenset({PLANE_OF_POSE, NO_PLANE_OF_POSE}),
-)
-
 #: Keywords of control flow.
 FLOW: Final = ("IF", "GOTO", "WHILE", "DO", "END", "THEN")
+
+
+def is_own_word(word: str) -> bool:
+    """Whether a declared word begins with one of the control; a call of a named program does not."""
+    return word.partition(" ")[0].rstrip("0123456789") in FLOW or TABLE.is_own(word)
+
+
+def takes_number(block: Block) -> bool:
+    """Whether P of a block is the number of a program, a block or an offset, or chooses something: no time."""
+    return any(word.numbered for word in (*TABLE.words("G", block.g), *TABLE.words("M", block.m)))

@@ -12,7 +12,7 @@ from trunnion.readers.control import tool_orientation
 from trunnion.readers.control.affine_map import AffineMap
 from trunnion.readers.control.axis_word import AxisWord, PositionMode
 from trunnion.readers.control.row_recorder import Note
-from trunnion.readers.families.fidia.own_words import is_own_word
+from trunnion.readers.families.fidia.words import TABLE
 from trunnion.readers.program.settings import reading_of, unit_of
 from trunnion.readers.rs274.control import Rs274Control
 from trunnion.readers.rs274.word_meanings import WordMeanings, read_word_meanings
@@ -33,7 +33,7 @@ def settings_of(machine: Machine) -> Settings:
     table = reading_of(machine)
     counts = table.text("feed_without_tcp", "slides", one_of=("slides", "all_axes"))
     unit = unit_of(table)
-    words = read_word_meanings(table, is_own_word)
+    words = read_word_meanings(table, TABLE.is_own)
     table.report_unread_keys()
     table.raise_problems()
     return Settings(FeedPath.AXES if counts == "all_axes" else FeedPath.SLIDES, unit, words)
@@ -51,6 +51,7 @@ class FidiaControl(Rs274Control):
         super().__init__(machine, note, shortest=shortest)
         self.letter_table = letter_table((self.rotary_names[0], self.rotary_names[1]), gaps=True)
         self.settings = settings_of(machine)
+        self.own_words = self.settings.words
         self.modal.feed_path.set(0, int(self.settings.feed_path))
         self.count_in(self.settings.unit)
 

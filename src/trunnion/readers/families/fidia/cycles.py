@@ -7,10 +7,7 @@ positions along Z, in the units of the program.
 from typing import Final
 
 from trunnion.model.run import SpindleTask, SpindleWork
-from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion, check_pecks
-
-#: Canned cycles, by their G code in tenths.
-CYCLES: Final = frozenset({810, 820, 830, 840, 850, 860, 890})
+from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion, check_pecks, descent, peck_depths
 
 #: Words of cycles that hold until the cycles end.
 MODAL_WORDS: Final = "ZERDH"
@@ -50,15 +47,15 @@ def spindle_work(code: int) -> SpindleWork | None:
     return SpindleWork(SpindleTask.STOP) if code == 860 else None
 
 
-def _peck(start: float, depth: float, peck: float, dwell: float, units: float) -> list[HoleMotion]:
-    total = start - depth
+def _peck(start: float, bottom: float, peck: float, dwell: float, units: float) -> list[HoleMotion]:
+    total = start - bottom
     check_pecks(total, peck, "D")
-    motions: list[HoleMotion] = []
-    reached = peck
-    while reached < total - 1e-9:
-        motions.append(HoleMotion(False, start - reached, dwell=dwell))
-        motions.append(HoleMotion(True, start))
-        if reached > ABOVE * units:
-            motions.append(HoleMotion(True, start - reached + ABOVE * units))
-        reached += peck
-    return [*motions, HoleMotion(False, depth, dwell=dwell)]
+
+    def height(depth: float) -> float:
+        return bottom if depth == total else start - depth
+
+    def out(depth: float) -> list[HoleMotion]:
+        approach = [HoleMotion(True, height(depth) + ABOVE * units)] if depth > ABOVE * units else []
+        return [HoleMotion(True, start), *approach]
+
+    return descent(peck_depths(total, peck), height, out, dwells=(dwell, dwell))

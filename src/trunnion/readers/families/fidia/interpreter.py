@@ -1,6 +1,7 @@
 """Interpreter of Fidia programs, which have no jumps and no loops."""
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
 
@@ -14,12 +15,15 @@ from trunnion.readers.families.fidia import cycles, words
 from trunnion.readers.families.fidia.control import FidiaControl
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.program.source_text import SourceText
-from trunnion.readers.rs274.block import Block, block_reader, g_code_text, read_block
+from trunnion.readers.rs274.block import Block, block_reader
 from trunnion.readers.rs274.expressions import Arithmetic, BlockError, Value
-from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS, ActiveProgram, Rs274Interpreter
+from trunnion.readers.rs274.interpreter import CANCEL, MOTIONS, ActiveProgram
+from trunnion.readers.rs274.word_interpreter import WordInterpreter
+from trunnion.readers.rs274.word_table import Word
 
 #: A tool's number may follow a point: T.1.
 _TOOL = re.compile(r"T\.?([0-9]{1,9})")
+_TOOL_CHANGES: Final = frozenset({6, 306})
 
 
 class _NoParameters:
@@ -36,15 +40,17 @@ _NO_PARAMETERS: Final = _NoParameters()
 _NO_ARITHMETIC: Final = Arithmetic(levels=(), operators={}, functions={}, pairs={})
 
 
-class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
+class FidiaInterpreter(WordInterpreter[ActiveProgram]):
     """Runs one Fidia program on one machine."""
 
     control: FidiaControl
 
+    table = words.TABLE
+
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         super().__init__(path, machine, options)
-        # Words of cycles that hold until the cycles end.
-        self._modal_words: dict[str, float] = {}
+        # The tool that the present block calls.
+        self._tool: str | None = None
 
     def _make_control(self) -> FidiaControl:
         return FidiaControl(self._machine, self._note, shortest=self._options.shortest)
@@ -67,107 +73,61 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
             text = text[: tool.start()] + text[tool.end() :]
         # The time of a dwell has two letters.
         reader = block_reader(text.replace("HD", "H"), _NO_ARITHMETIC, _NO_PARAMETERS)
-        block = read_block(reader, self._report_repeated_word)
-        self._translate(block, self.control.settings.words)
-        self._report_same_group(block.g, words.GROUPS)
+        block = self._read_block(reader)
         if block.assignments:
             raise BlockError("parameters are not simulated", code="NC220")
-        self._execute_words(block, None if tool is None else tool.group(1))
+        self._tool = None if tool is None else tool.group(1)
+        self._execute_words(block)
 
-    def _execute_words(self, block: Block, tool: str | None) -> None:
-        control = self.control
-        selected = False
-        self._report_values(block, words.VALUES)
-        for code in block.g:
-            if code in MOTIONS or code in cycles.CYCLES or code == CANCEL:
-                selected = True
-                self._select_motion(code)
-            elif code != words.MACHINE:
-                self._g_code(code, block)
-        if words.DWELL in block.g:
-            self._dwell(block)
+    def _scale_words(self, block: Block) -> None:
+        super()._scale_words(block)
+        if words.DWELL in block.g:  # behind all other G words
+            self._dwell(self.table.words("G", [words.DWELL])[0], block)
             if self._axis_words(block):
                 raise BlockError("axis words beside G4")
-        self._feed_and_speed(block)
-        if tool is not None:
-            control.select_tool(tool)
-        for code in block.m:
-            if code not in words.AFTER_MOTION:
-                self._m_code(code)
-        if tool is not None and words.TOOL not in block.m and 6 not in block.m:
-            self._note(f"T{tool} without M306 or M6: the tool is only chosen", Severity.WARNING, "NC362")
-        if not any(code in words.NO_MOTION for code in block.g):
-            self._execute_motion(block, selected)
-        self._report_unused_words(block)
-        for code in block.m:
-            if code in words.AFTER_MOTION:
-                self._m_code(code)
 
-    def _may_be_left_on(self) -> list[str]:
-        return [g_code_text(self.motion_code)] if self.motion_code in cycles.CYCLES else []
+    def _call_tool(self, block: Block) -> None:
+        if self._tool is not None:
+            self.control.select_tool(self._tool)
 
-    def _select_motion(self, code: int) -> None:
-        """Select a motion or a cycle, or cancel the cycle."""
-        control = self.control
-        if code in cycles.CYCLES:
-            if self.motion_code not in cycles.CYCLES:
-                self._modal_words = {}
-            self.motion_code = code
-            return
-        self.motion_code = control.motion * 10 if code == CANCEL else code
-        control.motion = MOTIONS[self.motion_code]
+    def _before_motion(self, codes: Sequence[Word], block: Block) -> None:
+        if self._tool is not None and _TOOL_CHANGES.isdisjoint(block.m):
+            self._note(f"T{self._tool} without M306 or M6: the tool is only chosen", Severity.WARNING, "NC362")
 
-    def _g_code(self, code: int, block: Block) -> None:
-        control = self.control
-        self._take_radius(code, block)
-        for letter in words.WORDS_OF_CODE.get(code, ""):
-            block.take(letter)
-        if code in words.UNITS:
-            self._set_units(code, inches=words.UNITS[code])
-            if words.UNITS[code]:
-                self._note("G70: what F counts in inches is not known", Severity.ERROR, "NC241")
-        elif code == words.OFFSET:
-            number = block.take("O")
-            if number is None or number != int(number) or not 1 <= number <= 99:
-                raise BlockError("G55 needs O from 1 to 99")
-            control.set_offset(words.OFFSET_BASE + int(number), f"G55 O{number:g}")
-            control.set_length(True)
-            control.preconditions.meet("G55")
-        elif code == words.TAKE_PLANE:
-            control.take_plane()
-        elif code == words.NO_PLANE:
-            control.set_plane(None)
-        elif code in words.TCP_ON or code in words.TCP_OFF:
-            control.set_tcp(code in words.TCP_ON)
-        elif code in (930, 950, 200, 210) or (code != words.DWELL and not self._modal_g_code(code)):
-            self._report_g_code(code, words.NOT_SIMULATED, words.WITHOUT_PATH_EFFECT)
+    # Words
 
-    def _dwell(self, block: Block) -> None:
-        seconds = block.take("H")
-        if seconds is None:
-            self._note("G4 without a time HD", Severity.ERROR, "NC218")
-        elif seconds < 0.0:
-            raise BlockError("a dwell below zero", code="NC215")
-        else:
-            self.control.add_event("dwell", seconds)
+    def _units(self, word: Word, block: Block) -> None:
+        super()._units(word, block)
+        if word.sets:
+            self._note("G70: what F counts in inches is not known", Severity.ERROR, "NC241")
 
-    def _m_code(self, code: int) -> None:
-        control = self.control
-        if code == words.TOOL:
-            control.change_tool()
-        elif code == words.RETRACT:
-            self._counter.count_motions(1)
-            control.retract()
-        elif not self._common_m_code(code):
-            control.add_builders_word("M", float(code))
+    def _work_offset(self, word: Word, block: Block) -> None:
+        control, number = self.control, block.take("O")
+        if number is None or number != int(number) or not 1 <= number <= 99:
+            raise BlockError("G55 needs O from 1 to 99")
+        control.set_offset(words.OFFSET_BASE + int(number), f"G55 O{number:g}")
+        control.set_length(True)
+        control.preconditions.meet("G55")
+
+    def _take_plane(self, word: Word, block: Block) -> None:
+        self.control.take_plane()
+
+    def _end_plane(self, word: Word, block: Block) -> None:
+        self.control.set_plane(None)
+
+    def _change_tool(self, word: Word, block: Block) -> None:
+        self.control.change_tool()
+
+    def _retract(self, word: Word, block: Block) -> None:
+        self._counter.count_motions(1)
+        self.control.retract()
 
     # Motion
 
-    def _execute_motion(self, block: Block, selected: bool) -> None:
-        """Execute the motion or cycle in force; ``selected`` if the block itself selects it."""
+    def _execute_motion(self, codes: Sequence[Word], block: Block) -> None:
         control = self.control
-        if self.motion_code in cycles.CYCLES:
-            self._cycle(block, selected)
+        if self.motion_code in self.table.cycles:
+            self._drill_block(block, selected=any(word.is_motion or word.code == CANCEL for word in codes))
             return
         axes = self._axis_words(block)
         circle = self.motion_code in (20, 30) and any(letter in block.words for letter in "IJKR")
@@ -187,8 +147,8 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
         else:
             self._move(block, axes)
 
-    def _cycle(self, block: Block, selected: bool) -> None:
-        """Drill at the position of a block."""
+    def _drill_block(self, block: Block, *, selected: bool) -> None:
+        """Drill at the position of a block; ``selected`` if the block itself selects the cycle."""
         control = self.control
         self._modal_words |= {
             letter: value for letter in cycles.MODAL_WORDS if (value := block.take(letter)) is not None
@@ -200,7 +160,7 @@ class FidiaInterpreter(Rs274Interpreter[ActiveProgram]):
         self._report_rotary_words(axes)
         if control.plane_axis != 2 or not control.absolute:
             raise BlockError("cycles are simulated in G17 and G90 only", code="NC220")
-        self._require_words(self._modal_words, "ZER")
+        self._require_words(self._modal_words)
         self._check_cycle_feed()
         motions = self._cycle_motions(
             lambda: cycles.cycle_motions(self.motion_code, self._modal_words, 1.0 / control.length_unit)

@@ -5,9 +5,8 @@ from typing import Final
 
 from trunnion.readers.families.fidia.control import settings_of
 from trunnion.readers.families.fidia.interpreter import FidiaInterpreter
-from trunnion.readers.families.fidia.own_words import is_own_word
-from trunnion.readers.families.fidia.words import OFFSET_BASE, WITHOUT_PATH_EFFECT
-from trunnion.readers.program.family_reader import FamilyReader, g_words
+from trunnion.readers.families.fidia.words import OFFSET_BASE, TABLE
+from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.raw_text import NUMBER, RS274_COMMENT, raw_words
 from trunnion.readers.program.work_offsets import WorkOffsetWords
 
@@ -31,9 +30,9 @@ RAW_WORDS: Final = raw_words(
 
 READER: Final = FamilyReader(
     FidiaInterpreter,
-    g_words(WITHOUT_PATH_EFFECT),
+    TABLE.without_path,
     WORK_OFFSETS,
-    is_own_word,
+    TABLE.is_own,
     raw_words=RAW_WORDS,
     check_reading=settings_of,
 )

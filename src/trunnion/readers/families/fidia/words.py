@@ -1,56 +1,40 @@
-"""The words of a Fidia NC15 that the reader knows, by their effect; G codes are in tenths."""
+"""The words of a Fidia NC15; its G codes act before all others of their block."""
 
 from typing import Final
 
 from trunnion.readers.program.word_values import one_of
+from trunnion.readers.rs274.iso_words import ISO_WORDS
+from trunnion.readers.rs274.word_table import Effect, When, Word, WordTable
 
-OFFSET: Final = 550
+_ERROR: Final = Effect.ERROR
+
 #: The value of the column ``work_offset`` for O0, which there is not: O1 is one more.
 OFFSET_BASE: Final = 500
-TAKE_PLANE: Final = 1540
-NO_PLANE: Final = 690
-DWELL: Final = 40
-MACHINE: Final = 2900
-TCP_ON: Final = frozenset({960, 1960})
-TCP_OFF: Final = frozenset({970, 1970})
-UNITS: Final = {700: True, 710: False}
 
-#: G codes that the path does not depend on; feeds are in mm/min on this control.
-WITHOUT_PATH_EFFECT: Final = frozenset({400, 940})
+TABLE: Final = WordTable(
+    *ISO_WORDS,
+    Word("G4", "dwell, `HD` seconds", sets="HD", letters="H"),
+    Word(
+        "G17 G18 G19", "working plane XY, ZX, YZ", act="plane", sets=(2, 1, 0), group="plane", letters="Q",
+        values={"Q": one_of(1)},
+    ),
+    Word("G20", "ends a plane of G21, which is not simulated", effect=_ERROR, moves=False),
+    Word("G21", "a plane by its angles is not simulated", effect=_ERROR, letters="XYZ", moves=False),
+    Word("G22 G23", "a helix by its angle is not simulated", effect=_ERROR, letters="XYZIJKP", moves=False),
+    Word("G55", "work offset `O`, and the tool length on", act="work_offset", letters="O"),
+    Word("G154", "takes up the plane perpendicular to the tool", act="take_plane", group="plane of the tool"),
+    Word("G69", "ends that plane", act="end_plane", group="plane of the tool"),
+    Word("G70 G71", "inches (an error: what F counts then is not known), millimetres", act="units",
+         sets=(True, False), group="units"),
+    Word("G81 G82 G83 G84 G85 G86 G89", "cycle", act="cycle", needs="ZER"),
+    Word("G94", effect=Effect.NONE),
+    Word("G96 G196", "TCP on", act="tcp", sets=True, group="tcp"),
+    Word("G97 G197", "TCP off", act="tcp", sets=False, group="tcp"),
+    Word("G290", "positions of the machine"),
+    Word("M242", "event `retract`", act="retract"),
+    Word("M306", "event `tool_change`", act="change_tool"),
+    modes=When.BEFORE_FEED,
+)  # fmt: skip
 
-#: G codes that are not simulated: the message, and whether the path is wrong without them.
-NOT_SIMULATED: Final = {
-    200: ("ends a plane of G21, which is not simulated", True),
-    210: ("a plane by its angles is not simulated", True),
-    220: ("a helix by its angle is not simulated", True),
-    230: ("a helix by its angle is not simulated", True),
-    410: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
-    420: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
-}
-
-#: G codes whose axis words are no positions: their block makes no motion.
-NO_MOTION: Final = frozenset({200, 210, 220, 230})
-
-#: Words that belong to a G code and have no effect here.
-WORDS_OF_CODE: Final = {170: "Q", 180: "Q", 190: "Q", 210: "XYZ", 220: "XYZIJKP", 230: "XYZIJKP", 410: "D", 420: "D"}
-
-#: What the values of these words may be, by G code and letter: Q1 is the tool along the positive axis.
-VALUES: Final = {(code, "Q"): one_of(1) for code in (170, 180, 190)}
-
-#: G codes that set one mode each, so that two of them in a block contradict each other.
-GROUPS: Final = (
-    frozenset({0, 10, 20, 30}),
-    frozenset({170, 180, 190}),
-    frozenset({900, 910}),
-    frozenset({400, 410, 420}),
-    frozenset(UNITS),
-    frozenset({*TCP_ON, *TCP_OFF}),
-    frozenset({TAKE_PLANE, NO_PLANE}),
-)
-
-#: M codes: the tool change with its offset, and the retract of Z.
-TOOL: Final = 306
-RETRACT: Final = 242
-
-#: M codes that act after the motion of their block.
-AFTER_MOTION: Final = frozenset({0, 1, 2, 5, 9, 30})
+DWELL: Final = TABLE.code("G4")
+MACHINE: Final = TABLE.code("G290")

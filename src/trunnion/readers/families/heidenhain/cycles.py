@@ -9,7 +9,17 @@ from dataclasses import replace
 from typing import Final
 
 from trunnion.model.run import SpindleTask, SpindleWork
-from trunnion.readers.control.hole_motion import MAX_FEED, MAX_PECKS, CycleExecutionError, HoleMotion, finite
+from trunnion.readers.control.hole_motion import (
+    MAX_FEED,
+    MAX_PECKS,
+    CycleExecutionError,
+    HoleMotion,
+    chip_break,
+    descent,
+    finite,
+    full_retract,
+    peck_depths,
+)
 from trunnion.readers.program.word_values import one_of
 
 #: How far the tool moves off the wall of a bored hole, mm: a fixed value of the control.
@@ -104,36 +114,11 @@ def cycle_motions(number: int, values: Mapping[int, float], rpm: float) -> list[
     return motions if hole.back == hole.start else [*motions, HoleMotion(True, hole.back)]
 
 
-def peck_depths(total: float, first: float, less: float = 0.0, least: float = 0.0) -> list[float]:
-    """Return the depths of the pecks: each peck is shorter by ``less``, but not shorter than ``least``.
-
-    A first peck that is not positive, or longer than the total, is the total.
-    """
-    if not 0.0 < first < total:
-        return [total]
-    depths = [first]
-    peck = first
-    while total - depths[-1] > 1e-9:
-        peck = max(peck - less, least)
-        if peck <= 0.0 or len(depths) >= MAX_PECKS:
-            raise CycleExecutionError(f"would peck more than {MAX_PECKS} times")
-        depths.append(min(depths[-1] + peck, total))
-    depths[-1] = total
-    return depths
-
-
 def _drill(hole: Hole) -> list[HoleMotion]:
     """Cycle 200: pecks of Q202, with a retract to the set-up clearance after each."""
-    motions: list[HoleMotion] = []
-    depths = peck_depths(hole.total, hole.get(202), 0.0, hole.get(202))
-    for before, depth in zip([0.0, *depths], depths, strict=False):
-        if before:
-            motions.append(HoleMotion(True, hole.start, dwell=hole.get(210)))
-            motions.append(HoleMotion(True, hole.at(before - hole.need(200))))
-        motions.append(
-            HoleMotion(False, hole.at(depth), hole.feed, dwell=hole.get(211) if depth == hole.total else 0.0)
-        )
-    return [*motions, HoleMotion(True, hole.start)]
+    out = full_retract(hole.start, hole.at, hole.need(200), dwell=hole.get(210))
+    depths = peck_depths(hole.total, hole.get(202))
+    return [*descent(depths, hole.at, out, hole.feed, (0.0, hole.get(211))), HoleMotion(True, hole.start)]
 
 
 def _ream(hole: Hole) -> list[HoleMotion]:
@@ -168,20 +153,16 @@ def _lift_off(hole: Hole, distance: float) -> tuple[float, float]:
 
 def _universal(hole: Hole) -> list[HoleMotion]:
     """Cycle 203: drilling with Q213 chip breaks between two full retracts, which are made at Q208."""
-    motions: list[HoleMotion] = []
-    breaks = 0
     depths = peck_depths(hole.total, hole.get(202), hole.get(212), hole.get(205) or (hole.get(202) - hole.get(212)))
-    for before, depth in zip([0.0, *depths], depths, strict=False):
-        if before and breaks < hole.get(213):
-            breaks += 1
-            motions.append(HoleMotion(False, hole.at(before - hole.get(256)), hole.out))
-        elif before:
-            breaks = 0
-            motions.append(HoleMotion(False, hole.start, hole.out, dwell=hole.get(210)))
-            motions.append(HoleMotion(True, hole.at(before - hole.need(200))))
-        motions.append(
-            HoleMotion(False, hole.at(depth), hole.feed, dwell=hole.get(211) if depth == hole.total else 0.0)
-        )
+    every = 1 + math.ceil(max(hole.get(213), 0.0))
+
+    def back(depth: float) -> list[HoleMotion]:
+        if (1 + depths.index(depth)) % every:
+            return [HoleMotion(False, hole.at(depth - hole.get(256)), hole.out)]
+        approach = HoleMotion(True, hole.at(depth - hole.need(200)))
+        return [HoleMotion(False, hole.start, hole.out, dwell=hole.get(210)), approach]
+
+    motions = descent(depths, hole.at, back, hole.feed, (0.0, hole.get(211)))
     return [*motions, HoleMotion(False, hole.start, hole.out)]
 
 
@@ -216,17 +197,14 @@ def _deep(hole: Hole) -> list[HoleMotion]:
         motions.append(HoleMotion(False, hole.at(begin), hole.need(253)))
     depths = [begin + depth for depth in peck_depths(hole.total - begin, hole.get(202), hole.get(212), hole.get(205))]
     count = max(len(depths) - 2, 1)
+    back = chip_break(hole.at, hole.get(256), hole.feed)
     for peck, (before, depth) in enumerate(zip([begin, *depths], depths, strict=False)):
         if peck:
             gap = hole.get(258) + (hole.get(259) - hole.get(258)) * min((peck - 1) / count, 1.0)
-            motions.append(HoleMotion(True, hole.start))
-            motions.append(HoleMotion(True, hole.at(max(before - gap, 0.0))))
-        pieces = peck_depths(depth - before, hole.get(257), 0.0, hole.get(257))
-        for k, piece in enumerate(pieces):
-            if k:
-                motions.append(HoleMotion(False, hole.at(before + pieces[k - 1] - hole.get(256)), hole.feed))
-            last = before + piece >= hole.total - 1e-9
-            motions.append(HoleMotion(False, hole.at(before + piece), hole.feed, dwell=hole.get(211) if last else 0.0))
+            motions += full_retract(hole.start, hole.at, gap, least=0.0)(before)
+        pieces = [before + piece for piece in peck_depths(depth - before, hole.get(257))]
+        dwell = hole.get(211) if depth == depths[-1] else 0.0
+        motions += descent(pieces, hole.at, back, hole.feed, (0.0, dwell))
     return [*motions, HoleMotion(True, hole.start)]
 
 
@@ -275,14 +253,10 @@ def _bore_mill(hole: Hole) -> list[HoleMotion]:
 def _tap_break(hole: Hole) -> list[HoleMotion]:
     """Cycle 209: tapping with chip breaks every Q257, back by Q256 pitches, or all the way out if it is 0."""
     feed = _pitch(hole)
-    motions: list[HoleMotion] = []
-    depths = peck_depths(hole.total, hole.need(257), 0.0, hole.need(257))
     back = hole.need(256) * abs(hole.need(239))
-    for before, depth in zip([0.0, *depths], depths, strict=False):
-        if before:
-            motions.append(HoleMotion(False, hole.at(before - back) if back else hole.start, feed))
-        motions.append(HoleMotion(False, hole.at(depth), feed))
-    return [*motions, HoleMotion(False, hole.start, feed)]
+    break_chip = chip_break(hole.at if back else lambda _: hole.start, back, feed)
+    depths = peck_depths(hole.total, hole.need(257))
+    return [*descent(depths, hole.at, break_chip, feed), HoleMotion(False, hole.start, feed)]
 
 
 def _centre(hole: Hole) -> list[HoleMotion]:
@@ -387,17 +361,12 @@ def legacy_cycle_motions(number: int, values: Mapping[str, float], rpm: float, h
         raise CycleExecutionError("has a feed that no machine has")
     # How far above the last depth the rapid approach ends: fixed values of the control.
     gap = 0.6 if total <= 30.0 else min(total / 50.0, 7.0)
-    motions: list[HoleMotion] = []
-    depths = peck_depths(total, abs(need("PLNGNG")), 0.0, abs(need("PLNGNG")))
-    for before, reached in zip([0.0, *depths], depths, strict=False):
-        if before:
-            motions.append(HoleMotion(True, here))
-            motions.append(HoleMotion(True, surface + sign * (before - gap)))
-        last = reached == total
-        motions.append(
-            HoleMotion(False, surface + sign * reached, feed, dwell=values.get("DWELL", 0.0) if last else 0.0)
-        )
-    return [*motions, HoleMotion(True, here)]
+
+    def height(depth: float) -> float:
+        return surface + sign * depth
+
+    out, depths = full_retract(here, height, gap), peck_depths(total, abs(need("PLNGNG")))
+    return [*descent(depths, height, out, feed, (0.0, values.get("DWELL", 0.0))), HoleMotion(True, here)]
 
 
 #: Cycles whose heights count from the present position.

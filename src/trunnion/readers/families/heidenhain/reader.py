@@ -51,4 +51,6 @@ READER: Final = FamilyReader(
     is_own_word,
     comments=rb";[^\n]*|^\d+ \*[^\n]*",
     raw_words=RAW_WORDS,
+    smoothing=re.compile(r"CYCL[ \t]+DEF[ \t]+32(?![0-9])"),
+    lost_smoothing={"cycle32": ("cycle 32", "see the setting tolerance=…")},
 )

@@ -10,7 +10,7 @@ from trunnion.model.toolpath import Kind
 from trunnion.readers.control.axis_word import AxisWord
 from trunnion.readers.control.coordinates import INCH
 from trunnion.readers.control.hole_motion import HoleMotion
-from trunnion.readers.families.linuxcnc import cycles
+from trunnion.readers.families.linuxcnc import cycles, words
 from trunnion.readers.families.linuxcnc.offsets_and_frames import OffsetInterpreter
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.rs274.block import Block
@@ -27,7 +27,6 @@ class CycleInterpreter(OffsetInterpreter):
         super().__init__(path, machine, options)
         self._to_initial = False
         self._initial: float | None = None
-        self._modal_words: dict[str, float] = {}
         self._last_dwell = 0.0
 
     # Rigid tapping
@@ -71,19 +70,18 @@ class CycleInterpreter(OffsetInterpreter):
 
     # Cycles
 
-    def _cycle(self, code: int, block: Block, axes: dict[str, AxisWord]) -> None:
+    def _drill_block(self, code: int, block: Block, axes: dict[str, AxisWord]) -> None:
         """Drill at the positions of a block."""
         along = "XYZ"[self.control.plane_axis]
         self._report_rotary_words(axes)
-        words = {letter: value for letter in cycles.MODAL_WORDS if (value := block.take(letter)) is not None}
-        words |= {"Z": axes[along][0]} if along in axes else {}
+        given = {letter: value for letter in cycles.MODAL_WORDS if (value := block.take(letter)) is not None}
+        given |= {"Z": axes[along][0]} if along in axes else {}
         begins = code != self.motion_code
         self.motion_code = code
-        self._last_dwell = words.get("P", self._last_dwell)
-        kept = ({"P": self._last_dwell} if code in cycles.KEEP_P else {}) if begins else self._modal_words
-        needed = "ZR" + "Q" * (code in cycles.NEED_Q) + "P" * (code in cycles.NEED_P)
-        self._require_words(kept | words, needed)
-        self._modal_words = kept | words
+        self._last_dwell = given.get("P", self._last_dwell)
+        kept = ({"P": self._last_dwell} if code in words.TAPS else {}) if begins else self._modal_words
+        self._require_words(kept | given)
+        self._modal_words = kept | given
         repeats = block.take("L")
         clearance = block.take("D")
         holes = 1 if repeats is None else int(repeats)

@@ -7,17 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from trunnion.model.run import SpindleTask, SpindleWork
-from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion, check_pecks
-
-#: Canned cycles that drill, by their G code in tenths.
-CYCLES: Final = frozenset({730, 740, 810, 820, 830, 840, 850, 860, 870, 880, 890})
-
-#: Those that need Q and P when they begin.
-NEED_Q: Final = frozenset({730, 830})
-NEED_P: Final = frozenset({820, 860, 880, 890})
-
-#: Taps, which without a P of their own dwell as long as the last cycle that dwelled.
-KEEP_P: Final = frozenset({740, 840})
+from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion, check_pecks, descent
 
 #: Words of cycles that hold until another cycle begins.
 MODAL_WORDS: Final = "RZPQIJK"
@@ -86,15 +76,13 @@ def _peck(hole: Hole, full: bool) -> list[HoleMotion]:
     peck = hole.words.get("Q", 0.0)
     check_pecks(hole.retract - hole.bottom, peck, "Q")
     back = hole.words.get("D", hole.clearance)
-    motions: list[HoleMotion] = []
-    depth = hole.retract - peck
-    while depth > hole.bottom:
-        motions.append(HoleMotion(False, depth))
-        if full:
-            motions.append(HoleMotion(True, hole.retract))
-        motions.append(HoleMotion(True, depth + back))
-        depth -= peck
-    return [*motions, HoleMotion(False, hole.bottom), HoleMotion(True, hole.clear)]
+    out = [HoleMotion(True, hole.retract)] if full else []
+    heights = [hole.retract - peck]
+    while heights[-1] > hole.bottom:
+        heights.append(heights[-1] - peck)
+    heights[-1] = hole.bottom
+    motions = descent(heights, lambda height: height, lambda height: [*out, HoleMotion(True, height + back)])
+    return [*motions, HoleMotion(True, hole.clear)]
 
 
 def _back_bore(hole: Hole) -> list[HoleMotion]:

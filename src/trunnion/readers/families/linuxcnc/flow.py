@@ -15,7 +15,7 @@ from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
 from trunnion.readers.rs274 import interpreter
 from trunnion.readers.rs274.block import block_reader, split_line
 from trunnion.readers.rs274.expressions import BlockError, ExpressionReader
-from trunnion.readers.rs274.interpreter import Rs274Interpreter
+from trunnion.readers.rs274.word_interpreter import WordInterpreter
 
 _KEYWORD = re.compile(r"SUB|ENDSUB|IF|ELSEIF|ELSE|ENDIF|WHILE|ENDWHILE|DO|REPEAT|ENDREPEAT|BREAK|CONTINUE|CALL|RETURN")
 
@@ -54,7 +54,7 @@ class OWord(NamedTuple):
             self.active.source.jumps_back = 0
 
 
-class OWordInterpreter(Rs274Interpreter[ActiveProgram]):
+class OWordInterpreter(WordInterpreter[ActiveProgram]):
     """Executes branches, loops and subprograms."""
 
     source_type = LinuxcncText

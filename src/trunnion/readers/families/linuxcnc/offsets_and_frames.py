@@ -14,10 +14,10 @@ from trunnion.readers.control.virtual_control import RAPID
 from trunnion.readers.families.linuxcnc import words
 from trunnion.readers.families.linuxcnc.control import ORDER, LinuxcncControl, Offset
 from trunnion.readers.families.linuxcnc.flow import OWordInterpreter
-from trunnion.readers.families.linuxcnc.words import AXIS_OFFSET_SWITCHES, AXIS_OFFSETS, DWELL, HOMES, SET_DATA
 from trunnion.readers.program.options import DEFAULT_OPTIONS, RunOptions
-from trunnion.readers.rs274.block import Block, g_code_text
+from trunnion.readers.rs274.block import Block
 from trunnion.readers.rs274.expressions import BlockError
+from trunnion.readers.rs274.word_table import Word
 
 
 class OffsetInterpreter(OWordInterpreter):
@@ -27,46 +27,26 @@ class OffsetInterpreter(OWordInterpreter):
 
     def __init__(self, path: Path, machine: Machine, options: RunOptions = DEFAULT_OPTIONS) -> None:
         super().__init__(path, machine, options)
-        self._stored_positions = {code: {axis.name: float(axis.home) for axis in machine.axes} for code in HOMES}
+        home = {axis.name: float(axis.home) for axis in machine.axes}
+        self._stored_positions = {"G28": home, "G30": home}
 
     def _make_control(self) -> LinuxcncControl:
         return LinuxcncControl(self._machine, self._note, shortest=self._options.shortest)
 
-    def _execute_special(self, code: int, block: Block) -> None:
-        """Execute a G code of ``SPECIAL``."""
-        control = self.control
-        if code == DWELL:
-            seconds = block.take("P")
-            if seconds is None:
-                self._note("G4 without a time P", Severity.ERROR, "NC218")
-            elif seconds < 0.0:
-                raise BlockError("a dwell below zero", code="NC215")
-            else:
-                control.add_event("dwell", seconds)
-        elif code == SET_DATA:
-            self._set_data(block)
-        elif code in AXIS_OFFSETS:
-            self._axis_offset(code, block)
-        elif code in AXIS_OFFSET_SWITCHES:
-            if code == 921:
-                control.axis_offset = np.zeros(6)
-                control.axis_offset_known = True
-            if code == 923 and not control.axis_offset_known:
-                self._note("G92.3 brings back an offset that is not in the program", Severity.ERROR, "NC222")
-            control.axis_offset_active = code == 923
-            control.update_frame()
-        elif code in HOMES:
-            self._go_home(code, block)
-        else:
-            stored = control.machine_position()
-            home = next(go for go, store in HOMES.items() if store == code)
-            self._stored_positions[home] = {name: float(stored[axis]) for axis, name in enumerate(ORDER)}
-            what = f"the position that {g_code_text(home)} goes to in"
-            control.note_stored_offset(g_code_text(code), code, clears=False, what=what)
-
     # Offsets
 
-    def _axis_offset(self, code: int, block: Block) -> None:
+    def _switch_axis_offset(self, word: Word, block: Block) -> None:
+        """G92.1 clears the offset, G92.2 switches it off, G92.3 on again."""
+        control = self.control
+        if word.text == "G92.1":
+            control.axis_offset = np.zeros(6)
+            control.axis_offset_known = True
+        if word.text == "G92.3" and not control.axis_offset_known:
+            self._note("G92.3 brings back an offset that is not in the program", Severity.ERROR, "NC222")
+        control.axis_offset_active = word.text == "G92.3"
+        control.update_frame()
+
+    def _axis_offset(self, word: Word, block: Block) -> None:
         """G92: give the present position new coordinates; G52: set the offset itself."""
         control = self.control
         position = control.position()
@@ -77,7 +57,7 @@ class OffsetInterpreter(OWordInterpreter):
             raise BlockError("G52 and G92 need the axes that they shift")
         for axis, value in enumerate(values):
             if value is not None:
-                offset[axis] = value if code == 520 else offset[axis] * active + position[axis] - value
+                offset[axis] = value if word.text == "G52" else offset[axis] * active + position[axis] - value
             elif not active:
                 offset[axis] = 0.0
         if float(np.abs(offset).max()) > MAX_POSITION:
@@ -87,7 +67,7 @@ class OffsetInterpreter(OWordInterpreter):
         control.note_shift()
         control.update_frame()
 
-    def _set_data(self, block: Block) -> None:
+    def _set_data(self, word: Word, block: Block) -> None:
         """G10: set a work offset; what writes data of a tool is an error, as the path does not show it."""
         control = self.control
         kind = block.take("L")
@@ -151,7 +131,7 @@ class OffsetInterpreter(OWordInterpreter):
 
     # Home
 
-    def _go_home(self, code: int, block: Block) -> None:
+    def _go_home(self, word: Word, block: Block) -> None:
         """G28 and G30: through the programmed point to the stored one, with all axes or those of the block."""
         control = self.control
         axes = self._with_rotary_offsets(self._axis_words(block))
@@ -159,13 +139,20 @@ class OffsetInterpreter(OWordInterpreter):
         self._counter.count_motions(1)
         control.move(axes, None)
         names = axes or dict.fromkeys((*"XYZ", *control.rotary_names))
-        stored = self._stored_positions[code]
+        stored = self._stored_positions[word.text]
         unit = control.length_unit
         goal: dict[str, AxisWord] = {
             name: (stored.get(name, 0.0) / (unit if name in "XYZ" else 1.0), PositionMode.ABSOLUTE) for name in names
         }
         control.machine_move(goal, feed_written=False)
         control.motion = motion
+
+    def _store_home(self, word: Word, block: Block) -> None:
+        """G28.1 and G30.1: store the present position for G28 and G30."""
+        stored = self.control.machine_position()
+        self._stored_positions[word.sets] = {name: float(stored[axis]) for axis, name in enumerate(ORDER)}
+        what = f"the position that {word.sets} goes to in"
+        self.control.note_stored_offset(word.text, word.code, clears=False, what=what)
 
     def _with_rotary_offsets(self, axes: dict[str, AxisWord]) -> dict[str, AxisWord]:
         """Return axis words with the offsets of rotary axes added."""

@@ -5,9 +5,8 @@ from typing import Final
 
 from trunnion.readers.families.linuxcnc.control import settings_of
 from trunnion.readers.families.linuxcnc.interpreter import LinuxcncInterpreter
-from trunnion.readers.families.linuxcnc.own_words import is_own_word
-from trunnion.readers.families.linuxcnc.words import WITHOUT_PATH_EFFECT, WITHOUT_PATH_EFFECT_M
-from trunnion.readers.program.family_reader import FamilyReader, g_words
+from trunnion.readers.families.linuxcnc.words import TABLE, is_own_word
+from trunnion.readers.program.family_reader import FamilyReader
 from trunnion.readers.program.raw_text import NUMBER, RS274_COMMENT, RS274_VALUE, raw_words
 from trunnion.readers.program.work_offsets import WorkOffsetWords, g_word
 
@@ -37,7 +36,7 @@ RAW_WORDS: Final = raw_words(
 
 READER: Final = FamilyReader(
     LinuxcncInterpreter,
-    g_words(WITHOUT_PATH_EFFECT) | {f"M{code}" for code in WITHOUT_PATH_EFFECT_M},
+    TABLE.without_path,
     WORK_OFFSETS,
     is_own_word,
     uses_length_numbers=True,

@@ -1,219 +1,163 @@
-"""The words of LinuxCNC that the reader knows, by their effect; G codes are in tenths."""
+"""The words of LinuxCNC."""
 
+import re
 from typing import Final
 
-from trunnion.readers.families.linuxcnc.cycles import CYCLES
 from trunnion.readers.program.word_values import one_of, whole
 from trunnion.readers.rs274.block import Block
-from trunnion.readers.rs274.interpreter import CANCEL
+from trunnion.readers.rs274.iso_words import COMMON_WORDS, COMPENSATION
+from trunnion.readers.rs274.word_table import Effect, When, Word, WordTable
 
-#: Work offsets, in the order of their numbers in G10 and ``#5220``.
-OFFSETS: Final = (540, 550, 560, 570, 580, 590, 591, 592, 593)
+_NONE, _WARNING, _ERROR = Effect.NONE, Effect.WARNING, Effect.ERROR
+_BEHIND, _AFTER = When.BEHIND_MODES, When.AFTER_MOTION
 
-MACHINE: Final = 530
+_SWITCH, _BIT, _REGISTER = one_of(0, 1), whole(0, 63), whole(0, 99999)
 
-#: G codes that add to the tool length.
-ADDED_LENGTHS: Final = frozenset({431, 432})
+#: Which code has which letters, values and group: LinuxCNC's own list, and its interpreter.
+TABLE: Final = WordTable(
+    *COMMON_WORDS,
+    Word("G4", "dwell, seconds", act="dwell", sets="P", group="non-modal", letters="P", when=_BEHIND),
+    Word("G5", "a spline, taken as nothing", effect=_ERROR, group="motion", letters="XYIJPQ", moves=False),
+    Word("G5.1", "a spline, taken as nothing", effect=_ERROR, group="motion", letters="XYIJ", moves=False),
+    Word("G5.2", "a NURBS, taken as nothing", effect=_ERROR, group="motion", letters="XYPL", moves=False),
+    Word("G5.3", "a NURBS, taken as nothing", effect=_ERROR, group="motion", moves=False),
+    Word("G6.2", "a NURBS, taken as nothing", effect=_ERROR, letters="XYPLDEFIJKQR", moves=False),
+    Word("G6.3", "a NURBS, taken as nothing", effect=_ERROR, moves=False),
+    Word("G7", "turning is not simulated", effect=_ERROR, group="diameters"),
+    Word("G8", effect=_NONE, group="diameters"),
+    Word(
+        "G10", "sets a work offset", act="set_data", group="non-modal", letters="LPR", when=_BEHIND, moves=False,
+    ),
+    Word("G17.1 G18.1 G19.1", "a plane of U V W is not simulated", effect=_ERROR, group="plane"),
+    Word("G20 G21", "inches, millimetres; also of feeds", act="units", sets=(True, False), group="units"),
+    Word(
+        "G28 G30", "by the programmed point to a stored position", act="go_home", group="non-modal", when=_BEHIND,
+        moves=False,
+    ),
+    Word(
+        "G28.1 G30.1", "stores the present position", act="store_home", sets=("G28", "G30"), group="non-modal",
+        when=_BEHIND,
+    ),
+    Word("G33", "thread cutting is taken as a straight line", effect=_ERROR, act="line", group="motion", letters="K"),
+    Word("G33.1", "rigid tapping", act="motion", group="motion"),
+    Word("G38.2 G38.3 G38.4 G38.5", "probing is taken as a straight line", effect=_ERROR, act="line", group="motion"),
+    Word(
+        "G41 G42", COMPENSATION, effect=_WARNING, act="compensation", sets=(1, -1), group="compensation", letters="D",
+        values={"D": _REGISTER},
+    ),
+    Word(
+        "G41.1 G42.1", COMPENSATION, effect=_WARNING, act="compensation", sets=(1, -1), group="compensation",
+        letters="DL",
+    ),
+    Word(
+        "G43", "tool length along Z, of `H` or of the tool in the spindle", act="length", sets=True, group="length",
+        letters="H", values={"H": _REGISTER},
+    ),
+    Word("G49", "tool length off", act="length", sets=False, group="length"),
+    Word(
+        "G43.1", "adds to the tool length: event `delta`, and a warning", effect=_NONE, act="added_length",
+        group="length", letters="XYZABCUVW", moves=False,
+    ),
+    Word(
+        "G43.2", "the same; `H`: an error", effect=_NONE, act="added_length", group="length", letters="H", moves=False,
+    ),
+    Word("G52", "shift of all work offsets", act="axis_offset", group="non-modal", when=_BEHIND, moves=False),
+    Word("G53", "positions of the machine, with `G90` and `G0` or `G1`", group="non-modal"),
+    Word(
+        "G54 G55 G56 G57 G58 G59 G59.1 G59.2 G59.3", "work offset", act="work_offset", sets=(1, 2, 3, 4, 5, 6, 7, 8, 9),
+        group="offset",
+    ),
+    Word(
+        "G61 G61.1", "events `tolerance` 0 and `exact_stop`: `path`, `on`", effect=_NONE, act="exact_path",
+        sets=("path", "on"), group="path control",
+    ),
+    Word(
+        "G64", "events `tolerance` and `exact_stop`: `off`", effect=_NONE, act="blending", group="path control",
+        letters="PQ",
+    ),
+    Word(
+        "G70 G71 G71.1 G71.2 G72 G72.1 G72.2", "a turning cycle is not simulated", effect=_ERROR, group="motion",
+        letters="XZDEPQIR", moves=False,
+    ),
+    Word(
+        "G76", "a threading cycle is not simulated", effect=_ERROR, group="motion", letters="XZPIJKRQHEL", moves=False,
+    ),
+    Word("G74 G81 G84 G85 G87", "cycle", act="cycle", group="motion", needs="ZR"),
+    Word("G82 G86 G88 G89", "cycle with a dwell", act="cycle", group="motion", needs="ZRP"),
+    Word("G73 G83", "cycle with pecks", act="cycle", group="motion", needs="ZRQ"),
+    Word("G90.1 G91.1", "centres of circles: absolute, relative", effect=_NONE, act="centres", sets=(False, True),
+         group="centres"),
+    Word(
+        "G92", "gives the present position new values by such a shift", act="axis_offset", group="non-modal",
+        when=_BEHIND, moves=False,
+    ),
+    Word(
+        "G92.1 G92.2 G92.3", "the shift is cleared, suspended, on again", act="switch_axis_offset",
+        group="axis offset switches", when=_BEHIND,
+    ),
+    Word(
+        "G96", "constant surface speed is not simulated", effect=_ERROR, act="surface_speed", group="speed",
+        letters="DS",
+    ),
+    Word("M5", "event `spindle`: off", act="iso", group="spindle"),
+    Word("M9", "event `coolant`: off", act="iso", group="coolant"),
+    Word("M19", "event `spindle`: oriented", act="iso", group="spindle", letters="RQP", values={"P": whole(0, 2)}),
+    Word("M48 M49", effect=_NONE, group="overrides"),
+    Word("M50 M51 M53", effect=_NONE, group="overrides", letters="P", values={"P": _SWITCH}),
+    Word("M52", "with `P0`; else a signal scales the feed: an error", effect=_NONE, act="adaptive_feed",
+         group="overrides", letters="P"),
+    Word("M60", "event `stop`", act="change_pallet", group="stop", when=_AFTER),
+    Word("M61", "events `tool` `Q` and `tool_change`", act="set_tool", group="tool", letters="Q"),
+    Word("M62 M63 M64 M65", "digital outputs", effect=_NONE, act="signal", group="signals", letters="P",
+         values={"P": _BIT}),
+    Word("M66", "an input; with `L` it waits", effect=_NONE, act="wait_for_input", group="signals", letters="PELQ",
+         values={"P": _BIT, "E": _BIT, "L": whole(0, 4)}),
+    Word("M67 M68", "analog outputs; `E3`, which switches the kinematics: an error", effect=_NONE,
+         act="analog_output", group="signals", letters="EQ", values={"E": _BIT}),
+    Word("M70 M71 M73", "what is in force is not kept for later", effect=_ERROR, group="spindle"),
+    Word("M72", "what is in force is not brought back", effect=_ERROR, group="spindle"),
+    Word("M98 M99", "subprograms by M98 are not simulated; O words are", effect=_ERROR),
+    Word("M100..M199", "event `m`: programs of the machine builder", act="builders_program", group="users",
+         letters="PQ", own=False),
+    Word("M428 M429", "TCP on, off", act="tcp", sets=(True, False)),
+    Word("M430", "kinematics of the user are not known", effect=_ERROR, problem="NC224"),
+)  # fmt: skip
 
-#: Continuous path, within the tolerance P.
-CONTINUOUS: Final = 640
+MACHINE: Final = TABLE.code("G53")
+RIGID_TAP: Final = TABLE.code("G33.1")
 
-#: G codes of the tool length: whether it counts.
-LENGTHS: Final = {430: True, 490: False}
-
-#: G codes that the path does not depend on.
-WITHOUT_PATH_EFFECT: Final = frozenset({80, 400, 431, 432, 610, 611, 640, 911, 901, 970})
-
-#: G codes that are not simulated: the message, and whether the path is wrong without them.
-NOT_SIMULATED: Final = {
-    50: ("a spline, taken as nothing", True),
-    51: ("a spline, taken as nothing", True),
-    52: ("a NURBS, taken as nothing", True),
-    53: ("a NURBS, taken as nothing", True),
-    62: ("a NURBS, taken as nothing", True),
-    63: ("a NURBS, taken as nothing", True),
-    70: ("turning is not simulated", True),
-    171: ("a plane of U V W is not simulated", True),
-    181: ("a plane of U V W is not simulated", True),
-    191: ("a plane of U V W is not simulated", True),
-    330: ("thread cutting is taken as a straight line", True),
-    382: ("probing is taken as a straight line", True),
-    383: ("probing is taken as a straight line", True),
-    384: ("probing is taken as a straight line", True),
-    385: ("probing is taken as a straight line", True),
-    410: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
-    411: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
-    420: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
-    421: ("radius compensation is not simulated: the path is that of the tool centre as programmed", False),
-    700: ("a turning cycle is not simulated", True),
-    710: ("a turning cycle is not simulated", True),
-    711: ("a turning cycle is not simulated", True),
-    712: ("a turning cycle is not simulated", True),
-    720: ("a turning cycle is not simulated", True),
-    721: ("a turning cycle is not simulated", True),
-    722: ("a turning cycle is not simulated", True),
-    760: ("a threading cycle is not simulated", True),
-    960: ("constant surface speed is not simulated", True),
-}
-
-#: Motions that are taken as straight lines.
-TAKEN_AS_LINES: Final = frozenset({330, 382, 383, 384, 385})
-
-#: Rigid tapping: in by the pitch, and out to the start with the spindle reversed.
-RIGID_TAP: Final = 331
-
-#: G codes whose axis words are no positions: their block makes no motion.
-NO_MOTION: Final = frozenset({431, 432, 50, 51, 52, 53, 62, 63, 700, 710, 711, 712, 720, 721, 722, 760})
-
-#: Words that belong to a G code and have no effect here.
-WORDS_OF_CODE: Final = {
-    430: "H",
-    431: "XYZABCUVW",
-    432: "H",
-    410: "D",
-    411: "DL",
-    420: "D",
-    421: "DL",
-    960: "DS",
-    330: "K",
-    50: "XYIJPQ",
-    51: "XYIJ",
-    52: "XYPL",
-    62: "XYPLDEFIJKQR",
-    700: "XZDEPQIR",
-    710: "XZDEPQIR",
-    711: "XZDEPQIR",
-    712: "XZDEPQIR",
-    720: "XZDEPQIR",
-    721: "XZDEPQIR",
-    722: "XZDEPQIR",
-    760: "XZPIJKRQHEL",
-}
-
-#: M codes that the path does not depend on, and their words.
-WITHOUT_PATH_EFFECT_M: Final = {
-    48: "",
-    49: "",
-    50: "P",
-    51: "P",
-    52: "P",
-    53: "P",
-    62: "P",
-    63: "P",
-    64: "P",
-    65: "P",
-    66: "PELQ",
-    67: "EQ",
-    68: "EQ",
-}
+#: Taps, which without a P of their own dwell as long as the last cycle that dwelled.
+TAPS: Final = frozenset({TABLE.code("G74"), TABLE.code("G84")})
 
 #: G10: L that writes length and radius of a tool, and the one that reads the tool table again.
 TOOL_DATA: Final = frozenset({1, 10, 11})
 RELOAD_TOOLS: Final = 0
 
-#: M codes that set an analog output, and the output that switches the kinematics where these can be switched.
-ANALOG_OUTPUTS: Final = frozenset({67, 68})
+#: The analog output that switches the kinematics where these can be switched.
 KINEMATICS_OUTPUT: Final = 3
 
-#: Reads an input; with L other than 0 it waits for it, up to Q seconds.
-WAIT_FOR_INPUT: Final = 66
+#: Programs of the builder with which older five-axis examples switch TCP.
+USERS_TCP: Final = ("M128", "M129")
 
-#: M codes that need to know which output or input.
-INPUTS_AND_OUTPUTS: Final = range(62, 69)
+#: A call of a subprogram by its number.
+_CALL: Final = re.compile(r"O[0-9]+ CALL( .*)?")
 
 
-def fault_of_signal(code: int, block: Block) -> str:
-    """Return why LinuxCNC refuses a block with one of ``INPUTS_AND_OUTPUTS``; empty if it does not."""
+def is_own_word(word: str) -> bool:
+    """Whether a declared word begins with one of the control; a call of a numbered subprogram does not."""
+    return _CALL.fullmatch(word) is None and TABLE.is_own(word)
+
+
+def fault_of_signal(word: Word, block: Block) -> str:
+    """Return why LinuxCNC refuses a block with M62 to M68; empty if it does not."""
     digital, analog = (letter in block.words for letter in "PE")
-    if code in ANALOG_OUTPUTS:
-        return "" if analog else f"M{code} without the output E"
-    if code != WAIT_FOR_INPUT:
-        return "" if digital else f"M{code} without the output P"
+    if "P" not in word.letters:
+        return "" if analog else f"{word.text} without the output E"
+    if "E" not in word.letters:
+        return "" if digital else f"{word.text} without the output P"
     if digital == analog:
         return "M66 with a digital and an analog input" if digital else "M66 without the input, P or E"
     mode, seconds = (block.words[letter].value if letter in block.words else 0.0 for letter in "LQ")
     if mode and analog:
         return f"M66 E waits for no analog input: L{mode:g}"
     return f"M66 L{mode:g} without the seconds Q that it waits" if mode and seconds <= 0.0 else ""
-
-
-#: Lets a signal scale the feed, unless its P is 0.
-ADAPTIVE_FEED: Final = 52
-
-#: What the values of these words may be, by G code or M code, and letter.
-VALUES: Final = {(430, "H"): whole(0, 99999), (410, "D"): whole(0, 99999), (420, "D"): whole(0, 99999)}
-VALUES_M: Final = {
-    **{(code, "P"): one_of(0, 1) for code in (50, 51, 53)},
-    **{(code, "P"): whole(0, 63) for code in (62, 63, 64, 65)},
-    **{(66, letter): whole(0, 63) for letter in "PE"},
-    (66, "L"): whole(0, 4),
-    (67, "E"): whole(0, 63),
-    (68, "E"): whole(0, 63),
-    (19, "P"): whole(0, 2),
-}
-
-#: Words that belong to other M codes and have no effect here.
-WORDS_OF_M_CODE: Final = {19: "RQP"}
-
-#: M codes that are not simulated: the message.
-NOT_SIMULATED_M: Final = {
-    70: "what is in force is not kept for later",
-    71: "what is in force is not kept for later",
-    72: "what is in force is not brought back",
-    73: "what is in force is not kept for later",
-    98: "subprograms by M98 are not simulated; O words are",
-    99: "subprograms by M98 are not simulated; O words are",
-}
-
-#: User-defined M codes, and those with which older five-axis examples switch TCP.
-USERS: Final = range(100, 200)
-USERS_TCP: Final = frozenset({128, 129})
-
-#: Switchable kinematics as the five-axis examples remap them: TCP on, TCP off, and the user's kinematics.
-TCP_ON: Final = 428
-TCP_OFF: Final = 429
-TCP_USER: Final = 430
-
-#: G codes, in tenths: dwell, data of offsets and tools, home with the codes that store its positions, and axis offsets
-#: that a block sets, switches off or on again.
-DWELL: Final = 40
-SET_DATA: Final = 100
-HOMES: Final = {280: 281, 300: 301}
-AXIS_OFFSETS: Final = frozenset({520, 920})
-AXIS_OFFSET_SWITCHES: Final = frozenset({921, 922, 923})
-
-#: All of them, and those that take the axis words of their block.
-SPECIAL: Final = frozenset({DWELL, SET_DATA, *HOMES, *HOMES.values(), *AXIS_OFFSETS, *AXIS_OFFSET_SWITCHES})
-TAKING_AXIS_WORDS: Final = frozenset({SET_DATA, *HOMES, *AXIS_OFFSETS})
-
-#: Turning cycles.
-_TURNING: Final = (700, 710, 711, 712, 720, 721, 722, 760)
-
-#: G codes, in tenths, and M codes of which a block has one: the groups of LinuxCNC's interpreter. G80 may stand beside
-#: a motion.
-GROUPS: Final = (
-    frozenset({0, 10, 20, 30, 50, 51, 52, 53, RIGID_TAP, *TAKEN_AS_LINES, *(CYCLES - {CANCEL}), *_TURNING}),
-    frozenset({DWELL, SET_DATA, *HOMES, *HOMES.values(), *AXIS_OFFSETS, MACHINE}),
-    AXIS_OFFSET_SWITCHES,
-    frozenset({170, 171, 180, 181, 190, 191}),
-    frozenset({900, 910}),
-    frozenset({901, 911}),
-    frozenset({930, 940, 950}),
-    frozenset({200, 210}),
-    frozenset({400, 410, 411, 420, 421}),
-    frozenset({*LENGTHS, *ADDED_LENGTHS}),
-    frozenset({980, 990}),
-    frozenset(OFFSETS),
-    frozenset({610, 611, CONTINUOUS}),
-    frozenset({960, 970}),
-    frozenset({70, 80}),
-)
-GROUPS_M: Final = (
-    frozenset({0, 1, 2, 30, 60}),
-    frozenset({6, 61}),
-    frozenset({3, 4, 5, 19, *range(70, 74)}),
-    frozenset({7, 8, 9}),
-    frozenset(range(48, 54)),
-    frozenset(INPUTS_AND_OUTPUTS),
-    frozenset(range(100, 200)),
-)

@@ -70,7 +70,7 @@ class SinumerikControl(VirtualControl):
         """Record that TRAORI clears the work offset that is selected; the coordinates stay those of the program."""
         if self.modal.work_offset.current not in (0, NO_OFFSET) and not self._offset_is_lost:
             self._offset_is_lost = True
-            self.add_event("offset", "lost")
+            self.add_event("offset", "TRAORI")
 
     def regain_offset(self, code: int) -> None:
         """Record that the program selects a work offset again after ``lose_offset``."""

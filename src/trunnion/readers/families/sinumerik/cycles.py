@@ -6,11 +6,19 @@ is read; the parameters of newer controls (``_GMODE``, ``_DMODE``, ``_AMODE``) a
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from trunnion.model.run import SpindleTask, SpindleWork
-from trunnion.readers.control.hole_motion import MAX_FEED, MAX_PECKS, CycleExecutionError, HoleMotion
+from trunnion.readers.control.hole_motion import (
+    MAX_FEED,
+    MAX_PECKS,
+    CycleExecutionError,
+    HoleMotion,
+    chip_break,
+    descent,
+    full_retract,
+)
 from trunnion.readers.families.sinumerik.words import CYCLE_VALUES
 
 #: How far a chip-breaking peck backs off by default, mm.
@@ -225,21 +233,17 @@ def _peck(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion
     full = _or(arguments, 12) == 1.0
     back = _or(arguments, 15) or CHIP_BREAK
     entry = _or(arguments, 17) or _entry_gap(total)
-    motions: list[HoleMotion] = []
     depths = peck_depths(total, peck, _or(arguments, 8), _or(arguments, 14))
+
+    def height(depth: float) -> float:
+        return heights.reference + sign * depth
+
+    out = full_retract(heights.start, height, entry, dwell=again, least=0.0)
+    between = out if full else chip_break(height, back, least=0.0)
+    motions = descent(depths, height, between, dwells=(dwell, _or(arguments, 16) or dwell))
     factor = _or(arguments, 11, 1.0)
-    for count, depth in enumerate(depths):
-        height = heights.reference + sign * depth
-        last = count == len(depths) - 1
-        if count and full:
-            motions.append(HoleMotion(True, heights.start, dwell=again))
-            above = max(depths[count - 1] - entry, 0.0)
-            motions.append(HoleMotion(True, heights.reference + sign * above))
-        elif count:
-            motions.append(HoleMotion(False, heights.reference + sign * max(depths[count - 1] - back, 0.0)))
-        slow = -factor if count == 0 and 0.0 < factor < 1.0 else None
-        wait = (_or(arguments, 16) or dwell) if last else dwell
-        motions.append(HoleMotion(False, height, feed=slow, dwell=wait))
+    if 0.0 < factor < 1.0:
+        motions[0] = replace(motions[0], feed=-factor)
     return motions
 
 
@@ -306,16 +310,13 @@ def _tap(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]
     variant, peck = _or(arguments, 16), abs(_or(arguments, 17))
     total = abs(heights.depth - heights.reference)
     depths = peck_depths(total, peck, 0.0, 0.0) if variant and peck else [total]
-    motions: list[HoleMotion] = []
-    for count, depth in enumerate(depths):
-        if count:
-            above = depths[count - 1] - (_or(arguments, 18) or CHIP_BREAK)
-            back = heights.start if variant == 2.0 else heights.reference + heights.sign * max(above, 0.0)
-            motions.append(HoleMotion(False, back, feed=up))
-        last = count == len(depths) - 1
-        wait = _or(arguments, 6) if last else 0.0
-        motions.append(HoleMotion(False, heights.reference + heights.sign * depth, feed=down, dwell=wait))
-    return [*motions, HoleMotion(False, heights.start, feed=up)]
+
+    def height(depth: float) -> float:
+        return heights.reference + heights.sign * depth
+
+    gap = _or(arguments, 18) or CHIP_BREAK
+    back = chip_break((lambda _: heights.start) if variant == 2.0 else height, gap, up, least=0.0)
+    return [*descent(depths, height, back, down, (0.0, _or(arguments, 6))), HoleMotion(False, heights.start, feed=up)]
 
 
 def _tap_chuck(arguments: Arguments, heights: Heights, rpm: float) -> list[HoleMotion]:

@@ -52,5 +52,7 @@ READER: Final = FamilyReader(
     is_own_word,
     comments=rb';[^\n]*|"[^"\n]*"',
     raw_words=RAW_WORDS,
+    smoothing=re.compile(r"ORI[A-Z]+|CYCLE832"),
+    lost_smoothing={"cycle832": ("CYCLE832", "see setting cycle832=… and tolerance=…")},
     check_reading=settings_of,
 )

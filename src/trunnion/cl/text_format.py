@@ -1,0 +1,60 @@
+"""The form of CL text: how it is cut into points and statements, and how a statement is parsed.
+
+Most systems write the statements of APT. A dialect of another form, such as pairs of lines of numbers, brings a scan
+and a ``parse`` of its own; everything behind them is shared.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Final, Protocol
+
+from trunnion.arrays import Bytes, Ints2
+from trunnion.cl.scan import PointColumns, scan
+from trunnion.cl.statement import Statement, parse
+
+
+class Scan(Protocol):
+    """Reads the lines of ``data[start:stop]`` until these, the rows or the spans are used up.
+
+    data     (b,)   uint8   whole lines: ``data[stop - 1]`` is a newline
+    last     the file ends at ``stop``
+    line     line of the file that begins at ``start``
+    row      first row of ``columns`` to write
+    columns  of the points that the scan reads itself; the row of a span marked ``MAKES_ROW`` is NaN, for its handler
+    spans    (s, 5) int64   written from 0 on: offset in ``data``, bytes, line, row before which it stands, marks
+    returns  where to go on in ``data``, the line there, the next row, number of spans written
+
+    Before the end of the file, a statement whose rest lies behind ``stop`` is left for the next call; at the end it is
+    marked ``UNFINISHED``. Marks are those of ``trunnion.cl.scan``.
+    """
+
+    def __call__(
+        self, data: Bytes, start: int, stop: int, last: bool, line: int, row: int, columns: PointColumns, spans: Ints2
+    ) -> tuple[int, int, int, int]: ...
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TextFormat:
+    """The form of a CL file's text.
+
+    scan        finds points and spans of statements
+    parse       parses the bytes of a statement in the encoding of the file; raises ``StatementError``. The ``source``
+                of a statement is ``MAJOR/values``, by which messages and definitions name it
+    unfinished  the message for a file that ends within a statement
+    has_words   statements begin with words: an unknown one may be damaged, or hide another statement, and is checked
+    """
+
+    scan: Scan
+    parse: Callable[[bytes, str], Statement]
+    unfinished: str
+    has_words: bool = False
+
+
+_CONTINUED: Final = "the file ends after a continuation sign $"
+
+#: The text of APT dialects: comments with an arrow are statements, GOFWD and RETRCT are motions.
+APT_TEXT: Final = TextFormat(partial(scan, True), parse, _CONTINUED, has_words=True)
+
+#: The text of NX CLSFs.
+CLSF_TEXT: Final = TextFormat(partial(scan, False), parse, _CONTINUED, has_words=True)

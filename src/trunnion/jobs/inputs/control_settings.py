@@ -1,0 +1,26 @@
+"""What the definition of a machine's control says of its programs, whoever wrote them."""
+
+from collections.abc import Mapping
+
+from trunnion.controls import Control, load_control
+from trunnion.errors import InputError
+from trunnion.machines import Machine
+
+
+def written_control(machine: Machine) -> Control | None:
+    """The control of a machine; None where its programs can be read but not written."""
+    try:
+        return load_control(machine.control.unread_copy())
+    except InputError:
+        return None
+
+
+def default_settings(control: Control | None) -> Mapping[str, str]:
+    """The settings of a control's definition; usual ones where its programs can be read but not written."""
+    return control.settings if control else {"edge": "1"}
+
+
+def rapid_feed_of(machine: Machine) -> float | None:
+    """The feed at which lines are rapids on a machine, mm/min; None where rapids are written as rapids."""
+    feed = default_settings(written_control(machine)).get("rapid_feed")
+    return float(feed) if feed else None

@@ -1,0 +1,86 @@
+"""What is simulated, as arguments or a project file state it: names of files, texts and numbers.
+
+Units:  mm, degrees.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TypeAlias
+
+from trunnion.errors import ArgumentName, InputError, Problem
+from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike
+from trunnion.model.run import Run
+from trunnion.simulation.meshes import TriangleMesh
+from trunnion.simulation.stock.turning import Pose
+from trunnion.simulation.tools.profile import ToolShape
+
+#: Argument -> file, line and key of a project that states it.
+Places: TypeAlias = Mapping[str, tuple[str, int, str]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SetupInput:
+    """One set-up: the stock as it is clamped, and what runs there. The rest as ``trunnion.simulate`` has it.
+
+    name         for findings; empty where there is one set-up only
+    pose         where the last set-up's workpiece frame lies in this one's; None: where it was
+    part         None: that of the last set-up, where it lies now
+    work_offset  in which the programs must cut; None: in any
+    turn, tilt   how the part is clamped, degrees; None: as it is drawn. Stock, part and fixtures are given as drawn
+    cl_is_turned  CL files, which are toolpaths, are turned already
+    places       where a project file states arguments
+    """
+
+    programs: Sequence[FilePath | Run]
+    machine: MachineLike
+    name: str = ""
+    pose: Pose | None = None
+    part: str | Path | TriangleMesh | None = None
+    fixtures: Sequence[str | Path | TriangleMesh] = ()
+    work_offset: str | None = None
+    tools: Iterable[str | ToolShape] = ()
+    libraries: Sequence[FilePath] = ()
+    unit: str | None = None
+    cl: ToolpathLike | Iterable[ToolpathLike] = ()
+    subprograms: Sequence[FilePath] = ()
+    zero: str | Iterable[float] | None = None
+    tool_length: str | float | None = None
+    until: str | int | None = None
+    turn: float | None = None
+    tilt: float | None = None
+    cl_is_turned: bool = False
+    places: Places = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SimulationInput:
+    """Stock, and the set-ups in which it is cut one after another; the rest as ``trunnion.simulate`` has it."""
+
+    stock: str | Path | TriangleMesh
+    setups: Sequence[SetupInput]
+    cell: float | None = None
+    accuracy: float | None = None
+    near: float | None = None
+    stop_at: str | None = None
+    threads: int | None = None
+    places: Places = field(default_factory=dict)
+
+
+@contextmanager
+def told_with_places(places: Places, setup: str = "") -> Iterator[None]:
+    """Tell problems with arguments at the places where a project states them, with the set-up that has them."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError([with_place(problem, places, setup) for problem in error.problems]) from None
+
+
+def with_place(problem: Problem, places: Places, setup: str = "") -> Problem:
+    """A problem with an argument where a project states it; any other as it is."""
+    if not isinstance(problem.file, ArgumentName) or problem.file not in places:
+        return problem
+    file, line, key = places[problem.file]
+    of_setup = f"{setup}: " if setup else ""
+    return replace(problem, file=file, line=line, what=f"{of_setup}{key}: {problem.what}")

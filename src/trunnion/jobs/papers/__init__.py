@@ -1,1 +1,0 @@
-"""What goes with a program: reports, setup sheet, listing and manifest."""

@@ -1,0 +1,257 @@
+"""The setup sheet of a post: what is known of machine, tools, operations and files, and what is left to a person."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from trunnion.controls.vocabulary import RADIUS_NUMBER_WORD
+from trunnion.errors import Severity
+from trunnion.jobs.post.papers import MADE_BY
+from trunnion.jobs.post.post_job import PostJob
+from trunnion.jobs.post.result import PostResult
+from trunnion.machines import Machine
+from trunnion.model.clamping_notices import PLACED_NOTICES
+from trunnion.model.motion import MachiningMode, Motion
+from trunnion.model.run import NO_OFFSET, Run
+from trunnion.model.toolpath import CutterComp, CycleOn, Insert, Kind, Operation, SpindleOn, Stop, Tool
+from trunnion.output.coordinates.extents import cut_box
+from trunnion.output.program import Program
+from trunnion.output.template_values import TemplateValues
+from trunnion.reporting.content import collect_content
+from trunnion.reporting.html_text import format_number
+from trunnion.reporting.path_drawing import DrawnBody, path_drawing
+from trunnion.reporting.setup_sheet import (
+    SetupSheet,
+    SheetFile,
+    SheetOperation,
+    SheetTool,
+    cut_ranges,
+    displayed_extent,
+)
+from trunnion.reporting.text import clean
+from trunnion.reporting.usage import OperationUsage
+from trunnion.verification import Verification
+from trunnion.wording import counted, one_line
+
+#: Warnings of a post that a sheet repeats.
+_MOST_WARNINGS = 20
+
+
+def setup_sheet(
+    program: Program,
+    job: PostJob,
+    result: PostResult,
+    verification: Verification,
+    files: Sequence[SheetFile],
+    bodies: Sequence[DrawnBody] = (),
+) -> SetupSheet:
+    """The sheet of a program that was posted and proven; ``bodies`` are drawn with its path."""
+    run, machine = verification.run, program.machine
+    content = collect_content(replace(verification, program=Path(verification.program).name), program.control.name)
+    shown = tuple(displayed_extent(*each) for each in zip(machine.axes, content.axes, strict=True))
+    content = replace(content, axes=shown)
+    calls = TemplateValues(program).tool_calls
+    operations = tuple(_operations(program, verification, content.operations, [call for call, *_ in calls]))
+    rotary = machine.axes[machine.primary].name, machine.axes[machine.secondary].name
+    return SetupSheet(
+        content=content,
+        version=MADE_BY,
+        part=clean(next((toolpath.part for toolpath in result.toolpaths if toolpath.part), "")),
+        may_run=result.passed,
+        simulated=None if result.simulation is None else result.simulation.passed,
+        offsets=_offsets(run),
+        zero=machine.workpiece_zero,
+        tool_length=machine.tool_length,
+        system=_system(program, job),
+        rotary=rotary,
+        tools=tuple(_tools(calls, operations, run.uses_length_numbers)),
+        operations=operations,
+        start=tuple(_start(program, run, operations, rotary)),
+        to_check=tuple(clean(one_line(text)) for text in _to_check(program, job, result, run)),
+        files=tuple(replace(file, name=clean(file.name)) for file in files),
+        picture=path_drawing(run, bodies),
+        untimed=_untimed(machine),
+    )
+
+
+def _untimed(machine: Machine) -> str:
+    """What times leave out because the definition does not state it."""
+    left_out = (
+        ("rapids", any(axis.rapid is None for axis in machine.axes)),
+        ("speeding up and slowing down", any(axis.acceleration is None for axis in machine.axes)),
+        ("tool changes", machine.facts.tool_change_s is None),
+    )
+    names = [what for what, is_left_out in left_out if is_left_out]
+    return f"{', '.join(names)}: the machine's definition states none" if names else ""
+
+
+def _offsets(run: Run) -> tuple[str, ...]:
+    values = [int(value) for value in dict.fromkeys(run.state.work_offset.values.tolist())]
+    return tuple(clean(run.work_offset_name(value)) for value in values if value not in (0, NO_OFFSET))
+
+
+def _system(program: Program, job: PostJob) -> str:
+    if job.options.absolute_frame:
+        return "the CAM's absolute coordinate system"
+    return clean(f"the coordinate system of {program.motions[0].operation.name or 'the first operation'}")
+
+
+def _operations(
+    program: Program, verification: Verification, usages: Sequence[OperationUsage], calls: Sequence[str]
+) -> Iterator[SheetOperation]:
+    starts = [k for k, motion in enumerate(program.motions) if motion.starts_operation]
+    groups = [program.motions[first:end] for first, end in pairwise([*starts, len(program.motions)])]
+    rows = zip(groups, verification.operations, usages, calls, strict=True)
+    names_radius = RADIUS_NUMBER_WORD in program.control.family.WORDS
+    for number, (motions, own, usage, call) in enumerate(rows, 1):
+        yield SheetOperation(
+            number=number,
+            name=clean(own.name),
+            method="" if _is_of_holes(motions) else clean(program.method_of(motions[0].operation)),
+            mode=", ".join(dict.fromkeys(motion.mode.value for motion in motions)),
+            tool=clean(call),
+            cl_file=clean(Path(own.cl_file).name),
+            seconds=usage.seconds,
+            cutting_seconds=usage.cutting_seconds,
+            box=_box(motions),
+            cuts=cut_ranges(verification.run, own),
+            notes=tuple(dict.fromkeys(_notes(motions, names_radius=names_radius))),
+        )
+
+
+def _notes(motions: Sequence[Motion], *, names_radius: bool) -> Iterator[str]:
+    """What a setter must know of an operation: compensation with its register, pitches, and where it stops."""
+    rpm = 0.0
+    for event in (event for motion in motions for event in motion.operation.events):
+        match event:
+            case SpindleOn():
+                rpm = event.rpm
+            case CutterComp() if event.side != "OFF":
+                register = f"D{event.register}" if event.register and names_radius else "the radius of the tool"
+                yield f"radius compensation with {register}"
+            case Stop():
+                yield "optional stop (M1)" if event.optional else "stop (M0)"
+            case CycleOn() if event.mode[:1] == ("TAP",):
+                values = dict(event.values)
+                per_minute = values.get("MMPM", (0.0,))[0] / rpm if rpm else 0.0
+                if pitch := values.get("MMPR", (per_minute,))[0]:
+                    yield f"pitch {format_number(pitch)} mm"
+
+
+def _is_of_holes(motions: Sequence[Motion]) -> bool:
+    """Whether an operation makes holes, which are neither roughed nor finished."""
+    return any(isinstance(event, CycleOn) for motion in motions for event in motion.operation.events)
+
+
+def _box(motions: Sequence[Motion]) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
+    box = cut_box(motions)
+    if box is None:
+        return None
+    (x0, y0, z0), (x1, y1, z1) = box[0].tolist(), box[1].tolist()
+    return (x0, y0, z0), (x1, y1, z1)
+
+
+def _tools(
+    calls: Sequence[tuple[str, int, Operation]], operations: Sequence[SheetOperation], by_register: bool
+) -> Iterator[SheetTool]:
+    """Each tool once, in the order in which they are called."""
+    tools: dict[str, list[int]] = {}
+    for number, (call, _, _) in enumerate(calls):
+        tools.setdefault(call, []).append(number)
+    for call, used in tools.items():
+        _, register, operation = calls[used[0]]
+        tool = operation.tool
+        yield SheetTool(
+            call=clean(call),
+            name=clean(tool.name),
+            kind=_kind(tool),
+            diameter=tool.diameter,
+            corner_radius=tool.corner_radius,
+            length=tool.length,
+            flute_length=tool.flute_length,
+            stick_out=tool.extension,
+            set_length=tool.set_length,
+            holder=clean(tool.holder),
+            register=register if by_register else 0,
+            operations=tuple(number + 1 for number in used),
+            seconds=sum(operations[number].cutting_seconds for number in used),
+        )
+
+
+def _kind(tool: Tool) -> str:
+    """What a tool is, in words; empty where the CL file does not say."""
+    if tool.kind == "MILL" and tool.diameter > 0.0 and abs(2.0 * tool.corner_radius - tool.diameter) < 1e-6:
+        return "ball mill"
+    words = {"MILL": "mill", "TCUTTER": "T-cutter", "BARREL": "barrel cutter", "DRILL": "drill"}
+    angle = f", tip {format_number(tool.tip_angle)}°" if tool.kind == "DRILL" and tool.tip_angle else ""
+    return words.get(tool.kind, "") + angle
+
+
+def _start(program: Program, run: Run, operations: Sequence[SheetOperation], rotary: Sequence[str]) -> Iterator[str]:
+    """What stands at the beginning of the program, and where it can be entered."""
+    first = operations[0] if operations else None
+    if first is not None:
+        yield f"The first tool is T{first.tool}."
+    if len(run) and run.machine_frame[0]:
+        yield "The program begins with a motion in machine coordinates, from wherever the axes stand."
+    elif len(run):
+        yield "The program begins with a motion in workpiece coordinates: the axes must stand where that is safe."
+    cuts = np.flatnonzero(run.kind != Kind.RAPID)
+    if len(cuts):
+        joints = run.positions(cuts[:1]).joints[0]
+        axes = list(zip(rotary, (run.machine.primary, run.machine.secondary), strict=True))
+        shown = {k: float(run.machine.axes[k].displayed(joints[k : k + 1], 3)[0]) for _, k in axes}
+        turned = ", ".join(f"{name} {shown[k] + 0.0:.3f}°" for name, k in axes)
+        yield f"The rotary axes stand at {turned} where the first cut ends."
+    if program.effective_setting("restart") == "on":
+        yield "Every operation calls its tool and its speed: the program can be entered where an operation begins."
+    else:
+        yield "The program is for a start at its beginning: what an operation does not say again, the one before said."
+
+
+def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> Iterator[str]:
+    """What the proof cannot see."""
+    machine = program.machine
+    offsets = ", ".join(_offsets(run)) or "the machine's zero"
+    is_placed = any(notice.startswith(PLACED_NOTICES) for notice in job.notices)
+    turned = "and not turned: the program is for the turned part" if is_placed else "and turned as the part is clamped"
+    yield f"Work offset {offsets} is set to the zero of the program, {turned}."
+    for notice in job.notices:
+        if notice.startswith(PLACED_NOTICES):
+            yield f"{notice}."
+    if machine.workpiece_zero is None:
+        yield "Travel: nobody said where the workpiece zero is, so the proof only knows that the motion fits somewhere."
+    else:
+        yield "The workpiece zero is where the sheet says: the limits of the slides were proven for it."
+    if any(motion.mode is MachiningMode.WITHOUT_TCP for motion in program.motions):
+        yield "Without TCP the program holds for this zero and this tool length alone: measure both before each part."
+    yield "Tools: the right one in each pocket, its length and radius measured and entered, its edge sharp, no run-out."
+    yield "The part is clamped, the blank has its size, and everything that turns has room."
+    if result.simulation is None:
+        yield "Collisions of tool, holder and head with part, fixtures and table were not looked for (no simulation)."
+    else:
+        found = len(result.simulation.findings)
+        knew = "knew the stock, tools and fixtures that it was given, and no more"
+        yield f"The simulation ({counted(found, 'finding')}) {knew}."
+    yield "Axis directions, rotary centres and pivot lengths of this machine have been compared with its definition."
+    inserted = [
+        event.text.strip()
+        for motion in program.motions
+        for event in motion.operation.events
+        if isinstance(event, Insert)
+    ]
+    if inserted:
+        texts = "; ".join(dict.fromkeys(inserted))
+        yield f"Texts that the CL file inserts, whose effect beyond the path is not proven: {texts[:300]}"
+    warnings = [problem for problem in result.problems if problem.severity is Severity.WARNING]
+    for problem in warnings[:_MOST_WARNINGS]:
+        yield f"Warning: {problem.what}"
+    if len(warnings) > _MOST_WARNINGS:
+        yield f"and {len(warnings) - _MOST_WARNINGS} warnings more, which the post has printed"
+    for problem in result.problems:
+        if problem.severity is Severity.ERROR:
+            yield f"OVERRULED: {problem.what}"
+    yield "The first part runs block by block or with low override, with a hand on feed hold."

@@ -1,0 +1,93 @@
+"""Proving a program: its run is compared with its toolpaths, and simulated if that is asked for.
+
+In:     a program that was written and read back.
+Out:    its proof, and the result of the post, whose warnings have been reported.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+
+from trunnion.errors import Problem, Severity
+from trunnion.jobs.post.expected_values import Expectation
+from trunnion.jobs.post.forced_program import Untold, write_forced
+from trunnion.jobs.post.machining_times import operation_times
+from trunnion.jobs.post.result import PostResult
+from trunnion.jobs.post.stages import PlannedProgram, Posting, Proof, WrittenProgram
+from trunnion.jobs.post.writing import named_run, named_verification
+from trunnion.jobs.verify.program_warnings import program_warnings, stated_words
+from trunnion.model.operation_start import OperationStart
+from trunnion.model.run import Run
+from trunnion.verification import Verification, rows_from_starts, verify, without_columns
+
+
+def prove(posting: Posting, written: WrittenProgram, expected: Expectation) -> Proof:
+    """The proof of a program; one that fails and is forced is written again, with what failed in its head."""
+    job, program = posting.job, written.planned.program
+    prove_run = partial(_prove_run, posting, expected, job.columns or bool(program.time_token))
+    proof = prove_run(written.run, written.starts)
+    if job.force and proof.failed:
+        proof = write_forced(posting, program, proof, prove_run)
+    found = proof.verification
+    times = operation_times(program, found) if program.time_token else []
+    if found is not None and not job.columns:
+        found = without_columns(found)
+    return replace(proof, verification=found, times=times)
+
+
+def _prove_run(
+    posting: Posting, expected: Expectation, columns: bool, run: Run | None, starts: Sequence[OperationStart]
+) -> Proof:
+    """What verification and simulation find of a run."""
+    found = None
+    if run is not None:
+        job, tolerances = posting.job, expected.tolerances
+        found = verify(run, posting.toolpaths, tolerances=tolerances, settings=expected.settings, columns=columns)
+        found = named_verification(found, posting.target.name, job.beside)
+        found = replace(found, operations=rows_from_starts(run, found.operations, starts), clamping=job.clamping)
+    return _simulate(posting, run, found)
+
+
+def _simulate(posting: Posting, run: Run | None, found: Verification | None) -> Proof:
+    """A proof with what the program cuts and hits, if that is asked for."""
+    job = posting.job
+    if job.simulation is None:
+        return Proof(found)
+    from trunnion.jobs.simulate.posted import simulate_posted, simulation_checks
+
+    # What may get notices in its head is told when lines are those of the file that stays.
+    observer = Untold(posting.observer) if job.force else posting.observer
+    named = None if run is None else named_run(run, posting.target.name)
+    simulated = simulate_posted(job.simulation, named, posting.toolpaths, observer)
+    if found is not None:
+        found = replace(found, checks=(*found.checks, *simulation_checks(simulated)))
+    return Proof(found, simulated)
+
+
+def report_proof(posting: Posting, planned: PlannedProgram, proof: Proof) -> PostResult:
+    """Report what was found, and return the result of the post."""
+    job, observer, found = posting.job, posting.observer, proof.verification
+    problems = list(planned.problems)
+    if found is None:
+        problems.append(_nothing_checked(posting))
+        observer.problems(problems[-1:])
+    if proof.simulation is not None:
+        if job.force:
+            observer.problems(proof.simulation.remarks)
+        problems += [remark for remark in proof.simulation.remarks if remark.severity is Severity.WARNING]
+    if found is not None:
+        words = program_warnings(found.run, stated_words(job.control, {**job.control.settings, **job.settings}))
+        problems += words
+        observer.problems(words)
+        observer.verified(found)
+    remarks = [remark for toolpath in posting.toolpaths for remark in toolpath.remarks]
+    toolpaths = tuple(posting.toolpaths)
+    return PostResult(toolpaths, planned.plan, found, (*remarks, *problems), simulation=proof.simulation)
+
+
+def _nothing_checked(posting: Posting) -> Problem:
+    """The warning of a forced program that no reader can read."""
+    what, papers = "it is written by force, and nothing has been checked", posting.job.papers.by_name()
+    without = ["setup sheet" if name == "sheet" else name for name in papers if name != "manifest"]
+    lost = f": there is no {' and no '.join(without)}" if without else ""
+    return Problem(posting.target.name, 0, f"{what}{lost}", severity=Severity.WARNING, code="CTL930")

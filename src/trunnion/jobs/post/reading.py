@@ -1,0 +1,53 @@
+"""Reading the toolpaths of a post: with normals, hooks, and the part as it is clamped.
+
+In:     CL files, a job and hooks.
+Out:    the toolpaths as they are planned, and the job with what its program says of them.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from trunnion.controls.vocabulary import HOOKS_NOTICE
+from trunnion.hooks.calling import Hooks
+from trunnion.jobs.post.post_job import PostJob
+from trunnion.model.clamped_toolpaths import clamped_after, stated_clamping, turned_toolpaths
+from trunnion.model.toolpath import Message, Toolpath
+from trunnion.placing.program_heads import placed_notices
+
+
+def as_clamped(
+    toolpaths: list[Toolpath], job: PostJob, hooks: Hooks, angles: tuple[float, float], *, is_placed: bool
+) -> tuple[list[Toolpath], PostJob]:
+    """Toolpaths of the part as it is clamped, and the job with the notices that the head of the program has of it.
+
+    Raises
+    ------
+    InputError
+        If a CL file states that it is clamped otherwise.
+    """
+    stated = stated_clamping(toolpaths)
+    clamping = clamped_after(stated, angles, toolpaths[0].file)
+    toolpaths, carried = _without_notices(toolpaths, job)
+    toolpaths = turned_toolpaths(toolpaths, *angles, absolute=job.options.absolute_frame)
+    decisions = tuple(hooks.decisions) if job.options.explain else ()
+    notices: tuple[str, ...] = ()
+    if is_placed or stated is not None or not clamping.is_as_drawn:
+        notices = placed_notices(clamping, job.machine.workpiece_zero, job.machine.tool_length)
+    job = replace(job, notices=(*notices, *carried, *hooks.notices), decisions=decisions, clamping=clamping)
+    if job.simulation is not None:
+        from trunnion.jobs.simulate.posted import simulated_as_clamped
+
+        job = replace(job, simulation=simulated_as_clamped(job.simulation, clamping))
+    return toolpaths, job
+
+
+def _without_notices(toolpaths: Sequence[Toolpath], job: PostJob) -> tuple[list[Toolpath], tuple[str, ...]]:
+    """Toolpaths without the notices of hooks that they were converted with, and these for the head of the program."""
+    operations = (operation for toolpath in toolpaths for operation in toolpath.operations)
+    texts = (event.text for operation in operations for event in operation.events if isinstance(event, Message))
+    if not any(text.strip().upper().startswith(HOOKS_NOTICE) for text in texts):
+        return list(toolpaths), ()
+    from trunnion.conversion import take_notices  # few CL files have some
+
+    taken = [take_notices(toolpath, job.control.family) for toolpath in toolpaths]
+    return [toolpath for toolpath, _ in taken], tuple(dict.fromkeys(text for _, found in taken for text in found))

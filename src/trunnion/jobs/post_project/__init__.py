@@ -1,0 +1,1 @@
+"""A whole project: posted, tested against the programs that it has, and watched."""

@@ -1,0 +1,184 @@
+"""What a project asks for once its programs are proven: the simulation of all set-ups, released programs, times.
+
+In:     a project with the programs that were posted for it; none of them has its place yet.
+Out:    what was found, as errors or warnings as the project judges it.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from trunnion.errors import Problem, Severity
+from trunnion.jobs.inputs.simulation_input import SetupInput
+from trunnion.jobs.observer import Observer
+from trunnion.jobs.post.forced_program import Untold
+from trunnion.jobs.post.result import PostResult
+from trunnion.jobs.post.writing import named_run
+from trunnion.jobs.project.project import Division, Judgement, PostedSetup, Project
+from trunnion.jobs.verify.comparing import diff
+from trunnion.model.run import Run
+from trunnion.verification import durations
+from trunnion.wording import counted, format_duration
+
+if TYPE_CHECKING:  # imported where a project is simulated
+    from trunnion.jobs.simulate.result import SimulationResult
+
+#: Findings of a set-up that are told one by one.
+_MOST_TOLD = 10
+
+#: The severity of what a check finds.
+_SEVERITIES = {Judgement.WARN: Severity.WARNING, Judgement.REFUSE: Severity.ERROR}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SetupFindings:
+    """What was found of a set-up, as the project judges it, and its simulation; None: it was not simulated."""
+
+    problems: tuple[Problem, ...]
+    simulation: "SimulationResult | None"
+
+
+class _Warned(Untold):
+    """Passes on progress and warnings: errors are told as the project judges them, once."""
+
+    def problems(self, problems: Sequence[Problem]) -> None:
+        """As ``Observer`` has it."""
+        self._observer.problems([each for each in problems if each.severity is Severity.WARNING])
+
+
+def check_project(
+    project: Project, posted: Sequence[tuple[PostedSetup, Sequence[PostResult]]], observer: Observer
+) -> tuple["SimulationResult | None", list[SetupFindings]]:
+    """Carry out the checks of a project.
+
+    Returns
+    -------
+    simulation
+        None: it is not asked for.
+    found
+        Of every set-up of the project, in their order.
+
+    Raises
+    ------
+    InputError
+        When a file of the simulation or a released program cannot be used.
+    """
+    checks = project.checks
+    found = [list[Problem]() for _ in project.posted]
+    own = [problems for problems, each in zip(found, project.posted, strict=True) if each is not None]
+    for (setup, results), problems in zip(posted, own, strict=True):
+        if checks.longest_s is not None:
+            problems += _too_long(project, results)
+        if checks.released is not Judgement.OFF and setup.released:
+            severity = _SEVERITIES[checks.released]
+            problems += [replace(each, severity=severity) for each in _compare_released(project, setup, results)]
+    simulation = None if checks.simulate is Judgement.OFF else _simulate(project, posted, _Warned(observer))
+    # A simulation that stops at the first finding has no results of the set-ups behind it.
+    simulated = [] if simulation is None else list(simulation.setups or (simulation,))
+    for one, problems in zip(simulated, found, strict=False):
+        severity = _SEVERITIES[checks.simulate]
+        problems += [replace(each, severity=severity) for each in _found(one, _shows(project))]
+    lacking = [None] * (len(found) - len(simulated))
+    return simulation, [
+        SetupFindings(tuple(problems), one) for problems, one in zip(found, [*simulated, *lacking], strict=True)
+    ]
+
+
+def _shows(project: Project) -> str:
+    """How to see all that the simulation of a project finds, which takes programs that are written."""
+    command = f"trunnion simulate {project.path.name} shows all of it"
+    if project.checks.simulate is Judgement.REFUSE:
+        return f'mend these first; or post with simulate = "warn" under [checks], then {command}'
+    return f"once the programs are written, {command}"
+
+
+def _name(project: Project, result: PostResult) -> str:
+    assert result.output is not None, "every program of a project has a file"
+    return str(project.place_of(result.output))
+
+
+def _run(project: Project, result: PostResult) -> Run:
+    """The run of a program under the name that it will have."""
+    assert result.run is not None, "nothing is posted here that nobody reads"
+    return named_run(result.run, _name(project, result))
+
+
+def _too_long(project: Project, results: Sequence[PostResult]) -> Iterator[Problem]:
+    """Programs that take longer than they may."""
+    longest = project.checks.longest_s
+    assert longest is not None
+    for result in results:
+        assert result.verification is not None
+        seconds, known = durations(result.verification)
+        if seconds.sum() > longest:
+            least = "" if known.all() else "at least "
+            what = f"takes {least}{format_duration(float(seconds.sum()))}, and may take {format_duration(longest)}"
+            yield Problem(
+                _name(project, result), 0, what, "divide the work, or raise longest_s of [checks]", code="PRJ230"
+            )
+
+
+def _compare_released(
+    project: Project, setup: PostedSetup, results: Sequence[PostResult]
+) -> Iterator[Problem]:  # fmt: skip
+    """Programs that move otherwise than the released ones."""
+    if setup.division is not Division.OPERATIONS:
+        pairs = [(results[0], setup.released[0], setup.released[1:])]
+    else:
+        pairs = [(result, released, ()) for result, released in zip(results, setup.released, strict=False)]
+        if len(results) != len(setup.released):
+            what = f"becomes {counted(len(results), 'program')}, and {len(setup.released)} are released"
+            yield Problem(
+                str(project.place_of(setup.output)),
+                0,
+                what,
+                "look at what CAM has changed, then release the new ones",
+                code="PRJ220",
+            )
+    for result, released, beside in pairs:
+        run = _run(project, result)
+        compared = diff(
+            released, run, machine=run.machine, subprograms=[*beside, *setup.subprograms],
+        )  # fmt: skip
+        if not compared.same:
+            what = f"does not move as {Path(released).name} does: {'; '.join(compared.lines())}"
+            yield Problem(_name(project, result), 0, what, "look at both, then release the new one", code="PRJ220")
+
+
+def _simulate(
+    project: Project, posted: Sequence[tuple[PostedSetup, Sequence[PostResult]]], observer: Observer
+) -> "SimulationResult":
+    """Cut the stock in all set-ups one after another."""
+    from trunnion.jobs.simulate.steps import simulate_setups
+
+    waiting = iter(posted)
+    setups = [
+        each if setup is None else _with_runs(project, each, next(waiting)[1])
+        for each, setup in zip(project.simulation.setups, project.posted, strict=True)
+    ]
+    return simulate_setups(replace(project.simulation, setups=setups), observer)
+
+
+def _found(simulated: "SimulationResult", cure: str) -> Iterator[Problem]:
+    """What a set-up must not do, each at its program and line; the ``cure`` says how to see more of it."""
+    for finding in simulated.findings[:_MOST_TOLD]:
+        yield Problem(finding.file, finding.line, f"the simulation finds: {finding}", code="PRJ210")
+    if len(simulated.findings) > _MOST_TOLD:
+        what = f"the simulation has {len(simulated.findings)} findings here; the first {_MOST_TOLD} are told"
+        yield Problem(simulated.programs[0], 0, what, cure, code="PRJ210")
+    yield from (remark for remark in simulated.remarks if remark.severity is Severity.ERROR)
+    gouge = simulated.gouge
+    if gouge is not None and gouge.largest > simulated.limit and not simulated.findings:
+        what = f"the simulation finds up to {gouge.largest:.3f} mm missing from the part"
+        yield Problem(simulated.programs[0], 0, what, cure, code="PRJ210")
+
+
+def _with_runs(project: Project, setup: SetupInput, results: Sequence[PostResult]) -> SetupInput:
+    """A set-up with the programs that have been posted for it, on their machine as it was set up."""
+    toolpaths = [toolpath for result in results for toolpath in result.toolpaths]
+    runs = [_run(project, result) for result in results]
+    return replace(
+        setup, programs=runs, machine=runs[0].machine, cl=toolpaths, cl_is_turned=True, subprograms=(), zero=None,
+        tool_length=None,
+    )  # fmt: skip

@@ -1,0 +1,97 @@
+"""What a program that anyone may have written is expected to be: its tolerances, and what its settings say.
+
+In:     a program that was read, and the arguments of its verification.
+Out:    tolerances and settings for ``trunnion.verification.verify``.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Final
+
+from trunnion.controls import Control
+from trunnion.jobs.inputs.control_settings import default_settings
+from trunnion.jobs.inputs.settings import check_operation_names
+from trunnion.jobs.verify.arguments import DEFAULT_TOLERANCE, VerifyArguments
+from trunnion.jobs.verify.expected_values import expected_values
+from trunnion.jobs.verify.reading import ReadProgram, VerifiedMachine
+from trunnion.model.toolpath import Operation, Toolpath
+from trunnion.verification import ExpectedValues, PrintedDigits, Tolerances, tolerances_in_planes
+
+#: In a program in inches, half of 0.0001 inch, mm.
+_DEFAULT_INCH_TOLERANCE: Final = 0.0013
+
+#: Lines stand for arcs within this, mm, where programs for the control can be read but not written.
+_READ_CHORD: Final = 0.001
+
+
+def expected(on: VerifiedMachine, read: ReadProgram, given: VerifyArguments) -> ExpectedValues:
+    """What the program is expected to be; without CL files it may have any work offset and edge.
+
+    Raises
+    ------
+    InputError
+        If a work offset is none of the control's, or that of an operation which there is not.
+    """
+    usual = default_settings(on.control)
+    settings = {"work_offset": "G54", **usual}
+    if not read.toolpaths:
+        settings = {key: value for key, value in usual.items() if key not in ("work_offset", "edge")}
+    offset, of_operations = _work_offsets(given.work_offset, on.control, read.toolpaths)
+    own = {"tool": given.tool, "work_offset": offset, "edge": given.edge}
+    settings |= {key: str(value) for key, value in own.items() if value is not None}
+    by_operation = {name: {**settings, "work_offset": value} for name, value in of_operations.items()}
+    return replace(
+        expected_values(on.control, on.machine, settings, by_operation),
+        span=given.span,
+        span_tip=given.span_tip,
+        absolute=given.is_absolute,
+        fastest_feed=given.is_fastest,
+        feed_limit=given.feed_limit,
+        feeds_as_programmed=True,
+    )
+
+
+def _work_offsets(
+    text: str | None, control: Control | None, toolpaths: Sequence[Toolpath]
+) -> tuple[str | None, dict[str, str]]:
+    """The work offset that is given for all operations, and those of single operations by their names."""
+    if control is None or text is None:
+        return text, {}
+    values = list(control.values_by_operation("work_offset", str(text)))
+    own = {name: value for name, value in values if name}
+    if not own:
+        return text, {}
+    names = [operation.name for toolpath in toolpaths for operation in toolpath.operations]
+    check_operation_names({name: {"work_offset": ""} for name in own}, {}, names)
+    return next((value for name, value in values if not name), None), own
+
+
+def tolerances(
+    on: VerifiedMachine, read: ReadProgram, given: VerifyArguments
+) -> Tolerances | Callable[[Operation], Tolerances]:
+    """How far the program may be off; by default as much more in tilted planes as is rounded there."""
+    found = _in_planes(on.control, read, given)
+    if on.control is None or not given.is_fastest:
+        return found
+    digit = 0.5 * on.control.formats["feed"].five_axis.digit  # the last one of a feed that the control prints
+    if isinstance(found, Tolerances):
+        return replace(found, feed=digit)
+    return lambda operation: replace(found(operation), feed=digit)
+
+
+def _in_planes(
+    control: Control | None, read: ReadProgram, given: VerifyArguments
+) -> Tolerances | Callable[[Operation], Tolerances]:
+    tolerance = given.tolerance
+    chord = control.arcs.chord_tolerance if control else _READ_CHORD
+    chord = max(chord, tolerance) if given.span_tip is None else given.span_tip
+    if tolerance != DEFAULT_TOLERANCE:
+        return Tolerances(tip=tolerance, angle=tolerance, chord=chord)
+    in_inches = bool(read.run.state.inches.values.any())
+    tip = _DEFAULT_INCH_TOLERANCE if in_inches else tolerance
+    formats = control.formats if control else {}
+    pair = formats.get("plane_angle") or formats.get("angle")
+    angle = pair.five_axis.digit if pair else tolerance
+    # The default is half a digit of inches, and a whole one of millimetres, which most controls have.
+    digits = PrintedDigits(2.0 * tip if in_inches else tip, angle)
+    return tolerances_in_planes(read.run, Tolerances(tip=tip, angle=tolerance, chord=chord), digits)

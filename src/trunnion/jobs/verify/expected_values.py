@@ -1,0 +1,60 @@
+"""What a program is expected to be by its settings, where its CL files leave it open.
+
+Posts and verifications ask the same function; each adds what it alone knows.
+"""
+
+from collections.abc import Mapping
+
+from trunnion.controls import Control
+from trunnion.jobs.inputs.settings import m_code, work_offset_setting
+from trunnion.machines import Machine
+from trunnion.model.axis_tolerance import AxisTolerance
+from trunnion.verification import ExpectedValues, OperationSettings
+
+
+def expected_values(
+    control: Control | None,
+    machine: Machine,
+    settings: Mapping[str, str],
+    own_settings: Mapping[str, Mapping[str, str]],
+) -> ExpectedValues:
+    """What a program is expected to be.
+
+    Parameters
+    ----------
+    control
+        None: programs for the machine can be read but not written.
+    machine
+        Runs the program.
+    settings
+        In force in it. Without a work offset or an edge, it may have any.
+    own_settings
+        In force in single operations, by their names.
+
+    Raises
+    ------
+    InputError
+        If a work offset is none of the control's.
+    """
+    every = _operation_settings(settings, machine)
+    rapid_feed = float(settings["rapid_feed"]) if settings.get("rapid_feed") else None
+    slower = None if rapid_feed is None or control is None else rapid_feed - control.formats["feed"].five_axis.digit
+    return ExpectedValues(
+        tool=every.tool,
+        work_offset=every.work_offset,
+        edge=every.edge,
+        by_operation={name: _operation_settings(own, machine) for name, own in own_settings.items()},
+        rapid_feed=rapid_feed,
+        below_rapid_feed=slower,
+        rigid_tap=m_code(settings.get("rigid_tap", "")),
+        blocks_in_compensation=control.blocks_in_compensation if control else 1,
+        stops_in_compensation=control.stops_in_compensation if control else False,
+        axis_tolerance=control.axis_tolerance if control else AxisTolerance(),
+    )
+
+
+def _operation_settings(settings: Mapping[str, str], machine: Machine) -> OperationSettings:
+    """Tool, work offset and edge as settings give them."""
+    offset = work_offset_setting(settings["work_offset"], machine) if "work_offset" in settings else None
+    edge = int(settings["edge"]) if "edge" in settings else None
+    return OperationSettings(settings.get("tool", "").strip('"'), offset, edge)

@@ -1,0 +1,94 @@
+"""Reading what is verified: the run of a program, and its CL files as it was posted from them.
+
+In:     a program, the machine that runs it, and the arguments of the verification.
+Out:    the run and the toolpaths; warnings about them have been reported.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from trunnion.controls import Control
+from trunnion.jobs.inputs.cl_statements import replace_unknown_statements
+from trunnion.jobs.inputs.reading import FilePath, as_run, as_toolpaths
+from trunnion.jobs.observer import Observer
+from trunnion.jobs.verify.arguments import VerifyArguments
+from trunnion.jobs.verify.program_warnings import program_warnings
+from trunnion.machines import Machine
+from trunnion.model.clamped_toolpaths import clamped_after, stated_clamping, turned_toolpaths
+from trunnion.model.clamping import Clamping
+from trunnion.model.run import Run
+from trunnion.model.toolpath import Toolpath
+from trunnion.placing.program_heads import stated_place, unlike_cl_files, unlike_zero
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class VerifiedMachine:
+    """The machine that runs a program, set up; its control is None where programs can be read but not written."""
+
+    machine: Machine
+    control: Control | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ReadProgram:
+    """What is compared.
+
+    toolpaths  of the part as it is clamped; none: the program is checked by itself
+    clamping   None: nothing says how the part is clamped
+    """
+
+    run: Run
+    toolpaths: list[Toolpath]
+    clamping: Clamping | None
+
+
+def read_program(
+    nc: FilePath | Run, subprograms: Sequence[FilePath], on: VerifiedMachine, given: VerifyArguments, observer: Observer
+) -> ReadProgram:
+    """Read a program and its CL files.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be used, or a CL file states that its part is clamped otherwise.
+    """
+    toolpaths = as_toolpaths(given.cl, given.units, False, observer, given.dialect)
+    run = as_run(nc, on.machine, subprograms)
+    observer.problems(program_warnings(run))
+    if len(run.normals):
+        from trunnion.cl.surface_normals import with_normals
+
+        toolpaths = [with_normals(toolpath) for toolpath in toolpaths]
+    if given.hooks:
+        toolpaths = _changed_by_hooks(toolpaths, on, given)
+    toolpaths = replace_unknown_statements(toolpaths, on.control, on.machine)
+    stated, clamping = stated_clamping(toolpaths), None
+    if toolpaths:
+        clamping = clamped_after(stated, given.angles, toolpaths[0].file)
+        toolpaths = turned_toolpaths(toolpaths, *given.angles, absolute=given.is_absolute)
+    if not isinstance(nc, Run):
+        program = Path(nc)
+        observer.problems(
+            unlike_zero(program, on.machine)
+            if clamping is None
+            else unlike_cl_files(program, Clamping(*given.angles), clamping, stated, on.machine)
+        )
+        clamping = clamping or stated_place(program).clamping
+    for toolpath in toolpaths:
+        observer.problems(toolpath.remarks)
+    return ReadProgram(run, toolpaths, clamping)
+
+
+def _changed_by_hooks(toolpaths: list[Toolpath], on: VerifiedMachine, given: VerifyArguments) -> list[Toolpath]:
+    """What hooks make of toolpaths; they see the settings that are given."""
+    from trunnion.hooks.calling import Hooks
+    from trunnion.hooks.files import load_hooks  # few verifications have hooks
+
+    settings = {
+        "tool": given.tool, "work_offset": given.work_offset, "edge": given.edge, "cl_units": given.units,
+        "dialect": given.dialect,
+    }  # fmt: skip
+    texts = {name: str(value) for name, value in settings.items() if value not in (None, "")}
+    hooks = Hooks(load_hooks(map(Path, given.hooks)), on.machine.name, on.control.name if on.control else "", texts)
+    return hooks.change(toolpaths)

@@ -1,0 +1,94 @@
+"""Reports of a verification: a page or data."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO
+
+from trunnion.errors import InputError, Problem
+from trunnion.files import atomic_file, check_outputs
+from trunnion.jobs.inputs.arguments import wrong_argument
+from trunnion.jobs.inputs.input_files import verified_files
+from trunnion.jobs.inputs.reading import FilePath
+from trunnion.jobs.result_output import check_report_name
+from trunnion.machines import Machine
+from trunnion.model.motion import Decision
+from trunnion.verification import Verification
+
+if TYPE_CHECKING:  # imported where a program is simulated
+    from trunnion.jobs.simulate.result import SimulationResult
+
+
+def check_report(file: FilePath, inputs: Iterable[FilePath]) -> None:
+    """Raise ``InputError`` for a report that cannot be written, or that is one of the files that are read."""
+    check_report_name(file)
+    check_outputs([file], inputs)
+
+
+def write_post_report(
+    verification: Verification, file: FilePath, decisions: Sequence[Decision], simulation: "SimulationResult | None"
+) -> None:
+    """Write the report of a post as ``write_report`` does, with what its simulation found."""
+    place = check_report_name(file)
+    with atomic_file(place, inputs=verified_files(verification)) as sink:
+        add_report(verification, sink, place.name, decisions, simulation)
+
+
+def write_report(verification: Verification, file: FilePath, *, decisions: Sequence[Decision] = ()) -> None:
+    """Write a report of a verification: a page that works offline (``.html``), or data (``.json``).
+
+    Parameters
+    ----------
+    verification
+        Of ``trunnion.verify`` or ``trunnion.post``, with its columns.
+    file
+        An older file is replaced when the new one is complete.
+    decisions
+        Of the planner.
+
+    Raises
+    ------
+    InputError
+        When the name ends otherwise, the verification has no columns, the file cannot be written, or it is one that the
+        verification is about.
+    """
+    if not isinstance(verification, Verification):
+        raise wrong_argument("verification", verification, "give the result of trunnion.verify or trunnion.post")
+    write_post_report(verification, file, decisions, None)
+
+
+def add_report(
+    verification: Verification,
+    sink: BinaryIO,
+    name: str,
+    decisions: Sequence[Decision],
+    simulation: "SimulationResult | None" = None,
+) -> None:
+    """Write a report into a file that appears later; with what a simulation found, if there was one.
+
+    Raises
+    ------
+    InputError
+        When the verification has no columns.
+    """
+    if len(verification.seconds) != len(verification.run):
+        raise InputError(
+            Problem(name, 0, "the verification has no columns", "ask for it with columns=True", code="ARG130")
+        )
+    from trunnion.reporting import render_report  # most runs write no report
+
+    content = None
+    if simulation is not None:
+        from trunnion.jobs.simulate.report import simulation_content
+
+        content = simulation_content(simulation)
+        # How long it was computed differs each time, and the same post gives the same bytes.
+        content = replace(content, data={key: value for key, value in content.data.items() if key != "seconds"})
+    sink.writelines(render_report(verification, Path(name), decisions=decisions, simulation=content))
+
+
+def write_refusal(problems: Sequence[Problem], machine: Machine, program: str, place: Path) -> None:
+    """Write the report of a program that was refused before it was run; arguments as ``reporting.write_refusal``."""
+    from trunnion import reporting
+
+    reporting.write_refusal(problems, machine, program, place)
