@@ -24,7 +24,8 @@ class Limit:
     axis       its name, or ``table``
     end        ``low`` or ``high``; of the table the edge: ``low X``, ``high X``, ``low Y``, ``high Y`` or ``rim``
     limit_mm   the limit; of the table where that edge is, of its rim the diameter
-    line       of ``file``, a CL file or an NC program; ``operation`` is empty where it has no name, all of the table
+    file, line  a CL file or an NC program, and its line; empty and 0 for limits of the table
+    operation   its name; empty where it has none
     """
 
     axis: str
@@ -39,6 +40,7 @@ class Limit:
 class AxisUse:
     """How a linear axis uses its travel at a place.
 
+    axis                   its name
     least_mm, greatest_mm  how far it goes, mm
     margin_mm              what is left to the nearer of its limits; infinite without limits
     low, high              where it goes farthest, with the limits
@@ -56,6 +58,7 @@ class AxisUse:
 class RotaryUse:
     """How a rotary axis uses its travel at a place.
 
+    axis                     its name
     least_deg, greatest_deg  how far it goes, degrees
     margin_deg               what is left to the nearer of its limits; infinite without limits
     low_deg, high_deg        the limits
@@ -75,7 +78,8 @@ class BodyDistance:
 
     distance_mm  0: they touch
     between      their names
-    line         of ``file``, a CL file or an NC program; ``operation`` is empty where it has no name
+    file, line   a CL file or an NC program, and its line
+    operation    its name; empty where it has none
     """
 
     distance_mm: float
@@ -132,6 +136,7 @@ class TurnMargin:
     margin_mm  the largest one of any place; None: some row is out of reach of the rotary axes, or the table is too
                small, as ``obstacle`` says
     zero_mm    the best place there
+    obstacle   why there is none; empty where there is one
     value      of the goal there, as in ``PartPlace``
     is_asked   it is one of those that were asked for; else it was tried between them, around the best
     table_is_too_small  that is the obstacle

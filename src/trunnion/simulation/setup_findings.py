@@ -112,6 +112,7 @@ class SimulatedOperation:
     """Consecutive blocks with one tool.
 
     file      of the first block: the program, or a subprogram
+    tool      as the program calls it
     line      of the first block
     last_line of the last block, in its own file
     removed   mm³ of the stock
