@@ -179,5 +179,6 @@ if __name__ == "__main__":
     chosen = [each for each in sys.argv[1:] if each in JOBS]
     checkouts = [Path(each) for each in sys.argv[1:] if each not in JOBS]
     if checkouts:
-        sys.exit(_compare(*checkouts, chosen or list(JOBS)))
+        old, new = checkouts
+        sys.exit(_compare(old, new, chosen or list(JOBS)))
     write(ROOT, chosen or list(JOBS))

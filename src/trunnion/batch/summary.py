@@ -16,8 +16,8 @@ from trunnion.batch.records import Record
 from trunnion.batch.running import BatchResult
 from trunnion.errors import InputError, Problem
 from trunnion.extras import import_extra
-from trunnion.files import OutputPlace, output_group
-from trunnion.jobs.result_output import check_output_name
+from trunnion.files import OutputPlace, output_group, resolve_output
+from trunnion.jobs.result_output import declared_output
 
 #: Column -> type in SQLite. Of a file one row each; values are NULL where there is none.
 COLUMNS: Final = {
@@ -41,8 +41,6 @@ _ROWS: Final = 1000
 _APPLICATION: Final = int.from_bytes(b"TrBa")
 _MARK: Final = b"trunnion.batch"
 
-_ENDINGS: Final = (".sqlite", ".parquet")
-
 
 def check_summary(file: object) -> OutputPlace:
     """The place of a summary, before any work.
@@ -53,7 +51,7 @@ def check_summary(file: object) -> OutputPlace:
         If its name ends otherwise, it cannot be written, a file stands there that is no summary, or the package that
         writes it is not installed.
     """
-    place = check_output_name("summary", file, _ENDINGS, "a summary is a database or a table")
+    place = declared_output("batch", "summary", file)
     if place.path.suffix.lower() == ".parquet":
         import_extra("pyarrow", "twin")
         _refuse_other(place.path, _is_parquet)
@@ -103,7 +101,7 @@ def write_summary(result: BatchResult, file: object) -> None:
     """
     place = check_summary(file)
     if place.path.suffix.lower() == ".parquet":
-        costs = check_output_name("summary", _costs_path(place.path), _ENDINGS, "")
+        costs = resolve_output(_costs_path(place.path))
         with output_group(remembers=False) as group:
             with group.open(place) as files:
                 _write_parquet(_rows(result), COLUMNS, files.path)

@@ -12,6 +12,8 @@ from trunnion.errors import InputError, Problem
 from trunnion.files import OutputFiles, OutputGroup, OutputPlace, atomic_output, check_stream, resolve_output
 from trunnion.jobs.inputs.arguments import check_path
 from trunnion.jobs.inputs.reading import FilePath
+from trunnion.jobs.registry import JOBS
+from trunnion.options.kinds import FileOut
 
 #: A file by its path, a stream that takes bytes, or None: the result keeps the text.
 OutputLike: TypeAlias = str | os.PathLike[str] | BinaryIO | None
@@ -54,6 +56,14 @@ def check_output_name(argument: str, file: object, endings: Sequence[str], what:
     return place
 
 
+def declared_output(command: str, option: str, file: object) -> OutputPlace:
+    """The place of an output that a command declares, found out before any work; errors as ``check_output_name``."""
+    declared = JOBS[command].option(option)
+    assert declared is not None
+    assert isinstance(declared.kind, FileOut)
+    return check_output_name(option, file, declared.kind.endings, declared.kind.why)
+
+
 def check_report_name(file: FilePath) -> OutputPlace:
     """The place of a report, which is found out before any work.
 
@@ -62,7 +72,7 @@ def check_report_name(file: FilePath) -> OutputPlace:
     InputError
         If it is of an unknown form, or cannot be written.
     """
-    return check_output_name("report", file, (".html", ".json"), "a report is a page or data")
+    return declared_output("post", "report", file)
 
 
 @contextmanager
@@ -164,9 +174,9 @@ def paper_files(
     if report is not None:
         check_report_name(report)
     if sheet is not None:
-        check_output_name("sheet", sheet, (".html", ".json"), "a setup sheet is a page or data")
+        declared_output("post", "sheet", sheet)
     if manifest is not None:
-        place = check_output_name("manifest", manifest, (".json",), "a manifest is data")
+        place = declared_output("post", "manifest", manifest)
         program = Path(output) if isinstance(output, str | os.PathLike) else None
         if program is None or program.parent.resolve() != Path(manifest).parent.resolve():
             cure = "name a file in the folder of the program, and write the program to a file"

@@ -66,10 +66,16 @@ class Number:
 
     def check(self, value: object) -> Any:
         """The number itself; raises ``WrongValueError`` if it is none, or out of bounds."""
-        is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        if not is_number or not (self.above < value < self.below and self.least <= value <= self.most):  # type: ignore[operator]
+        if not isinstance(value, int | float) or isinstance(value, bool):
+            raise self._error(value)
+        if self._is_bounded and not (self.above < value < self.below and self.least <= value <= self.most):
             raise self._error(value)
         return value
+
+    @property
+    def _is_bounded(self) -> bool:
+        """Whether it has bounds here; of others the function that takes them knows the range."""
+        return any(map(math.isfinite, (self.above, self.below, self.least, self.most)))
 
     def _error(self, value: object) -> WrongValueError:
         return WrongValueError(f"{value!r} is not {self.what}; write {self.how}")

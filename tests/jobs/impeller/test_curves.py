@@ -9,7 +9,7 @@ import pytest
 
 import trunnion
 
-BLADE = Path(__file__).resolve().parents[2] / "examples" / "impeller" / "blade_points.csv"
+BLADE = Path(__file__).resolve().parents[3] / "examples" / "impeller" / "blade_points.csv"
 POINTS = [[0.0, 0.0, 0.0], [1.0, 0.2, 0.0], [2.0, 0.1, 0.3], [3.0, -0.1, 0.4], [4.0, 0.0, 0.2]]
 
 

@@ -24,7 +24,7 @@ from trunnion.jobs.impeller.cutting import reachable_axes
 from trunnion.model.toolpath import Phase
 from trunnion.placing.region import TOLERANCE
 
-FOLDER = Path(__file__).resolve().parents[2] / "examples" / "impeller"
+FOLDER = Path(__file__).resolve().parents[3] / "examples" / "impeller"
 TEXT = (FOLDER / "impeller.toml").read_text("utf-8")
 
 #: What the balls of the posted programs may be in a surface besides the tolerance of the step: decimals of the program.

@@ -9,22 +9,15 @@ from pathlib import Path
 from typing import Final
 
 from trunnion.capability.reach import Reach
-from trunnion.files import OutputPlace, atomic_file, check_outputs
+from trunnion.files import atomic_file
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.result_output import check_output_name
+from trunnion.jobs.result_output import declared_output
 from trunnion.machines.reach import ReachedVolume
 from trunnion.reporting.reach_picture import ReachPicture, TiltOfPicture, reach_picture
 from trunnion.reporting.text import clean
 
 #: Decimals of volumes, mm^3.
 _DECIMALS: Final = 1
-
-
-def check_reach_plot(file: FilePath, inputs: Iterable[FilePath]) -> OutputPlace:
-    """The place of a picture; raises ``InputError`` if it cannot be written, or is one of the files that are read."""
-    place = check_output_name("plot", file, (".svg",), "reach is drawn as SVG")
-    check_outputs([file], inputs)
-    return place
 
 
 def write_reach_plot(found: Reach, file: FilePath, inputs: Iterable[FilePath] = ()) -> None:
@@ -35,8 +28,7 @@ def write_reach_plot(found: Reach, file: FilePath, inputs: Iterable[FilePath] = 
     InputError
         When the name does not end in ``.svg``, the file cannot be written, or it is one of ``inputs``.
     """
-    read = list(inputs)
-    with atomic_file(check_reach_plot(file, read), inputs=read) as sink:
+    with atomic_file(declared_output("reach", "plot", file), inputs=inputs) as sink:
         sink.write(reach_picture(_picture(found)).encode())
 
 

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from trunnion.arrays import Floats, Ints, Lines
 from trunnion.capability.sensitivity import ErrorExtent, NumberSensitivity, Sensitivity, errors_over
-from trunnion.files import OutputPlace, atomic_file, check_outputs
+from trunnion.files import atomic_file
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.result_output import check_output_name
+from trunnion.jobs.result_output import declared_output
 from trunnion.model.run import Run
 from trunnion.reporting.plot_series import Curve, Plot, PlotSeries, SingleFloats
 from trunnion.reporting.sensitivity_page import ErrorCells, NumberRow, SensitivityContent, render_sensitivity_page
@@ -30,13 +30,6 @@ _DECIMALS: Final = 9
 _NONE: Final = 5e-6
 
 
-def check_sensitivity_report(file: FilePath, inputs: Iterable[FilePath]) -> OutputPlace:
-    """The place of a report; raises ``InputError`` if it cannot be written, or is one of the files that are read."""
-    place = check_output_name("report", file, (".html",), "this report is a page")
-    check_outputs([file], inputs)
-    return place
-
-
 def write_sensitivity_report(found: Sensitivity, file: FilePath, inputs: Iterable[FilePath] = ()) -> None:
     """Write a sensitivity as a page that works offline, with the errors of the worst numbers over the program.
 
@@ -45,8 +38,7 @@ def write_sensitivity_report(found: Sensitivity, file: FilePath, inputs: Iterabl
     InputError
         When the name does not end in ``.html``, the file cannot be written, or it is one of ``inputs``.
     """
-    read = list(inputs)
-    with atomic_file(check_sensitivity_report(file, read), inputs=read) as sink:
+    with atomic_file(declared_output("sensitivity", "report", file), inputs=inputs) as sink:
         sink.writelines(render_sensitivity_page(_content(found), _series(found)))
 
 

@@ -1,24 +1,16 @@
 """The path of CL files in space, as a page."""
 
-from collections.abc import Iterable
 from pathlib import Path
 
-from trunnion.files import OutputPlace, atomic_file, check_outputs, file_on_disk
+from trunnion.files import atomic_file, check_outputs, file_on_disk
 from trunnion.jobs.describe.cl_files import ClDescription
 from trunnion.jobs.inputs.arguments import wrong_argument
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.result_output import check_output_name
+from trunnion.jobs.result_output import declared_output
 from trunnion.model.frames import into_frame
 from trunnion.model.toolpath import Frame
 from trunnion.reporting.path_page import render_path_page
 from trunnion.reporting.path_series import collect_paths
-
-
-def check_plot(file: FilePath, inputs: Iterable[FilePath]) -> OutputPlace:
-    """The place of a page; raises ``InputError`` if it cannot be written, or is one of the files that are read."""
-    place = check_output_name("plot", file, (".html",), "the path is drawn on a page")
-    check_outputs([file], inputs)
-    return place
 
 
 def write_plot(description: ClDescription, plot: FilePath) -> None:
@@ -45,7 +37,8 @@ def write_plot(description: ClDescription, plot: FilePath) -> None:
         raise wrong_argument("description", description, "give the result of trunnion.describe_cl")
     names = [file.file for file in description.files]
     inputs = list(map(file_on_disk, names))
-    place = check_plot(plot, inputs)
+    place = declared_output("info", "plot", plot)
+    check_outputs([plot], inputs)
     operations = [operation for toolpath in description.toolpaths for operation in toolpath.operations]
     first = next((operation.frame for operation in operations if len(operation.moves)), Frame())
     paths, tolerance = collect_paths(

@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trunnion.arrays import Floats
-from trunnion.files import OutputPlace, atomic_file, check_outputs
+from trunnion.files import atomic_file
 from trunnion.geometry.ends import Ends, Natural, Tangent, parse_end
 from trunnion.geometry.fitting import CurveFit, Wanted, fit
 from trunnion.geometry.parameters import PARAMETERIZATIONS
 from trunnion.geometry.point_tables import PointTable, read_point_table, scaled
 from trunnion.jobs.inputs.arguments import check_choice, check_path, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.result_output import check_output_name
+from trunnion.jobs.result_output import declared_output
 from trunnion.reporting.curve_picture import curve_picture
 
 EndLike: TypeAlias = str | Natural | Tangent
@@ -113,13 +113,6 @@ def fit_curve(
     return fit(table, wanted, None if weights is None else _numbers("weights", weights, 1))
 
 
-def check_picture(file: FilePath, inputs: Iterable[FilePath]) -> OutputPlace:
-    """The place of a picture; raises ``InputError`` if it cannot be written, or is one of the files that are read."""
-    place = check_output_name("picture", file, (".svg",), "curves are drawn as SVG")
-    check_outputs([file], inputs)
-    return place
-
-
 def write_curve_picture(fits: Sequence[CurveFit], picture: FilePath, *, inputs: Iterable[FilePath] = ()) -> None:
     """Draw curves with their curvature combs.
 
@@ -137,8 +130,7 @@ def write_curve_picture(fits: Sequence[CurveFit], picture: FilePath, *, inputs: 
     InputError
         When the name ends otherwise, the file cannot be written, or it is one of the inputs.
     """
-    files = list(inputs)
-    with atomic_file(check_picture(picture, files), inputs=files) as sink:
+    with atomic_file(declared_output("curve", "picture", picture), inputs=inputs) as sink:
         sink.write(curve_picture(fits).encode())
 
 

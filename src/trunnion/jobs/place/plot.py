@@ -2,19 +2,12 @@
 
 from collections.abc import Iterable
 
-from trunnion.files import OutputPlace, atomic_file, check_outputs
+from trunnion.files import atomic_file
 from trunnion.jobs.inputs.arguments import wrong_argument
 from trunnion.jobs.inputs.reading import FilePath
-from trunnion.jobs.result_output import check_output_name
+from trunnion.jobs.result_output import declared_output
 from trunnion.placing.placement import Placement
 from trunnion.reporting.placing_picture import placing_picture
-
-
-def check_placing_plot(file: FilePath, inputs: Iterable[FilePath]) -> OutputPlace:
-    """The place of a picture; raises ``InputError`` if it cannot be written, or is one of the files that are read."""
-    place = check_output_name("plot", file, (".svg",), "places are drawn as SVG")
-    check_outputs([file], inputs)
-    return place
 
 
 def write_placing_plot(found: Placement, plot: FilePath, *, inputs: Iterable[FilePath] = ()) -> None:
@@ -36,6 +29,5 @@ def write_placing_plot(found: Placement, plot: FilePath, *, inputs: Iterable[Fil
     """
     if not isinstance(found, Placement) or found.best is None:
         raise wrong_argument("found", found, "give a placement with a best place")
-    files = list(inputs)
-    with atomic_file(check_placing_plot(plot, files), inputs=files) as sink:
+    with atomic_file(declared_output("place", "plot", plot), inputs=inputs) as sink:
         sink.write(placing_picture(found).encode())

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
 from trunnion.errors import InputError, Problem, argument_problem
@@ -11,7 +11,7 @@ from trunnion.extras import import_extra
 from trunnion.jobs.inputs.arguments import check_observer, check_path, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath
 from trunnion.jobs.observer import SILENT, Observer
-from trunnion.jobs.result_output import check_output_name
+from trunnion.jobs.result_output import declared_output
 from trunnion.model.recording import Recording
 from trunnion.options.limits import LONGEST_RATE, SHORTEST_RATE
 from trunnion.twin.recording.files import check_is_new
@@ -22,8 +22,6 @@ from trunnion.user_cache import user_data
 if TYPE_CHECKING:
     from trunnion.twin.recording.feed import MachineFeed
     from trunnion.twin.recording.recorder import RecordingSummary
-
-_SUFFIXES: Final = (".csv", ".parquet")
 
 
 def _ignore(_names: tuple[str, ...]) -> None:
@@ -76,7 +74,7 @@ def record(
         the extra ``twin`` is not installed.
     """
     check_observer(observer)
-    place = check_output_name("output", output, _SUFFIXES, "a recording is CSV or Parquet")
+    place = declared_output("record", "output", output)
     check_is_new(place)
     if seconds is not None and not 0.0 < _number("seconds", seconds) < math.inf:
         raise wrong_argument("seconds", seconds, "give a number above 0, or None: until Ctrl-C")

@@ -1,12 +1,12 @@
 """Reports of a verification: a page or data."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
 
 from trunnion.errors import InputError, Problem
-from trunnion.files import atomic_file, check_outputs
+from trunnion.files import atomic_file
 from trunnion.jobs.inputs.arguments import wrong_argument
 from trunnion.jobs.inputs.input_files import verified_files
 from trunnion.jobs.inputs.reading import FilePath
@@ -17,12 +17,6 @@ from trunnion.verification import Verification
 
 if TYPE_CHECKING:  # imported where a program is simulated
     from trunnion.jobs.simulate.result import SimulationResult
-
-
-def check_report(file: FilePath, inputs: Iterable[FilePath]) -> None:
-    """Raise ``InputError`` for a report that cannot be written, or that is one of the files that are read."""
-    check_report_name(file)
-    check_outputs([file], inputs)
 
 
 def write_post_report(

@@ -6,14 +6,14 @@ from pathlib import Path
 from typing import Any, Literal
 
 from trunnion.errors import InputError, argument_problem
-from trunnion.files import OutputPlace, atomic_file
+from trunnion.files import atomic_file
 from trunnion.jobs.inputs.arguments import check_path, check_paths
 from trunnion.jobs.inputs.bodies import KnownTools, known_tools
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.jobs.inputs.settings import Settings, set_up_machine
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.project.file import is_project
-from trunnion.jobs.result_output import check_output_name
+from trunnion.jobs.result_output import declared_output
 from trunnion.jobs.view.inputs import bodies_not_clamped_so, of_project, view_program
 from trunnion.jobs.view.stock import view_simulation, with_stock
 from trunnion.model.run import Run
@@ -23,17 +23,6 @@ from trunnion.simulation.tools.profile import ToolShape
 from trunnion.verification.comparison import align
 from trunnion.viewer.content import ViewContent, side_by_side, view_content
 from trunnion.viewer.page import render_view
-
-
-def check_view_name(file: FilePath) -> OutputPlace:
-    """The place of a page, which is found out before any work.
-
-    Raises
-    ------
-    InputError
-        If its name ends otherwise, or it cannot be written.
-    """
-    return check_output_name("output", file, (".html",), "the view is a page")
 
 
 def prepare_view(
@@ -191,7 +180,7 @@ def write_view(
     >>> import trunnion
     >>> trunnion.write_view("tests/golden/yl569/2_hub_rough.expected.mpf", machine="yl569", output="view.html")
     """
-    place = check_view_name(output)
+    place = declared_output("view", "output", output)
     content = prepare_view(
         nc, machine=machine, against=against, against_machine=against_machine, setup=setup, settings=settings, cl=cl,
         subprograms=subprograms, stock=stock, part=part,

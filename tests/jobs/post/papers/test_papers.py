@@ -102,7 +102,7 @@ def test_the_data_of_a_sheet(folder: Path) -> None:
     assert first["seconds"] > first["cutting_seconds"] > 0
     assert second["mode"] in ("TCP", "tilted plane")
     assert second["rotary"].keys() == {"B", "C"}
-    assert second["start"]["file"] == data["files"][2]["name"]
+    assert second["start"]["nc_file"] == data["files"][2]["name"]
     assert sum(each["seconds"] for each in data["operations"]) == pytest.approx(data["seconds"])
     assert {axis["name"] for axis in data["axes"]} == {"X", "Y", "Z", "B", "C"}
     assert all(check["passed"] for check in data["checks"])
@@ -119,7 +119,7 @@ def test_an_operation_begins_where_its_blocks_do(settings: dict[str, str], tmp_p
     output = tmp_path / "a.mpf"
     trunnion.post(plate, machine="yl569", output=output, settings=settings, sheet=sheet, listing=listing)
     start = json.loads(sheet.read_text(encoding="utf-8"))["operations"][1]["start"]
-    name = start["file"] or "a.mpf"
+    name = start["nc_file"] or "a.mpf"
     assert (name == "a.mpf") == ("programs" not in settings)
     lines = (tmp_path / name).read_text(encoding="utf-8").splitlines()
     first, *more = lines[start["nc_line"] - 1 :]
