@@ -3,6 +3,7 @@
 import sys
 from collections.abc import Callable, Iterable
 
+from trunnion.cli.terminal_text import severity_painted
 from trunnion.errors import InputError, Problem
 from trunnion.files import atomic_file
 from trunnion.jobs.job import Given
@@ -14,6 +15,11 @@ def tell(*lines: str) -> None:
     """Print lines to stderr, each as one line: names in them may come from any file."""
     for line in lines:
         print(one_line(line), file=sys.stderr)
+
+
+def tell_problem(line: str) -> None:
+    """Print the line of a problem to stderr, with its severity in colour where that is a terminal."""
+    print(severity_painted(one_line(line)), file=sys.stderr)
 
 
 def print_result(*lines: str, end: str = "\n") -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from trunnion.cli.progress import progress
-from trunnion.cli.results import tell
+from trunnion.cli.results import tell, tell_problem
 from trunnion.cli.wording import in_command_words, problem_line
 from trunnion.errors import InputError, Problem
 from trunnion.files import EarlierJob, resolve_output
@@ -39,7 +39,7 @@ class Terminal(Observer):
     def problems(self, problems: Sequence[Problem]) -> None:
         """Print problems, one a line."""
         for problem in problems:
-            tell(problem_line(problem))
+            tell_problem(problem_line(problem))
 
     def planned(self, plan: Plan) -> None:
         """Print the decisions of the planner."""

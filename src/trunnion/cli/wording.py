@@ -4,6 +4,7 @@ import re
 from functools import cache
 from typing import Final
 
+from trunnion.cli.terminal_text import severity_painted
 from trunnion.errors import ArgumentName, Problem, TrunnionError
 from trunnion.jobs.registry import JOBS
 
@@ -32,8 +33,8 @@ def problem_line(problem: Problem) -> str:
 
 
 def error_lines(error: TrunnionError) -> str:
-    """The problems of an error, each in its line."""
-    return "\n".join(map(problem_line, error.problems))
+    """The problems of an error, each in its line, with the severity in colour on a terminal."""
+    return "\n".join(severity_painted(problem_line(problem)) for problem in error.problems)
 
 
 def _option(argument: str) -> str:

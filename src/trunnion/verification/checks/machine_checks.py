@@ -115,24 +115,28 @@ def _machine_margins(context: Context) -> Iterator[_Margin]:
 def check_speed(context: Context, motion: AxisMotion) -> Check:
     """Shares of rapid speed; the control slows down where more than all of it is needed, so this never fails."""
     title = "speed of the axes at the programmed feed"
-    stated = any(axis.rapid for axis in context.run.machine.axes)
-    return _check_shares(context, motion.speed, "speed", title, "rapid speed", stated, "no axis moves at feed")
+    if not any(axis.rapid for axis in context.run.machine.axes):
+        return _not_stated("speed", title, "rapid speed")
+    return _check_shares(context, motion.speed, "speed", title, "rapid speed", "no axis moves at feed")
 
 
 def check_acceleration(context: Context, motion: AxisMotion) -> Check:
     """Shares of acceleration; the control slows down where more than all of it is needed, so this never fails."""
     title = "acceleration of the axes between blocks"
-    stated = any(axis.acceleration for axis in context.run.machine.axes)
+    if not any(axis.acceleration for axis in context.run.machine.axes):
+        return _not_stated("acceleration", title, "acceleration")
     none = "no two motions at feed follow each other"
-    return _check_shares(context, motion.acceleration, "acceleration", title, "acceleration", stated, none)
+    return _check_shares(context, motion.acceleration, "acceleration", title, "acceleration", none)
+
+
+def _not_stated(key: str, title: str, quantity: str) -> Check:
+    return Check(key, title, True, f"the machine's definition states no {quantity}")
 
 
 def _check_shares(
-    context: Context, shares: Sequence[WorstRows], key: str, title: str, quantity: str, stated: bool, none: str
+    context: Context, shares: Sequence[WorstRows], key: str, title: str, quantity: str, none: str
 ) -> Check:
     axes = context.run.machine.axes
-    if not stated:
-        return Check(key, title, True, f"the machine's definition states no {quantity}")
     text = "{} would need {:.0f} % of its {}: the control slows down"
     places = [
         context.place(row, share, text.format(axis.name, 100.0 * share, quantity))

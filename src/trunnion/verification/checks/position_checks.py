@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 
@@ -21,6 +22,10 @@ _DIAGONAL = math.sqrt(3.0) + 1e-6
 
 #: An arc may miss the end of its circle by this much, mm: both its ends may be off the radius.
 _MAX_CLOSURE_ERROR = 2.0 * ARC_POINT_TOLERANCE
+
+
+#: Of what the checks measure.
+_UNITS: Final = {"tip": "mm", "axis": "deg"}
 
 
 def check_tip(context: ComparedContext, deviations: DeviationSummary) -> Check:
@@ -44,7 +49,7 @@ def check_tip(context: ComparedContext, deviations: DeviationSummary) -> Check:
         places += [positioned] if positioned is not None else []
     on_arcs = [place for segments in matching.arc_segments for place in _tips_off_arc(context, segments)]
     count = deviations.count + len(on_arcs)
-    return _measured("tip", "tool tip against the CL points", context, deviations, "mm", places + on_arcs, count)
+    return _measured("tip", "tool tip against the CL points", context, deviations, places + on_arcs, count)
 
 
 def _tips_off_arc(context: ComparedContext, segments: ArcSegments) -> Iterator[Place]:
@@ -75,7 +80,7 @@ def check_axis(context: ComparedContext, deviations: DeviationSummary, accepted:
     on_arcs = [place for segments in matching.arc_segments for place in _axes_off_arc(context, segments)]
     count = deviations.count + len(faults) + len(on_arcs)
     title = "tool axis against the CL points"
-    check = _measured("axis", title, context, deviations, "deg", [*named, *places, *on_arcs], count)
+    check = _measured("axis", title, context, deviations, [*named, *places, *on_arcs], count)
     lean, rows = accepted.lean
     if not rows:
         return check
@@ -102,10 +107,10 @@ def _measured(
     title: str,
     context: ComparedContext,
     deviations: DeviationSummary,
-    unit: str,
     places: list[Place],
     count: int,
 ) -> Check:
+    unit = _UNITS[key]
     if not len(context.matching.nc) and len(context.expected):
         return Check(key, title, False, "no block goes to any CL point", unit=unit)
     each, whole = ("X, Y or Z", "distance") if unit == "mm" else ("a rotary axis", "angle")
