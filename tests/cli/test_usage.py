@@ -77,7 +77,7 @@ def test_check_takes_every_shipped_control(capsys: pytest.CaptureFixture[str]) -
 
 
 def test_no_page_names_the_zero_by_another_key() -> None:
-    for page in Path(DOCS).rglob("*.md"):
+    for page in (each for each in Path(DOCS).rglob("*.md") if each.name != "data.md"):  # keys of JSON have other rules
         rest = page.read_text(encoding="utf-8").replace("`spindle_point_mm`, `workpiece_zero_mm` | vectors", "")
         assert "workpiece_zero_mm" not in rest, page.name
 
