@@ -9,6 +9,7 @@ from trunnion.arrays import Flags, Floats, Ints
 from trunnion.controls.family_writer import ArcWords, Codes, Formats, UnsupportedFeatureError, WordEvent
 from trunnion.controls.template import Value
 from trunnion.controls.words import ABSENT, round_to_counts
+from trunnion.messages import foreign
 from trunnion.model.motion import Motion
 from trunnion.model.toolpath import Arcs, Coolant, CutterComp, Dwell, Kind, Message, Operation, Sense, SpindleOn, Stop
 from trunnion.planning.holes.cycles import Cycle, SpindleState, UnsupportedCycleError
@@ -39,15 +40,14 @@ def escape_comment(text: str) -> str:
 
 def tool_call(number: int, name: str, by_name: bool) -> str:
     if by_name:
-        raise UnsupportedFeatureError(
-            f"tools are called by number, and not as {name}", "write --set tool=NUMBER", code="CTL130"
-        )
+        what = f"tools are called by number, and not as {name}"
+        raise UnsupportedFeatureError(foreign(what, "write --set tool=NUMBER", "CTL130"))
     return str(number)
 
 
 def dwell(event: Dwell, rpm: float | None, formats: Formats) -> list[str]:
     if event.revolutions:
-        raise UnsupportedFeatureError("a dwell in spindle revolutions", "write seconds", code="CTL420")
+        raise UnsupportedFeatureError(foreign("a dwell in spindle revolutions", "write seconds", "CTL420"))
     return [f"WAIT {formats['dwell'].text(event.amount)}"]
 
 
@@ -75,7 +75,7 @@ def first_block_words(motion: Motion, tool: str, register: int, settings: Mappin
 def validate_operation(operation: Operation, spindle_known: bool) -> list[tuple[int, UnsupportedFeatureError]]:
     moves = operation.moves
     per_rev = np.flatnonzero(moves.per_rev & (moves.kind != Kind.RAPID))
-    why = UnsupportedFeatureError("a feed per revolution", "output it in mm/min (FEDRAT/MMPM)", code="CTL330")
+    why = UnsupportedFeatureError(foreign("a feed per revolution", "output it in mm/min (FEDRAT/MMPM)", "CTL330"))
     return [(int(moves.line[row]), why) for row in per_rev[:1]]
 
 
@@ -86,7 +86,7 @@ def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
 def cycle_call(
     cycle: Cycle, top: float, spindle: SpindleState | None, settings: Mapping[str, str], formats: Formats
 ) -> list[str]:
-    raise UnsupportedCycleError(f"{cycle.method}: the toy has no cycles", "output the holes as motion", code="CTL350")
+    raise UnsupportedCycleError(foreign(f"{cycle.method}: the toy has no cycles", "output the holes as motion", "CTL350"))
 
 
 def cycle_cancel() -> list[str]:
