@@ -86,7 +86,8 @@ def validate_settings(settings: Mapping[str, str]) -> list[tuple[str, str]]:
 def cycle_call(
     cycle: Cycle, top: float, spindle: SpindleState | None, settings: Mapping[str, str], formats: Formats
 ) -> list[str]:
-    raise UnsupportedCycleError(foreign(f"{cycle.method}: the toy has no cycles", "output the holes as motion", "CTL350"))
+    what = f"{cycle.method}: the toy has no cycles"
+    raise UnsupportedCycleError(foreign(what, "output the holes as motion", "CTL350"))
 
 
 def cycle_cancel() -> list[str]:
