@@ -40,7 +40,7 @@ CUT = ("1_contour_rough", "2_hub_rough", "3_blade_finish")  # programs of one pa
 
 
 def program_of(environment: Path, name: str) -> Path:
-    """A program in a virtual environment; on Windows ``.exe`` is found by itself."""
+    """Return a program in a virtual environment; on Windows ``.exe`` is found by itself."""
     return environment / ("Scripts" if os.name == "nt" else "bin") / name
 
 
@@ -130,7 +130,7 @@ def check() -> None:
 
 
 def quick() -> None:
-    """What to run before a commit: the fast tests that the change reaches, or all where nothing can be said of it."""
+    """Run what a commit needs: the fast tests that the change reaches, or all where nothing can be said of it."""
     set_up(".[test]")
     check()
     command = [str(program_of(HOME, "python")), "-m", "tests.support.reached"]
@@ -139,7 +139,7 @@ def quick() -> None:
 
 
 def nightly(seed: str = "") -> None:
-    """What ``test`` leaves out, from a fresh seed: the rest of the matrix, all draws of properties, and fuzzing."""
+    """Run what ``test`` leaves out, from a fresh seed: the rest of the matrix, all draws of properties, and fuzzing."""
     set_up(".[test]")
     seed = seed or str(random.SystemRandom().randrange(10**9))
     print(f"seed {seed}; python3 make.py nightly {seed} draws the same again")
@@ -161,14 +161,14 @@ def test() -> None:
 
 
 def check_and_build() -> None:
-    """What is no test: style and types, the site, the archives."""
+    """Check and build what is no test: style and types, the site, the archives."""
     check()
     site()
     build()
 
 
 def docs() -> None:
-    """The documentation site."""
+    """Build the documentation site."""
     set_up(".[docs]")
     site()
 
@@ -196,7 +196,7 @@ def build() -> None:
 
 
 def other_pythons() -> list[str]:
-    """The other supported versions of Python on the path."""
+    """Return the other supported versions of Python on the path."""
     names = [f"python3.{minor}" for minor in SUPPORTED if minor != sys.version_info.minor]
     return [name for name in names if shutil.which(name) and works(name)]
 

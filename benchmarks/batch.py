@@ -213,7 +213,7 @@ def _import(_: int) -> float:
 
 
 def costs(folder: Path, count: int) -> None:
-    """What a file costs besides its work: the client alone, and by the scheduler."""
+    """Measure what a file costs besides its work: the client alone, and by the scheduler."""
     files = sorted(each.relative_to(folder / "in").as_posix() for each in (folder / "in").rglob("*.cls"))
     batch = Batch(folder / "in", [BatchJob("job", Action.POST, files, {"machine": MACHINE}, extension=".mpf")])
     with timed("client alone: read, checksum, write", count):
@@ -229,7 +229,7 @@ def costs(folder: Path, count: int) -> None:
 
 
 def dask_workers(cluster: Cluster, store: Store) -> Callable[[int], DaskWorkers]:
-    """Makes workers that do nothing, and write to a store themselves where they reach it."""
+    """Return what makes workers that do nothing, and write to a store themselves where they reach it."""
     return lambda _: DaskWorkers(cluster.address, nothing, writing=store.worker_url)
 
 

@@ -27,7 +27,7 @@ BLOCKS = 100_000
 
 
 def drum(name: str, radius: float, low: float, high: float, centre: tuple[float, float] = (0.0, 0.0)) -> TriangleMesh:
-    """A round body of 5 120 facets, a little barrelled, about a line along Z."""
+    """Return a round body of 5 120 facets, a little barrelled, about a line along Z."""
     about = 2.0 * np.pi * np.arange(SIDES) / SIDES
     heights = np.linspace(low, high, RINGS)
     radii = radius * (0.98 + 0.02 * np.sin(np.linspace(0.0, np.pi, RINGS)))

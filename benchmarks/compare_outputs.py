@@ -125,19 +125,19 @@ def is_cl(file: Path) -> bool:
 
 
 def projects(places: list[Path]) -> list[Path]:
-    """The project files in folders: those that state a machine and CL files."""
+    """Return the project files in folders: those that state a machine and CL files."""
     found = [file for place in places if place.is_dir() for file in sorted(place.rglob("*.toml"))]
     texts = ((file, file.read_text("utf-8", "replace")) for file in found)
     return [file for file, text in texts if "machine =" in text and "cl =" in text]
 
 
 def machines(root: Path) -> list[str]:
-    """The machines that a checkout ships."""
+    """Return the machines that a checkout ships."""
     return sorted(file.stem for file in root.glob("src/trunnion/machine*/library/*.toml"))
 
 
 def commands(file: Path, machine: str, options: tuple[str, ...]) -> list[list[str]]:
-    """A post with all papers, and a verification of its program."""
+    """Return a post with all papers, and a verification of its program."""
     papers = [word for option, name in PAPERS.items() for word in (option, f"{name}")]
     program = "PROGRAM.NC"
     post = ["post", str(file), "--machine", machine, "--output", program, *papers, *options]

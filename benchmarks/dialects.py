@@ -48,7 +48,7 @@ FORMS: Final = {
 
 
 def write(file: Path, dialect: str, points: int) -> None:
-    """A file of so many points."""
+    """Write a file of so many points."""
     head, form, foot = FORMS[dialect]
     with file.open("w", encoding="ascii") as out:
         out.write(head)

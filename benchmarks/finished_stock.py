@@ -41,17 +41,19 @@ Bundles = tuple[Spans, Spans, Spans]
 
 
 def bundles(stock: Stock) -> Bundles:
-    """The stretches of all rays."""
+    """Return the stretches of all rays."""
     return stock.spans(0), stock.spans(1), stock.spans(2)
 
 
 def difference(one: Stock, other: Stock, limit: float) -> tuple[Excess, Excess]:
-    """What either stock has beyond the other, on the same rays."""
+    """Return what either stock has beyond the other, on the same rays."""
     return left_on(one, bundles(other), limit), left_on(other, bundles(one), limit)
 
 
 def converted(impeller: Path, folder: Path) -> dict[str, Path]:
-    """The program for each machine: the first one with a work offset and a tool call, which it leaves to others."""
+    """Return the program for each machine: the first one with a work offset and a tool call, which it leaves
+    to others.
+    """
     own = folder / "impeller.ngc"
     own.write_text("G54\nT1 M6\n" + impeller.read_text(encoding="utf-8"), encoding="utf-8")
     found = {MACHINES[0]: own}
@@ -63,7 +65,7 @@ def converted(impeller: Path, folder: Path) -> dict[str, Path]:
 
 
 def nearest(spans: Spans, ray: Ints, height: Floats, lowest: float, far: float) -> Ints:
-    """The end of the stretches of rays that is nearest to heights, -1 on rays without any."""
+    """Return the end of the stretches of rays that is nearest to heights, -1 on rays without any."""
     owner = np.repeat(np.arange(len(spans.first) - 1), 2 * np.diff(spans.first))
     after = np.searchsorted(owner * far + spans.ends - lowest, ray * far + height - lowest)
     found, best = np.full(len(ray), -1), np.full(len(ray), np.inf)
@@ -102,7 +104,7 @@ def coloured(way: Floats, limit: float) -> Floats:
 
 
 def cut(programs: Sequence[Path], machine: str, stock: str, tools: Sequence[str], cell: float) -> Stock:
-    """The stock that programs leave."""
+    """Return the stock that programs leave."""
     begin = time.perf_counter()
     found = trunnion.simulate(programs, machine=machine, stock=stock, tools=tools, cell=cell)
     seconds = time.perf_counter() - begin

@@ -67,7 +67,7 @@ def main(names: list[str]) -> None:
 
 
 def _limited(name: str, side: float, limit: float, published: int) -> str:
-    """The row of a surface whose overcut has a limit."""
+    """Return the row of a surface whose overcut has a limit."""
     began = time.process_time()
     cut = mill(PUBLISHED[name], side, Limits(overcut=limit))
     took = time.process_time() - began
@@ -79,7 +79,7 @@ def _limited(name: str, side: float, limit: float, published: int) -> str:
 
 
 def _row(name: str, blade: RuledBlade, side: float) -> str:
-    """The row of one side of a blade."""
+    """Return the row of one side of a blade."""
     began = time.process_time()
     cut = mill(blade, side)
     took = time.process_time() - began

@@ -62,7 +62,7 @@ def path(start: int, stop: int) -> NDArray[np.float64]:
 
 
 def statements(start: int, stop: int) -> Iterator[str]:
-    """The GOTO lines of points ``start`` to ``stop``, many at a time."""
+    """Yield the GOTO lines of points ``start`` to ``stop``, many at a time."""
     for first in range(start, stop, CHUNK):
         points = path(first, min(first + CHUNK, stop))
         yield GOTO * len(points) % tuple(points.ravel().tolist())

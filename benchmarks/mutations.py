@@ -22,7 +22,7 @@ HEAD = ("fault", "put in", "nothing changes", "caught of the others", "at the bl
 
 
 def merged(tables: list[dict[str, Tally]]) -> dict[str, Tally]:
-    """The tallies of all programs, by kind."""
+    """Return the tallies of all programs, by kind."""
     together: dict[str, Tally] = {}
     for table in tables:
         for kind, tally in table.items():
@@ -36,7 +36,7 @@ def merged(tables: list[dict[str, Tally]]) -> dict[str, Tally]:
 
 
 def row(kind: str, tally: Tally) -> tuple[str, ...]:
-    """A row of the table."""
+    """Return a row of the table."""
     put, same, caught = tally.outcomes.total(), tally.outcomes["SAME"], tally.outcomes["CAUGHT"]
     share = f"{100.0 * caught / (put - same):.1f} %".replace("100.0", "100") if put > same else "–"
     near = (str(tally.near[what]) for what in ("BLOCK", "NEXT", "SHOWS"))
@@ -44,7 +44,7 @@ def row(kind: str, tally: Tally) -> tuple[str, ...]:
 
 
 def whole(tallies: list[Tally]) -> Tally:
-    """The sum of tallies."""
+    """Return the sum of tallies."""
     return Tally(
         sum((tally.outcomes for tally in tallies), Counter()),
         sum((tally.near for tally in tallies), Counter()),

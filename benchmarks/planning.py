@@ -48,7 +48,7 @@ def directions(tilt: Floats, azimuth: Floats) -> Floats:
 
 
 def moves_of(axis: Floats, rapid: NDArray[np.bool_]) -> Moves:
-    """A ball of 30 mm radius, touched where the tool axis points."""
+    """Return a ball of 30 mm radius, touched where the tool axis points."""
     n = len(axis)
     return Moves(
         30.0 * axis,
@@ -75,7 +75,7 @@ def near_pole_spiral() -> Moves:
 
 
 def impeller() -> Moves:
-    """A hub that winds 700 degrees, then nine blades to and fro, 140 degrees each."""
+    """Return a hub that winds 700 degrees, then nine blades to and fro, 140 degrees each."""
     parts = [directions(np.linspace(30.0, 55.0, 3000), np.linspace(10.0, 710.0, 3000))]
     for blade in range(9):
         start = 40.0 * blade + 80.0

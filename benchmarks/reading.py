@@ -164,7 +164,7 @@ def stage(arguments: list[str]) -> int:
 
 
 def command(name: str, *values: object) -> list[str]:
-    """The command of a stage."""
+    """Return the command of a stage."""
     return [sys.executable, str(Path(__file__).resolve()), "--stage", name, *map(str, values)]
 
 
@@ -185,12 +185,12 @@ def pin() -> str:
 
 
 def naive_command(files: Files) -> list[str]:
-    """The command of the naive reader."""
+    """Return the command of the naive reader."""
     return [sys.executable, str(HERE / "naive_reader.py"), str(files.program), str(files.rows)]
 
 
 def warm_naive(files: Files) -> Run:
-    """What the naive reader took without its start-up."""
+    """Return what the naive reader took without its start-up."""
     done = subprocess.run(naive_command(files), capture_output=True, text=True, check=True)
     wall, seconds = map(float, done.stdout.split())
     return Run(wall, seconds, 0)

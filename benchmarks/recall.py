@@ -58,7 +58,7 @@ def defects(sound: Sound, reference: Reference, folder: Path) -> Iterator[Defect
 
 
 def table(outcomes: list[Outcome]) -> list[str]:
-    """The rows of the table."""
+    """Return the rows of the table."""
     rows = ["| " + " | ".join(HEAD) + " |", "| --- |" + " ---: |" * (len(HEAD) - 1)]
     keys = list(dict.fromkeys((each.defect.kind, str(each.defect.cells)) for each in outcomes))
     keys.sort(key=lambda key: (not key[0].startswith("gouge"), key[0], float(key[1])))

@@ -172,7 +172,7 @@ def slowness() -> float:
 
 
 def figures_of(case: Case, one: Measured, threads: int, slower: float) -> list[Figure]:
-    """The figures to judge of a case."""
+    """Return the figures to judge of a case."""
     whole = one.blocks == case.blocks
     found = []
     if case.asked is not None:
@@ -209,7 +209,7 @@ def collision_figure(slower: float, blocks: int | None) -> Figure:
 
 
 def report(case: Case, one: Measured, threads: int) -> tuple[str, ...]:
-    """A line of the table of cases."""
+    """Return a line of the table of cases."""
     return (
         case.name, f"{one.blocks:,}", f"{one.rays:,}", f"{one.seconds:.1f}", f"{one.used:.1f}",
         f"{one.blocks / one.seconds:,.0f}", f"{one.blocks / one.seconds / threads:,.0f}", f"{one.removed:,.0f}",

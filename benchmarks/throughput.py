@@ -139,7 +139,7 @@ def run(command: Sequence[str], environment: Mapping[str, str] | None = None) ->
 
 
 def trunnion(source: Path, target: Path, machine: str = MACHINE) -> list[str]:
-    """The command that posts ``source`` with Trunnion."""
+    """Return the command that posts ``source`` with Trunnion."""
     return [sys.executable, "-m", "trunnion", "post", str(source), "--machine", machine, "--output", str(target)]
 
 
@@ -164,7 +164,7 @@ def machine_seconds() -> float:
 
 
 def needless_packages() -> list[str]:
-    """Packages that Trunnion does not need, and that Numba imports at each start where they are installed."""
+    """List packages that Trunnion does not need, and that Numba imports at each start where they are installed."""
     return [name for name in ("scipy", "yaml") if importlib.util.find_spec(name) is not None]
 
 
@@ -207,7 +207,7 @@ def race(contestants: Sequence[Contestant], runs: int) -> list[Contestant]:
 
 
 def motion_blocks(file: Path) -> list[bytes]:
-    """The position words of every motion block of a program."""
+    """Return the position words of every motion block of a program."""
     return [match[1].rstrip() for match in MOTION.finditer(file.read_bytes())]
 
 
@@ -217,7 +217,7 @@ def words(block: bytes) -> dict[str, str]:
 
 
 def in_force(blocks: Sequence[bytes], at: int, letter: str) -> str:
-    """What the word of ``letter`` last printed, up to block ``at``; empty if it never did."""
+    """Return what the word of ``letter`` last printed, up to block ``at``; empty if it never did."""
     for k in range(at, -1, -1):
         if (text := words(blocks[k]).get(letter)) is not None:
             return text
@@ -225,7 +225,9 @@ def in_force(blocks: Sequence[bytes], at: int, letter: str) -> str:
 
 
 def differences(one: Sequence[bytes], other: Sequence[bytes]) -> list[Difference]:
-    """The words that differ between two programs of equally many blocks; an absent word stands for its last number."""
+    """Return the words that differ between two programs of equally many blocks; an absent word stands for its last
+    number.
+    """
     found = []
     for at, (a, b) in enumerate(zip(one, other, strict=True)):
         if a == b:
@@ -244,7 +246,7 @@ def differences(one: Sequence[bytes], other: Sequence[bytes]) -> list[Difference
 
 
 def readings(letter: str, point: Sequence[float]) -> tuple[float, ...]:
-    """The values that a word may stand for. B has two: a vector of nine decimals is not quite a unit vector."""
+    """Return the values that a word may stand for. B has two: a vector of nine decimals is not quite a unit vector."""
     x, y, z, i, j, k = point
     match letter:
         case "B":
@@ -275,7 +277,7 @@ def is_tie(difference: Difference, point: Sequence[float]) -> bool:
 
 
 def read_points(file: Path) -> list[str]:
-    """The numbers of every GOTO statement, as text."""
+    """Return the numbers of every GOTO statement, as text."""
     with file.open(encoding="utf-8") as lines:
         return [line[5:] for line in lines if line.startswith("GOTO/")]
 
@@ -309,7 +311,7 @@ def compare(one: Contestant, other: Contestant, points: Sequence[str]) -> Figure
 
 
 def speed_figures(product: Contestant | None, rivals: Sequence[Contestant], large: bool) -> list[Figure]:
-    """The ratios of points per second."""
+    """Return the ratios of points per second."""
     figures = []
     for rival in rivals:
         asked = C_RATIO if rival.name == FLOOR else NAIVE_RATIO

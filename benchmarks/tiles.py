@@ -41,13 +41,13 @@ Result = TypeVar("Result")
 
 
 def measured(work: Callable[[], Result]) -> tuple[Result, float]:
-    """A result, and the processor seconds that it took."""
+    """Return a result, and the processor seconds that it took."""
     used = time.process_time()
     return work(), time.process_time() - used
 
 
 def make_program(folder: Path, blocks: int) -> Path:
-    """The program of the tilting case of ``simulation.py``, posted."""
+    """Return the program of the tilting case of ``simulation.py``, posted."""
     case = next(each for each in CASES if each.name == "tilting")
     tips, axes = path(replace(case, blocks=blocks), blocks)
     points = [",".join(f"{number:.6f}" for number in row) for row in np.column_stack((tips, axes)).tolist()]

@@ -31,7 +31,7 @@ def resident(process: int) -> tuple[float, float]:
 
 
 def serve() -> tuple[subprocess.Popen[str], str]:
-    """The twin, and its address."""
+    """Return the twin, and its address."""
     command = [sys.executable, "-m", "trunnion", "twin", str(PROGRAM), "--machine", "yl569", "--loop"]
     command += ["--rate", str(INTERVAL), "--port", "0", "--no-mtconnect"]
     process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)

@@ -65,7 +65,7 @@ def open_view(page: Page, address: str) -> float:
 
 
 def post(blocks: int, folder: Path) -> Path:
-    """A program of so many five-axis blocks."""
+    """Return a program of so many five-axis blocks."""
     cl_file, program = folder / f"{blocks}.cls", folder / f"{blocks}.mpf"
     with cl_file.open("w", encoding="ascii", newline="\n") as sink:
         write(blocks, sink)

@@ -47,5 +47,5 @@ def _keep_tables(app: object, what: str, name: str, obj: object, options: object
 
 
 def setup(app: Sphinx) -> None:
-    """Called by Sphinx."""
+    """Set up the site, as Sphinx asks."""
     app.connect("autodoc-process-docstring", _keep_tables)

@@ -42,7 +42,7 @@ class Subject:
 
 
 def key_subject(path: str) -> Subject:
-    """The key of a definition as what a problem is with."""
+    """Return the key of a definition as what a problem is with."""
     return Subject(SubjectKind.KEY, path)
 
 

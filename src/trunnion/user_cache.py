@@ -5,7 +5,7 @@ from pathlib import Path
 
 
 def user_cache() -> Path | None:
-    """The folder of the user's caches (``%LOCALAPPDATA%``, else ``~/.cache``); None: the user has no home.
+    """Return the folder of the user's caches (``%LOCALAPPDATA%``, else ``~/.cache``); None: the user has no home.
 
     It need not exist. A home that does not exist, as service accounts have, is not made.
     """
@@ -20,7 +20,9 @@ def user_cache() -> Path | None:
 
 
 def user_data() -> Path | None:
-    """The folder of the user's data (``%LOCALAPPDATA%``, ``$XDG_DATA_HOME``, else ``~/.local/share``); as above."""
+    """Return the folder of the user's data (``%LOCALAPPDATA%``, ``$XDG_DATA_HOME``, else ``~/.local/share``);
+    as above.
+    """
     local = os.environ.get("LOCALAPPDATA") or os.environ.get("XDG_DATA_HOME")
     if local and Path(local).is_absolute():
         return Path(local)

@@ -26,14 +26,14 @@ def one_line(text: str) -> str:
 
 
 def nearest_word(word: str, known: Iterable[str]) -> str:
-    """The known word that resembles an unknown one; empty if none does."""
+    """Return the known word that resembles an unknown one; empty if none does."""
     from difflib import get_close_matches  # a command line without mistakes does without it
 
     return next(iter(get_close_matches(word, list(known), n=1, cutoff=0.6)), "")
 
 
 def position(place: Iterable[float]) -> str:
-    """A position (3,) in mm, such as ``X1.000 Y-2.500 Z0.000``."""
+    """Return a position (3,) in mm, such as ``X1.000 Y-2.500 Z0.000``."""
     return " ".join(f"{name}{value:.3f}" for name, value in zip("XYZ", place, strict=True))
 
 
@@ -47,7 +47,7 @@ def counted(count: int, thing: str) -> str:
 
 
 def format_duration(seconds: float, colons: bool = True) -> str:
-    """A time as people read it.
+    """Return a time as people read it.
 
     >>> format_duration(4.26), format_duration(75), format_duration(7384)
     ('4.3 s', '1:15 min', '2:03:04 h')

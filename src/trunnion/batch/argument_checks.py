@@ -40,7 +40,7 @@ def check_tiles(action: Action, tiles: object) -> int:
 
 
 def beside_fault(name: str) -> Wording | str:
-    """What is wrong with the name of a file that goes with each input; empty if it can be used.
+    """Return what is wrong with the name of a file that goes with each input; empty if it can be used.
 
     >>> beside_fault("{folder}/{stem}.cls"), beside_fault("{name}.cls"), beside_fault("*.cls")
     ('', 'has { or } elsewhere than in {folder} and {stem}', 'is a pattern')

@@ -136,7 +136,7 @@ def run_batch(
 
 
 def _batch(path: Path, given: Mapping[str, Any], results: FilePath | None) -> Batch:
-    """The jobs of a file, or those of a folder as arguments say."""
+    """Return the jobs of a file, or those of a folder as arguments say."""
     stated = {name: value for name, value in given.items() if value or (name == "tiles" and value is not None)}
     if not path.is_dir():
         if stated and path.suffix != ".toml" and not path.exists():
@@ -160,7 +160,7 @@ def _team(
     tls: Tls | None,
     observer: Observer,
 ) -> Callable[[Store], Callable[[int], AbstractContextManager[Workers]]]:
-    """What makes the workers once the place of results is known."""
+    """Return what makes the workers once the place of results is known."""
     if scheduler is None:
         for name, given in (("tls", tls), ("wait", wait)):
             if given is not None:

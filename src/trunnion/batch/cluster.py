@@ -229,7 +229,7 @@ class DaskWorkers:
         return [place for place in places if place in asked and _is_done(asked[place])]
 
     def _take(self, asked: "dict[str, _Asked]", places: list[str]) -> Iterator[tuple[Assignment, Outcome | Record]]:
-        """What came of tasks that are done; one whose result was lost is given again."""
+        """Yield what came of tasks that are done; one whose result was lost is given again."""
         finished = [place for place in places if asked[place].future.status == "finished"]
         fetched = dict[str, Outcome | Record]()
         with suppress(Exception):  # what cannot be fetched with the others is asked for alone
@@ -247,7 +247,7 @@ class DaskWorkers:
                 yield each.assignment, found
 
     def _fetch(self, each: "_Asked") -> Outcome | Record | None:
-        """What came of a task; None: it was lost on the way."""
+        """Return what came of a task; None: it was lost on the way."""
         try:
             found: Outcome | Record = each.future.result(timeout=_ATTEMPT)
         except Exception as error:
@@ -255,7 +255,7 @@ class DaskWorkers:
         return found
 
     def _outcome_of(self, error: Exception, each: "_Asked") -> Outcome | None:
-        """What an error of a task means; None: the connection failed, and it is to be given again."""
+        """Return what an error of a task means; None: the connection failed, and it is to be given again."""
         name = type(error).__name__
         if name == "KilledWorker":
             return Outcome(Status.DIED, (died(each.task.file, Wording("BAT310", "several_workers_died")),))

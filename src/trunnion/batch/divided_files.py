@@ -166,10 +166,10 @@ def keep_share(store: Store, name: str, outcome: Outcome, seal: Seal) -> Outcome
 
 
 def share_start(home: str, place: str) -> str:
-    """What the names of all shares of a file begin with."""
+    """Return what the names of all shares of a file begin with."""
     return f"{SHARES}/{home}-{digest(place.encode())[:16]}-"
 
 
 def _said(task: Task, number: int, count: int) -> dict[str, object]:
-    """What a share is made from besides files; neither the form of a report nor the place of a result."""
+    """Return what a share is made from besides files; neither the form of a report nor the place of a result."""
     return {"share": [number, count], "said": [task.action, task.arguments, task.file]}

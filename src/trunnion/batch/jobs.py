@@ -99,7 +99,8 @@ class Unit(NamedTuple):
 
 
 def folder_files(folder: Path, without: Path | None = None) -> list[str]:
-    """The files in a folder and below, by their names with ``/``, in order; none of hidden folders, nor ``without``.
+    """Return the files in a folder and below, by their names with ``/``, in order; none of hidden folders, nor
+    ``without``.
 
     Links to folders are not followed, and links to files elsewhere are left out.
 
@@ -247,7 +248,7 @@ def _loaded(name: str, argument: str) -> Machine:
 
 @lru_cache(maxsize=16)
 def shipped_machine(name: str) -> Machine:
-    """A machine that is shipped, or an ``InputError`` that there is none: many jobs name the same one."""
+    """Return a machine that is shipped, or an ``InputError`` that there is none: many jobs name the same one."""
     return as_machine(name)
 
 
@@ -297,7 +298,7 @@ def _add_file(name: Any, folder: Path, shared: dict[str, Path]) -> Any:
 
 
 def _logical(path: Path, root: Path, prefix: str) -> str:
-    """The name of a file below a folder: as it is written there, or behind links where it is not."""
+    """Return the name of a file below a folder: as it is written there, or behind links where it is not."""
     try:
         return prefix + path.absolute().relative_to(root.absolute()).as_posix()
     except ValueError:

@@ -216,7 +216,7 @@ def read_batch_table(root: Table, path: Path) -> Batch:
 
 
 def _with_place_settings(table: Table, values: Mapping[str, Any]) -> dict[str, Any]:
-    """What a table states of a post, with the workpiece zero and the tool length among its settings."""
+    """Return what a table states of a post, with the workpiece zero and the tool length among its settings."""
     found = dict(values)
     place = {name: value for key, name in _PLACE_SETTINGS.items() if (value := found.pop(key, None)) is not None}
     own = found.get("settings", {})
@@ -229,7 +229,9 @@ def _with_place_settings(table: Table, values: Mapping[str, Any]) -> dict[str, A
 def _judged(
     table: Table, name: str, action: Action, inputs: list[str], values: dict[str, Any], output: str, folder: Path
 ) -> list[BatchJob]:
-    """The job of a table, if its arguments can be used; else its problems are told where the table states them."""
+    """Return the job of a table, if its arguments can be used; else its problems are told where the table
+    states them.
+    """
     if table.problems:
         return []
     beside = {key: values.pop(key) for key in ("cl", "subprograms") if values.get(key)}
@@ -272,7 +274,7 @@ def _output(table: Table) -> str:
 
 
 def _folder_name(table: Table, key: str) -> str:
-    """The name of a folder below another one; empty if it is not stated."""
+    """Return the name of a folder below another one; empty if it is not stated."""
     name = table.text(key, "").rstrip("/")
     if not name:
         return ""
@@ -285,7 +287,7 @@ def _folder_name(table: Table, key: str) -> str:
 
 
 def _values(tables: _Tables, table: Table) -> dict[str, Any]:
-    """What a table states of the options, by their keys; all of them are asked for, so that none is unknown."""
+    """Return what a table states of the options, by their keys; all of them are asked for, so that none is unknown."""
     stated = set(table.keys())
     return {
         key: value for key, option in _OPTIONS.items() for value in [option.read(tables, table, key)] if key in stated
@@ -307,7 +309,7 @@ def _refuse_keys(table: Table, action: Action, stated: Collection[str]) -> None:
 
 
 def _inputs(table: Table, names: Collection[str], path: Path, results: Path) -> list[str]:
-    """The files of a job."""
+    """Return the files of a job."""
     patterns = table.texts("files")
     if len(patterns) > _MOST_PATTERNS:
         table.add_problem("files", Wording("DEF330", "patterns", count=len(patterns), most_patterns=_MOST_PATTERNS))

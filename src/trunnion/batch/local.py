@@ -216,7 +216,7 @@ class LocalWorkers:
 
 
 def _next(coming: Iterator[tuple[Assignment, Task] | None]) -> "deque[_Given]":
-    """The next task, if there is one now."""
+    """Return the next task, if there is one now."""
     each = next(coming, None)
     return deque() if each is None else deque([_Given(*each)])
 

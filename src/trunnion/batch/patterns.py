@@ -10,7 +10,7 @@ _MOST = 1000
 
 
 def pattern_fault(pattern: str) -> Wording | str:
-    """What is wrong with a pattern; empty if it can be used.
+    """Return what is wrong with a pattern; empty if it can be used.
 
     >>> pattern_fault("../*.cls"), pattern_fault("parts/**/*.cls")
     ('leads out of the folder', '')

@@ -29,7 +29,7 @@ _PACKED: Final = frozenset({".gz", ".bz2"})
 
 
 def units_of(jobs: Sequence[BatchJob]) -> list[Unit]:
-    """The files of all jobs with the places of their results, in the order of these.
+    """Return the files of all jobs with the places of their results, in the order of these.
 
     Files whose results would have one place get another one, by which they are known but at which nothing is written
     (``Unit.clash``); only of those that write nothing, it is all they need.
@@ -57,7 +57,7 @@ def _writes(job: BatchJob) -> bool:
 
 
 def _alike(places: Sequence[str]) -> list[int]:
-    """The places that some system takes for the same as another one, or as a folder of it."""
+    """Return the places that some system takes for the same as another one, or as a folder of it."""
     by_name: dict[str, list[int]] = {}
     for k, place in enumerate(places):
         by_name.setdefault(_folded(place), []).append(k)
@@ -95,7 +95,7 @@ def _named(job: BatchJob, file: str, stem: Callable[[], str]) -> str:
 
 
 def _safe(part: str) -> str:
-    """A name that every system takes: the same where it is one, else with a checksum of it."""
+    """Return a name that every system takes: the same where it is one, else with a checksum of it."""
     if not name_fault(PurePosixPath(part)):
         return part
     stem, point, extension = part.rpartition(".")

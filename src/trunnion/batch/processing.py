@@ -158,13 +158,13 @@ def _with_paths(arguments: Mapping[str, Any], folder: Path) -> dict[str, Any]:
 
 
 def _without_folder(problem: Problem, folder: Path) -> Problem:
-    """A problem with the names of files as they stand beside the jobs."""
+    """Return a problem with the names of files as they stand beside the jobs."""
     file, wording = _told(problem.file, folder), problem.wording.changed(lambda text: _told(text, folder))
     return replace(problem, file=file.replace("\\", "/"), wording=wording)
 
 
 def _told(text: str, folder: Path) -> str:
-    """A text without the folder of the task in the names of files, also as JSON writes them."""
+    """Return a text without the folder of the task in the names of files, also as JSON writes them."""
     for name in (FILES, DEFINITIONS, f"{_RESULT}/"):
         at = str(folder / name)
         for start in (f"{at}/", f"{at}\\", f"{at}\\".replace("\\", "\\\\")):
@@ -173,7 +173,7 @@ def _told(text: str, folder: Path) -> str:
 
 
 def _machine(name: str) -> Machine | str:
-    """A machine that is shipped is loaded once; definitions of others lie in the folder of the task."""
+    """Return a machine that is shipped is loaded once; definitions of others lie in the folder of the task."""
     return name if name.endswith(".toml") else shipped_machine(name)
 
 
@@ -229,7 +229,7 @@ def _verify(
 
 
 def _failures(file: str, found: Verification) -> list[Problem]:
-    """A problem of each check that failed, at its worst place."""
+    """Return a problem of each check that failed, at its worst place."""
     return [_failure(file, check) for check in found.checks if not check.passed]
 
 

@@ -76,13 +76,13 @@ class Record:
 
 
 def record_name(place: str) -> str:
-    """The name of a record in the store."""
+    """Return the name of a record in the store."""
     name = digest(place.encode())[:32]
     return f"{FOLDER}/{name[:2]}/{name}.json"
 
 
 def record_bytes(record: Record) -> bytes:
-    """A record as it is kept."""
+    """Return a record as it is kept."""
     values = asdict(record) | {"problems": [_values(each) for each in record.problems]}
     costs = {**values.pop("costs"), "home": values.pop("home")}
     lines = (json.dumps(each, ensure_ascii=False, allow_nan=False, sort_keys=True) for each in (values, costs))
@@ -90,7 +90,7 @@ def record_bytes(record: Record) -> bytes:
 
 
 def parse_record(content: bytes | None) -> Record | None:
-    """A record that was kept; None: there is none, or it is damaged, or names files that are no results."""
+    """Return a record that was kept; None: there is none, or it is damaged, or names files that are no results."""
     if content is None:
         return None
     try:
@@ -129,7 +129,7 @@ def _problem(values: dict[str, Any]) -> Problem:
 
 
 def read_records(store: Store, places: Sequence[str]) -> Iterator[Record | None]:
-    """The records of places, one after another."""
+    """Return the records of places, one after another."""
     return map(parse_record, store.read_many([record_name(place) for place in places]))
 
 

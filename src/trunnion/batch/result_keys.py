@@ -18,7 +18,7 @@ def digest(content: bytes) -> str:
 
 @cache
 def program_version() -> str:
-    """The version of Trunnion, with a checksum of its own files: two builds of one version are told apart."""
+    """Return the version of Trunnion, with a checksum of its own files: two builds of one version are told apart."""
     found = hashlib.sha256()
     root = Path(trunnion.__file__).parent
     files = sorted((each.relative_to(root).as_posix(), each) for each in root.rglob("*") if _counts(each))
@@ -32,12 +32,12 @@ def _counts(path: Path) -> bool:
 
 
 def home_of(path: Path) -> str:
-    """What tells one batch from others that keep results in the same place: its file of jobs, or its folder."""
+    """Return what tells one batch from others that keep results in the same place: its file of jobs, or its folder."""
     return digest(os.fsencode(os.path.realpath(path)))[:16]
 
 
 def key_of(program: str, said: Mapping[str, Any], digests: Mapping[str, str]) -> str:
-    """The key of a result.
+    """Return the key of a result.
 
     Parameters
     ----------

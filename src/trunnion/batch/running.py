@@ -78,15 +78,15 @@ class BatchResult:
         return to_data(list(self.records()), only=_OF_FILE)
 
     def records(self) -> Iterator[Record]:
-        """What became of each file, in the order of the places of results."""
+        """Return what became of each file, in the order of the places of results."""
         return self._read(self.units)
 
     def failures(self) -> Iterator[Record]:
-        """The same of those that did not pass."""
+        """Return the same of those that did not pass."""
         return self._read([self.units[k] for k in self.failed])
 
     def written(self) -> Iterator[Record]:
-        """The same of those of which this run has written files."""
+        """Return the same of those of which this run has written files."""
         return self._read([self.units[k] for k in self.new])
 
     def _read(self, units: Sequence[Unit]) -> Iterator[Record]:
@@ -222,14 +222,15 @@ class _Pending:
                 yield assignment, task
 
     def _take_over(self, before: Record, record: Record) -> None:
-        """A record that is done, with the name that its job has now."""
+        """Take over a record that is done, with the name that its job has now."""
         if (before.job, before.home) != (record.job, record.home):
             renamed = replace(before, job=record.job, home=record.home)
             self._store.write(record_name(record.place), record_bytes(renamed))
 
 
 def task_of(folder: Path, job: BatchJob, unit: Unit, shared: Mapping[str, bytes]) -> Task:
-    """The task of a unit, with the content of its files as it is now; what goes with it and is missing is left out.
+    """Return the task of a unit, with the content of its files as it is now; what goes with it and is missing is left
+    out.
 
     Raises
     ------
@@ -254,7 +255,7 @@ def task_of(folder: Path, job: BatchJob, unit: Unit, shared: Mapping[str, bytes]
 
 
 def _read(folder: Path, name: str, file: str) -> bytes:
-    """The content of a file that the work on ``file`` reads; links are followed within the folder."""
+    """Return the content of a file that the work on ``file`` reads; links are followed within the folder."""
     path = folder / name
     if not is_within(path, folder):
         raise InputError(
@@ -281,7 +282,7 @@ def _read(folder: Path, name: str, file: str) -> bytes:
 
 
 def _beside(pattern: str, file: str) -> str:
-    """The name of a file that goes with another one."""
+    """Return the name of a file that goes with another one."""
     path = PurePosixPath(file)
     return PurePosixPath(pattern.replace("{folder}", path.parent.as_posix()).replace("{stem}", path.stem)).as_posix()
 
@@ -292,7 +293,7 @@ def _key(task: Task, digests: Mapping[str, str]) -> str:
 
 
 def local_workers(count: int | None, timeout: float | None) -> Callable[[int], AbstractContextManager[Workers]]:
-    """Makes workers on this computer: ``count``, by default as many as there are processors."""
+    """Return what makes workers on this computer: ``count``, by default as many as there are processors."""
 
     def make(most: int) -> AbstractContextManager[Workers]:
         return LocalWorkers(max(1, min(count or os.cpu_count() or 1, most)), work, timeout)

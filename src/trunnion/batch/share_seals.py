@@ -39,13 +39,13 @@ class Seal:
 
 
 def sealed(share: bytes, seal: Seal) -> bytes:
-    """A share as it is kept."""
+    """Return a share as it is kept."""
     line = json.dumps({**asdict(seal), "sha256": digest(share)}, sort_keys=True)
     return _MARK + line.encode("ascii") + b"\n" + share
 
 
 def unsealed(content: bytes | None, seal: Seal) -> bytes:
-    """The share that is kept.
+    """Return the share that is kept.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def unsealed(content: bytes | None, seal: Seal) -> bytes:
 
 
 def file_of(content: bytes | None) -> str | None:
-    """The file that a kept share is of; None: it does not say."""
+    """Return the file that a kept share is of; None: it does not say."""
     found = None if content is None else _read(content)[0]
     return None if found is None else found.file
 
@@ -89,7 +89,7 @@ def unsealed_all(contents: Sequence[bytes | Kept], seals: Sequence[Seal]) -> lis
 
 
 def _read(content: bytes) -> tuple[Seal | None, str, bytes]:
-    """The seal, the checksum that it has, and what follows."""
+    """Return the seal, the checksum that it has, and what follows."""
     end = content.find(b"\n", 0, _LONGEST)
     try:
         if end < 0 or not content.startswith(_MARK):

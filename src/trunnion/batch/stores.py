@@ -41,7 +41,7 @@ class Store(Protocol):
     is_exact: bool
 
     def read(self, name: str) -> bytes | None:
-        """A file; None: there is none."""
+        """Return a file; None: there is none."""
 
     def read_many(self, names: Sequence[str]) -> Iterator[bytes | None]:
         """Files one after another, in their order."""
@@ -62,7 +62,7 @@ class Store(Protocol):
         """Whether a file is as it was written, as far as that is quickly found out."""
 
     def names(self, folder: str) -> list[str]:
-        """The files in a folder and below, in order."""
+        """Return the files in a folder and below, in order."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +132,7 @@ class FolderStore:
         self._folder = folder
 
     def read(self, name: str) -> bytes | None:
-        """A file; None: there is none."""
+        """Return a file; None: there is none."""
         _refuse_odd(self._folder / name, self._folder, name)
         try:
             return (self._folder / name).read_bytes()
@@ -201,7 +201,7 @@ class FolderStore:
             return False
 
     def names(self, folder: str) -> list[str]:
-        """The files in a folder and below, in order."""
+        """Return the files in a folder and below, in order."""
         found = (self._folder / folder).rglob("*")
         return sorted(each.relative_to(self._folder).as_posix() for each in found if each.is_file())
 
@@ -232,7 +232,7 @@ class UrlStore:
         self._moves = self._protocol in ("file", "local", "sftp", "ssh", "ftp", "smb")
 
     def read(self, name: str) -> bytes | None:
-        """A file; None: there is none."""
+        """Return a file; None: there is none."""
         self._refuse_odd(name)
         try:
             return bytes(self._files.cat_file(self._path(name)))
@@ -298,7 +298,7 @@ class UrlStore:
             return False
 
     def names(self, folder: str) -> list[str]:
-        """The files in a folder and below, in order."""
+        """Return the files in a folder and below, in order."""
         try:
             found = self._files.find(self._path(folder))
         except FileNotFoundError:
@@ -326,7 +326,7 @@ class UrlStore:
 
 
 def open_store(place: str | os.PathLike[str]) -> Store:
-    """The store at a folder or an address.
+    """Return the store at a folder or an address.
 
     Raises
     ------

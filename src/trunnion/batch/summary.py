@@ -44,7 +44,7 @@ _MARK: Final = b"trunnion.batch"
 
 
 def check_summary(file: object) -> OutputPlace:
-    """The place of a summary, before any work.
+    """Return the place of a summary, before any work.
 
     Raises
     ------
@@ -151,7 +151,7 @@ def _by_file(result: BatchResult) -> Iterable[Record]:
 
 
 def _values(record: Record) -> dict[str, Any]:
-    """A record by the names of columns."""
+    """Return a record by the names of columns."""
     name = record.place.rpartition("/")[2]
     main = next((each for output, each in record.outputs.items() if output.rpartition("/")[2] == name), None)
     found: dict[str, Any] = dict.fromkeys(COLUMNS)
@@ -168,7 +168,7 @@ def _values(record: Record) -> dict[str, Any]:
 
 
 def _error(error: Problem | None) -> dict[str, Any]:
-    """The first error by the names of columns."""
+    """Return the first error by the names of columns."""
     if error is None:
         return {}
     message = f"{error.what}; {error.cure}".removesuffix("; ")
@@ -176,12 +176,12 @@ def _error(error: Problem | None) -> dict[str, Any]:
 
 
 def _plain(value: object) -> object:
-    """A list or a table as JSON; anything else as it is."""
+    """Return a list or a table as JSON; anything else as it is."""
     if isinstance(value, Sequence) and not isinstance(value, str):
         return json.dumps(list(value), ensure_ascii=False)
     return json.dumps(value, ensure_ascii=False, sort_keys=True) if isinstance(value, dict) else value
 
 
 def _text(text: str) -> str:
-    """A text that every database takes, whatever is in a name."""
+    """Return a text that every database takes, whatever is in a name."""
     return text.encode("utf-8", "backslashreplace").decode()

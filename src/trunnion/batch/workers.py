@@ -35,12 +35,12 @@ class Workers(Protocol):
 
 
 def shown(name: str) -> str:
-    """A logical name as messages have it."""
+    """Return a logical name as messages have it."""
     return name.removeprefix(FILES).removeprefix(DEFINITIONS)
 
 
 def died(file: str, wording: Wording) -> Problem:
-    """The problem of a file whose worker has died."""
+    """Return the problem of a file whose worker has died."""
     return Problem(shown(file), 0, wording)
 
 
@@ -49,7 +49,7 @@ DAMAGED: Final = "BAT395"
 
 
 def damaged(file: str, why: str) -> Problem:
-    """The problem of a file whose shares cannot be put together."""
+    """Return the problem of a file whose shares cannot be put together."""
     return Problem(shown(file), 0, Wording("BAT395", "damaged", reason=why))
 
 
@@ -63,7 +63,8 @@ _HINDRANCES: Final = frozenset(
 
 
 def hindrance(error: BaseException | None) -> str | None:
-    """What of the computer is behind an error, which may be another one's consequence; None: it has to do with files.
+    """Return what of the computer is behind an error, which may be another one's consequence; None: it has to do with
+    files.
 
     >>> hindrance(OSError(errno.ENOSPC, "No space left on device")), hindrance(ValueError("x"))
     ('No space left on device', None)
@@ -80,10 +81,10 @@ def hindrance(error: BaseException | None) -> str | None:
 
 
 def hindered(file: str, why: str) -> Problem:
-    """The problem of a file on which the computer did not let work be done."""
+    """Return the problem of a file on which the computer did not let work be done."""
     return Problem(shown(file), 0, Wording("BAT390", "work_could_not", why=why))
 
 
 def timed_out(file: str, seconds: float) -> Problem:
-    """The problem of a file that took too long."""
+    """Return the problem of a file that took too long."""
     return Problem(shown(file), 0, Wording("BAT350", "was_not_done", format_duration=format_duration(seconds)))

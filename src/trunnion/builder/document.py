@@ -109,7 +109,9 @@ def same(one: Any, other: Any) -> bool:
 
 
 def _with_replaced(text: str, found: Layout, where: KeyPath, value: Value, old: object) -> str:
-    """The text with another value at a place; of a list as long as before, only the items that differ are written."""
+    """Return the text with another value at a place; of a list as long as before, only the items that differ are
+    written.
+    """
     places = [(found.values[where], value)]
     if isinstance(value, list) and isinstance(old, list) and len(value) == len(old):
         places = [(found.values[*where, k], value[k]) for k in range(len(value)) if not same(value[k], old[k])]
@@ -119,7 +121,7 @@ def _with_replaced(text: str, found: Layout, where: KeyPath, value: Value, old: 
 
 
 def _with_new_value(text: str, found: Layout, path: FieldPath, value: Value) -> str:
-    """The text with a line for a value that it does not have."""
+    """Return the text with a line for a value that it does not have."""
     key, line = path[-1], f"{written_key(path[-1])} = {written(value)}\n"
     assert isinstance(key, str)
     if len(path) == 1:
@@ -140,7 +142,7 @@ def _with_new_value(text: str, found: Layout, path: FieldPath, value: Value) -> 
 
 
 def _with_new_table(text: str, found: Layout, path: FieldPath, line: str) -> str:
-    """The text with a table for a line: behind its like, or at the end."""
+    """Return the text with a table for a line: behind its like, or at the end."""
     head, name = path[:-1], ""
     if isinstance(head[-1], tuple):
         head, name = head[:-1], head[-1][0]
@@ -157,7 +159,7 @@ def _with_new_table(text: str, found: Layout, path: FieldPath, line: str) -> str
 
 
 def _without_empty_table(text: str, path: FieldPath) -> str:
-    """The text without the table of a path if it has nothing left but its name."""
+    """Return the text without the table of a path if it has nothing left but its name."""
     content = tomllib.loads(text)
     where = located(content, path[:-1])
     table = _at(content, where or ())
@@ -194,7 +196,7 @@ def located(content: Any, path: FieldPath) -> KeyPath | None:
 
 
 def _at(content: Any, where: KeyPath) -> object:
-    """The value at a path with indices."""
+    """Return the value at a path with indices."""
     for step in where:
         content = content[step]
     found: object = content
@@ -202,7 +204,7 @@ def _at(content: Any, where: KeyPath) -> object:
 
 
 def _plain(path: KeyPath) -> KeyPath:
-    """A path without indices."""
+    """Return a path without indices."""
     return tuple(step for step in path if isinstance(step, str))
 
 
@@ -254,7 +256,7 @@ def _joined(before: str, line: str, after: str) -> str:
 
 
 def _checked(made: str, text: str, meant: dict[str, Any]) -> str:
-    """The changed text, if it says what was meant and nothing else, with every comment of the text before."""
+    """Return the changed text, if it says what was meant and nothing else, with every comment of the text before."""
     try:
         found = tomllib.loads(made)
     except ValueError:
@@ -269,7 +271,7 @@ def _comments(text: str) -> list[str]:
 
 
 def _filled(content: Any) -> Any:
-    """A value without the tables and arrays in it that hold nothing."""
+    """Return a value without the tables and arrays in it that hold nothing."""
     if isinstance(content, dict):
         parts = {key: _filled(item) for key, item in content.items()}
         return {key: item for key, item in parts.items() if item not in ({}, [])}
@@ -279,7 +281,7 @@ def _filled(content: Any) -> Any:
 
 
 def _meant(content: dict[str, Any], path: FieldPath, value: Value | None) -> dict[str, Any]:
-    """What a definition says with one value changed, or, by None, taken out."""
+    """Return what a definition says with one value changed, or, by None, taken out."""
     root = copy.deepcopy(content)
     table: Any = root
     for step, then in pairwise(path):
@@ -297,7 +299,7 @@ def _meant(content: dict[str, Any], path: FieldPath, value: Value | None) -> dic
 
 
 def _named(tables: Any, name: str) -> dict[str, Any]:
-    """The table of this name, which is added if there is none."""
+    """Return the table of this name, which is added if there is none."""
     if not isinstance(tables, list):
         raise UnclearPlaceError
     found = next((item for item in tables if isinstance(item, dict) and item.get("name") == name), None)

@@ -138,12 +138,12 @@ def _mark(root: LocatedValue, key: str, line: int, what: str) -> dict[str, Any]:
 
 
 def _steps(path: FieldPath) -> list[str | list[str]]:
-    """A path as JSON has it."""
+    """Return a path as JSON has it."""
     return [list(step) if isinstance(step, tuple) else step for step in path]
 
 
 def _base(draft: Draft) -> LocatedValue | None:
-    """What the definition extends, merged, without anything of its own.
+    """Return what the definition extends, merged, without anything of its own.
 
     Settings are those of the control that it names itself, if it does; the name of the control is that of the machine.
     """
@@ -164,7 +164,7 @@ def _base(draft: Draft) -> LocatedValue | None:
 
 
 def _extending(text: str, name: object, path: Path) -> LocatedValue | None:
-    """A merged definition with a text of its own that extends another; None: nothing, or it cannot be read."""
+    """Return a merged definition with a text of its own that extends another; None: nothing, or it cannot be read."""
     text = (f"extends = {written(name)}\n" if isinstance(name, str) else "") + text
     with suppress(InputError):
         return with_control(load_draft(text, path, machine_library())) if text else None
@@ -179,7 +179,7 @@ def _own(draft: Draft) -> dict[str, Any]:
 
 
 def _notes(root: LocatedValue) -> SettingNotes:
-    """What the settings of the control mean; nothing while it has mistakes."""
+    """Return what the settings of the control mean; nothing while it has mistakes."""
     with suppress(InputError):
         control = value_at(root, ("control",))
         assert control is not None
@@ -220,7 +220,7 @@ def _machine(machine: Machine | None) -> dict[str, Any]:
 
 
 def _shown(found: LocatedValue, field: Field) -> object:
-    """A value as its field takes it: what the field cannot hold, as the text has it."""
+    """Return a value as its field takes it: what the field cannot hold, as the text has it."""
     value = _plain(found)
     if isinstance(value, list) and 0 < len(value) <= field.numbers and all(map(_is_exact, value)):
         return value

@@ -41,7 +41,7 @@ def _spindle(machine: Machine) -> Iterator[str]:
 
 
 def _axis(axis: Axis) -> Iterator[str]:
-    """The table of an axis: what differs from one machine of a type to the next."""
+    """Yield the table of an axis: what differs from one machine of a type to the next."""
     yield "[[axis]]"
     yield f"name = {written(axis.name)}"
     unit = "deg" if axis.is_rotary else "mm"

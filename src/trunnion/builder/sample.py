@@ -39,7 +39,7 @@ class _NamedBytes(io.BytesIO):
 
 
 def shipped_sample() -> bytes:
-    """A CL file with a contour, holes, and a wall that is cut with five axes."""
+    """Return a CL file with a contour, holes, and a wall that is cut with five axes."""
     return files("trunnion.builder").joinpath("sample.cls").read_bytes()
 
 
@@ -83,7 +83,7 @@ def sample_data(machine: Machine, cl: bytes | None, name: str, before: Sequence[
 
 
 def _without_program(problems: Sequence[Problem], checks: Sequence[Check]) -> dict[str, Any]:
-    """The answer for a CL file that cannot be posted, or whose program fails its proof."""
+    """Return the answer for a CL file that cannot be posted, or whose program fails its proof."""
     told = [_problem(each) for each in problems if each.what != _NOTHING_WRITTEN]
     shown = list(map(_check, checks))
     return {"lines": [], "changed": [], "removed": 0, "checks": shown, "problems": told, "passed": False, "all": 0}

@@ -54,7 +54,7 @@ class BuilderSession:
     name: str = ""
 
     def start(self, file: str = "") -> dict[str, Any]:
-        """What the page begins with: the text of the file, and what a new definition can start from.
+        """Return what the page begins with: the text of the file, and what a new definition can start from.
 
         Parameters
         ----------
@@ -105,20 +105,20 @@ class BuilderSession:
         return None
 
     def _place(self, name: str) -> Path:
-        """The path of a file of the folder."""
+        """Return the path of a file of the folder."""
         if not is_file_name(name) and (not name or name != self.name):
             raise RequestError
         return self.folder / name
 
     def _draft(self, text: str, given: Mapping[str, Any]) -> Draft:
-        """A text, as the file of the page would have it: each page has its own."""
+        """Return a text, as the file of the page would have it: each page has its own."""
         return judge(text, self._place(_text(given, "file") or self.name or "machine.toml"))
 
     def _judged(self, text: str, given: Mapping[str, Any]) -> dict[str, Any]:
         return {"text": text, **draft_data(self._draft(text, given))}
 
     def _begin(self, given: Mapping[str, Any]) -> dict[str, Any]:
-        """A new definition: one that extends a shipped machine, or one with an order of axes."""
+        """Return a new definition: one that extends a shipped machine, or one with an order of axes."""
         name = _text(given, "name").strip() or "Our machine"
         base, chain, control = (_text(given, key) for key in ("base", "chain", "control"))
         if base:
@@ -132,7 +132,9 @@ class BuilderSession:
         return self._judged(text, given)
 
     def _change(self, given: Mapping[str, Any]) -> dict[str, Any]:
-        """The definition with a value set, taken out, or an axis moved; ``unclear`` where only the user can do that."""
+        """Return the definition with a value set, taken out, or an axis moved; ``unclear`` where only the user can do
+        that.
+        """
         text, draft = _text(given, "text"), self._draft(_text(given, "text"), given)
         if draft.root is None:
             return {"text": text, **draft_data(draft), "unclear": "broken"}

@@ -50,7 +50,7 @@ def feed_samples(run: Run) -> Iterator[FeedSamples]:
 
 
 def _chosen(rows: Ints, joints: Floats, at_feed: Flags) -> FeedSamples:
-    """The samples at feed; where the slides cannot follow there is no tip."""
+    """Return the samples at feed; where the slides cannot follow there is no tip."""
     chosen = at_feed & np.isfinite(joints).all(axis=1)
     return FeedSamples(rows[chosen], joints[chosen])
 

@@ -89,7 +89,7 @@ def _directions(lean: float, rings: int) -> list[tuple[float, float]]:
 
 
 def _leaning(normal: Floats, tilt: float, azimuth: float) -> Floats:
-    """Unit vectors (n, 3) that lean from normals by an angle, to a side."""
+    """Return unit vectors (n, 3) that lean from normals by an angle, to a side."""
     if tilt == 0.0:
         return normal
     # Beside the coordinate in which the normal is shortest it is certainly not parallel to it.

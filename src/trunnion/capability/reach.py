@@ -123,7 +123,7 @@ def sphere_share(machine: Machine) -> float:
 
 
 def tilt_reach(machine: Machine, tilt: float, step: float) -> TiltReach:
-    """What is reached with a tilt, degrees, at azimuths at most ``step`` degrees apart."""
+    """Return what is reached with a tilt, degrees, at azimuths at most ``step`` degrees apart."""
     axes = tool_axes_at(tilt, step)
     poses = axis_poses(machine, axes, step)
     branches = tuple(poses.branches.tolist())
@@ -168,7 +168,7 @@ def _has_travel(machine: Machine) -> bool:
 
 
 def reach_remarks(machine: Machine, placed: bool) -> list[Problem]:
-    """What was assumed."""
+    """Return what was assumed."""
     found = []
     missing = [machine.names[k] for k in machine.linear if not np.isfinite(machine.limits[k]).all()]
     if missing:

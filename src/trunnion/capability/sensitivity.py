@@ -127,7 +127,7 @@ def program_sensitivity(
 
 
 def errors_over(found: Sensitivity, numbers: Sequence[GeometryNumber]) -> tuple[Ints, Floats]:
-    """The rows at feed (k,), and how far the tip is off at most in each by some numbers, (k, m) float32, mm.
+    """Return the rows at feed (k,), and how far the tip is off at most in each by some numbers, (k, m) float32, mm.
 
     With the zero set, where it was.
     """
@@ -166,7 +166,7 @@ class _Total:
             self._axis = max(self._axis, float(np.linalg.norm(errors.axis, axis=1).max()))
 
     def result(self, run: Run, count: int, amounts: tuple[float, float]) -> NumberSensitivity:
-        """The totals; amounts as they are told, mm and seconds of arc."""
+        """Return the totals; amounts as they are told, mm and seconds of arc."""
         return NumberSensitivity(
             self._number,
             amounts[self._number.is_angle],

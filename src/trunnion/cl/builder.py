@@ -34,7 +34,7 @@ class MoveColumns:
     line: Lines
 
     def points(self) -> PointColumns:
-        """The columns that the scan writes."""
+        """Return the columns that the scan writes."""
         return PointColumns(self.tip, self.axis, self.line)
 
     def grow(self) -> None:

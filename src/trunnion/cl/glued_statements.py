@@ -76,14 +76,14 @@ class GluedStatements:
             raise StatementError(Wording("CL160", "comment_within_statement", found=found))
 
     def _in_words(self, text: str) -> str:
-        """The statement that is glued to a text or a comment; empty if there is none."""
+        """Return the statement that is glued to a text or a comment; empty if there is none."""
         if "/" in text and (found := self._in_text.search(text)):
             return "".join(found[1].split()).upper()
         ends = (word for word in _BARE_WORDS if text.endswith(word))
         return next((word for word in ends if text[: -len(word)][-1:] not in ("", " ", "\t", "_", "-", "/")), "")
 
     def _in_values(self, statement: Statement) -> str:
-        """The statement that stands among the values of another one; empty if there is none."""
+        """Return the statement that stands among the values of another one; empty if there is none."""
         if not any(isinstance(value, str) for value in statement.values):
             return ""
         lines = statement.source.upper().split("\n")
@@ -102,13 +102,13 @@ class GluedStatements:
         return next((word for word in _BARE_WORDS if last != word and last.endswith(word)), "")
 
     def _ending(self, field: str) -> str:
-        """The longest known word at the end of a field; empty if there is none."""
+        """Return the longest known word at the end of a field; empty if there is none."""
         longest = field[-self._longest :]
         return next((longest[at:] for at in range(len(longest) - _SHORTEST + 1) if longest[at:] in self._words), "")
 
 
 def _outside_brackets(text: str) -> str:
-    """The text with a 0 for each pair of brackets that is in no other one."""
+    """Return the text with a 0 for each pair of brackets that is in no other one."""
     parts, depth, begin = list[str](), 0, 0
     for found in _BRACKET.finditer(text):
         depth += 1 if found[0] == "(" else -1

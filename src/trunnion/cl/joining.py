@@ -101,7 +101,7 @@ def _report_lost_coolant(builder: OperationBuilder, before: list[OperationBuilde
 
 
 def _last_side(builder: OperationBuilder, side: CutterComp | None) -> CutterComp | None:
-    """The CUTCOM in force at the end of an operation; None if there is none, or it is OFF."""
+    """Return the CUTCOM in force at the end of an operation; None if there is none, or it is OFF."""
     last = next((event for event in reversed(builder.events) if isinstance(event, CutterComp)), side)
     return None if last is None or last.side == "OFF" else last
 
@@ -176,7 +176,7 @@ def _has_other_tool(
 
 
 def _stated_starts(builder: OperationBuilder) -> list[FromStatement]:
-    """The FROM statements: not the starts that stand for the last point before an arc."""
+    """Return the FROM statements: not the starts that stand for the last point before an arc."""
     arcs = {circle.line for circle in builder.circles}
     return [start for start in builder.starts if start.line not in arcs]
 

@@ -218,7 +218,7 @@ def _surveyed(file: BinaryIO, source: ClSource, diagnostics: Diagnostics) -> Sur
 
 
 def _line_at(source: ClSource, offset: int) -> int:
-    """The line, from 1, that a byte of the file belongs to."""
+    """Return the line, from 1, that a byte of the file belongs to."""
     line, left = 1, offset
     with source.open() as file:
         while left and (piece := file.read(min(left, _SURVEY_CHUNK))):

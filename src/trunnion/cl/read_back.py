@@ -43,7 +43,7 @@ _SAME_NUMBER: Final = 1e-5
 
 
 def read_back_problems(expected: Toolpath, path: Path, dialect: str) -> list[Problem]:
-    """What reads back otherwise.
+    """Return what reads back otherwise.
 
     Parameters
     ----------
@@ -95,7 +95,9 @@ class _Rows(NamedTuple):
 
     @staticmethod
     def of(toolpath: Toolpath, names: Set[str]) -> "_Rows":
-        """The rows without messages that are ``names`` of joined operations: one file may have operations for them."""
+        """Return the rows without messages that are ``names`` of joined operations: one file may have operations for
+        them.
+        """
         operations = [operation for operation in toolpath.operations if len(operation.moves) or operation.events]
         begins = np.cumsum([0, *(len(operation.moves) for operation in operations)]).tolist()
         moves, arcs = [o.moves for o in operations], [o.arcs for o in operations]
@@ -189,7 +191,7 @@ def _said(
 
 
 def _content(event: Event) -> tuple[object, ...]:
-    """What an event says, without its place."""
+    """Return what an event says, without its place."""
     if isinstance(event, CycleOn):
         return ("CycleOn", *_cycle(event))
     if isinstance(event, UnknownStatement):

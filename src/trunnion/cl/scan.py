@@ -277,7 +277,7 @@ def _is_blank(byte: int) -> bool:
 
 @inner
 def _skip_word(data: Bytes, at: int, stop: int, word: Bytes) -> int:
-    """The end of ``word`` if it stands at ``at``, in upper or lower case and with blanks anywhere; else 0."""
+    """Return the end of ``word`` if it stands at ``at``, in upper or lower case and with blanks anywhere; else 0."""
     for letter in word:
         while at < stop and (_is_blank(data[at]) or data[at] == _DOLLAR):
             at += 1

@@ -106,7 +106,7 @@ def is_cl_file(path: Path) -> bool:
 
 
 def cl_sources(file: Path | BinaryIO, name: str = "stdin") -> list[ClSource]:
-    """The CL files in a file or a stream: several in a ZIP archive, in the order of their names.
+    """Return the CL files in a file or a stream: several in a ZIP archive, in the order of their names.
 
     Parameters
     ----------
@@ -157,17 +157,17 @@ def cl_sources(file: Path | BinaryIO, name: str = "stdin") -> list[ClSource]:
 
 
 def _unpacked(name: str, packed: BinaryIO, unpack: Callable[[BinaryIO], BinaryIO], size: int) -> BinaryIO:
-    """The text of a packed file; to close it closes the file too."""
+    """Return the text of a packed file; to close it closes the file too."""
     return cast("BinaryIO", _Unpacked(unpack(packed), name, size, packed))
 
 
 def not_one_file(first: str, count: int) -> InputError:
-    """The error for an archive of several CL files where one is meant; ``first`` is its first file."""
+    """Return the error for an archive of several CL files where one is meant; ``first`` is its first file."""
     return InputError(Problem(first, 0, Wording("FIL180", "one_cl_files", count=count)))
 
 
 def _unpacker(head: bytes) -> Callable[[BinaryIO], BinaryIO] | None:
-    """What unpacks a text that begins so; None if it is not packed."""
+    """Return what unpacks a text that begins so; None if it is not packed."""
     if head.startswith(_GZIP):
         return lambda packed: cast("BinaryIO", gzip.GzipFile(fileobj=packed, mode="rb"))
     if head.startswith(_BZIP2) and head[3:4].isdigit():
@@ -203,7 +203,7 @@ def _refuse_archive(name: str, head: bytes, nested: str) -> None:
 
 
 def _zip_sources(name: str, open_packed: Callable[[], BinaryIO], size: int) -> list[ClSource]:
-    """The CL files of a ZIP archive."""
+    """Return the CL files of a ZIP archive."""
     try:
         with open_packed() as packed, zipfile.ZipFile(packed) as archive:
             infos = [info for info in archive.infolist() if not info.is_dir()]
@@ -256,7 +256,7 @@ def _check_size(name: str, unpacked: int, packed: int) -> None:
 
 
 def _member_name(info: zipfile.ZipInfo) -> str:
-    """The name of a file in an archive, also where it is in UTF-8 or GBK and the archive does not say so."""
+    """Return the name of a file in an archive, also where it is in UTF-8 or GBK and the archive does not say so."""
     if info.flag_bits & _NAMES_IN_UTF8 or info.filename.isascii():
         return info.filename
     raw = info.filename.encode("cp437")
@@ -304,7 +304,7 @@ def _why_no_cl_file(inside: str, info: zipfile.ZipInfo, opened: Callable[[], Bin
 
 
 def _spooled(stream: BinaryIO, name: str) -> BinaryIO:
-    """The content of a stream, so that it can be read twice."""
+    """Return the content of a stream, so that it can be read twice."""
     spool: BinaryIO = io.BytesIO()
     done = 0
     try:
@@ -325,7 +325,7 @@ def _spooled(stream: BinaryIO, name: str) -> BinaryIO:
 
 
 def _temporary_file() -> BinaryIO:
-    """A file without a name, which goes when nothing reads it any more."""
+    """Return a file without a name, which goes when nothing reads it any more."""
     return cast("BinaryIO", tempfile.TemporaryFile())
 
 

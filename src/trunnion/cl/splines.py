@@ -43,7 +43,8 @@ def with_spline_points(
     tolerance: float | None,
     diagnostics: Diagnostics,
 ) -> MoveColumns:
-    """The columns with points in place of control points; ``builders`` get their rows, and the splines as curves.
+    """Return the columns with points in place of control points; ``builders`` get their rows, and the splines as
+    curves.
 
     Parameters
     ----------
@@ -85,7 +86,7 @@ def with_spline_points(
 
 
 def _tolerance(builder: OperationBuilder, unit: float) -> float:
-    """The smaller one of INTOL and OUTTOL, within limits."""
+    """Return the smaller one of INTOL and OUTTOL, within limits."""
     given = [value * unit for value in (builder.intol, builder.outtol) if value is not None and value > 0.0]
     return min(max(min(given), _MIN_TOLERANCE), _MAX_TOLERANCE) if given else _TOLERANCE
 
@@ -110,7 +111,7 @@ def _block_of(
     tolerance: float,
     diagnostics: Diagnostics,
 ) -> _Block | None:
-    """A spline with its points; None if it has none, which is reported."""
+    """Return a spline with its points; None if it has none, which is reported."""
     fault = _fault(builder, spline)
     first = builder.first + spline.row
     if fault is None:
@@ -197,7 +198,7 @@ def _insert(
     rows: int,
     blocks: Sequence[_Block],
 ) -> MoveColumns:
-    """New columns with points in place of the control points, and the builders with their rows and curves."""
+    """Return new columns with points in place of the control points, and the builders with their rows and curves."""
     counts = np.ones(rows, np.int64)
     for _, first, poles, _, points in blocks:
         last = first + len(poles) - 2

@@ -148,7 +148,9 @@ def comments_of(source: str) -> list[str]:
 
 
 def _without_comment(source: str) -> str:
-    """A statement without the comment behind its last line; those of other lines stand behind a continuation sign."""
+    """Return a statement without the comment behind its last line; those of other lines stand behind a continuation
+    sign.
+    """
     before, newline, last = source.rpartition("\n")
     return before + newline + last.partition("$$")[0].rstrip()
 
@@ -163,7 +165,7 @@ def _text_statement(match: re.Match[bytes], raw: bytes, encoding: str) -> Statem
 
 
 def _values(rest: str) -> tuple[str | float, ...]:
-    """The values between the commas."""
+    """Return the values between the commas."""
     fields = rest.split(",")
     if "_" not in rest and rest.isascii():
         try:
@@ -178,7 +180,7 @@ def _values(rest: str) -> tuple[str | float, ...]:
 
 
 def _value(field: str) -> str | float:
-    """A number if the field is one, else the word in capitals without blanks."""
+    """Return a number if the field is one, else the word in capitals without blanks."""
     field = field.strip()
     if field[:1] in _NUMBER_FIRST and field[-1] in _NUMBER_LAST and "_" not in field and field.isascii():
         try:

@@ -39,7 +39,7 @@ _TOOL_PATH = np.frombuffer(b"TOOL PATH", np.uint8)
 
 
 def with_normals(toolpath: Toolpath) -> Toolpath:
-    """The toolpath with surface normals; remarks name the operations that have none.
+    """Return the toolpath with surface normals; remarks name the operations that have none.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def with_normals(toolpath: Toolpath) -> Toolpath:
 
 
 def _text_of(toolpath: Toolpath) -> BinaryIO:
-    """The text of the file that a toolpath was read from, from its beginning."""
+    """Return the text of the file that a toolpath was read from, from its beginning."""
     return toolpath.reopen() if toolpath.reopen else Path(toolpath.file).open("rb", buffering=0)
 
 
@@ -97,7 +97,7 @@ def _remark(file: str, operation: Operation, why: str) -> Problem:
 
 
 def normals(moves: Moves, contact: Floats, tool: Tool) -> Floats:
-    """Unit vectors out of the surface, (n, 3) float64, NaN where no contact point gives one.
+    """Return unit vectors out of the surface, (n, 3) float64, NaN where no contact point gives one.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ _IDENTITY: Final = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0)
 
 
 def other_system(toolpaths: Sequence[Toolpath]) -> Problem | None:
-    """The first toolpath whose coordinate system differs from that of the first one, as a problem.
+    """Return the first toolpath whose coordinate system differs from that of the first one, as a problem.
 
     Files of different systems may be different setups, and of most dialects it is not settled whether rows or columns
     are the axes: points are not turned into the system of another file. Beside an MSYS off the absolute system a file
@@ -32,7 +32,9 @@ def other_system(toolpaths: Sequence[Toolpath]) -> Problem | None:
 
 
 def _unstated_system(toolpaths: Sequence[Toolpath]) -> Problem | None:
-    """The first toolpath that does not state where its points are, beside one that is off the absolute system."""
+    """Return the first toolpath that does not state where its points are, beside one that is off the absolute
+    system.
+    """
     stating = [toolpath for toolpath in toolpaths if toolpath.states_system]
     off = next((each for each in stating if any(operation.frame != Frame() for operation in each.operations)), None)
     if off is None or len(stating) == len(toolpaths):

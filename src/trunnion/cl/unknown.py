@@ -13,7 +13,7 @@ _NO_EFFECT = "nothing becomes of it: check that nothing should, or say under [co
 
 
 def statement_words(text: str) -> tuple[str, frozenset[str]]:
-    """The major word of a statement, and its values as text; no words if it cannot be read."""
+    """Return the major word of a statement, and its values as text; no words if it cannot be read."""
     try:
         statement = parse(text.encode(), "utf-8")
     except StatementError:
@@ -22,7 +22,7 @@ def statement_words(text: str) -> tuple[str, frozenset[str]]:
 
 
 def shop_statement(event: UnknownStatement) -> ShopStatement:
-    """A statement that is not known, with its values in order, for the template of a shop."""
+    """Return a statement that is not known, with its values in order, for the template of a shop."""
     try:
         statement = parse(event.text.encode(), "utf-8")
     except StatementError:
@@ -34,7 +34,7 @@ def shop_statement(event: UnknownStatement) -> ShopStatement:
 
 
 def unknown_statements(toolpath: Toolpath) -> list[list[UnknownStatement]]:
-    """The statements of a toolpath that are not known, those alike together, by their first lines."""
+    """Return the statements of a toolpath that are not known, those alike together, by their first lines."""
     alike: dict[str, list[UnknownStatement]] = {}
     for event in _unknown_events(toolpath):
         alike.setdefault(event.what, []).append(event)
@@ -42,7 +42,7 @@ def unknown_statements(toolpath: Toolpath) -> list[list[UnknownStatement]]:
 
 
 def unknown_statement_remarks(toolpath: Toolpath) -> tuple[Problem, ...]:
-    """What is not known in a toolpath, as warnings: one for all statements alike."""
+    """Return what is not known in a toolpath, as warnings: one for all statements alike."""
     return merge_repeated(
         Problem(toolpath.file, event.line, Wording("CL210", "unknown", unknown=event.what), severity=Severity.WARNING)
         if event.acts

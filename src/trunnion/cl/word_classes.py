@@ -81,7 +81,7 @@ def drives_tool(major: str) -> bool:
 
 
 def words_that_count(dialect: Dialect) -> frozenset[str]:
-    """The words of a dialect that a damaged one is compared with, in all files and in those of this dialect."""
+    """Return the words of a dialect that a damaged one is compared with, in all files and in those of this dialect."""
     return frozenset(_COMMON_WORDS) | {
         word
         for word, handler in dialect.handlers.items()

@@ -16,7 +16,7 @@ _ABOUT_ROWS = (CycleOn, CycleOff, SurfaceSpeed, UnknownStatement)
 
 
 def events_of(text: str) -> tuple[Event, ...]:
-    """The events of one statement; none for an empty text.
+    """Return the events of one statement; none for an empty text.
 
     Raises
     ------

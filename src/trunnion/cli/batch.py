@@ -61,7 +61,7 @@ class _Terminal(Terminal):
 
 
 def result_lines(result: BatchResult) -> Iterator[str]:
-    """A batch in lines: what failed, what this run has written, and how many became what."""
+    """Yield a batch in lines: what failed, what this run has written, and how many became what."""
     width = max((len(unit) for unit in result.jobs), default=0) if len(result.jobs) > 1 else 0
     if result.failed:
         job = f"{'job':<{width}}  " if width else ""
@@ -82,7 +82,7 @@ def result_lines(result: BatchResult) -> Iterator[str]:
 
 
 def _warnings(result: BatchResult) -> Iterator[str]:
-    """What is warned of, by codes, each with the first file that has it."""
+    """Yield what is warned of, by codes, each with the first file that has it."""
     if result.warned:
         yield f"{'warning':<{_CODE_WIDTH}}  {'files':>5}  the first"
     for each in result.warned[:_MOST_CODES]:

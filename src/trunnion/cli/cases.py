@@ -31,7 +31,7 @@ def run(given: Given) -> int:
 
 
 def _test(path: Path, *, accept: bool, quiet: bool) -> tuple[str, int]:
-    """What became of a case, and the exit code that it alone would have."""
+    """Return what became of a case, and the exit code that it alone would have."""
     said = tell if quiet else print_result  # data on stdout stands alone
     with posted_case(path) as case:
         tell(*map(problem_line, case.warnings))
@@ -72,7 +72,7 @@ def _outcome(case: Case) -> str:
 
 
 def _lines(case: Case, outcome: str) -> Iterator[str]:
-    """A case in lines."""
+    """Yield a case in lines."""
     if outcome == "same":
         yield f"{case.path}: same: {', '.join(file.name for file in case.same)}"
         return

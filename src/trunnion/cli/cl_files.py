@@ -18,7 +18,7 @@ _PACKED = frozenset({".gz", ".bz2"})
 
 
 def result_stem(file: str) -> str:
-    """The name of what is made of a CL file, without its ending.
+    """Return the name of what is made of a CL file, without its ending.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def begin_reading(
 
 
 def _tolerance(text: str) -> float | None:
-    """The tolerance of splines; None for a text that the check of the settings will refuse."""
+    """Return the tolerance of splines; None for a text that the check of the settings will refuse."""
     try:
         value = float(text)
     except ValueError:

@@ -40,7 +40,7 @@ def _argument_words(job: Job) -> str:
 
 
 def bash() -> str:
-    """A function for bash's ``complete``."""
+    """Return a function for bash's ``complete``."""
     return "\n".join(_bash_lines()) + "\n"
 
 
@@ -74,7 +74,7 @@ def _bash_lines() -> Iterator[str]:
 
 
 def zsh() -> str:
-    """The same for zsh, which knows what bash has."""
+    """Return the same for zsh, which knows what bash has."""
     return f"autoload -U +X compinit && compinit\nautoload -U +X bashcompinit && bashcompinit\n{bash()}"
 
 
@@ -97,13 +97,13 @@ def _fish_lines() -> Iterator[str]:
 
 
 def _quoted(text: str) -> str:
-    """A text in single quotes, as fish reads it."""
+    """Return a text in single quotes, as fish reads it."""
     escaped = text.replace("\\", "\\\\").replace("'", "\\'")
     return f"'{escaped}'"
 
 
 def powershell() -> str:
-    """A completer for PowerShell."""
+    """Return a completer for PowerShell."""
     return "\n".join(_powershell_lines()) + "\n"
 
 

@@ -41,7 +41,7 @@ def _list_lines(found: Sequence[ControlDescription]) -> Iterator[str]:
 
 
 def control_lines(control: ControlDescription) -> Iterator[str]:
-    """A control and all that can be set, in lines."""
+    """Yield a control and all that can be set, in lines."""
     yield f"{control.name} ({control.key})"
     yield f"family {control.family}, programs *{control.extension}"
     yield from [control.description] if control.description else []

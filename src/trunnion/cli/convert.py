@@ -49,7 +49,7 @@ def run(given: Given) -> int:
 
 
 def _dialect(given: Given) -> str:
-    """What the CL file is written in. Until the next version ``--dialect`` alone says it, as it did before."""
+    """Return what the CL file is written in. Until the next version ``--dialect`` alone says it, as it did before."""
     if given.to_dialect is None and given.dialect is not None and given.to_cl:
         what = "--dialect is what a CL file is read in; to say what it is written in, --to-dialect does"
         print(warning_line("trunnion convert", what, "ARG190"), file=sys.stderr)
@@ -61,7 +61,7 @@ def _dialect(given: Given) -> str:
 
 
 def _settings(given: Given) -> dict[str, str]:
-    """The settings, with how a CL file is read."""
+    """Return the settings, with how a CL file is read."""
     settings = dict(given.settings)
     for name, key in (("units", "cl_units"), ("dialect", "dialect")):
         if given.values[name] is None:

@@ -10,14 +10,14 @@ from trunnion.verification import Verification
 
 
 def report_data(verification: Verification) -> Any:
-    """What a report of the verification has, as data (docs/report.md)."""
+    """Return what a report of the verification has, as data (docs/report.md)."""
     sink = io.BytesIO()
     add_report(verification, sink, "report.json", ())
     return json.loads(sink.getvalue())
 
 
 def plain_data(located: LocatedValue) -> Any:
-    """The values of a definition, without their places."""
+    """Return the values of a definition, without their places."""
     value = located.value
     if isinstance(value, dict):
         return {key: plain_data(each) for key, each in value.items()}

@@ -28,7 +28,7 @@ def explain(given: Given) -> int:
 
 
 def _asked(codes: Sequence[str]) -> tuple[list[Explanation], list[Problem]]:
-    """The explanations of the codes that there are, and what is wrong with the others."""
+    """Return the explanations of the codes that there are, and what is wrong with the others."""
     found, faults = [], []
     for code in codes:
         try:

@@ -21,7 +21,7 @@ def run(given: Given) -> int:
 
 
 def fit_lines(found: Sequence[MachineFit]) -> Iterator[str]:
-    """The machines in their order, each with what it makes of it."""
+    """Yield the machines in their order, each with what it makes of it."""
     wide = max(len(each.key) for each in found)
     if any(each.zero_mm is not None and each.status is not FitStatus.NOT for each in found):
         yield "zero: of the workpiece in the machine frame, X,Y,Z in mm with all axes at zero; left: to the limits"

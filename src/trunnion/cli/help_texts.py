@@ -81,7 +81,7 @@ def _explained(option: Option) -> str:
 
 
 def _entry(name: str, text: str, width: int = _WIDTH) -> Iterator[str]:
-    """A name, and what it is, in two columns."""
+    """Yield a name, and what it is, in two columns."""
     wide = min(shutil.get_terminal_size().columns, _MOST)
     lines = textwrap.wrap(text, max(wide - width, 30), break_on_hyphens=False)
     if len(name) + 3 > width:

@@ -78,12 +78,12 @@ def _solid(given: Given) -> int:
 
 
 def _model_data(impeller: Impeller, found: ImpellerModel | ImpellerSolid) -> dict[str, object]:
-    """A model as data."""
+    """Return a model as data."""
     return {"schema": 1, **to_data(impeller), **to_data(found)}
 
 
 def _head(impeller: Impeller, mesh: TriangleMesh) -> str:
-    """What it is, and how large."""
+    """Return what it is, and how large."""
     definition = impeller.definition
     splitters = "" if impeller.splitter is None else f" and {definition.number} splitters"
     low, high = mesh.bounds.tolist()
@@ -103,7 +103,7 @@ def cut(given: Given) -> int:
 
 
 def _cut_lines(found: ImpellerCut) -> Iterator[str]:
-    """What was made, step by step."""
+    """Yield what was made, step by step."""
     for step in found.steps:
         yield _step_line(step)
     yield f"{found.result.output}: {counted(sum(step.points for step in found.steps), 'point')}"
@@ -112,7 +112,7 @@ def _cut_lines(found: ImpellerCut) -> Iterator[str]:
 
 
 def _step_line(step: CutStep) -> str:
-    """A step: its operations, its time, and how near the tool comes to the part."""
+    """Return a step: its operations, its time, and how near the tool comes to the part."""
     count = len(step.seconds)
     time = format_duration(60.0 * step.minutes)
     parts = [f"{step.step.name}: {counted(step.points, 'point')}, {f'{count} x ' if count > 1 else ''}{time}"]

@@ -29,7 +29,7 @@ def info(given: Given) -> int:
 
 
 def info_lines(found: ClDescription) -> Iterator[str]:
-    """A description in lines."""
+    """Yield a description in lines."""
     for file in found.files:
         unit = file.units if file.states_units else f"{file.units}, which it does not state"
         part = f"; part {file.part}" if file.part else ""

@@ -18,7 +18,7 @@ _LEGEND: Final = (
 
 
 def machine_lines(found: MachineDescription) -> Iterator[str]:
-    """What the definition means, in lines."""
+    """Yield what the definition means, in lines."""
     machine, jogs = found.machine, found.jogs
     yield f"{machine.name} ({machine.key})"
     yield from [machine.description] if machine.description else []
@@ -44,7 +44,7 @@ def machine_lines(found: MachineDescription) -> Iterator[str]:
 
 
 def machine_data(found: MachineDescription) -> dict[str, object]:
-    """The same as plain data: what is not limited or not known is None."""
+    """Return the same as plain data: what is not limited or not known is None."""
     data: dict[str, object] = to_data(found)
     return data | {"assumed": [in_command_words(each) for each in found.assumed]}
 

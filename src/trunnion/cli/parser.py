@@ -31,7 +31,7 @@ _LINE_OF_ALL: Final = "trunnion --help lists them"
 
 
 def parse(words: Sequence[str]) -> Given:
-    """The command and what it was given.
+    """Return the command and what it was given.
 
     Ends the process after ``--help`` and ``--version``, and with exit code 2 where it cannot be understood.
     """
@@ -95,7 +95,7 @@ def _names(option: Option) -> list[str]:
 
 
 def _details(option: Option) -> dict[str, Any]:
-    """What argparse is told of an option."""
+    """Return what argparse is told of an option."""
     found: dict[str, Any] = {"default": option.empty}
     if option.flag:
         found |= {"dest": option.name, "required": option.required}
@@ -140,7 +140,7 @@ class _AddSetting(argparse.Action):
 
 
 def _with_present_names(words: Iterable[str], job: Job) -> list[str]:
-    """The words with options of earlier names under their present ones, of which a warning says so."""
+    """Return the words with options of earlier names under their present ones, of which a warning says so."""
     earlier = {alias: option.flag for option in job.options for alias in option.aliases}
     found: list[str] = []
     for word in words:
@@ -175,7 +175,9 @@ def _with_values(words: Iterable[str], job: Job) -> list[str]:
 
 
 def _unknown_option(words: Iterable[str], job: Job) -> str:
-    """The first word that looks like an option but is not one, nor an abbreviation of one; empty if there is none."""
+    """Return the first word that looks like an option but is not one, nor an abbreviation of one; empty if there is
+    none.
+    """
     known = ["--help", *(each.flag for each in job.flags)]
     for word in words:
         name = word.partition("=")[0]
@@ -187,7 +189,7 @@ def _unknown_option(words: Iterable[str], job: Job) -> str:
 
 
 def _no_option(name: str, job: Job) -> str:
-    """What is wrong with an option that a command lacks, and the cure."""
+    """Return what is wrong with an option that a command lacks, and the cure."""
     near = nearest_word(name, [each.flag for each in job.flags])
     asked = f"did you mean {near}? " if near else ""
     others = [each.name for each in JOBS.values() if any(option.flag == name for option in each.flags)]

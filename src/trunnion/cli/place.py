@@ -96,7 +96,7 @@ def _other_positions(use: ProgramUse) -> str:
 
 
 def _project(given: Given) -> "PlacedSetup | None":
-    """The set-up of the project that is placed; None: files are."""
+    """Return the set-up of the project that is placed; None: files are."""
     projects = [file for file in given.files if file.endswith(".toml")]
     if not projects:
         if given.setup is not None:
@@ -110,7 +110,7 @@ def _project(given: Given) -> "PlacedSetup | None":
 
 
 def placement_lines(found: Placement) -> Iterator[str]:
-    """A placement in lines."""
+    """Yield a placement in lines."""
     best, present = found.best, found.present
     if best is None:
         off_table = any(turn.table_is_too_small for turn in found.turns)
@@ -173,7 +173,7 @@ def _table(found: Placement, best: PartPlace) -> Iterator[str]:
 
 
 def _held(found: Placement, best: PartPlace) -> str:
-    """What the limits that are told do."""
+    """Return what the limits that are told do."""
     if not best.fits:
         return "these conflict:"
     return "it is held by" if found.goal == "margin" else f"nearest limit{'s' if len(found.limits) > 1 else ''}:"
@@ -196,7 +196,7 @@ def _clamped(place: PartPlace | TurnMargin) -> str:
 
 
 def _once(turn: float) -> float:
-    """A turn as it is told, from 0 up to 360 degrees."""
+    """Return a turn as it is told, from 0 up to 360 degrees."""
     return 0.0 if are_one_angle(turn, 0.0) else turn % 360.0
 
 
@@ -232,12 +232,12 @@ def _share(found: Placement) -> str:
 
 
 def _tried(found: Placement) -> str:
-    """What was tried, in a word."""
+    """Return what was tried, in a word."""
     return "tilted turn" if len({turn.tilt_deg for turn in found.turns}) > 1 else "turn"
 
 
 def _without_tilt(found: Placement) -> str | None:
-    """The best place of those that need no fixture angle, in words; None if none was tried."""
+    """Return the best place of those that need no fixture angle, in words; None if none was tried."""
     flat = [turn for turn in found.turns if turn.tilt_deg == 0.0]
     if not flat:
         return None
@@ -275,7 +275,7 @@ def _overlap(found: Placement) -> str:
 
 
 def _value(goal: str, place: PartPlace) -> str:
-    """The value of a goal in words."""
+    """Return the value of a goal in words."""
     what = {
         "rotary": "the rotary axes turn",
         "slides": "the slides travel",

@@ -22,7 +22,7 @@ def body_lines(found: Placement) -> Iterator[str]:
 
 
 def touch_line(found: Placement) -> str | None:
-    """What is said first where bodies touch everywhere; None where they do not."""
+    """Return what is said first where bodies touch everywhere; None where they do not."""
     if found.goal != "collisions" or found.touching is None:
         return None
     return f"{found.machine}: bodies touch wherever the part sits: {_apart(found.touching)}"

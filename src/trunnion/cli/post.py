@@ -95,7 +95,7 @@ def old_files_told(names: Sequence[str]) -> Iterator[None]:
 
 
 def simulation_of(given: Given) -> dict[str, object] | None:
-    """What the program is simulated with; None: it is not.
+    """Return what the program is simulated with; None: it is not.
 
     Raises
     ------
@@ -113,7 +113,9 @@ def simulation_of(given: Given) -> dict[str, object] | None:
 
 
 def _with_dialects(files: Iterator[list[Toolpath]]) -> Iterator[list[Toolpath]]:
-    """The toolpaths; says what each is written in as it comes, where that is not NX's CLSF, and those of an archive."""
+    """Yield the toolpaths; says what each is written in as it comes, where that is not NX's CLSF, and those of an
+    archive.
+    """
     for toolpaths in files:
         print_dialects(toolpaths)
         yield toolpaths

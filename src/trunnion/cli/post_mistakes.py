@@ -15,7 +15,7 @@ def names_project(files: Sequence[str]) -> bool:
 
 
 def post_mistake(given: Given) -> str:
-    """What does not go together, and the cure; empty where everything does."""
+    """Return what does not go together, and the cure; empty where everything does."""
     if names_project(given.cl):
         return _mistake_of_project(given)
     if given.machine is None:

@@ -35,7 +35,7 @@ def run(given: Given) -> int:
 
 
 def outputs_of(project: Project) -> list[str]:
-    """The programs of a project by their files; of operations those that are there."""
+    """Return the programs of a project by their files; of operations those that are there."""
     found: list[str] = []
     for setup in project.setups:
         by_operation = setup.division is Division.OPERATIONS

@@ -36,7 +36,7 @@ def run(given: Given) -> int:
 
 
 def reach_lines(found: Reach) -> Iterator[str]:
-    """What is reached, in lines: first what was asked about part and files, then the table over tilts."""
+    """Yield what is reached, in lines: first what was asked about part and files, then the table over tilts."""
     if found.part is not None:
         yield from _part_lines(found.part, found)
     for path in found.paths:
@@ -91,7 +91,7 @@ def _ranges(tilts: list[float], step: float) -> str:
 
 
 def _not_judged(found: Reach) -> str:
-    """What is not known of slides, in words, with what to give; empty where all are judged."""
+    """Return what is not known of slides, in words, with what to give; empty where all are judged."""
     slides, machine = found.unjudged_axes, found.machine
     if not slides:
         return ""

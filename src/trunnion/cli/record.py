@@ -20,7 +20,9 @@ def run(given: Given) -> int:
 
 
 def machine_password(user: str) -> str:
-    """The password of a user at a machine: asked for at a terminal, else the first line of stdin; empty for nobody."""
+    """Return the password of a user at a machine: asked for at a terminal, else the first line of stdin; empty for
+    nobody.
+    """
     if not user:
         return ""
     return getpass.getpass("Password: ") if sys.stdin.isatty() else sys.stdin.readline().rstrip("\r\n")

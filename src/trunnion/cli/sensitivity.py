@@ -27,7 +27,7 @@ def run(given: Given) -> int:
 
 
 def sensitivity_lines(found: Sensitivity) -> Iterator[str]:
-    """A sensitivity as a table."""
+    """Yield a sensitivity as a table."""
     wide = max(len(each.number.name) for each in found.numbers)
     yield f"{found.run.files[0]}: {counted(found.motions, 'motion')} at feed; workpiece zero {_zero_words(found)}"
     yield (

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 
 def announce(*, browser: bool) -> Callable[[str], None]:
-    """What to do when a page can be opened: print its address and, unless told not to, open it."""
+    """Return what to do when a page can be opened: print its address and, unless told not to, open it."""
 
     def ready(address: str) -> None:
         print(address, flush=True)

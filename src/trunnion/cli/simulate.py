@@ -34,7 +34,7 @@ def run(given: Given) -> int:
 
 
 def simulation_lines(found: SimulationResult) -> Iterator[str]:
-    """A simulation in lines."""
+    """Yield a simulation in lines."""
     for operation in found.operations:
         air = f", {operation.air:.0f} mm in air" if operation.air else ""
         yield (

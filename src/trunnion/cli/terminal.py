@@ -119,7 +119,7 @@ def check_unnamed(target: str, *, alone: bool = True) -> None:
 
 
 def output_folder(output: str | None) -> Path | None:
-    """The folder that takes results under the names of what they are made from; None: the output is one file.
+    """Return the folder that takes results under the names of what they are made from; None: the output is one file.
 
     Raises
     ------

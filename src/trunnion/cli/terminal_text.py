@@ -8,7 +8,7 @@ _STYLES: Final = {"error": "1;31", "warning": "33", "title": "1", "good": "32"}
 
 
 def painted(text: str, style: str, stream: TextIO | None = None) -> str:
-    """A text in the colour of its style, where the stream is a terminal that has colours."""
+    """Return a text in the colour of its style, where the stream is a terminal that has colours."""
     return f"\x1b[{_STYLES[style]}m{text}\x1b[0m" if _has_colours(stream or sys.stderr) else text
 
 
@@ -21,7 +21,7 @@ def _has_colours(stream: TextIO) -> bool:
 
 
 def severity_painted(line: str) -> str:
-    """A line of a message with its severity in colour."""
+    """Return a line of a message with its severity in colour."""
     for word in ("error", "warning"):
         before, mark, rest = line.partition(f": {word}: ")
         if mark:
@@ -30,10 +30,10 @@ def severity_painted(line: str) -> str:
 
 
 def error_line(where: str, what: str, code: str) -> str:
-    """A line about a command that cannot be understood."""
+    """Return a line about a command that cannot be understood."""
     return severity_painted(f"{where}: error: {what} [{code}]")
 
 
 def warning_line(where: str, what: str, code: str) -> str:
-    """A line about something that the command does all the same."""
+    """Return a line about something that the command does all the same."""
     return severity_painted(f"{where}: warning: {what} [{code}]")

@@ -54,7 +54,7 @@ def _announce(addresses: "TwinAddresses", given: Given) -> None:
 
 
 def _password() -> str:
-    """The password of a new user: asked for twice at a terminal, else the first line of stdin."""
+    """Return the password of a new user: asked for twice at a terminal, else the first line of stdin."""
     if not sys.stdin.isatty():
         return sys.stdin.readline().rstrip("\r\n")
     password = getpass.getpass("Password: ")

@@ -62,7 +62,10 @@ def _run_manifest(given: Given) -> int:
 
 
 def _control_hint(verification: Verification) -> str:
-    """A question where more blocks have errors than motions: the program may be for another control. Else empty."""
+    """Return a question where more blocks have errors than motions: the program may be for another control.
+
+    Else empty.
+    """
     run, machine = verification.run, verification.machine
     errors = len({one.line for one in run.diagnostics if one.severity is Severity.ERROR})
     if errors < max(_MANY_ERRORS, len(run)):

@@ -54,7 +54,7 @@ def run(given: Given) -> int:
 
 
 def _live(given: Given, shown: dict[str, Any]) -> tuple[ViewContent, LiveView]:
-    """What is shown of a machine that moves, and the machine; its program is shown where one is named."""
+    """Return what is shown of a machine that moves, and the machine; its program is shown where one is named."""
     if given.machine is None:
         raise InputError(argument_problem("machine", "is missing", "say which machine it is", code="ARG130"))
     access = {name: given.values[name] for name in _LIVE}

@@ -58,13 +58,13 @@ class _Work(Protocol):
     name: str
 
     def files(self) -> set[str]:
-        """The files that it reads."""
+        """Return the files that it reads."""
 
     def post(self, group: OutputGroup) -> tuple[bool, list[str]]:
         """Post it once: whether what is written may run, and what is written."""
 
     def outputs(self) -> list[str]:
-        """The files that it writes, as far as they are known."""
+        """Return the files that it writes, as far as they are known."""
 
 
 class _Warnings(Observer):
@@ -86,7 +86,7 @@ class _Told:
         self._work, self._now = work, now
 
     def files(self) -> set[str]:
-        """The files that the work reads."""
+        """Return the files that the work reads."""
         return self._work.files()
 
     def work(self, is_unchanged: Callable[[], bool]) -> None:
@@ -115,7 +115,7 @@ class _ChangedError(InputError):
 
 
 def _failure(error: TrunnionError | OSError, is_unchanged: bool) -> str:
-    """What a round that failed says, after its problems are printed."""
+    """Return what a round that failed says, after its problems are printed."""
     if isinstance(error, _ChangedError) or not is_unchanged:
         return "has changed while it was posted; it is posted again when it rests"
     if isinstance(error, OSError):
@@ -126,7 +126,7 @@ def _failure(error: TrunnionError | OSError, is_unchanged: bool) -> str:
 
 
 def _of_definition(machine: str) -> set[str]:
-    """The file of a machine, and what it may extend: also files of which no value counts yet."""
+    """Return the file of a machine, and what it may extend: also files of which no value counts yet."""
     return {machine, *mentioned_files(Path(machine))} if machine.endswith(".toml") else set()
 
 
@@ -140,7 +140,7 @@ class _ProjectWork:
         self._files = {self.name}
 
     def files(self) -> set[str]:
-        """The files that the project reads; while it is broken, those that it read before."""
+        """Return the files that the project reads; while it is broken, those that it read before."""
         try:
             self._project = load_project(Path(self.name))
             self._files = {str(file) for file in project_inputs(self._project)}
@@ -191,7 +191,7 @@ class _FilesWork:
         return code == 0, self.outputs()
 
     def outputs(self) -> list[str]:
-        """The programs that they become."""
+        """Return the programs that they become."""
         try:
             return list(files_by_target(self._given, load_machine(self._given.machine)))
         except (TrunnionError, OSError):

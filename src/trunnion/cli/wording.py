@@ -20,7 +20,7 @@ _SWITCH: Final = re.compile(r"\b([a-z_]+)=True\b")
 
 
 def in_command_words(text: str) -> str:
-    """A text of the library in the words of the command line."""
+    """Return a text of the library in the words of the command line."""
     text = _VALUE.sub(lambda found: f"{_option(found[1])} ", _SETTING.sub("--set ", text))
     return _SWITCH.sub(lambda found: _option(found[1]), text)
 
@@ -29,15 +29,15 @@ class CommandWords(Words):
     """Options in place of settings and arguments."""
 
     def setting(self, name: str, value: str) -> str:
-        """A setting with a value."""
+        """Return a setting with a value."""
         return f"--set {name}={value}"
 
     def argument(self, name: str, value: str) -> str:
-        """An option with a value."""
+        """Return an option with a value."""
         return f"{_option(name)} {value}"
 
     def switch(self, name: str) -> str:
-        """An option that is switched on."""
+        """Return an option that is switched on."""
         return _option(name)
 
 
@@ -45,13 +45,13 @@ _WORDS: Final = CommandWords()
 
 
 def problem_line(problem: Problem) -> str:
-    """A problem as the command line prints it."""
+    """Return a problem as the command line prints it."""
     called = _option(problem.argument) if problem.argument else ""
     return in_command_words(problem.line_of_text(_WORDS, called))
 
 
 def error_lines(error: TrunnionError) -> str:
-    """The problems of an error, each in its line, with the severity in colour on a terminal."""
+    """Return the problems of an error, each in its line, with the severity in colour on a terminal."""
     return "\n".join(severity_painted(problem_line(problem)) for problem in error.problems)
 
 
@@ -61,7 +61,7 @@ def _option(argument: str) -> str:
 
 @cache
 def _options() -> dict[str, str]:
-    """What the command line calls an argument of the library: its flag, or what stands in its place."""
+    """Return what the command line calls an argument of the library: its flag, or what stands in its place."""
     options = [option for job in JOBS.values() for option in job.options]
     by_place = {option.name: option.value_name.partition("|")[0] for option in options if not option.flag}
     return by_place | {option.name: option.flag for option in reversed(options) if option.flag} | _BY_PLACE

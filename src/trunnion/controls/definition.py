@@ -256,7 +256,7 @@ class Control:
         return SettingRule(SettingKind.NUMBER)
 
     def _printing_formats(self, name: str) -> set[str]:
-        """The formats in which templates print a number of this name."""
+        """Return the formats in which templates print a number of this name."""
         fields = chain.from_iterable(template.fields() for template in self.templates.values())
         return {number_format for field, number_format in fields if field == name and number_format in self.formats}
 

@@ -87,7 +87,7 @@ def literal_length(control: Control, text: str) -> str:
 
 
 def without_comments(control: Control, text: str) -> str:
-    """A line without its comments, by the signs with which the family's writer begins comments and messages."""
+    """Return a line without its comments, by the signs with which the family's writer begins comments and messages."""
     family = control.family
     starts = {line[:1] for line in (*family.comment("x"), *family.message(Message(0, 0, "x", True)))}
     text = re.sub(r"\([^()]*\)", "", text) if "(" in starts else text

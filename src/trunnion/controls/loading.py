@@ -163,7 +163,7 @@ def _read_format(entry: Table) -> FormatPair:
 
 
 def _read_inch_format(entry: Table, pair: Sequence[NumberFormat]) -> FormatPair:
-    """The formats of lengths in inches: limits as they are printed, ``part`` the inches of a printed unit."""
+    """Return the formats of lengths in inches: limits as they are printed, ``part`` the inches of a printed unit."""
     decimals = entry.integer("decimals", at_least=0, at_most=9)
     decimals_three_axis = entry.integer("decimals_three_axis", decimals, at_least=0, at_most=9)
     unit = MM_PER_INCH * entry.number("part", 1.0, above=0.0, at_most=1.0)
@@ -258,7 +258,7 @@ def _read_integers(table: Table, names: tuple[str, ...], complete: bool = True) 
 
 
 def _read_coolant(table: Table) -> dict[str, int]:
-    """The M codes of coolants; ``"none"`` takes away what the definition extends."""
+    """Return the M codes of coolants; ``"none"`` takes away what the definition extends."""
     codes = {name: table.integer(name, None, at_least=0, nothing="none") for name in COOLANTS}
     table.report_unread_keys()
     return {name: code for name, code in codes.items() if code is not None}
@@ -279,7 +279,7 @@ def _read_settings(table: Table, family: FamilyWriter) -> dict[str, str]:
 
 
 def _read_statements(table: Table) -> dict[str, str]:
-    """What becomes of CL statements; each is a line of the program, or nothing."""
+    """Return what becomes of CL statements; each is a line of the program, or nothing."""
     found = {statement: table.text(statement) for statement in table.names()}
     for statement, line in found.items():
         if any(ord(character) < 32 for character in line):
@@ -298,7 +298,7 @@ def _read_setting_rules(table: Table, settings: Table, family: FamilyWriter) -> 
 
 
 def _read_setting_meanings(table: Table, settings: Table, family: FamilyWriter) -> dict[str, str]:
-    """What each setting changes; the family explains its own."""
+    """Return what each setting changes; the family explains its own."""
     own = {name: table.text(name) for name in table.names()}
     for name in own:
         if name not in settings and name not in family.SETTING_CHOICES:
@@ -410,7 +410,7 @@ def _read_templates(table: Table, names: Sequence[str]) -> dict[str, Template]:
 
 
 def _read_text_template(table: Table, name: str, text: str) -> Template:
-    """A template with statements or expressions; Jinja is imported for the first one."""
+    """Return a template with statements or expressions; Jinja is imported for the first one."""
     from trunnion.controls.texts.template import text_template
 
     template, fault = text_template(name, text, *table.text_location(name))

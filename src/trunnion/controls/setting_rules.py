@@ -164,7 +164,7 @@ def _is_tool(text: str) -> bool:
 
 
 def tool_number(text: str) -> int | None:
-    """The number that a tool is called by; None for a name."""
+    """Return the number that a tool is called by; None for a name."""
     return int(text) if text.isdecimal() and text.isascii() else None
 
 

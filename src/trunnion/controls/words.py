@@ -117,7 +117,7 @@ class WordRangeError(InputError):
         self.what, self.row, self.line = what, row, line
 
     def at(self, file: str, line: int) -> "WordRangeError":
-        """The error with the file and the line of the CL file to which it belongs, unless it has them."""
+        """Return the error with the file and the line of the CL file to which it belongs, unless it has them."""
         return self if self.line else WordRangeError(self.what, self.row, file, line)
 
 

@@ -60,7 +60,7 @@ class EventBuilder:
         self._spindle_ran = False
 
     def build(self, events: Sequence[ProgramEvent], rows: Ints, line: int) -> tuple[Event, ...]:
-        """The events of an operation.
+        """Return the events of an operation.
 
         Parameters
         ----------
@@ -178,7 +178,7 @@ class EventBuilder:
 
 
 def _one_line(text: str) -> str:
-    """A text with blanks in the place of control characters, as a stray carriage return in a comment."""
+    """Return a text with blanks in the place of control characters, as a stray carriage return in a comment."""
     return "".join(character if character.isprintable() else " " for character in text)
 
 

@@ -49,11 +49,11 @@ class HeaderReader:
         return bool(re.fullmatch(r"G\d+", self._control.settings.get("work_offset", "")))
 
     def start_lines(self, events: Iterable[ProgramEvent]) -> set[int]:
-        """The lines of events where an operation begins."""
+        """Return the lines of events where an operation begins."""
         return self._matching_lines(events, self._patterns.first_lines("operation_start"))
 
     def end_lines(self, events: Iterable[ProgramEvent]) -> set[int]:
-        """The lines of comments where the end of an operation begins."""
+        """Return the lines of comments where the end of an operation begins."""
         comments = [event for event in events if event.kind == "comment"]
         return self._matching_lines(comments, self._patterns.first_lines(*_END_TEMPLATES))
 
@@ -88,7 +88,7 @@ class HeaderReader:
             }
 
     def _in_millimetres(self, section: ProgramSection) -> dict[str, str]:
-        """The values in a header, with those that are lengths in mm whatever the program counts in there."""
+        """Return the values in a header, with those that are lengths in mm whatever the program counts in there."""
         row = section.first_row
         if not (row < len(self._run) and self._run.state.inches[row]):
             return section.values
@@ -96,18 +96,18 @@ class HeaderReader:
         return {name: _in_mm(text) if name in lengths else text for name, text in section.values.items()}
 
     def _matching_lines(self, events: Iterable[ProgramEvent], patterns: Sequence[LinePattern]) -> set[int]:
-        """The lines of events in the main file that match one of the patterns."""
+        """Return the lines of events in the main file that match one of the patterns."""
         lines = {event.line for event in events if event.file == 0}
         return {line for line in lines if _matches_any(self._text.line_text(line), patterns)}
 
     def _path_lines(self, section: ProgramSection, next_line: int) -> tuple[int, int]:
-        """The lines of the first and the last row of a section; ``next_line`` for rows in a subprogram."""
+        """Return the lines of the first and the last row of a section; ``next_line`` for rows in a subprogram."""
         run = self._run
         first, last = (int(run.line[row]) if run.file[row] == 0 else next_line for row in section.rows[[0, -1]])
         return first, last
 
     def _plane_setting(self, first: int, end: int) -> dict[str, str]:
-        """The command for tilted planes that the lines of a header use, on controls with several."""
+        """Return the command for tilted planes that the lines of a header use, on controls with several."""
         texts = [text for _, text in self._text.line_texts(first, end)]
         for command in self._control.family.PLANE_COMMANDS if "plane" in self._control.settings else ():
             patterns = [pattern for pattern in self._patterns.of(f"plane_on_{command}") if not pattern.value_only]
@@ -116,7 +116,7 @@ class HeaderReader:
         return {}
 
     def offset_settings(self, section: ProgramSection) -> dict[str, str]:
-        """The work offset and the edge in force at the first row.
+        """Return the work offset and the edge in force at the first row.
 
         A work offset that is no G word is found in the header. On controls without edges the number is that of a tool
         length (H), which belongs to the tool.
@@ -141,7 +141,9 @@ def _matches_any(text: str, patterns: Iterable[LinePattern]) -> bool:
 
 
 def _last_block(lines: Sequence[tuple[int, str]], ended: set[int]) -> set[int]:
-    """The last of the lines that ``ended`` without another between them: an M5 before a STOP does not end the path."""
+    """Return the last of the lines that ``ended`` without another between them: an M5 before a STOP does not end the
+    path.
+    """
     block: set[int] = set()
     for number, text in reversed(lines):
         if number in ended:
@@ -159,6 +161,8 @@ def _first_event_at(lines: set[int], section: ProgramSection, events: Sequence[P
 
 
 def _in_mm(text: str) -> str:
-    """A number in inches as one in mm, with as many digits as inches of seven decimals have; another text as it is."""
+    """Return a number in inches as one in mm, with as many digits as inches of seven decimals have; another text as it
+    is.
+    """
     value = parse_number(text)
     return text if value is None else f"{_MM_PER_INCH * value:.5f}".rstrip("0").rstrip(".")

@@ -17,7 +17,7 @@ from trunnion.readers import KnownWord, known_words
 def carry_machine_words(
     toolpath: Toolpath, source: Machine, target: Machine | None
 ) -> tuple[Toolpath, tuple[Problem, ...]]:
-    """The toolpath of a program with the builder's words that mean the same on another machine.
+    """Return the toolpath of a program with the builder's words that mean the same on another machine.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class _Words:
         self._named: set[str] = set()
 
     def carried(self, events: Sequence[Event]) -> tuple[Event, ...]:
-        """The events with the words of the other machine."""
+        """Return the events with the words of the other machine."""
         found: list[Event] = []
         for event in events:
             if not isinstance(event, Insert):
@@ -80,7 +80,7 @@ class _Words:
         return tuple(found)
 
     def _declared(self, text: str) -> KnownWord | None:
-        """The declaration of a word; the longest that fits."""
+        """Return the declaration of a word; the longest that fits."""
         upper = " ".join(text.upper().split())
         fits = [word for word in self._known if _matches(word, upper)]
         return max(fits, key=lambda word: len(word.word), default=None)

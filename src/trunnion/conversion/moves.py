@@ -14,14 +14,14 @@ _DECIMALS = 9
 
 
 def build_moves(run: Run, rows: Ints, phase: Codes, warn: Warnings) -> Moves:
-    """The columns of the ``rows`` (n,) of a run; ``phase`` (n,) is a ``trunnion.model.toolpath.Phase`` each."""
+    """Return the columns of the ``rows`` (n,) of a run; ``phase`` (n,) is a ``trunnion.model.toolpath.Phase`` each."""
     feed, per_rev = _feeds(run, rows, warn)
     tip = np.round(run.tip[rows], _DECIMALS) + 0.0
     return Moves(tip, run.axis[rows], run.kind[rows], phase, feed, per_rev, run.line[rows])
 
 
 def build_arcs(run: Run, rows: Ints) -> Arcs:
-    """The arcs among the ``rows`` (n,)."""
+    """Return the arcs among the ``rows`` (n,)."""
     arc_rows = np.flatnonzero(run.kind[rows] == Kind.ARC)
     index = np.searchsorted(run.arcs.row, rows[arc_rows])
     return Arcs(
@@ -34,7 +34,7 @@ def build_arcs(run: Run, rows: Ints) -> Arcs:
 
 
 def _feeds(run: Run, rows: Ints, warn: Warnings) -> tuple[Floats, Flags]:
-    """Feeds (n,) in mm/min or mm/rev, and whether they are per revolution, (n,) bool.
+    """Return feeds (n,) in mm/min or mm/rev, and whether they are per revolution, (n,) bool.
 
     Rapids keep the feed in force; before the first cut it is NaN. Inverse-time feeds, and feeds along another path than
     that of the tip, are converted to mm/min of the tip.

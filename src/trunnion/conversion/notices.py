@@ -71,7 +71,7 @@ def without_notices(lines: Iterable[tuple[int, str]], family: FamilyWriter) -> l
 
 
 def _notices(operation: Operation, family: FamilyWriter) -> list[tuple[list[Message], str]]:
-    """The messages that are notices, each with those that go on with it, and the text of all of them."""
+    """Return the messages that are notices, each with those that go on with it, and the text of all of them."""
     notices: list[tuple[list[Message], str]] = []
     for message in operation.events:
         if not isinstance(message, Message) or message.display:
@@ -87,7 +87,9 @@ def _notices(operation: Operation, family: FamilyWriter) -> list[tuple[list[Mess
 
 
 def _joined(before: str, after: str, family: FamilyWriter) -> str:
-    """The text of two comments if the second goes on with the first, as the family would write it; else empty."""
+    """Return the text of two comments if the second goes on with the first, as the family would write it; else
+    empty.
+    """
     written = [_text(line) for line in family.comment(before)]
     for between in ("", " "):
         lines = [_text(line) for line in family.comment(before + between + after)]

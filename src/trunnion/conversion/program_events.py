@@ -70,14 +70,14 @@ def collect_events(run: Run, text: ProgramText, warn: Warnings) -> list[ProgramE
 
 
 def _row_before(run: Run, event: RunEvent) -> int:
-    """The row before which an event is written. M5 and M9 act after the motion of their own block."""
+    """Return the row before which an event is written. M5 and M9 act after the motion of their own block."""
     row = event.before_row
     late = event.kind in ("spindle", "coolant") and event.value == "off" and row > 0
     return row - 1 if late and (run.line[row - 1], run.file[row - 1]) == (event.line, event.file) else row
 
 
 def _compensation_lines(run: Run, text: ProgramText) -> dict[tuple[int, int], int]:
-    """The lines of G40, G41 and G42, also in blocks without motion, by the row that follows and the side."""
+    """Return the lines of G40, G41 and G42, also in blocks without motion, by the row that follows and the side."""
     found: dict[tuple[int, int], int] = {}
     for line, words in text.sparse_words():
         for side in (_SIDE_OF_WORD[word] for word in words if word in _SIDE_OF_WORD):
@@ -86,7 +86,9 @@ def _compensation_lines(run: Run, text: ProgramText) -> dict[tuple[int, int], in
 
 
 def _compensations(run: Run, text: ProgramText, own_lines: Mapping[tuple[int, int], int]) -> Iterator[ProgramEvent]:
-    """Changes of cutter radius compensation: side, plane and register; the reader does not simulate its effect."""
+    """Yield changes of cutter radius compensation: side, plane and register; the reader does not simulate its
+    effect.
+    """
     side, column = 0, run.state.compensation
     for row, value in zip(column.rows.tolist(), column.values.tolist(), strict=True):
         if value == side or row > len(run):
@@ -104,7 +106,9 @@ def _compensations(run: Run, text: ProgramText, own_lines: Mapping[tuple[int, in
 
 
 def _without_tool_calls(events: list[ProgramEvent]) -> list[ProgramEvent]:
-    """The events without ``T`` words that only name the tool of the tool change that follows at the same place."""
+    """Return the events without ``T`` words that only name the tool of the tool change that follows at the
+    same place.
+    """
     tools = [event for event in events if event.kind in ("tool", "tool_change")]
     calls = {
         one.order

@@ -36,7 +36,7 @@ class ProgramText:
         self.line_count = len(self._line_starts) - 1
 
     def line_text(self, number: int) -> str:
-        """A line without its block skip sign and block number."""
+        """Return a line without its block skip sign and block number."""
         begin, end = self._line_starts[number - 1], self._line_starts[number] - 1
         line = decode(self._data[begin:end], self._encoding).rstrip("\r")
         prefix = self._prefix.match(line) if line.startswith(self._prefix_starts) else None
@@ -47,7 +47,7 @@ class ProgramText:
         return [(number, self.line_text(number)) for number in range(first, min(end, self.line_count + 1))]
 
     def skip_changes(self) -> Iterator[tuple[int, bool]]:
-        """The lines where block skip signs begin (True) and where they end (False)."""
+        """Yield the lines where block skip signs begin (True) and where they end (False)."""
         begins = np.frombuffer(self._data + b"\n", np.uint8)[self._line_starts[:-1]]
         filled = np.flatnonzero((begins != _NEWLINE) & (begins != _RETURN))
         skipped = begins[filled] == _SLASH
@@ -55,7 +55,7 @@ class ProgramText:
             yield int(filled[change]) + 1, bool(skipped[change])
 
     def sparse_words(self) -> Iterator[tuple[int, list[str]]]:
-        """The lines with words that dense motion does not repeat, and these words in capitals."""
+        """Yield the lines with words that dense motion does not repeat, and these words in capitals."""
         line, words = 0, list[str]()
         for match in self._word_pattern.finditer(self._data):
             if match[1] is None:

@@ -113,7 +113,7 @@ def assign_events(
     coolants: Mapping[int, str],
     template_lines: Collection[int],
 ) -> list[list[ProgramEvent]]:
-    """The events of each section.
+    """Return the events of each section.
 
     An event outside of all sections belongs to the next one, or to the last if none follows. Every operation of a
     toolpath switches its coolant on itself, so a section in which coolant keeps running gets the event that did it; as
@@ -141,7 +141,7 @@ def assign_events(
 
 
 def _coolant_running(events: Sequence[ProgramEvent], coolants: Mapping[int, str]) -> ProgramEvent | None:
-    """The event that switched on the coolant still running after ``events``."""
+    """Return the event that switched on the coolant still running after ``events``."""
     last = next((event for event in reversed(events) if _is_coolant(event, coolants)), None)
     return None if last is None or last.value == "off" else last
 

@@ -27,7 +27,7 @@ _SAME_TOLERANCE = 5e-6
 def settings_from_headers(
     control: Control, headers: Iterable[tuple[int, str, Mapping[str, str]]], warn: Warnings
 ) -> dict[str, str]:
-    """The settings that give the same headers again, without defaults.
+    """Return the settings that give the same headers again, without defaults.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def settings_from_headers(
 
 
 def transfer_settings(settings: Mapping[str, str], control: Control, target: Control) -> dict[str, str]:
-    """The settings of a program for one control that another has too, and with the same meaning.
+    """Return the settings of a program for one control that another has too, and with the same meaning.
 
     A default of the program's own control that is another one on the target is stated.
     """
@@ -86,7 +86,8 @@ def _differing_defaults(control: Control, target: Control) -> dict[str, str]:
 
 
 def _modes_by_method(settings: Mapping[str, str], control: Control, target: Control) -> dict[str, str]:
-    """Settings of the target that follow from the machining method, for what those of the program say of the method.
+    """Return settings of the target that follow from the machining method, for what those of the program say of the
+    method.
 
     A mode that stands for several methods is that of the roughest.
     """
@@ -103,7 +104,7 @@ def _modes_by_method(settings: Mapping[str, str], control: Control, target: Cont
 
 
 def parse_number(text: str | None) -> float | None:
-    """The number in a text; None if it is not one."""
+    """Return the number in a text; None if it is not one."""
     try:
         return float(text) if text else None
     except ValueError:
@@ -141,7 +142,7 @@ def _warn_of_one_value(warn: Warnings, line: int, what: str, name: str) -> None:
 
 
 def _header_settings(control: Control, values: Mapping[str, str]) -> tuple[dict[str, str], dict[str, str]]:
-    """The settings in a header, and what follows from others."""
+    """Return the settings in a header, and what follows from others."""
     given = {name: value for name, value in values.items() if name in control.settings}
     intol, outtol = parse_number(values.get("intol")), parse_number(values.get("outtol"))
     default = control.settings.get("method", "")

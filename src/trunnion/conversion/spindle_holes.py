@@ -47,14 +47,14 @@ class HoleRows:
     dwells: frozenset[int] = frozenset()
 
     def tips(self, tips: Floats) -> Floats:
-        """The ``tips`` (k, 3) with the points of the holes."""
+        """Return the ``tips`` (k, 3) with the points of the holes."""
         found = tips.copy()
         for index, point in self.points.items():
             found[index] = point
         return found
 
     def without_own_events(self, events: Sequence[ProgramEvent], rigid_tap: str) -> list[ProgramEvent]:
-        """The program events without the dwells of cycles, and without the word that makes taps rigid (M29)."""
+        """Return the program events without the dwells of cycles, and without the word that makes taps rigid (M29)."""
         coupling = rigid_tap.removeprefix("M") if self.points else ""
         return [
             event
@@ -64,7 +64,7 @@ class HoleRows:
         ]
 
     def with_cycles(self, events: tuple[Event, ...]) -> tuple[Event, ...]:
-        """The events of an operation with those of the cycles."""
+        """Return the events of an operation with those of the cycles."""
         return tuple(sorted([*self.before, *events, *self.after], key=lambda event: event.row))
 
 
@@ -84,7 +84,7 @@ class _Made:
 
 
 def read_spindle_holes(run: Run, rows: Ints, events: Sequence[ProgramEvent], warn: Warnings) -> HoleRows:
-    """The holes of an operation with the ``rows`` (n,) and the program events ``events``."""
+    """Return the holes of an operation with the ``rows`` (n,) and the program events ``events``."""
     inside = [hole for hole in run.spindle_holes if len(rows) and rows[0] <= hole.first and hole.end - 1 <= rows[-1]]
     made = [one for one in (_made(run, rows, hole, events, warn) for hole in inside) if one is not None]
     if not made:
@@ -190,7 +190,7 @@ def _values(
     heights: tuple[float, float, float],
     events: Sequence[ProgramEvent],
 ) -> list[tuple[str, tuple[float, ...]]]:
-    """The couplets of a cycle; ``heights``: RAPTO, FEDTO and RTRCTO, mm."""
+    """Return the couplets of a cycle; ``heights``: RAPTO, FEDTO and RTRCTO, mm."""
     work = hole.work
     clearance, depth, retract = (round(height, 6) for height in heights)
     values: list[tuple[str, tuple[float, ...]]] = [("RAPTO", (clearance,)), ("FEDTO", (-depth,))]

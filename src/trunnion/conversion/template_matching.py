@@ -49,11 +49,11 @@ class TemplatePatterns:
         self._choices |= {name: word for name, word in control.settings.items() if _M_WORD.fullmatch(word)}
 
     def of(self, *names: str) -> list[LinePattern]:
-        """The lines of all templates whose names begin with one of ``names``, in the order of ``names``."""
+        """Return the lines of all templates whose names begin with one of ``names``, in the order of ``names``."""
         return [line for template in self._named(names) for line in self._lines(template)]
 
     def first_lines(self, *names: str) -> list[LinePattern]:
-        """The first line of each of these templates, unless it is only a value."""
+        """Return the first line of each of these templates, unless it is only a value."""
         firsts = [self._lines(template)[:1] for template in self._named(names)]
         return [line for lines in firsts for line in lines if not line.value_only]
 
@@ -66,7 +66,7 @@ class TemplatePatterns:
 
 
 def family_value_expressions(control: Control) -> dict[str, str]:
-    """The values that a family derives from its settings: name -> regular expression of all it can be.
+    """Return the values that a family derives from its settings: name -> regular expression of all it can be.
 
     Only values that are words, such as ``M128`` or ``FUNCTION TCPM …``. Where a setting is a number, any number fits.
     """
@@ -93,7 +93,7 @@ def line_patterns(
     family_values: Mapping[str, str],
     choices: Mapping[str, str] | None = None,
 ) -> list[LinePattern]:
-    """The lines of templates as patterns.
+    """Return the lines of templates as patterns.
 
     known          values that are the same in every program of the machine
     settings       the defaults of the control: their form is the form of the values
@@ -138,7 +138,9 @@ def _line_pattern(
 
 
 def _literal(text: str) -> str:
-    """What stands between the fields of a template as an expression; ``[[`` and ``]]`` enclose what may be absent."""
+    """Return what stands between the fields of a template as an expression; ``[[`` and ``]]`` enclose what may be
+    absent.
+    """
     return re.escape(text).replace(r"\[\[", "(?:").replace(r"\]\]", ")?")
 
 

@@ -114,7 +114,7 @@ class _ToolpathBuilder:
         return Conversion(toolpath, settings, warnings, errors)
 
     def _sections(self, events: Sequence[ProgramEvent], starts: set[int]) -> list[ProgramSection]:
-        """The sections that move the tool at the workpiece; ``starts`` are the lines where operations begin."""
+        """Return the sections that move the tool at the workpiece; ``starts`` are the lines where operations begin."""
         ends = self._headers.end_lines(events) if starts else set[int]()
         sections = split_program(events, len(self._run), starts, ends)
         known = known_positions(self._run)
@@ -125,7 +125,7 @@ class _ToolpathBuilder:
         return [section for section in sections if section.stretches]
 
     def _divided(self, sections: Sequence[ProgramSection], events: Sequence[ProgramEvent]) -> list[ProgramSection]:
-        """The sections with one stretch each, with the work offset and edge of each."""
+        """Return the sections with one stretch each, with the work offset and edge of each."""
         divided = divide_sections(events, sections, self._run, self._warn)
         for section in divided:
             section.values |= self._headers.offset_settings(section) if section.part > 1 else {}
@@ -171,7 +171,7 @@ class _ToolpathBuilder:
         )
 
     def _with_length_number(self, events: tuple[Event, ...], section: ProgramSection) -> tuple[Event, ...]:
-        """The events with the number of the tool length (H) at each tool change that has another tool number."""
+        """Return the events with the number of the tool length (H) at each tool change that has another tool number."""
         numbers = self._run.edge[section.rows]
         numbers = numbers[numbers > 0]
         if not len(numbers) or not self._reader.uses_length_numbers:

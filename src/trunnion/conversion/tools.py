@@ -6,7 +6,7 @@ from trunnion.model.toolpath import Tool
 
 
 def build_tool(values: dict[str, str], called: str, control: Control) -> Tool:
-    """The cutter of an operation.
+    """Return the cutter of an operation.
 
     values   values of the header; gets the settings with which the tool is called as in the program
     called   the tool as the program calls it, by number or name; empty if it calls none

@@ -76,7 +76,7 @@ def workpiece_stretches(
 
 
 def without_turns_in_place(run: Run, rows: Ints, blocks: Collection[tuple[int, int]]) -> Ints:
-    """The ``rows`` (n,) of a stretch without those that turn rotary axes about the tool axis, at rest under TCP.
+    """Return the ``rows`` (n,) of a stretch without those that turn rotary axes about the tool axis, at rest under TCP.
 
     They are moves of the machine (at the pole, for instance): posting plans its own. Those stay whose
     block switches something off after the motion.
@@ -98,7 +98,7 @@ def without_turns_in_place(run: Run, rows: Ints, blocks: Collection[tuple[int, i
 
 
 def _with_arc_start(run: Run, known: Flags, stretch: Ints, warn: Warnings) -> Ints:
-    """The rows of a stretch, and the one before if the first is an arc: that needs its start point."""
+    """Return the rows of a stretch, and the one before if the first is an arc: that needs its start point."""
     first = int(stretch[0])
     if run.kind[first] != Kind.ARC:
         return stretch

@@ -16,7 +16,9 @@ def report_duplicates(table: Table, form: Callable[[str], Hashable]) -> None:
 
 
 def statement_form(key: str) -> Hashable:
-    """A CL statement without what does not matter in it: case, blanks, and the order of what is behind the slash."""
+    """Return a CL statement without what does not matter in it: case, blanks, and the order of what is behind the
+    slash.
+    """
     major, _, words = "".join(key.upper().split()).partition("/")
     return major, frozenset(_word(word) for word in words.split(",") if word)
 

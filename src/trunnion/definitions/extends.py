@@ -43,11 +43,11 @@ class _Draft:
     data: bytes
 
     def open(self, _mode: str) -> io.BytesIO:
-        """The text, as a file would give it."""
+        """Return the text, as a file would give it."""
         return io.BytesIO(self.data)
 
     def is_file(self) -> bool:
-        """It can be read."""
+        """Return whether it can be read."""
         return True
 
 
@@ -66,7 +66,7 @@ def _shipped(name: str, library: Library) -> _DefinitionFile:
 
 
 def _with_article(kind: str) -> str:
-    """A kind of definition as messages name one."""
+    """Return a kind of definition as messages name one."""
     what = kind if kind == "definition" else f"{kind} definition"
     return f"{'an' if what[0] in 'aeiou' else 'a'} {what}"
 
@@ -93,7 +93,7 @@ def _read(source: _DefinitionFile, kind: str = "machine") -> LocatedValue:
 
 @lru_cache(maxsize=32)
 def _parse(label: str, data: bytes) -> LocatedValue:
-    """The values of a file: a post needs those of its control four times."""
+    """Return the values of a file: a post needs those of its control four times."""
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -132,7 +132,7 @@ def _syntax_problem(label: str, text: str, message: str) -> Problem:
 
 
 def _parent(extends: LocatedValue, child: _DefinitionFile, library: Library) -> _DefinitionFile:
-    """The file that ``extends`` names; the child may reach the library and its own folder, nothing else."""
+    """Return the file that ``extends`` names; the child may reach the library and its own folder, nothing else."""
     file, line, name = extends.file, extends.line, extends.value
     if not isinstance(name, str):
         cure = 'write one name, such as extends = "generic_head_table_bc"'
@@ -206,7 +206,7 @@ def _is_file(location: Library | _Draft) -> bool:
 
 
 def _identity(source: _DefinitionFile) -> object:
-    """What tells a file from others, by whatever path it was found."""
+    """Return what tells a file from others, by whatever path it was found."""
     if not isinstance(source.location, Path):
         return source.label
     with suppress(OSError):

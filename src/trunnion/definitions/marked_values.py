@@ -64,7 +64,7 @@ def _is_plain(value: LocatedValue) -> bool:
 
 
 def _text_of(file: str) -> str:
-    """The text of a definition; empty for what is in no file."""
+    """Return the text of a definition; empty for what is in no file."""
     try:
         return Path(file).read_text(encoding="utf-8-sig").replace("\r\n", "\n")
     except (OSError, ValueError):

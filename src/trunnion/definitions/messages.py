@@ -15,7 +15,7 @@ _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)")
 
 
 def as_written(value: object) -> str:
-    """A value as it would stand in the file, cut short."""
+    """Return a value as it would stand in the file, cut short."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
@@ -31,7 +31,8 @@ def as_written(value: object) -> str:
 
 
 def did_you_mean(word: str, known: Iterable[str], other_names: Mapping[str, str] = _NO_NAMES) -> str:
-    """A question for the known word that resembles an unknown one, or has it as another name; empty if none does.
+    """Return a question for the known word that resembles an unknown one, or has it as another name; empty if none
+    does.
 
     ``other_names`` are in small letters, and in letters alone.
     """
@@ -41,19 +42,19 @@ def did_you_mean(word: str, known: Iterable[str], other_names: Mapping[str, str]
 
 
 def a_number(key: str) -> str:
-    """The words "a number", with the unit of the key."""
+    """Return the words "a number", with the unit of the key."""
     unit = unit_of(key)
     return f"a number in {unit}" if unit else "a number"
 
 
 def in_unit(key: str, separator: str) -> str:
-    """The words "in" and the unit of the key, after a separator; empty if it has none."""
+    """Return the words "in" and the unit of the key, after a separator; empty if it has none."""
     unit = unit_of(key)
     return f"{separator}in {unit}" if unit else ""
 
 
 def bounds(above: float | None, at_least: float | None, at_most: float | None) -> str:
-    """The bounds of a number in words, after a blank; empty if there are none."""
+    """Return the bounds of a number in words, after a blank; empty if there are none."""
     parts = [
         f"above {above:g}" if above is not None else "",
         f"of at least {at_least:g}" if at_least is not None else "",
@@ -64,12 +65,14 @@ def bounds(above: float | None, at_least: float | None, at_most: float | None) -
 
 
 def unquoted(key: str, value: object) -> str:
-    """A hint how to write a number that is in quotes, after a comma; empty if there is none in ``value``."""
+    """Return a hint how to write a number that is in quotes, after a comma; empty if there is none in ``value``."""
     found = _NUMBER.match(value.strip()) if isinstance(value, str) else None
     return f", without quotes and unit: {key} = {found.group()}" if found else ""
 
 
 def in_quotes(key: str, value: object) -> str:
-    """A hint how to write as a text a number that is not in quotes, after a colon; empty if ``value`` is none."""
+    """Return a hint how to write as a text a number that is not in quotes, after a colon; empty if ``value``
+    is none.
+    """
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
     return f': {key} = "{value}"' if is_number else ""

@@ -6,7 +6,9 @@ from trunnion.definitions.expected import GREATEST
 
 
 def finite(value: object) -> float | None:
-    """The number that a TOML value is, or None if it is too large or none; true and false are no numbers here."""
+    """Return the number that a TOML value is, or None if it is too large or none; true and false are no
+    numbers here.
+    """
     if isinstance(value, bool) or not isinstance(value, int | float):
         return None
     try:
@@ -17,7 +19,7 @@ def finite(value: object) -> float | None:
 
 
 def magnitude(value: object) -> str:
-    """The bounds of all numbers in words, after a comma, if a number is beyond them; else empty."""
+    """Return the bounds of all numbers in words, after a comma, if a number is beyond them; else empty."""
     numbers = [item for item in (value if isinstance(value, list) else [value]) if isinstance(item, int | float)]
     return (
         f", from {-GREATEST:g} to {GREATEST:g}" if any(GREATEST < abs(number) < math.inf for number in numbers) else ""
@@ -25,14 +27,14 @@ def magnitude(value: object) -> str:
 
 
 def decimals(value: object, n: int) -> str:
-    """What to write instead of decimal commas, which make more numbers of an array than it should have."""
+    """Return what to write instead of decimal commas, which make more numbers of an array than it should have."""
     if not isinstance(value, list) or len(value) <= n or any(not isinstance(each, int) for each in value[1:]):
         return ""
     return "; decimals stand behind a point, such as 90.5"
 
 
 def finite_numbers(value: object) -> tuple[float, ...] | None:
-    """The finite numbers in a TOML array; None if it holds anything else, or is no array."""
+    """Return the finite numbers in a TOML array; None if it holds anything else, or is no array."""
     numbers = [finite(item) for item in value] if isinstance(value, list) else [None]
     found = tuple(number for number in numbers if number is not None)
     return found if len(found) == len(numbers) else None

@@ -35,7 +35,7 @@ def _files(value: LocatedValue) -> Iterator[str]:
 
 
 def _short_names(files: list[str]) -> Mapping[str, str]:
-    """The name of each file without its folder, where no other one has the same."""
+    """Return the name of each file without its folder, where no other one has the same."""
     names = [PurePath(file.replace("\\", "/")).name for file in files]
     return {file: name if names.count(name) == 1 else file for file, name in zip(files, names, strict=True)}
 
@@ -47,7 +47,7 @@ def _is_tables(value: LocatedValue) -> bool:
 def _table(
     table: LocatedValue, path: tuple[str, ...], names: Mapping[str, str], marks: Mapping[tuple[str, int], str]
 ) -> Iterator[str]:
-    """The lines of a table: values first, then the tables in it."""
+    """Yield the lines of a table: values first, then the tables in it."""
     content = table.value if isinstance(table.value, dict) else {}
     for key, item in content.items():
         if not isinstance(item.value, dict) and not _is_tables(item) and key != "extends":

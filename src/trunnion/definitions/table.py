@@ -115,17 +115,19 @@ class Table:
         return key in self._values
 
     def to_dict(self) -> dict[str, object]:
-        """The whole table as plain dicts, lists and scalars. Does not count as reading."""
+        """Return the whole table as plain dicts, lists and scalars. Does not count as reading."""
         plain = _plain(self.content)
         assert isinstance(plain, dict)
         return plain
 
     def unread_copy(self) -> "Table":
-        """The same table with no key read and no problem noted."""
+        """Return the same table with no key read and no problem noted."""
         return self.other(self.content, [])
 
     def other(self, content: LocatedValue, problems: list[Problem], path: str | None = None) -> "Table":
-        """An unread table that notes what is asked where this one does; its path is this one's unless it is given."""
+        """Return an unread table that notes what is asked where this one does; its path is this one's unless it is
+        given.
+        """
         return Table(
             content, self.path if path is None else path, problems, questions=self.questions, sources=self.sources
         )
@@ -163,7 +165,9 @@ class Table:
         self.problems.append(Problem(file, line, wording.of_key(path), subject=key_subject(path)))
 
     def _own_line(self) -> int:
-        """The line of the one key that the last file to change the table states besides its name, or of its header."""
+        """Return the line of the one key that the last file to change the table states besides its name, or of its
+        header.
+        """
         lines = [each.line for key, each in self._values.items() if each.file == self.file and key != "name"]
         return lines[0] if len(lines) == 1 else self.line
 
@@ -460,7 +464,7 @@ def in_order(problems: Iterable[Problem]) -> list[Problem]:
 
 
 def _told(default: object) -> object:
-    """A default as a file could state it; None where there is none."""
+    """Return a default as a file could state it; None where there is none."""
     return None if isinstance(default, Required) else list(default) if isinstance(default, tuple) else default
 
 

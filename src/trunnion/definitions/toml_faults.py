@@ -55,7 +55,7 @@ def toml_fault(text: str, line: int, message: str) -> TomlFault:
 
 
 def _unclosed(lines: list[str], line: int, message: str) -> TomlFault | None:
-    """A text or a list that does not end, at the line where it begins."""
+    """Return a text or a list that does not end, at the line where it begins."""
     for quotes in ("'''", '"""'):
         if message == f"Expected {quotes!r}" or (message == "Unterminated string" and quotes in "\n".join(lines)):
             begins = [k for k, each in enumerate(lines, 1) if each.count(quotes) % 2]
@@ -84,7 +84,7 @@ def _unclosed(lines: list[str], line: int, message: str) -> TomlFault | None:
 
 
 def _of_list(content: str) -> tuple[str, str] | None:
-    """What is wrong with the values in a line of a list, and the cure; None if that is not known."""
+    """Return what is wrong with the values in a line of a list, and the cure; None if that is not known."""
     key, equals, values = content.rpartition("=")
     values = _without_comment(values.strip())
     if {'"', "'"} & set(values):
@@ -100,7 +100,7 @@ def _of_list(content: str) -> tuple[str, str] | None:
 
 
 def _header_above(lines: list[str], line: int) -> str:
-    """The name of the table that a line stands in; empty for the top of the file."""
+    """Return the name of the table that a line stands in; empty for the top of the file."""
     for each in reversed(lines[: line - 1]):
         if each.lstrip().startswith("["):
             return each.partition("#")[0].strip(" \t\r[]")
@@ -108,7 +108,7 @@ def _header_above(lines: list[str], line: int) -> str:
 
 
 def _of_line(content: str, message: str, table: str = "") -> tuple[str, str] | None:
-    """What is wrong with a line of a table, and the cure; None if that is not known."""
+    """Return what is wrong with a line of a table, and the cure; None if that is not known."""
     if content.startswith("["):
         return _of_header(content)
     if _COMMENT.match(content):
@@ -182,6 +182,6 @@ def _of_value(key: str, value: str, message: str) -> tuple[str, str] | None:
 
 
 def _without_comment(value: str) -> str:
-    """A value without the comment behind it, if no text begins before that."""
+    """Return a value without the comment behind it, if no text begins before that."""
     before = value.partition("#")[0]
     return before.strip() if not {'"', "'"} & set(before) else value

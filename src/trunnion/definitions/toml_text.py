@@ -38,7 +38,9 @@ def _quoted(text: str) -> str:
 
 
 def _visible(text: str) -> str:
-    """A text with an escape for each character that nobody sees, or that a terminal obeys; line ends and tabs stay."""
+    """Return a text with an escape for each character that nobody sees, or that a terminal obeys; line ends and tabs
+    stay.
+    """
     if text.isprintable():
         return text
     return "".join(letter if is_seen(letter) or letter in "\n\t" else _escape(letter) for letter in text)

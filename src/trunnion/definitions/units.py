@@ -22,7 +22,7 @@ UNITS: Final[Mapping[str, str]] = {
 
 
 def unit_of(key: str) -> str:
-    """Unit that the end of a key names, in words; empty if it names none.
+    """Return unit that the end of a key names, in words; empty if it names none.
 
     >>> unit_of("rapid_deg_min")
     'degrees per minute'
@@ -31,7 +31,7 @@ def unit_of(key: str) -> str:
 
 
 def without_unit(key: str) -> str:
-    """A key without the end that names its unit.
+    """Return a key without the end that names its unit.
 
     >>> without_unit("rapid_deg_min")
     'rapid'

@@ -118,11 +118,11 @@ class EarlierJob:
         self._write({self._key(file): "" for file in files})
 
     def _known(self) -> list[tuple[Path, str]]:
-        """The files of the record, and what is known of each."""
+        """Return the files of the record, and what is known of each."""
         return [(self._folder / name, known) for name, known in self._known_by_name().items()]
 
     def _known_by_name(self) -> dict[str, str]:
-        """The record without its owner."""
+        """Return the record without its owner."""
         return {name: known for name, known in self._digests.items() if name != _OWNER}
 
     def _write(self, digests: dict[str, str]) -> None:
@@ -138,7 +138,7 @@ class EarlierJob:
             _forget_oldest(self._record.parent)
 
     def _key(self, file: Path) -> str:
-        """What a file is called in the record: its name, or its whole path if it is in another folder."""
+        """Return what a file is called in the record: its name, or its whole path if it is in another folder."""
         return os.path.normcase(file.name if file.parent == self._folder else file)
 
     def _read(self) -> dict[str, str]:

@@ -23,14 +23,14 @@ class HiddenFolders:
         self._folders: dict[Path, Path] = {}
 
     def beside(self, place: OutputPlace) -> Path:
-        """The hidden folder beside a file, from which it can be moved and need not be copied."""
+        """Return the hidden folder beside a file, from which it can be moved and need not be copied."""
         try:
             return self._make(place.path.parent, f".{place.path.name[:_NAME_LENGTH]}.")
         except OSError as error:
             raise cannot_write(place.name, error) from None
 
     def temporary(self) -> Path:
-        """A folder for files that have no place of their own."""
+        """Return a folder for files that have no place of their own."""
         try:
             return self._make(Path(tempfile.gettempdir()), "trunnion-")
         except OSError as error:
@@ -57,7 +57,7 @@ class HiddenFolders:
                 del self._folders[parent]
 
     def bring(self, file: Path, place: OutputPlace) -> Path:
-        """A complete file, copied if need be into a folder from which it can be moved to its place."""
+        """Return a complete file, copied if need be into a folder from which it can be moved to its place."""
         own = self.beside(place)
         try:
             if own not in file.parents:

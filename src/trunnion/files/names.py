@@ -18,7 +18,7 @@ _MOST_BYTES: Final = 255
 
 
 def name_fault(path: PurePosixPath) -> str:
-    """What is wrong with a relative path as that of a file that is written; empty if every system takes it.
+    """Return what is wrong with a relative path as that of a file that is written; empty if every system takes it.
 
     A name that begins with a point is wrong, too: such files are settings of other programs, and hidden.
 

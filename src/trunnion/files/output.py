@@ -197,7 +197,9 @@ class OutputFiles:
             self.remember()
 
     def bring(self, hidden: HiddenFolders, *, main: bool = True) -> list[tuple[Path, OutputPlace]]:
-        """The complete files where they can be moved to their places from; ``main``: the first one is among them."""
+        """Return the complete files where they can be moved to their places from; ``main``: the first one is among
+        them.
+        """
         files = self._program_files(main=main)
         files += [(path, place) for path, place in self.papers if not place.is_stream]
         return [(hidden.bring(path, place), place) for path, place in files]
@@ -333,7 +335,7 @@ def _fill(files: OutputFiles) -> Iterator[OutputFiles]:
 def atomic_file(
     target: str | os.PathLike[str] | OutputPlace, *, inputs: Iterable[str | os.PathLike[str]] = ()
 ) -> Iterator[BinaryIO]:
-    """The sink of a single file, as ``atomic_output`` makes it.
+    """Yield the sink of a single file, as ``atomic_output`` makes it.
 
     Its ``name`` is the path at which the file can be read back after a flush.
     """

@@ -31,7 +31,7 @@ class OutputGroup:
         papers: Iterable[OutputPlace] = (),
         inputs: Iterable[str | os.PathLike[str]] = (),
     ) -> Iterator[OutputFiles]:
-        """The files of a job, as ``atomic_output`` has them; none appears before the group is published.
+        """Yield the files of a job, as ``atomic_output`` has them; none appears before the group is published.
 
         Raises
         ------

@@ -16,7 +16,7 @@ from trunnion.messages import Wording
 
 @dataclass(frozen=True, slots=True)
 class OutputPlace:
-    """A file that is going to be written.
+    """Note a file that is going to be written.
 
     name       as the caller wrote it
     path       of the file itself, behind symbolic links
@@ -71,7 +71,7 @@ def resolve_output(file: object) -> OutputPlace:
 
 
 def _file_name(file: object) -> str:
-    """The name as text."""
+    """Return the name as text."""
     name = os.fspath(file) if isinstance(file, str | os.PathLike) else None
     if not isinstance(name, str):
         raise InputError(Problem(f"{file!r:.60}", 0, Wording("FIL210", "no_name_file")))
@@ -104,19 +104,21 @@ def _new_file(name: str) -> Path:
 
 
 def _in_writable_folder(name: str, path: Path) -> Path:
-    """The path, unless its folder takes no new files: a file appears by being moved there."""
+    """Return the path, unless its folder takes no new files: a file appears by being moved there."""
     if not os.access(path.parent, os.W_OK | os.X_OK):
         raise cannot_write(name, PermissionError(13, f"nothing may be written into {path.parent}"))
     return path
 
 
 def cannot_write(name: str, error: OSError) -> InputError:
-    """The error for a file that the system does not let us write."""
+    """Return the error for a file that the system does not let us write."""
     return InputError(Problem(name, 0, Wording("FIL230", "cannot_written", strerror=error.strerror or error)))
 
 
 def file_on_disk(name: str | os.PathLike[str]) -> str:
-    """The file that a name leads to: itself, or the archive that holds it (``jobs.zip`` of ``jobs.zip/top.cls``)."""
+    """Return the file that a name leads to: itself, or the archive that holds it (``jobs.zip`` of
+    ``jobs.zip/top.cls``).
+    """
     text = os.fspath(name)
     try:
         return next((str(path) for path in (Path(text), *Path(text).parents) if path.is_file()), text)
@@ -125,7 +127,7 @@ def file_on_disk(name: str | os.PathLike[str]) -> str:
 
 
 def file_identity(path: str | os.PathLike[str]) -> Hashable:
-    """The same for all names of a file, hard links too; for what does not exist, the same for all spellings."""
+    """Return the same for all names of a file, hard links too; for what does not exist, the same for all spellings."""
     try:
         found = Path(path).stat()
         if found.st_ino:
@@ -139,7 +141,9 @@ def file_identity(path: str | os.PathLike[str]) -> Hashable:
 
 
 def _entry(path: Path) -> Hashable:
-    """The same for two names of one place in one folder, also where small letters are other ones than capitals."""
+    """Return the same for two names of one place in one folder, also where small letters are other ones than
+    capitals.
+    """
     return file_identity(path.parent), path.name.casefold()
 
 
@@ -165,7 +169,7 @@ class Claims:
             self._check_input(place)
 
     def write(self, place: OutputPlace) -> None:
-        """A file that is going to be written.
+        """Note a file that is going to be written.
 
         Raises
         ------
@@ -186,7 +190,7 @@ class Claims:
             )
 
     def release(self, place: OutputPlace) -> None:
-        """A file that is not going to be written after all."""
+        """Forget a file that is not going to be written after all."""
         self._written.pop(place.entry, None)
 
     def _check_input(self, place: OutputPlace) -> None:

@@ -32,7 +32,7 @@ def check_stream(stream: object, argument: str) -> None:
 
 
 def stream_name(stream: object) -> str:
-    """What messages call a stream."""
+    """Return what messages call a stream."""
     name = getattr(stream, "name", None)
     return name if isinstance(name, str) else "the stream"
 

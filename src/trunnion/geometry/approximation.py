@@ -15,7 +15,8 @@ _CORRECTIONS: Final = 8
 
 
 def approximate(points: Floats, parameters: Floats, tolerance: float) -> BSplineCurve:
-    """A cubic curve from the first to the last point that passes all others within a tolerance, by least squares.
+    """Return a cubic curve from the first to the last point that passes all others within a tolerance, by least
+    squares.
 
     It has the fewest control points with which this way of placing knots succeeds: knots are placed so that each
     interval has points (Piegl and Tiller, The NURBS Book, equations 9.68 and 9.69), then parameters and curve are
@@ -50,7 +51,7 @@ def approximate(points: Floats, parameters: Floats, tolerance: float) -> BSpline
 
 
 def _within(points: Floats, parameters: Floats, count: int, tolerance: float) -> BSplineCurve | None:
-    """A curve with so many control points, if it passes all points within a tolerance."""
+    """Return a curve with so many control points, if it passes all points within a tolerance."""
     at = parameters
     for _ in range(_CORRECTIONS):
         curve = _least_squares(points, at, count)
@@ -64,7 +65,7 @@ def _within(points: Floats, parameters: Floats, count: int, tolerance: float) ->
 
 
 def _least_squares(points: Floats, parameters: Floats, count: int) -> BSplineCurve:
-    """The curve with so many control points whose points at the parameters are nearest; its ends are exact."""
+    """Return the curve with so many control points whose points at the parameters are nearest; its ends are exact."""
     knots = _knots(parameters, count)
     matrix = import_extra("scipy.interpolate", "geometry").BSpline.design_matrix(parameters, knots, DEGREE)
     ends = matrix[:, [0, count - 1]] @ points[[0, -1]]

@@ -34,7 +34,7 @@ class BSplineCurve:
         return np.asarray(self.derivatives(parameters, 0)[0])
 
     def derivatives(self, parameters: Floats, order: int) -> Floats:
-        """The curve and its derivatives with respect to the parameter up to ``order``, (order + 1, m, 3).
+        """Return the curve and its derivatives with respect to the parameter up to ``order``, (order + 1, m, 3).
 
         Those of a rational curve follow from its homogeneous form by Leibniz's rule (Piegl and Tiller, The NURBS Book,
         equation 4.8).

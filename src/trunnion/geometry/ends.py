@@ -32,7 +32,9 @@ class Tangent:
     is_derivative: bool = False
 
     def derivative(self, chords: float) -> Vector:
-        """The derivative with respect to the parameter of a curve whose chords are ``chords`` mm long together."""
+        """Return the derivative with respect to the parameter of a curve whose chords are ``chords`` mm long
+        together.
+        """
         if self.is_derivative:
             return self.vector
         scale = chords / math.hypot(*self.vector)
@@ -57,7 +59,7 @@ class Ends:
 
 
 def parse_end(argument: str, text: object) -> End:
-    """An end from ``natural``, ``tangent:X,Y,Z`` or ``derivative:X,Y,Z``.
+    """Return an end from ``natural``, ``tangent:X,Y,Z`` or ``derivative:X,Y,Z``.
 
     Raises
     ------

@@ -15,7 +15,7 @@ from trunnion.messages import Wording
 def interpolate(
     points: Floats, parameters: Floats, ends: Ends | None = None, weights: Floats | None = None
 ) -> BSplineCurve:
-    """The cubic curve through points, twice continuously differentiable, with a knot at each point.
+    """Return the cubic curve through points, twice continuously differentiable, with a knot at each point.
 
     Parameters
     ----------

@@ -72,7 +72,7 @@ class PointTable:
 
 
 def scaled(table: PointTable, scale: float) -> PointTable:
-    """The points of a table times a number."""
+    """Return the points of a table times a number."""
     return replace(table, points=table.points * scale)
 
 
@@ -86,7 +86,7 @@ class _Columns:
 
 
 def read_point_table(file: Path) -> list[PointTable]:
-    """The curves of a table, in the order of their columns.
+    """Return the curves of a table, in the order of their columns.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def read_point_table(file: Path) -> list[PointTable]:
 
 
 def parse_point_table(file: str, text: str) -> list[PointTable]:
-    """The curves of a table's text; ``file`` is for messages. Errors as ``read_point_table`` raises them."""
+    """Return the curves of a table's text; ``file`` is for messages. Errors as ``read_point_table`` raises them."""
     rows = list(_rows(text))
     if not rows:
         raise InputError(Problem(file, 0, Wording("IMP111", "holds_no_points")))
@@ -132,7 +132,7 @@ def parse_point_table(file: str, text: str) -> list[PointTable]:
 
 
 def too_many(count: int) -> Wording:
-    """What is wrong with so many points."""
+    """Return what is wrong with so many points."""
     return Wording("IMP120", "too_many", count=count, most=MOST_POINTS)
 
 
@@ -172,7 +172,7 @@ def _unnamed(file: str, line: int, cells: Sequence[str]) -> list[_Columns]:
 
 
 def _named(file: str, line: int, cells: Sequence[str]) -> list[_Columns]:
-    """The curves that the names of columns tell of."""
+    """Return the curves that the names of columns tell of."""
     found: dict[str, dict[str, tuple[int, float]]] = {}
     problems, curves = list[Problem](), []
     for place, cell in enumerate(cells):
@@ -212,7 +212,10 @@ def _named(file: str, line: int, cells: Sequence[str]) -> list[_Columns]:
 def _table(
     file: str, columns: _Columns, rows: Sequence[tuple[int, list[str]]], width: int, problems: list[Problem]
 ) -> PointTable:
-    """The points of a curve; adds what is wrong with its cells. Where it ends before the others, cells are empty."""
+    """Return the points of a curve; adds what is wrong with its cells.
+
+    Where it ends before the others, cells are empty.
+    """
     points, lines = list[list[float]](), list[int]()
     ended = 0
     for line, cells in rows:
@@ -241,7 +244,7 @@ def _table(
 
 
 def _no_number(cell: str) -> Wording:
-    """What is wrong with a cell: a comma may be meant as the decimal sign, and part columns instead."""
+    """Return what is wrong with a cell: a comma may be meant as the decimal sign, and part columns instead."""
     parts = cell.replace(",", ".").split()
     if _number(cell) is None and parts and all(_number(part) is not None for part in parts):
         return Wording("IMP112", "no_number_but_commas", cell=repr(cell))

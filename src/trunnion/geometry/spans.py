@@ -45,7 +45,9 @@ class Span:
 
 
 def spans_between(curve: BSplineCurve, parameters: Floats, natural: BSplineCurve) -> list[Span]:
-    """The spans of a curve between parameters (n,) that rise; ``natural`` is the curve that ``bend`` is told from."""
+    """Return the spans of a curve between parameters (n,) that rise; ``natural`` is the curve that ``bend`` is told
+    from.
+    """
     lengths = curve.lengths(parameters)
     found: list[Span] = []
     for first in range(0, len(parameters) - 1, _CHUNK):

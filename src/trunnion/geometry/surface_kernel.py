@@ -64,7 +64,7 @@ def _basis(knots: Floats, degree: int, count: int, at: float, table: Floats2, ou
 
 @inner
 def _slope(knots: Floats, degree: int, span: int, j: int, table: Floats2) -> float:
-    """The derivative of the basis function ``j`` of a degree."""
+    """Return the derivative of the basis function ``j`` of a degree."""
     i = span - degree + j
     value = 0.0
     if j > 0:

@@ -51,7 +51,8 @@ class BSplineSurface:
 
 
 def loft(curves: Sequence[BSplineCurve]) -> BSplineSurface:
-    """The surface through curves, each at its own v: of two the ruled one, else a spline along v of up to degree 3.
+    """Return the surface through curves, each at its own v: of two the ruled one, else a spline along v of up to degree
+    3.
 
     Points of the curves with the same u are joined. The places along v are as far apart as the curves are on average.
 

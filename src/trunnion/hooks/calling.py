@@ -121,7 +121,7 @@ class Hooks:
         return found
 
     def _remarks(self, file: HookFile, before: Operation, after: Sequence[Operation]) -> list[Problem]:
-        """What a file of hooks has changed in an operation, as warnings."""
+        """Return what a file of hooks has changed in an operation, as warnings."""
         if len(after) == 1 and after[0] is before:
             return []
         what = _motion_change(before, after)
@@ -180,7 +180,7 @@ class _Caller:
         self._watched: list[tuple[Operation, bytes]] = []
 
     def given(self, operation: Operation) -> Operation:
-        """The operation as a function gets it: a copy of its own, that is watched."""
+        """Return the operation as a function gets it: a copy of its own, that is watched."""
         copy = detached(operation)
         self._watched.append((copy, fingerprint(copy)))
         return copy
@@ -207,13 +207,13 @@ class _Caller:
             raise InputError(failure(self._file.path, error, f"{name} fails for operation {operation.name}")) from error
 
     def refuse(self, name: str, wording: Wording) -> InputError:
-        """The error for what a function has returned."""
+        """Return the error for what a function has returned."""
         return InputError(
             Problem(str(self._file.path), self._file.line_of(name), wording.within("returned", name=name))
         )
 
     def listed(self, name: str, returned: object, kind: type[_Kind]) -> list[_Kind]:
-        """What a function has returned, as a list."""
+        """Return what a function has returned, as a list."""
         found = [returned] if isinstance(returned, kind) else returned
         if isinstance(found, Sequence) and not isinstance(found, str) and all(isinstance(each, kind) for each in found):
             return list(found)
@@ -221,7 +221,7 @@ class _Caller:
         raise self.refuse(name, Wording("HOK130", "value_type", name=type(returned).__name__, word=word))
 
     def events(self, operation: Operation, given: Operation) -> tuple[Event, ...]:
-        """The events of an operation as ``on_event`` leaves them, which gets those of its copy ``given``."""
+        """Return the events of an operation as ``on_event`` leaves them, which gets those of its copy ``given``."""
         found: list[Event] = []
         for event, copy in zip(operation.events, given.events, strict=True):
             returned = self("on_event", copy, given)
@@ -238,7 +238,7 @@ class _Caller:
         return tuple(found)
 
     def block_events(self, operation: Operation, given: Operation) -> tuple[Event, ...]:
-        """The events of an operation with those that ``on_block`` adds, behind the others of their rows."""
+        """Return the events of an operation with those that ``on_block`` adds, behind the others of their rows."""
         added: list[Event] = []
         for block in _blocks(operation.moves):
             returned = self("on_block", block, given)
@@ -251,7 +251,7 @@ class _Caller:
         return tuple(sorted((*operation.events, *added), key=lambda event: event.row))
 
     def checked_events(self, events: Iterable[Event], rows: int) -> tuple[Event, ...]:
-        """The events of an operation that ``on_operation`` has returned."""
+        """Return the events of an operation that ``on_operation`` has returned."""
         found = []
         for event in events:
             self._check_types("on_operation", event)
@@ -273,7 +273,7 @@ class _Caller:
 
 
 def _plain_operation(call: _Caller, before: Operation, given: Operation, operation: Operation) -> Operation:
-    """An operation that a hook has returned, checked as a reader's is by the way it is made.
+    """Return an operation that a hook has returned, checked as a reader's is by the way it is made.
 
     The hook may keep what it has got (``given``) and what it returns, and change it later: none of it goes on.
     """

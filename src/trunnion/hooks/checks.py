@@ -57,7 +57,7 @@ def fingerprint(operation: Operation) -> bytes:
 
 
 def _header_fault(operation: Operation) -> str:
-    """What no CL file could state of an operation besides its motion; empty if there is none."""
+    """Return what no CL file could state of an operation besides its motion; empty if there is none."""
     tool, frame = operation.tool, operation.frame
     for what, record in (("tool", tool), ("coordinate system", frame)):
         fault = value_fault(record)
@@ -80,7 +80,9 @@ def _header_fault(operation: Operation) -> str:
 
 
 def value_fault(record: Event | Tool | Frame) -> str:
-    """The first value of a record that is of another type, or that no CL file could have; empty if there is none."""
+    """Return the first value of a record that is of another type, or that no CL file could have; empty if there is
+    none.
+    """
     kind: type = type(record)
     hints = _hints(kind)
     for each in fields(record):

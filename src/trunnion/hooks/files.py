@@ -35,7 +35,7 @@ class HookFile:
     functions: dict[str, Callable[..., object]]
 
     def line_of(self, name: str) -> int:
-        """The line of a function, 0 if it is not in the file."""
+        """Return the line of a function, 0 if it is not in the file."""
         code = getattr(self.functions[name], "__code__", None)
         return code.co_firstlineno if code is not None and code.co_filename == str(self.path) else 0
 
@@ -96,7 +96,7 @@ def _check_signature(path: Path, name: str, function: Callable[..., object]) -> 
 
 
 def failure(path: Path, error: BaseException, what: str) -> Problem:
-    """The problem that an exception is, at the line of the file where it came about."""
+    """Return the problem that an exception is, at the line of the file where it came about."""
     line, trace = 0, error.__traceback__
     while trace is not None:
         if trace.tb_frame.f_code.co_filename == str(path):

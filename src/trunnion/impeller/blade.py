@@ -123,7 +123,7 @@ class Blade:
         return self._distances(points, np.full(len(points), np.inf))
 
     def nearer(self, points: Floats, known: Floats) -> Floats:
-        """The distance of points (k, 3) to the blade, mm, or a known one (k,) where that is less.
+        """Return the distance of points (k, 3) to the blade, mm, or a known one (k,) where that is less.
 
         It takes little time where the blade is far away.
         """
@@ -150,7 +150,7 @@ class Samples(NamedTuple):
 
 @lru_cache(maxsize=16)
 def _samples(blade: Blade) -> Samples:
-    """The samples of a blade, kept as it is asked again and again."""
+    """Return the samples of a blade, kept as it is asked again and again."""
     grid = np.empty((_ALONG * _ACROSS, 4))
     bounds = np.empty((-(-_ALONG // _BLOCK) * _BLOCKS_ACROSS, 4))
     blade_samples(blade.data, grid, bounds)
@@ -239,7 +239,8 @@ def _slopes(frame: Floats2, x: float, y: float, z: float) -> tuple[float, float,
 def _step(
     slopes: tuple[float, float, float, float, float], w: float, v: float, low: float, high: float
 ) -> tuple[float, float]:
-    """The next parameters by Newton's method, or down the slope where the gap does not curve upwards; both in range.
+    """Return the next parameters by Newton's method, or down the slope where the gap does not curve upwards; both in
+    range.
 
     A parameter at an end that the gap falls towards stays there.
     """
@@ -303,7 +304,7 @@ def _far(balls: Floats2, n: int, point: Floats) -> float:
 
 @inner
 def _nearest(samples: Samples, point: Floats, place: int) -> int:
-    """The place whose ball is nearest to a point; one that may be it is given.
+    """Return the place whose ball is nearest to a point; one that may be it is given.
 
     A block whose balls cannot be as near as one that is found already is left out.
     """

@@ -80,7 +80,7 @@ class ImpellerDefinition:
     files: tuple[str, ...] = ()
 
     def problem(self, key: str, wording: Wording) -> Problem:
-        """A mistake that a key makes; it is told at the line of its table where the key is not written."""
+        """Return a mistake that a key makes; it is told at the line of its table where the key is not written."""
         table = key.rpartition(".")[0]
         file, line = self.places.get(key) or self.places.get(table) or (self.file, 0)
         return Problem(file, line, wording, subject=key_subject(key))
@@ -128,7 +128,7 @@ def read_impeller_table(root: Table, path: Path) -> ImpellerDefinition:
 
 
 def _tools(root: Table) -> tuple[LibraryTool, ...]:
-    """The tools; their names stand in CL files and programs."""
+    """Return the tools; their names stand in CL files and programs."""
     tools = read_tool_tables(root)
     for table in root.tables("tool"):
         read_name(table, "tool")
@@ -141,7 +141,7 @@ def _places(*tables: Table) -> dict[str, tuple[str, int]]:
 
 
 def _edges(blade: Table) -> str:
-    """The trailing edge; a leading edge is round."""
+    """Return the trailing edge; a leading edge is round."""
     blade.text("leading_edge", "round", one_of=("round",))
     return blade.text("trailing_edge", "cut", one_of=EDGES)
 
@@ -166,7 +166,7 @@ def _premachined(stock: Table) -> tuple[StepKind, ...]:
 
 
 def _sections(blade: Table, path: Path) -> tuple[PointTable, ...]:
-    """The blade's curves; mistakes in the table of points are added to those of the definition."""
+    """Return the blade's curves; mistakes in the table of points are added to those of the definition."""
     file = blade.text("points")
     scale = blade.number("scale", 1.0, above=0.0, at_most=1000.0)
     names = blade.texts("curves")

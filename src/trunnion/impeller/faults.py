@@ -43,7 +43,7 @@ def direction_faults(definition: ImpellerDefinition) -> Iterator[Problem]:
 
 
 def section_faults(definition: ImpellerDefinition, curves: Sequence[BSplineCurve]) -> Iterator[Problem]:
-    """What is wrong with the sections of a blade."""
+    """Yield what is wrong with the sections of a blade."""
     thickness = max(definition.hub_thickness, definition.tip_thickness)
     for table, curve in zip(definition.sections, curves, strict=True):
         yield from _crossings(table, curve, thickness)
@@ -62,7 +62,7 @@ def section_faults(definition: ImpellerDefinition, curves: Sequence[BSplineCurve
 
 
 def _crossings(table: PointTable, curve: BSplineCurve, thickness: float) -> Iterator[Problem]:
-    """The first place where a section comes so near to itself that the blade would meet itself."""
+    """Yield the first place where a section comes so near to itself that the blade would meet itself."""
     at = np.linspace(0.0, 1.0, _SAMPLES + 1)
     points = curve.points(at)
     lengths = np.r_[0.0, np.cumsum(curve.lengths(at))]
@@ -78,14 +78,14 @@ def _crossings(table: PointTable, curve: BSplineCurve, thickness: float) -> Iter
 
 
 def _line(table: PointTable, place: Floats) -> int:
-    """The line of the point that is nearest to a place."""
+    """Return the line of the point that is nearest to a place."""
     return table.lines[int(np.linalg.norm(table.points - place, axis=1).argmin())]
 
 
 def blade_faults(
     definition: ImpellerDefinition, blades: Sequence[tuple[Blade, float]], hub: Profile, shroud: Profile
 ) -> Iterator[Problem]:
-    """What is wrong between the blades, and between them, hub and shroud."""
+    """Yield what is wrong between the blades, and between them, hub and shroud."""
     first, _ = blades[0]
     w, v = (grid.ravel() for grid in np.meshgrid(np.linspace(0.0, 1.0, 41), np.linspace(0.0, 1.0, 13)))
     centre, half = first.frames(w, v)[0], first.halves(w, v)
@@ -120,7 +120,7 @@ def blade_faults(
 def fillet_faults(
     definition: ImpellerDefinition, centres: Floats, radius: float, blades: Sequence[tuple[Blade, float]]
 ) -> Iterator[Problem]:
-    """A fillet that has no room between two blades; ``centres`` (k, 3) are those of its ball."""
+    """Yield a fillet that has no room between two blades; ``centres`` (k, 3) are those of its ball."""
     limit = definition.stock.diameter / 2.0
     inside = centres[np.hypot(centres[:, 0], centres[:, 1]) <= limit]
     for other, angle in (blades[1], blades[-1]):
@@ -135,12 +135,12 @@ def fillet_faults(
 
 
 def no_place(definition: ImpellerDefinition, error: FilletError) -> Problem:
-    """A fillet that finds no place, at the row of the points that is nearest to where it finds none."""
+    """Return a fillet that finds no place, at the row of the points that is nearest to where it finds none."""
     table, (problem,) = definition.sections[0], error.problems
     return Problem(table.file, _line(table, error.place), problem.wording.within("near_this_point"))
 
 
 def _turn(angle: float) -> Floats:
-    """The matrix that multiplies rows of points to turn them about Z by minus an angle in radians."""
+    """Return the matrix that multiplies rows of points to turn them about Z by minus an angle in radians."""
     cosine, sine = np.cos(angle), np.sin(angle)
     return np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]])

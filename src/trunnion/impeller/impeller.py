@@ -112,7 +112,7 @@ def _raise_errors(problems: Iterable[Problem]) -> tuple[Problem, ...]:
 def _blade(
     definition: ImpellerDefinition, curves: tuple[BSplineCurve, ...], surface: BSplineSurface, start: float
 ) -> Blade:
-    """The blade that begins at a share of its length; its round edges end where the measured points end."""
+    """Return the blade that begins at a share of its length; its round edges end where the measured points end."""
     half = np.array([definition.hub_thickness, definition.tip_thickness]) / 2.0
     ends = curves[0], curves[-1]
     leading = [_at_length(curve, start, radius) for curve, radius in zip(ends, half, strict=True)]
@@ -128,14 +128,14 @@ def _blade(
 
 
 def _at_length(curve: BSplineCurve, share: float, more: float) -> float:
-    """The parameter at a share of a curve's length, and so many mm farther on."""
+    """Return the parameter at a share of a curve's length, and so many mm farther on."""
     at = np.linspace(0.0, 1.0, 2001)
     lengths = np.r_[0.0, np.cumsum(curve.lengths(at))]
     return float(np.interp(share * lengths[-1] + more, lengths, at))
 
 
 def _beyond_stock(definition: ImpellerDefinition, curve: BSplineCurve, radius: float) -> float:
-    """The parameter at which a curve that goes straight on beyond its end is outside of the stock with its edge.
+    """Return the parameter at which a curve that goes straight on beyond its end is outside of the stock with its edge.
 
     Raises
     ------

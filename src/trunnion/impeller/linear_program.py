@@ -34,7 +34,7 @@ SIMPLEX: Final[_Attempts] = (
 def solve_linear_program(
     cost: Floats, rows: Any, limits: Floats, bounds: Sequence[tuple[float | None, float | None]], attempts: _Attempts
 ) -> Floats | None:
-    """The x of least cost · x, with rows · x ≤ limits and within bounds; None if no attempt finds it."""
+    """Return the x of least cost · x, with rows · x ≤ limits and within bounds; None if no attempt finds it."""
     solve = import_extra("scipy.optimize", "impeller").linprog
 
     for method, options in attempts:

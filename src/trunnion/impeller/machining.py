@@ -139,14 +139,14 @@ class _StepMaker:
         self._obstacles: Obstacles | None = None
 
     def make(self, step: MachiningStep) -> StepPaths:
-        """The paths of a step."""
+        """Return the paths of a step."""
         tool = next(each for each in self._impeller.definition.tools if each.number == step.tool)
         if step.kind in ROUND_STEPS:
             return self._round(step, tool)
         return self._flanks(step, tool) if step.kind is StepKind.FLANK_MILLING else self._five_axis(step, tool)
 
     def _round(self, step: MachiningStep, tool: LibraryTool) -> StepPaths:
-        """A step that goes round the part."""
+        """Return a step that goes round the part."""
         impeller, half, chord = self._impeller, tool.sizes.diameter / 2.0, _PASS_SHARE * step.tolerance
         if step.kind is StepKind.STOCK_ROUGHING:
             width = step.stepover.on(half)
@@ -173,7 +173,7 @@ class _StepMaker:
         return FreeSpace.around(stock, step.clearance[3], half, outline, np.concatenate(list(axes)))
 
     def _five_axis(self, step: MachiningStep, tool: LibraryTool) -> StepPaths:
-        """A step that is made once and copied to each blade or channel."""
+        """Return a step that is made once and copied to each blade or channel."""
         obstacles = self._bodies()
         shape, radius = tool.shape(), tool.sizes.diameter / 2.0
         cutter, shank, holder, _ = step.clearance
@@ -246,7 +246,7 @@ class _StepMaker:
         return in_all
 
     def _families(self, step: MachiningStep, radius: float) -> Iterator[tuple[PassFamily, list[float]]]:
-        """The families of a step, and the angles of their copies about Z."""
+        """Yield the families of a step, and the angles of their copies about Z."""
         impeller, chord = self._impeller, _PASS_SHARE * step.tolerance
         pitch = 2.0 * np.pi / impeller.definition.number
         if step.kind in (StepKind.CHANNEL_ROUGHING, StepKind.HUB_FINISH):
@@ -274,7 +274,7 @@ class _StepMaker:
             yield family.turned(first), [0.0, *(angle - first for angle in rest)]
 
     def _root_blend(self, step: MachiningStep, radius: float, chord: float) -> RootBlend:
-        """What is wanted of a root blend: it reaches as far as the balls that went before could not."""
+        """Return what is wanted of a root blend: it reaches as far as the balls that went before could not."""
         largest = {StepKind.HUB_FINISH: radius, StepKind.BLADE_FINISH: radius}
         for other in self._impeller.definition.steps:
             if other.kind in largest:
@@ -285,18 +285,20 @@ class _StepMaker:
 
 
 def _kinds_of_blades(impeller: Impeller) -> list[Blade]:
-    """The blade, and the splitter if there is one."""
+    """Return the blade, and the splitter if there is one."""
     return [impeller.blade] if impeller.splitter is None else [impeller.blade, impeller.splitter]
 
 
 def _climbing(flank: BladeFlank) -> tuple[Pass, Floats]:
-    """The pass of a side with the blade on its right, so that a tool that turns clockwise climbs, and its axes."""
+    """Return the pass of a side with the blade on its right, so that a tool that turns clockwise climbs, and
+    its axes.
+    """
     one, axis = flank.as_pass()
     return (one.backwards(), axis[::-1]) if flank.side > 0.0 else (one, axis)
 
 
 def operation_names(impeller: Impeller, step: MachiningStep) -> tuple[str, ...]:
-    """The names of the operations of a step: one for each blade or channel, or one round the part."""
+    """Return the names of the operations of a step: one for each blade or channel, or one round the part."""
     if step.kind in ROUND_STEPS:
         return (step.name,)
     return _copy_names(step, impeller.definition.number * len(_kinds_of_blades(impeller)))
@@ -315,7 +317,7 @@ def _named(
 
 
 def _kept(step: MachiningStep, tool: LibraryTool, clearance: Sequence[PartClearance]) -> float:
-    """The share of the wanted clearances that is kept.
+    """Return the share of the wanted clearances that is kept.
 
     Raises
     ------

@@ -46,7 +46,9 @@ class Material:
 
 
 def full_stock(impeller: Impeller) -> Material:
-    """The stock before anything is cut; without a form that can be milled round Z, it has the form of the shroud."""
+    """Return the stock before anything is cut; without a form that can be milled round Z, it has the form of the
+    shroud.
+    """
     stock = impeller.definition.stock
     rim = stock.diameter / 2.0
     try:
@@ -61,7 +63,7 @@ def full_stock(impeller: Impeller) -> Material:
 
 
 def material_before(impeller: Impeller) -> tuple[Material, ...]:
-    """What stands before each step of the definition, and what after the last one."""
+    """Return what stands before each step of the definition, and what after the last one."""
     definition = impeller.definition
     now = full_stock(impeller)
     for kind in definition.premachined:
@@ -91,7 +93,7 @@ def order_problems(impeller: Impeller, chosen: Sequence[str] = ()) -> Iterator[P
 
 
 def _one_turn(impeller: Impeller, step: MachiningStep, radius: float) -> Iterator[Problem]:
-    """The warning about a step down that takes all that stands beside the form in one turn."""
+    """Yield the warning about a step down that takes all that stands beside the form in one turn."""
     definition, stock = impeller.definition, impeller.definition.stock
     try:
         heights, form = shroud_form(impeller, step.allowance)
@@ -136,7 +138,7 @@ def side_problems(
 def _too_much(
     file: str, step: MachiningStep, steps: Sequence[MachiningStep], place: int, sizes: tuple[float, float]
 ) -> Problem:
-    """The warning about a step that finds more than it can take: how much, its ball's radius."""
+    """Return the warning about a step that finds more than it can take: how much, its ball's radius."""
     stands, radius = sizes
     is_form = step.kind in (StepKind.STOCK_FINISHING, StepKind.CHANNEL_ROUGHING)
     clears = _CLEARS[is_form]
@@ -184,7 +186,7 @@ def _radius(impeller: Impeller, step: MachiningStep) -> float:
 
 
 def _leaves(step: MachiningStep, radius: float) -> tuple[float, float]:
-    """What a step leaves at most on the form or the blades, and on the hub."""
+    """Return what a step leaves at most on the form or the blades, and on the hub."""
     across = _ridge(radius, step.stepover.scallop, step.stepover.distance)
     match step.kind:
         case StepKind.STOCK_ROUGHING:
@@ -198,14 +200,14 @@ def _leaves(step: MachiningStep, radius: float) -> tuple[float, float]:
 
 
 def _ridge(radius: float, scallop: float, apart: float) -> float:
-    """The height of the ridge between passes of a ball on a plane."""
+    """Return the height of the ridge between passes of a ball on a plane."""
     if scallop:
         return scallop
     return radius - math.sqrt(max(radius**2 - apart**2 / 4.0, 0.0))
 
 
 def _after(now: Material, kind: StepKind, side: float, hub: float) -> Material:
-    """What stands after a step that leaves so much on the form or the blades, and on the hub."""
+    """Return what stands after a step that leaves so much on the form or the blades, and on the hub."""
     blades = side if now.blades is None else min(now.blades, side)
     match kind:
         case StepKind.STOCK_ROUGHING | StepKind.STOCK_FINISHING:

@@ -21,7 +21,8 @@ _INTO: Final = 0.25
 
 
 def turned_mesh(outline: Floats, segments: int) -> TriangleMesh:
-    """The body that a polygon (k, 2) of radius and height sweeps about Z; its first and last points are on the axis.
+    """Return the body that a polygon (k, 2) of radius and height sweeps about Z; its first and last points are on the
+    axis.
 
     The polygon goes round the body's half section so that the body is on its right.
     """
@@ -41,7 +42,7 @@ def turned_mesh(outline: Floats, segments: int) -> TriangleMesh:
 
 
 def blade_mesh(blade: Blade, along: int, around: int, across: int) -> TriangleMesh:
-    """A blade from ``low`` to ``high``: ``across`` rings of points round it."""
+    """Return a blade from ``low`` to ``high``: ``across`` rings of points round it."""
     w = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, along))
     turn = np.linspace(0.0, 1.0, around + 2)[1:-1]
     rings = []
@@ -73,7 +74,7 @@ def _lid(ring: Ints, along: int, around: int) -> Ints:
 
 
 def fillet_mesh(fillet: Fillet, radius: float, steps: int) -> TriangleMesh:
-    """The body between fillet, blade and hub, which goes a little into both."""
+    """Return the body between fillet, blade and hub, which goes a little into both."""
     count = len(fillet.centre)
     share = np.linspace(0.0, 1.0, steps + 1)[None, :, None]
     a, b = fillet.to_blade[:, None], fillet.to_hub[:, None]
@@ -105,13 +106,13 @@ def _outward(mesh: TriangleMesh) -> TriangleMesh:
 
 
 def union(meshes: Sequence[TriangleMesh]) -> Any:
-    """The union of bodies, as a solid of manifold3d."""
+    """Return the union of bodies, as a solid of manifold3d."""
     kernel = import_extra("manifold3d", "impeller")
     return kernel.Manifold.batch_boolean([solid(mesh) for mesh in meshes], kernel.OpType.Add)
 
 
 def solid(mesh: TriangleMesh) -> Any:
-    """A closed mesh as a solid of manifold3d."""
+    """Return a closed mesh as a solid of manifold3d."""
     kernel = import_extra("manifold3d", "impeller")
     data = kernel.Mesh64(np.array(mesh.vertices), np.array(mesh.faces, np.uint64))
     return kernel.Manifold(data)

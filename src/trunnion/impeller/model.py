@@ -119,7 +119,7 @@ def is_closed(faces: Ints) -> bool:
 
 
 def _fillets(impeller: Impeller, tolerance: float) -> list[tuple[Blade, Fillet]]:
-    """The fillet of the blade, and of the splitter if there is one.
+    """Return the fillet of the blade, and of the splitter if there is one.
 
     Raises
     ------
@@ -174,12 +174,12 @@ def _count(impeller: Impeller, tolerance: float) -> int:
 
 
 def _cylinder(radius: float, top: float, bottom: float) -> Floats:
-    """The outline of a cylinder about Z."""
+    """Return the outline of a cylinder about Z."""
     return np.array([[0.0, top], [radius, top], [radius, bottom], [0.0, bottom]])
 
 
 def _below(outline: Floats, bottom: float) -> Floats:
-    """The outline of the body below a profile: from the axis along the profile, down, and back to the axis.
+    """Return the outline of the body below a profile: from the axis along the profile, down, and back to the axis.
 
     ``bottom`` is lower where the profile is: an outline that crosses itself would turn the body inside out.
     """

@@ -31,7 +31,7 @@ class Profile:
 
     @staticmethod
     def of_curve(curve: BSplineCurve) -> "Profile":
-        """The profile of a curve in space that is turned about Z."""
+        """Return the profile of a curve in space that is turned about Z."""
         points = curve.points(np.linspace(0.0, 1.0, _SAMPLES))
         flat = np.column_stack((np.hypot(points[:, 0], points[:, 1]), np.zeros(_SAMPLES), points[:, 2]))
         return Profile(interpolate(flat, parameters_of(flat)))

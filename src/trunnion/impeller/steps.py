@@ -129,7 +129,7 @@ def read_steps(root: Table, tools: Sequence[LibraryTool]) -> tuple[MachiningStep
 
 
 def read_name(table: Table, default: str) -> str:
-    """The name of a table: one line that can be printed."""
+    """Return the name of a table: one line that can be printed."""
     name = table.text("name", default)
     if not (name.strip() and name.isprintable() and len(name) <= _LONGEST_NAME):
         table.add_problem("name", Wording("IMP312", "is", name=as_written(name), longest_name=_LONGEST_NAME))
@@ -138,7 +138,7 @@ def read_name(table: Table, default: str) -> str:
 
 
 def file_stem(name: str) -> str:
-    """A name as that of a file and of a program: letters, digits and underscores.
+    """Return a name as that of a file and of a program: letters, digits and underscores.
 
     Examples
     --------
@@ -151,7 +151,7 @@ def file_stem(name: str) -> str:
 
 
 def _read_step(table: Table, tools: Mapping[int | None, LibraryTool], stated: Sequence[object]) -> MachiningStep | None:
-    """The step of a table; None if its kind is not known, which the table then says.
+    """Return the step of a table; None if its kind is not known, which the table then says.
 
     ``stated`` are the numbers of all tools, those with mistakes too.
     """

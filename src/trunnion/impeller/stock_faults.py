@@ -28,7 +28,9 @@ _CUT_OFF: Final = 0.01
 
 
 def stock_faults(definition: ImpellerDefinition, hub: Profile) -> Iterator[Problem]:
-    """What of the measured blades does not fit into the stock; a warning where its diameter only shortens them."""
+    """Yield what of the measured blades does not fit into the stock; a warning where its diameter only
+    shortens them.
+    """
     stock, tables = definition.stock, definition.sections
     radius = stock.diameter / 2.0
     points = np.vstack([table.points for table in tables])
@@ -73,7 +75,7 @@ def _across(definition: ImpellerDefinition, across: Floats, starts: Ints) -> Ite
 
 
 def _bore(definition: ImpellerDefinition, hub: Profile) -> Iterator[Problem]:
-    """A bore that cuts the hub's surface, and with it the roots of the blades."""
+    """Yield a bore that cuts the hub's surface, and with it the roots of the blades."""
     place = hub.curve.points(np.linspace(0.0, 1.0, 801))
     k = int(place[:, 0].argmin())
     if definition.stock.bore / 2.0 >= place[k, 0]:
@@ -86,7 +88,7 @@ def _bore(definition: ImpellerDefinition, hub: Profile) -> Iterator[Problem]:
 
 
 def _problem(tables: tuple[PointTable, ...], k: int, wording: Wording, severity: Severity = Severity.ERROR) -> Problem:
-    """A problem with a point of all tables together."""
+    """Return a problem with a point of all tables together."""
     for table in tables:
         if k < len(table.points):
             return Problem(table.file, table.lines[k], wording.within("of_key", key=table.called), severity=severity)

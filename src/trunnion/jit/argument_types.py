@@ -61,7 +61,7 @@ def is_read(kind: Any) -> bool:
 
 
 def as_readable(value: Any) -> Any:
-    """An array, or a named tuple with arrays, as a kernel reads it: C-contiguous."""
+    """Return an array, or a named tuple with arrays, as a kernel reads it: C-contiguous."""
     if isinstance(value, np.ndarray):
         return np.ascontiguousarray(value)
     # Numba takes an array that may be written to for a read-only one, but not within a tuple.

@@ -56,7 +56,7 @@ def _of_function(function: FunctionType, seen: set[int]) -> Iterator[bytes]:
 
 
 def _codes(code: CodeType) -> Iterator[CodeType]:
-    """A function's code and that of the functions in it."""
+    """Yield a function's code and that of the functions in it."""
     yield code
     for constant in code.co_consts:
         if isinstance(constant, CodeType):
@@ -64,7 +64,7 @@ def _codes(code: CodeType) -> Iterator[CodeType]:
 
 
 def _in_module(value: Any, names: Sequence[str]) -> Any:
-    """What a function may take by these names from a module of this package; any other value itself."""
+    """Return what a function may take by these names from a module of this package; any other value itself."""
     if isinstance(value, ModuleType) and value.__name__.partition(".")[0] == "trunnion":
         return [getattr(value, name) for name in names if hasattr(value, name)]
     return value

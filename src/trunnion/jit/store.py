@@ -40,7 +40,7 @@ _CODE: Final = "FIL310"
 
 @cache
 def cache_folder() -> Path | None:
-    """The folder that holds those of all kernels; None if no folder can be written to.
+    """Return the folder that holds those of all kernels; None if no folder can be written to.
 
     It is in the folder that the user has chosen for Numba (``NUMBA_CACHE_DIR``), the package's own, the user's cache or
     a temporary one of the user's: the first that can be written to.

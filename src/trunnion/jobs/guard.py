@@ -29,7 +29,7 @@ _STDOUT: Final = "-"
 
 
 def guard(given: Given) -> list[FilePath]:
-    """The files that a command reads, once it is known that it may write what it is to write.
+    """Return the files that a command reads, once it is known that it may write what it is to write.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def guard(given: Given) -> list[FilePath]:
 
 
 def files_read(given: Given) -> Iterator[FilePath]:
-    """The files that a command reads, with all to which they lead.
+    """Yield the files that a command reads, with all to which they lead.
 
     Raises
     ------

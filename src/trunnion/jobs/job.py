@@ -44,7 +44,7 @@ class Job:
         return [each for each in self.options if each.flag]
 
     def option(self, name: str) -> Option | None:
-        """The option of an argument; None if it has none."""
+        """Return the option of an argument; None if it has none."""
         return next((each for each in self.options if each.name == name), None)
 
 
@@ -74,7 +74,7 @@ class Given:
             raise AttributeError(name) from None
 
     def arguments(self, *left_out: str) -> dict[str, Any]:
-        """The arguments of the function that the command runs; stdin as a stream.
+        """Return the arguments of the function that the command runs; stdin as a stream.
 
         Raises
         ------

@@ -16,16 +16,16 @@ class Observer:
     """
 
     def setup(self, name: str) -> None:
-        """A set-up of a project is posted next; its name is empty if there are no others."""
+        """Hear that a set-up of a project is posted next; its name is empty if there are no others."""
 
     def problems(self, problems: Sequence[Problem]) -> None:
         """Warnings about an input file, the plan or the program, as they are found."""
 
     def planned(self, plan: Plan) -> None:
-        """The program is planned, and not yet written."""
+        """Hear that the program is planned, and not yet written."""
 
     def verified(self, verification: Verification) -> None:
-        """The program is written and verified; it is refused next if a check has failed."""
+        """Hear that the program is written and verified; it is refused next if a check has failed."""
 
     def progress(self, stage: str, total: int, unit: str) -> AbstractContextManager[Callable[[int], None]]:
         """Accompany one stage of the work.

@@ -43,7 +43,8 @@ class Target:
 
 
 def check_output_name(argument: str, file: object, endings: Sequence[str], what: str) -> OutputPlace:
-    """The place of an output whose name tells its form, which is found out before any work; ``what`` says why it is so.
+    """Return the place of an output whose name tells its form, which is found out before any work; ``what`` says why it
+    is so.
 
     Raises
     ------
@@ -57,7 +58,9 @@ def check_output_name(argument: str, file: object, endings: Sequence[str], what:
 
 
 def declared_output(command: str, option: str, file: object) -> OutputPlace:
-    """The place of an output that a command declares, found out before any work; errors as ``check_output_name``."""
+    """Return the place of an output that a command declares, found out before any work; errors as
+    ``check_output_name``.
+    """
     declared = JOBS[command].option(option)
     assert declared is not None
     assert isinstance(declared.kind, FileOut)
@@ -65,7 +68,7 @@ def declared_output(command: str, option: str, file: object) -> OutputPlace:
 
 
 def check_report_name(file: FilePath) -> OutputPlace:
-    """The place of a report, which is found out before any work.
+    """Return the place of a report, which is found out before any work.
 
     Raises
     ------
@@ -123,7 +126,7 @@ def open_target(
 
 
 def written_text(path: Path | None, memory: io.BytesIO | None, encoding: str = "utf-8") -> str | None:
-    """What was written to a file or into memory; None where it went to a stream."""
+    """Return what was written to a file or into memory; None where it went to a stream."""
     if memory is not None:
         return memory.getvalue().decode(encoding)
     return None if path is None else path.read_bytes().decode(encoding)
@@ -145,7 +148,7 @@ class PaperFiles:
     manifest: Path | None = None
 
     def by_name(self) -> dict[str, Path]:
-        """The papers that there are."""
+        """Return the papers that there are."""
         return {name: getattr(self, name) for name in PAPERS if getattr(self, name) is not None}
 
     @property
@@ -164,7 +167,7 @@ PAPERS: Final = {"report": "report", "sheet": "setup sheet", "listing": "listing
 def paper_files(
     report: FilePath | None, sheet: FilePath | None, listing: FilePath | None, manifest: FilePath | None, output: object
 ) -> PaperFiles:
-    """The papers of a post, whose places are found out before any work.
+    """Return the papers of a post, whose places are found out before any work.
 
     Raises
     ------

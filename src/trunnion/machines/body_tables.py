@@ -59,7 +59,7 @@ def _body(entry: Table, axis_names: Sequence[str]) -> MachineBody:
 
 
 def _solid(entry: Table, shape: str) -> BodyBox | BodyCylinder | BodyFile:
-    """What a body is made of: the keys of its shape; those of other shapes are mistakes."""
+    """Return what a body is made of: the keys of its shape; those of other shapes are mistakes."""
     if shape not in _OF_SHAPE:
         entry.mark_read(*_ALL_SHAPES)  # what is missing or foreign is not known
         return BodyBox((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
@@ -96,7 +96,7 @@ def _check_file(entry: Table, file: str) -> None:
 
 
 def _unit_vector(entry: Table, numbers: Sequence[float] | None) -> Vector:
-    """The unit vector along a direction; Z where there is none."""
+    """Return the unit vector along a direction; Z where there is none."""
     if numbers is None:
         return 0.0, 0.0, 1.0
     largest = max(map(abs, numbers))

@@ -100,7 +100,7 @@ class KinematicChain(NamedTuple):
 
 @lru_cache(maxsize=16)  # the checks ask for single rows, and putting the chain together takes longer than these
 def kinematic_chain(machine: Machine, tool_length: float | None = None) -> KinematicChain:
-    """The chain of a machine; its arrays are read-only.
+    """Return the chain of a machine; its arrays are read-only.
 
     tool_length  from the gauge point to the tip, mm; None: that of ``machine.tool_length``
     """
@@ -210,7 +210,7 @@ def _cos_sin_half_way(
 def _rotate_about_joint(
     chain: KinematicChain, joint: int, cos: float, sin: float, i: float, j: float, k: float
 ) -> tuple[float, float, float]:
-    """A direction turned about a rotary joint, by Rodrigues: v cos + (w x v) sin + w (w.v)(1 - cos)."""
+    """Return a direction turned about a rotary joint, by Rodrigues: v cos + (w x v) sin + w (w.v)(1 - cos)."""
     a, b, c = chain.direction[joint, 0], chain.direction[joint, 1], chain.direction[joint, 2]
     along = (a * i + b * j + c * k) * (1.0 - cos)
     return (

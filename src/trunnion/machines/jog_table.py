@@ -221,7 +221,7 @@ def _pose_values(machine: Machine) -> Iterator[dict[str, float]]:
 
 
 def _other_values(machine: Machine, values: Mapping[str, float]) -> dict[str, float]:
-    """The other rotary position with the same tool axis.
+    """Return the other rotary position with the same tool axis.
 
     The second axis reaches the same height over the first one's direction at two angles, mirrored about the angle of
     the highest; the first axis turns the rest of the way.
@@ -243,7 +243,8 @@ def _within_a_turn(degrees: float) -> float:
 
 
 def _in_workpiece(machine: Machine, vector: Vector, values: Mapping[str, float], *, turn_only: bool = False) -> Vector:
-    """A point of the spindle, or with ``turn_only`` a direction, as seen from the workpiece, in machine directions.
+    """Return a point of the spindle, or with ``turn_only`` a direction, as seen from the workpiece, in machine
+    directions.
 
     The head goes first, from the tool to the bed; then everything turns with the table back to where the part was.
     """
@@ -266,7 +267,7 @@ def _tool_step(axis: Axis) -> Vector:
 
 
 def _turned(vector: Vector, about: Vector, degrees: float) -> Vector:
-    """A vector turned right-handed by a quaternion: q v q*."""
+    """Return a vector turned right-handed by a quaternion: q v q*."""
     half = math.radians(degrees) / 2.0
     w, axis = math.cos(half), _times(about, math.sin(half))
     twice = _times(_cross(axis, vector), 2.0)

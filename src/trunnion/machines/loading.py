@@ -53,7 +53,7 @@ _VECTOR_FALLBACK: Vector = (0.0, 0.0, 1.0)
 
 
 def machine_library() -> Traversable:
-    """The folder of shipped machine definitions."""
+    """Return the folder of shipped machine definitions."""
     return files("trunnion.machines").joinpath("library")
 
 
@@ -248,7 +248,7 @@ def _check_winding(entry: Table, endless: bool, output: AngleOutput) -> None:
 
 
 def _gear(table: Table) -> tuple[float, float]:
-    """The least and the greatest speed of a gear, rev/min."""
+    """Return the least and the greatest speed of a gear, rev/min."""
     least, greatest = table.number("min_rpm", at_least=0), table.number("max_rpm", above=0)
     if least > greatest:
         table.add_problem("min_rpm", Wording("DEF440", "above_max_rpm", least=least, greatest=greatest))

@@ -99,7 +99,7 @@ class NumberDerivative:
 
 
 def idle_numbers(machine: Machine) -> tuple[GeometryNumber, ...]:
-    """The numbers that move nothing: a point along its own axis, a direction turned about itself."""
+    """Return the numbers that move nothing: a point along its own axis, a direction turned about itself."""
     found = []
     for axis in machine.axes:
         for component, letter in enumerate(_LETTERS):
@@ -225,7 +225,7 @@ def _apply(turns: Floats, vectors: Floats) -> Floats:
 
 
 def _turns(chain: KinematicChain, joint: int, values: Floats) -> Floats:
-    """The turn of a joint, (n, 3, 3); that of a slide is none."""
+    """Return the turn of a joint, (n, 3, 3); that of a slide is none."""
     n = len(values)
     if not chain.rotary[joint]:
         return np.tile(np.eye(3), (n, 1, 1))

@@ -52,7 +52,7 @@ class SweptPart:
 
     @staticmethod
     def around(machine: Machine, points: Floats) -> "SweptPart":
-        """The part around points (n, 3), workpiece coordinates; at least one."""
+        """Return the part around points (n, 3), workpiece coordinates; at least one."""
         low, high = points.min(axis=0), points.max(axis=0)
         table = machine.axes[machine.rotary[0]]
         direction = np.array(table.direction)

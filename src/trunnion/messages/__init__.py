@@ -55,15 +55,15 @@ class Words:
     """How what a user may set is called: here in the words of the library."""
 
     def setting(self, name: str, value: str) -> str:
-        """A setting with a value."""
+        """Return a setting with a value."""
         return f"setting {name}={value}"
 
     def argument(self, name: str, value: str) -> str:
-        """An argument with a value."""
+        """Return an argument with a value."""
         return f"argument {name}={value}"
 
     def switch(self, name: str) -> str:
-        """An argument that is switched on."""
+        """Return an argument that is switched on."""
         return f"{name}=True"
 
 
@@ -105,23 +105,23 @@ class Wording:
         return self.what
 
     def text(self, part: Part, words: Words = LIBRARY, language: str = "en") -> str:
-        """The fault or its cure, in the words of who asks."""
+        """Return the fault or its cure, in the words of who asks."""
         return _text(self, part, words, language)
 
     def within(self, sentence: str, /, **parameters: object) -> Self:
-        """The same within another sentence of the catalogue ``around``, which has it as ``{what}``."""
+        """Return the same within another sentence of the catalogue ``around``, which has it as ``{what}``."""
         return self._changed(self.parameters, (*self.around, (sentence, _plain(parameters))))
 
     def of_key(self, path: str) -> Self:
-        """The same of a key of a definition; of the whole definition if the path is empty."""
+        """Return the same of a key of a definition; of the whole definition if the path is empty."""
         return self.within("of_key", key=path) if path else self.within("of_definition")
 
     def with_parameters(self, **parameters: object) -> Self:
-        """The same with other values of some parameters, or with more of them."""
+        """Return the same with other values of some parameters, or with more of them."""
         return self._changed(_plain({**dict(self.parameters), **parameters}), self.around)
 
     def changed(self, change: Callable[[str], str]) -> Self:
-        """The same with each text that is filled in changed by a function."""
+        """Return the same with each text that is filled in changed by a function."""
         return self._changed(
             _changed(self.parameters, change), tuple((name, _changed(found, change)) for name, found in self.around)
         )
@@ -138,17 +138,19 @@ class Wording:
 
 
 def phrase(variant: str, /, **parameters: object) -> Wording:
-    """A part of other sentences, of the catalogue ``phrases``: one that goes into a parameter."""
+    """Return a part of other sentences, of the catalogue ``phrases``: one that goes into a parameter."""
     return Wording("", variant, **parameters)
 
 
 def foreign(what: str, cure: str = "", code: str = "") -> Wording:
-    """A text that is in no catalogue, since it is that of others: of a hook, or of a program without a code for it."""
+    """Return a text that is in no catalogue, since it is that of others: of a hook, or of a program without a code for
+    it.
+    """
     return Wording(code, "", what=what, cure=cure)
 
 
 def filled_in(template: str, words: Words = LIBRARY, parameters: Mapping[str, object] = _NONE) -> str:
-    """A template with its parameters.
+    """Return a template with its parameters.
 
     >>> filled_in("{count:# line is|# lines are} longer than {most:.1f} mm", LIBRARY, {"count": 2, "most": 0.25})
     '2 lines are longer than 0.2 mm'
@@ -161,7 +163,7 @@ def filled_in(template: str, words: Words = LIBRARY, parameters: Mapping[str, ob
 
 @cache
 def catalogue(language: str, name: str) -> dict[str, Any]:
-    """A file of texts: the variants of each code, and their parts."""
+    """Return a file of texts: the variants of each code, and their parts."""
     import tomllib  # most runs have nothing to say
     from importlib.resources import files
 
@@ -195,7 +197,9 @@ def _inner_text(wording: Wording, part: Part, words: Words, language: str) -> st
 
 
 def _unfilled(variant: str, parameters: Parameters) -> str:
-    """What is known of a message whose text is missing or does not fit: a fault of the catalogue hides no problem."""
+    """Return what is known of a message whose text is missing or does not fit: a fault of the catalogue hides no
+    problem.
+    """
     return " ".join((variant.replace("_", " "), *(f"{name}={value}" for name, value in parameters)))
 
 
@@ -226,7 +230,7 @@ def _plain(parameters: Mapping[str, object]) -> Parameters:
 
 
 def _plain_value(value: object) -> object:
-    """A number, a text or a wording, so that messages can be compared, kept and sent to other processes."""
+    """Return a number, a text or a wording, so that messages can be compared, kept and sent to other processes."""
     if type(value) in (str, int, float, bool, Wording):
         return value
     if isinstance(value, tuple):

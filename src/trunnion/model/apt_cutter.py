@@ -35,7 +35,7 @@ class AptCutter(NamedTuple):
 
 
 def apt_cutter(tool: Tool) -> AptCutter:
-    """The seven parameters of a tool; what nothing states is 0.
+    """Return the seven parameters of a tool; what nothing states is 0.
 
     A corner without a centre touches a level bottom and an upright side. Of a TCUTTER and a BARREL this is the lower
     corner; ``upper_radius`` and ``upper_centre`` have the other one.
@@ -53,7 +53,7 @@ def apt_cutter(tool: Tool) -> AptCutter:
 
 
 def stated_centre(diameter: float, radius: float, e: float, f: float) -> tuple[float, float] | None:
-    """The centre of a corner as a file gives it; None if that is not one, or that of a plain corner.
+    """Return the centre of a corner as a file gives it; None if that is not one, or that of a plain corner.
 
     A plain corner touches a level bottom and an upright side; files write its centre, or 0 and 0, or nothing.
     """

@@ -53,14 +53,14 @@ class ArcPaths:
 
     @staticmethod
     def of(arcs: Arcs, which: slice | Ints, start: Floats, end: Floats) -> "ArcPaths":
-        """Some arcs of ``arcs``, with their starts and ends."""
+        """Return some arcs of ``arcs``, with their starts and ends."""
         return ArcPaths(start, end, arcs.centre[which], arcs.normal[which], arcs.full_turns[which])
 
     def __len__(self) -> int:
         return len(self.start)
 
     def select(self, which: slice | Ints) -> "ArcPaths":
-        """Some of them."""
+        """Return some of them."""
         return ArcPaths(
             self.start[which], self.end[which], self.centre[which], self.normal[which], self.full_turns[which]
         )
@@ -80,7 +80,7 @@ class Reach:
 
 
 def operation_arcs(operation: Operation) -> ArcPaths:
-    """The arcs of an operation; those that end over their start but for the last digits are whole turns.
+    """Return the arcs of an operation; those that end over their start but for the last digits are whole turns.
 
     An arc that is its first row begins at the point of FROM.
     """
@@ -185,7 +185,7 @@ class RunArcs:
 
 
 def _at_standing_axes(machine: Machine, kinematics: KinematicParameters, paths: ArcPaths, rotary: Floats) -> Reach:
-    """The reach of all axes while the rotary axes stand at ``rotary`` (m, 2)."""
+    """Return the reach of all axes while the rotary axes stand at ``rotary`` (m, 2)."""
     frame = arc_frames(paths.start, paths.end, paths.centre, paths.normal, paths.full_turns)
     middle = paths.centre + frame.height[:, None] * paths.normal
     ahead = np.cross(paths.normal, frame.across)
@@ -223,7 +223,7 @@ def _extremes(middle: Floats, cosine: Floats, sine: Floats, slope: Floats, growt
 
 
 def _batches(paths: ArcPaths, turns: Flags, ways: Floats) -> list[Ints]:
-    """The arcs along which rotary axes turn, so many at a time that their samples are few."""
+    """Return the arcs along which rotary axes turn, so many at a time that their samples are few."""
     which = np.flatnonzero(turns)
     if not len(which):
         return []

@@ -24,7 +24,7 @@ def arc_gaps(arcs: Arcs, tip: Floats) -> Floats:
 
 
 def with_closed_turns(operation: Operation) -> Operation:
-    """The operation with full turns about X, Y or Z that end exactly over their start.
+    """Return the operation with full turns about X, Y or Z that end exactly over their start.
 
     Where a last digit parts start and end, a control would make a short arc of the turn.
     """

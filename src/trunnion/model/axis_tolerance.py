@@ -30,7 +30,7 @@ class AxisTolerance:
     finishing: float = 0.25
 
     def of(self, operation: Operation) -> float:
-        """The tolerance of an operation."""
+        """Return the tolerance of an operation."""
         return (
             self.finishing
             if machining_method(operation.name, operation.intol, operation.outtol) == "FINISH"

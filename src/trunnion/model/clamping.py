@@ -74,7 +74,7 @@ def number(value: float) -> str:
 
 
 def clamping_data(clamping: Clamping | None) -> dict[str, float | None]:
-    """The keys of a clamping in data, degrees; null: nobody said it."""
+    """Return the keys of a clamping in data, degrees; null: nobody said it."""
     if clamping is None:
         return {"turn_deg": None, "tilt_deg": None}
     return {"turn_deg": clamping.turn, "tilt_deg": clamping.tilt}

@@ -85,7 +85,7 @@ def may_be_notice(comment: str) -> bool:
 
 
 def head_comments(lines: Iterable[tuple[int, str]]) -> Iterator[tuple[int, str]]:
-    """The comments in the head of a program, whose numbered ``lines`` begin with its first one.
+    """Yield the comments in the head of a program, whose numbered ``lines`` begin with its first one.
 
     The head ends before the first block that does something; texts of operations stand behind that.
     """
@@ -97,7 +97,7 @@ def head_comments(lines: Iterable[tuple[int, str]]) -> Iterator[tuple[int, str]]
 
 
 def read_place(comments: Sequence[tuple[int, str]]) -> HeadNotices:
-    """What the comments of a head state, each with its line and without the signs of a comment.
+    """Return what the comments of a head state, each with its line and without the signs of a comment.
 
     A comment that a control had to break goes on in the next one.
     """

@@ -45,7 +45,7 @@ class Deviations:
         return not (len(self.leaned_rows) or len(self.slowed_rows) or len(self.reached_rows))
 
     def without_rows(self, removed: Flags) -> "Deviations":
-        """The deviations of the remaining rows, renumbered, once ``removed`` (n,) bool rows are taken out."""
+        """Return the deviations of the remaining rows, renumbered, once ``removed`` (n,) bool rows are taken out."""
         new_row = np.cumsum(~removed) - 1
         lean, slow, reach = (~removed[rows] for rows in (self.leaned_rows, self.slowed_rows, self.reached_rows))
         return Deviations(

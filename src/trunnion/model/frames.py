@@ -18,7 +18,7 @@ _DRAWN_DECIMALS: Final = 3
 
 
 def into_frame(operation: Operation, frame: Frame) -> Operation:
-    """The operation in another coordinate system; the same object if it is the same one.
+    """Return the operation in another coordinate system; the same object if it is the same one.
 
     With M the matrix and o the origin of a frame in the CAM's absolute system, a point is
     M_to^T (M_from p + o_from - o_to) and a direction M_to^T M_from u.
@@ -31,7 +31,9 @@ def into_frame(operation: Operation, frame: Frame) -> Operation:
 
 
 def into_plane(operation: Operation, plane: Frame) -> Operation:
-    """The operation in the coordinates of a plane, which is given in the operation's frame; its ``frame`` stays."""
+    """Return the operation in the coordinates of a plane, which is given in the operation's frame; its
+    ``frame`` stays.
+    """
     turn = plane.matrix().T
     return _transformed(operation, turn, -turn @ np.array(plane.origin))
 
@@ -53,7 +55,7 @@ def without_turning_noise(lengths: Floats) -> Floats:
 
 
 def frame_from_vectors(origin: Floats, x: Floats, y: Floats) -> Frame:
-    """A frame from origin, X and Y, (3,) float64 each."""
+    """Return a frame from origin, X and Y, (3,) float64 each."""
     columns = [(float(v[0]), float(v[1]), float(v[2])) for v in (origin, x, y)]
     return Frame(*columns)
 

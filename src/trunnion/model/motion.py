@@ -69,7 +69,7 @@ class Motion:
         return self.mode is MachiningMode.THREE_AXIS
 
     def as_written(self) -> Operation:
-        """The operation in the coordinates of its blocks: those of the tilted plane, or else the program's."""
+        """Return the operation in the coordinates of its blocks: those of the tilted plane, or else the program's."""
         placed = self.operation if self.plane is None else into_plane(self.operation, self.plane)
         return with_closed_turns(placed)
 

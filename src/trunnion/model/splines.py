@@ -88,7 +88,7 @@ class Splines:
 
     @staticmethod
     def of(each: Sequence[SplineRows]) -> "Splines":
-        """The columns of single splines, in row order."""
+        """Return the columns of single splines, in row order."""
         if not each:
             return Splines.empty()
         splines = [one.spline for one in each]
@@ -111,7 +111,7 @@ class Splines:
 
     @staticmethod
     def joined(parts: Sequence["Splines"]) -> "Splines":
-        """The splines of all parts, in their order."""
+        """Return the splines of all parts, in their order."""
         if len(parts) < 2:
             return parts[0] if parts else Splines.empty()
         pole_counts = np.concatenate([np.diff(part.pole_begin) for part in parts])
@@ -134,13 +134,15 @@ class Splines:
         return Splines.of([self[k] for k in np.flatnonzero(keep).tolist()])
 
     def at_rows(self, first: Ints, last: Ints) -> "Splines":
-        """The same splines with points in other rows."""
+        """Return the same splines with points in other rows."""
         return Splines(
             first, last, self.degree, self.pole_begin, self.knot_begin, self.poles, self.weights, self.knots
         )  # fmt: skip
 
     def with_poles(self, poles: Floats) -> "Splines":
-        """The same splines with other control points (p, 3): a map of these by a matrix and a shift maps the curve."""
+        """Return the same splines with other control points (p, 3): a map of these by a matrix and a shift maps the
+        curve.
+        """
         return Splines(
             self.first, self.last, self.degree, self.pole_begin, self.knot_begin, poles, self.weights, self.knots
         )  # fmt: skip

@@ -53,7 +53,7 @@ class StatedTips:
 
     @staticmethod
     def of(run: Run) -> "StatedTips":
-        """What a run states, found once for all who ask."""
+        """Return what a run states, found once for all who ask."""
         found = _of_runs.get(run)
         if found is None:
             found = _of_runs[run] = _Walk(run).result()
@@ -145,7 +145,7 @@ class _Walk:
                 row += 1
 
     def _after(self, row: int, unknown: Floats) -> Floats:
-        """What is not known after a row, given what was not before it; what the row does is noted."""
+        """Return what is not known after a row, given what was not before it; what the row does is noted."""
         if row in self.lifts:
             unknown = _span(unknown, self._axis(row - 1)[:, None])
             self._end_stretch()
@@ -198,13 +198,13 @@ class _Walk:
         ]  # fmt: skip
 
     def _end_stretch(self) -> None:
-        """The rows that wait for the tip to become known wait in vain."""
+        """Give up the rows that wait for the tip to become known."""
         self.unjudged += self._waiting
         self.lost_feeds += self._waiting
         self._waiting = []
 
     def _turned(self, row: int, unknown: Floats) -> Floats:
-        """What is not known after rotary axes have turned about places that nobody knows."""
+        """Return what is not known after rotary axes have turned about places that nobody knows."""
         run, rotary = self.run, list(self.run.machine.rotary)
         old = run.rotary[row - 1] if row else run.start[rotary]
         turned = [k for k, way in zip(rotary, np.abs(run.rotary[row] - old), strict=True) if way > _STILL]
@@ -220,7 +220,7 @@ class _Walk:
         return _span(unknown, np.linalg.svd(turn - np.eye(3))[2][:2].T)
 
     def _named_in_workpiece(self, row: int, unknown: Floats) -> Floats:
-        """What is not known after a row that names coordinates of the workpiece, or of a plane in it."""
+        """Return what is not known after a row that names coordinates of the workpiece, or of a plane in it."""
         if not unknown.shape[1] or not (self.words[row] or self.unnamed[row]):
             return unknown
         if not self.tip_words[row]:
@@ -276,7 +276,7 @@ def _same_span(one: Floats, two: Floats) -> bool:
 
 
 def _projected(columns: Floats, axis: Floats) -> Floats | None:
-    """The unit vector of a span that is nearest to the tool axis; None if it is not along the tool."""
+    """Return the unit vector of a span that is nearest to the tool axis; None if it is not along the tool."""
     way = columns @ (columns.T @ axis)
     length = float(np.linalg.norm(way))
     return None if length <= _ALONG else np.asarray(way / length)

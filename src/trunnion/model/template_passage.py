@@ -19,6 +19,6 @@ class TemplatePassage:
     template: str
 
     def text_at(self, file: str, line: int) -> str | None:
-        """What stands in a line of a file; None if that is none of these."""
+        """Return what stands in a line of a file; None if that is none of these."""
         k = line - self.line
         return self.texts[k] if file == self.file and 0 <= k < len(self.texts) else None

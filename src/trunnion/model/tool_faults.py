@@ -57,7 +57,7 @@ def _sizes(tool: Tool) -> Iterator[ToolFault]:
 
 
 def _corners(tool: Tool) -> Iterator[ToolFault]:
-    """A corner that its tool has no room for; one whose centre the file says may be that of a barrel."""
+    """Yield a corner that its tool has no room for; one whose centre the file says may be that of a barrel."""
     d, r = tool.diameter, tool.corner_radius
     e, f = tool.corner_centre or (-1.0, r)
     if d and e >= 0.0 and r - f > _ROUNDING * d:

@@ -76,7 +76,7 @@ class Moves:
         return len(self.tip)
 
     def select(self, rows: slice | Ints | Flags) -> "Moves":
-        """The given rows; ``rows`` is a slice, row numbers or flags."""
+        """Return the given rows; ``rows`` is a slice, row numbers or flags."""
         return Moves(
             self.tip[rows], self.axis[rows], self.kind[rows], self.phase[rows], self.feed[rows], self.per_rev[rows],
             self.line[rows], None if self.normal is None else self.normal[rows],

@@ -152,7 +152,7 @@ class TurningLines:
     great_circle: Flags
 
     def select(self, which: Ints | Flags) -> "TurningLines":
-        """Some of them."""
+        """Return some of them."""
         return TurningLines(
             self.row[which], self.tip[which], self.axis[which], self.joints[which], self.great_circle[which]
         )

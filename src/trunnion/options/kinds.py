@@ -25,11 +25,11 @@ class Text:
     metavar: str = "TEXT"
 
     def parse(self, text: str) -> Any:
-        """The value of a text."""
+        """Return the value of a text."""
         return text
 
     def check(self, value: object) -> Any:
-        """The value itself."""
+        """Return the value itself."""
         return value
 
 
@@ -54,7 +54,7 @@ class Number:
     words: Mapping[str, Any] = field(default_factory=dict)
 
     def parse(self, text: str) -> Any:
-        """The number of a text."""
+        """Return the number of a text."""
         if text in self.words:
             return self.words[text]
         if self.is_whole and not (text.isascii() and text.isdigit() and len(text) < 10):
@@ -65,7 +65,7 @@ class Number:
             raise self._error(text) from None
 
     def check(self, value: object) -> Any:
-        """The number itself; raises ``WrongValueError`` if it is none, or out of bounds."""
+        """Return the number itself; raises ``WrongValueError`` if it is none, or out of bounds."""
         if not isinstance(value, int | float) or isinstance(value, bool):
             raise self._error(value)
         if self._is_bounded and not (self.above < value < self.below and self.least <= value <= self.most):
@@ -82,23 +82,23 @@ class Number:
 
 
 def length(what: str, such_as: str, metavar: str = "MM") -> Number:
-    """The kind of lengths, and other numbers, above 0."""
+    """Return the kind of lengths, and other numbers, above 0."""
     how = f"a number above 0 and below {GREATEST:.0f}, such as {such_as}"
     return Number(metavar, what, how, above=0.0, below=GREATEST)
 
 
 def angle(what: str, least: float, most: float, such_as: str) -> Number:
-    """The kind of angles between bounds, degrees."""
+    """Return the kind of angles between bounds, degrees."""
     return Number("DEG", what, f"degrees, {least:g} to {most:g}, such as {such_as}", least=least, most=most)
 
 
 def seconds(most: float, metavar: str = "SECONDS") -> Number:
-    """The kind of times above 0, s."""
+    """Return the kind of times above 0, s."""
     return Number(metavar, "a time", "seconds above 0, such as 600", above=0.0, most=most)
 
 
 def whole(what: str, how: str, metavar: str, least: int = 0, most: float = math.inf) -> Number:
-    """The kind of whole numbers."""
+    """Return the kind of whole numbers."""
     return Number(metavar, what, how, least=least, most=most, is_whole=True)
 
 
@@ -110,11 +110,11 @@ class Choice:
     metavar: str = ""
 
     def parse(self, text: str) -> Any:
-        """The word itself."""
+        """Return the word itself."""
         return self.check(text)
 
     def check(self, value: object) -> Any:
-        """The word itself; raises ``WrongValueError`` if it is none of them."""
+        """Return the word itself; raises ``WrongValueError`` if it is none of them."""
         if value in self.words:
             return value
         *others, last = self.words
@@ -135,11 +135,11 @@ class Switch:
     metavar: str = ""
 
     def parse(self, text: str) -> Any:  # a switch has no text
-        """What it is where it is there."""
+        """Return what it is where it is there."""
         return self.value
 
     def check(self, value: object) -> Any:
-        """The value, if it is on or off."""
+        """Return the value, if it is on or off."""
         if not isinstance(value, bool):
             raise WrongValueError(f"{value!r} is not a switch; write True or False")
         return value
@@ -159,7 +159,7 @@ class Setting:
         return key, value
 
     def check(self, value: object) -> Any:
-        """The value itself; the library judges settings."""
+        """Return the value itself; the library judges settings."""
         return value
 
 
@@ -180,7 +180,7 @@ class FileIn:
         return text
 
     def check(self, value: object) -> Any:
-        """The name itself; the library judges whether it can be read."""
+        """Return the name itself; the library judges whether it can be read."""
         return value
 
 
@@ -207,7 +207,7 @@ class FileOut:
         return text
 
     def check(self, value: object) -> Any:
-        """The name itself; ``jobs.guard`` judges whether it can be written."""
+        """Return the name itself; ``jobs.guard`` judges whether it can be written."""
         return value
 
 

@@ -89,7 +89,7 @@ class Option:
     metavar: str = ""
 
     def but(self, **changes: Any) -> "Option":
-        """The same option with other words for a command."""
+        """Return the same option with other words for a command."""
         return replace(self, **changes)
 
     @property
@@ -121,15 +121,15 @@ class Group:
         return iter(self.options)
 
     def but(self, **words: Mapping[str, Any]) -> "Group":
-        """The same group with other words of some options, by their names."""
+        """Return the same group with other words of some options, by their names."""
         return replace(self, options=tuple(each.but(**words.get(each.name, {})) for each in self.options))
 
     def only(self, *names: str) -> "Group":
-        """Some of the options."""
+        """Return some of the options."""
         return replace(self, options=tuple(each for each in self.options if each.name in names))
 
     def under(self, heading: str) -> "Group":
-        """The same group under a heading of ``--help``."""
+        """Return the same group under a heading of ``--help``."""
         return replace(self, options=tuple(each.but(heading=heading) for each in self.options))
 
 

@@ -187,7 +187,7 @@ class EventWriter:
             self._blocks.write_event(event)
 
     def _joining_at(self, row: int) -> list[WordEvent]:
-        """The events that are to join a row, the last one that any joins so far, in their order."""
+        """Return the events that are to join a row, the last one that any joins so far, in their order."""
         here = list(takewhile(lambda joining: joining.row == row, reversed(self._joining_events)))
         return here[::-1]
 
@@ -237,7 +237,7 @@ class EventWriter:
             self._write_word_event(Coolant(event.row, event.line, self._blocks.coolant), ())
 
     def _stop_lines(self, event: Stop) -> list[str]:
-        """The lines of a stop: the family's, or those of the shop's template, which must stop as well."""
+        """Return the lines of a stop: the family's, or those of the shop's template, which must stop as well."""
         if STOP_PLACE not in self._control.templates:
             return self._family.stop(event, self._control.codes)
         code = self._control.codes["optional_stop" if event.optional else "stop"]

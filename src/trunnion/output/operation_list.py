@@ -48,7 +48,7 @@ def _feeds(motions: Sequence[Motion], unit: float) -> list[str]:
 
 
 def _box(motions: Sequence[Motion], unit: float) -> str:
-    """What the tip cuts, in the coordinates of the program."""
+    """Return what the tip cuts, in the coordinates of the program."""
     box = cut_box(motions)
     if box is None:
         return ""

@@ -71,7 +71,7 @@ class _Places:
         return replace(motion, operation=replace(operation, events=tuple(events)))
 
     def _instead(self, event: Event, values: Mapping[str, Value], motion: Motion) -> list[Event]:
-        """What stands in place of an event."""
+        """Return what stands in place of an event."""
         if isinstance(event, RewindMessage):
             return [*self._text("rewind", event.row, event.line, values, motion), event]
         name = EVENT_PLACE + _word(event)
@@ -119,7 +119,9 @@ class _Places:
 
 
 def _word(event: Event) -> str:
-    """The word of the CL statement that an event comes from, as names of templates have it; empty for other events."""
+    """Return the word of the CL statement that an event comes from, as names of templates have it; empty for other
+    events.
+    """
     if isinstance(event, Message):
         return "DISPLY" if event.display else "PPRINT"
     if isinstance(event, Insert):

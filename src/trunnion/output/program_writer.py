@@ -71,7 +71,7 @@ def write_program(
 
 
 def _with_printed_planes(program: Program) -> Program:
-    """The program with its tilted planes as they are for the digits that are printed."""
+    """Return the program with its tilted planes as they are for the digits that are printed."""
     if all(motion.plane is None for motion in program.motions):
         return program
     if program.control.plane_from_pose:
@@ -145,11 +145,11 @@ class _ProgramWriter:
         ]
 
     def _values(self, motion: Motion, number: int) -> dict[str, Value]:
-        """The values that templates may print for a motion."""
+        """Return the values that templates may print for a motion."""
         return self._template_values.values(motion, number, self._loaded_tool, self._spindle_at_start(motion.operation))
 
     def _spindle_at_start(self, operation: Operation) -> SpindleOn | None:
-        """The spindle at the first row; None if it has not been started."""
+        """Return the spindle at the first row; None if it has not been started."""
         starts = [event for event in operation.events if isinstance(event, SpindleOn) and event.row == 0]
         return starts[-1] if starts else self._blocks.spindle
 

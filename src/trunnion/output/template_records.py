@@ -59,7 +59,7 @@ class TemplateRecords:
         return None if call is None else self._tools[call]
 
     def _text(self, text: str) -> str | None:
-        """A text of the CL file that ends no comment and no other text; None for an empty one."""
+        """Return a text of the CL file that ends no comment and no other text; None for an empty one."""
         return plain_text(self._program, text) or None
 
     def _tool(self, call: str, tool: Tool, operations: int) -> Record:
@@ -112,7 +112,7 @@ def _of(found: Callable[[], Mapping[str, object]], name: str) -> object:
 
 
 def _feeds(motions: Sequence[Motion]) -> dict[str, object]:
-    """The least and the greatest feed of the cuts, those per revolution apart."""
+    """Return the least and the greatest feed of the cuts, those per revolution apart."""
     moves = [motion.operation.moves for motion in motions]
     feeds = np.concatenate([each.feed[(each.kind != Kind.RAPID) & ~each.per_rev] for each in moves])
     if not len(feeds) or np.isnan(feeds).any():
@@ -121,6 +121,6 @@ def _feeds(motions: Sequence[Motion]) -> dict[str, object]:
 
 
 def _extents(motions: Sequence[Motion]) -> dict[str, object]:
-    """The box around all cuts of the tip, in whole millimetres outwards."""
+    """Return the box around all cuts of the tip, in whole millimetres outwards."""
     box = cut_extents(motions)
     return {} if box is None else dict(zip(_EXTENTS, map(Length, np.concatenate(box).tolist()), strict=True))

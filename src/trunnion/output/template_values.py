@@ -122,7 +122,9 @@ class TemplateValues:
         return PrintedText(text) if isinstance(value, PrintedText) else text
 
     def _setting_values(self, motion: Motion) -> dict[str, Value]:
-        """Settings, with the values that the family makes of them and the defaults that depend on the operation."""
+        """Return settings, with the values that the family makes of them and the defaults that depend on the
+        operation.
+        """
         control, operation = self._program.control, motion.operation
         values: dict[str, Value] = {**control.settings, **self._program.settings_of(operation)}
         if values.get("blank") == EXTENTS:
@@ -141,7 +143,7 @@ class TemplateValues:
         return values
 
     def _in_program_unit(self, values: Mapping[str, Value]) -> dict[str, Value]:
-        """Settings for the family, of which those that are texts of lengths are in the unit of the program."""
+        """Return settings for the family, of which those that are texts of lengths are in the unit of the program."""
         control, found = self._program.control, dict(values)
         for name in control.length_settings if control.unit != 1.0 else ():
             numbers = [float(part) / control.unit for part in str(values.get(name) or "").split(",") if part]
@@ -149,7 +151,7 @@ class TemplateValues:
         return found
 
     def _extents(self) -> str:
-        """The corners of the block form around all cuts; empty if nothing is cut."""
+        """Return the corners of the block form around all cuts; empty if nothing is cut."""
         box = cut_extents(self._program.motions)
         return "" if box is None else ",".join(f"{value:g}" for value in np.concatenate(box).tolist())
 
@@ -175,11 +177,13 @@ class TemplateValues:
         return found[::-1]
 
     def next_call(self, operation: int) -> str | None:
-        """The next other tool after an operation, by its number, as the program calls it; None if there is none."""
+        """Return the next other tool after an operation, by its number, as the program calls it; None if there
+        is none.
+        """
         return self._next_calls[operation - 1]
 
     def time_of(self, operation: int) -> Value:
-        """The machining time of an operation, by its number; None where no template prints any."""
+        """Return the machining time of an operation, by its number; None where no template prints any."""
         return self._time_values(operation)["time"]
 
     def _time_values(self, operation: int) -> dict[str, Value]:
@@ -192,13 +196,13 @@ class TemplateValues:
         return dict(zip(names, (own, total, *shown), strict=True))
 
     def operation_times(self) -> list[str | None]:
-        """The machining time of each operation, or what stands for it; None where the program has no times."""
+        """Return the machining time of each operation, or what stands for it; None where the program has no times."""
         count = sum(motion.starts_operation for motion in self._program.motions)
         shown = prints_times(self._program)
         return [self._time_text(number) if shown else None for number in range(1, count + 1)]
 
     def _time_text(self, number: int) -> PrintedText:
-        """The machining time of an operation, counted from 1, or of the program (0); or what stands for it."""
+        """Return the machining time of an operation, counted from 1, or of the program (0); or what stands for it."""
         if self._program.time_token:
             return PrintedText(self._program.time_token + str(number).zfill(TIME_TOKEN_DIGITS))
         self._seconds = self._seconds or estimated_seconds(self._program)
@@ -206,7 +210,7 @@ class TemplateValues:
         return PrintedText(format_duration(seconds, colons=self._family.escape_comment(":") == ":"))
 
     def _plane_values(self, motion: Motion) -> dict[str, Value]:
-        """The origin of a tilted plane, and which of the two rotary positions the machine takes there.
+        """Return the origin of a tilted plane, and which of the two rotary positions the machine takes there.
 
         ``plane_side`` is -1 for the position with the lower value of the rotary axis farther from the workpiece, and 1
         for the other; ``plane_sign`` is the sign of that axis. At zero it is the one for which the axis has travel.
@@ -224,14 +228,14 @@ class TemplateValues:
         return {**origin, "plane_side": "-1" if lower else "1", "plane_sign": sign}
 
     def _solution_sign(self, motion: Motion) -> str:
-        """The sign of the rotary axis farther from the workpiece, as its position is printed."""
+        """Return the sign of the rotary axis farther from the workpiece, as its position is printed."""
         number_format = self._program.control.number_formats(motion.three_axis)["angle"]
         angle, axis = number_format.rounded(float(motion.rotary[0, 1])), self._program.machine.rotary[1]
         has_travel_above = self._program.machine.axes[axis].high >= 10.0**-number_format.decimals
         return "+" if angle > 0.0 or (angle == 0.0 and has_travel_above) else "-"
 
     def _home_values(self) -> dict[str, Value]:
-        """The home position, for templates that move in machine coordinates."""
+        """Return the home position, for templates that move in machine coordinates."""
         machine = self._program.machine
         linear = {axis.name: self._printed_home(axis) for axis in machine.axes if not axis.is_rotary}
         return {
@@ -241,7 +245,9 @@ class TemplateValues:
         }
 
     def _printed_home(self, axis: Axis) -> float:
-        """The home of a slide as a program can say it: in inches a last digit off it, but never beyond a limit."""
+        """Return the home of a slide as a program can say it: in inches a last digit off it, but never beyond
+        a limit.
+        """
         if self._program.control.unit == 1.0:
             return axis.home
         number_format = self._program.control.number_formats(three_axis=True)["coordinate"]
@@ -272,7 +278,9 @@ class TemplateValues:
         }
 
     def tool_call(self, operation: Operation, loaded: LoadedTool) -> str:
-        """The tool as a tool change calls it: by the run's setting, the number of LOAD/TOOL, or else its name."""
+        """Return the tool as a tool change calls it: by the run's setting, the number of LOAD/TOOL, or else
+        its name.
+        """
         loads = [event for event in operation.events if isinstance(event, LoadTool)]
         number, name = self._program.effective_setting("tool", operation), operation.tool.name
         own = self._program.own_settings.get(operation.name, {}).get("tool")
@@ -311,18 +319,20 @@ class TemplateValues:
         return calls
 
     def length_register(self, operation: Operation, loaded: LoadedTool) -> int:
-        """The register of LOAD/TOOL for the length, 0 for that of the tool, as where the settings name the tool."""
+        """Return the register of LOAD/TOOL for the length, 0 for that of the tool, as where the settings name
+        the tool.
+        """
         loads = [event for event in operation.events if isinstance(event, LoadTool)]
         if not loads:
             return loaded.register
         return 0 if self._program.effective_setting("tool", operation) else loads[-1].adjust
 
     def _tool_setting(self, text: str, operation: Operation) -> str:
-        """The tool of the run's setting: a number as it is written, a name as the control takes names."""
+        """Return the tool of the run's setting: a number as it is written, a name as the control takes names."""
         return text if tool_number(text) is not None else self._family_call(0, text.strip('"'), operation)
 
     def _family_call(self, number: int, name: str, operation: Operation) -> str:
-        """A tool as the control's family calls it: by its name if there is one."""
+        """Return a tool as the control's family calls it: by its name if there is one."""
         try:
             return self._family.tool_call(number, name, by_name=bool(name))
         except UnsupportedFeatureError as why:

@@ -40,7 +40,7 @@ class AxisEquations:
 def axis_equations(
     machine: Machine, tip: Floats, angles: Floats, length: Floats | None = None
 ) -> tuple[Floats, Floats, int]:
-    """Normals (m, 3, 3), offsets (m, 3), and the first sample whose slides cannot follow, or -1.
+    """Return normals (m, 3, 3), offsets (m, 3), and the first sample whose slides cannot follow, or -1.
 
     ``length`` (m,) has those of the tools, gauge point to tip, mm; where it is NaN, or missing, the machine's counts.
     """

@@ -83,7 +83,7 @@ def best_of_turn(
     known: dict[int, TurnResult] | None = None,
     goal: Goal = Goal.MARGIN,
 ) -> TurnResult:
-    """The best place at a turn, over all choices; ``known`` has, and gets, the last result of each path."""
+    """Return the best place at a turn, over all choices; ``known`` has, and gets, the last result of each path."""
     best: TurnResult | None = None
     known = {} if known is None else known
     for number, path in enumerate(paths):
@@ -105,7 +105,7 @@ def best_of_turn(
 
 
 def _with_cost(found: TurnResult, path: TurnedPath, cuts: CutSet, goal: Goal) -> TurnResult:
-    """The result with the cheapest place that keeps a margin, and its cost."""
+    """Return the result with the cheapest place that keeps a margin, and its cost."""
     assert found.best is not None
     angles = path.angles_at(found.turn)
     assert not isinstance(angles, Obstacle)
@@ -160,7 +160,7 @@ def best_orientations(
     *,
     goal: Goal = Goal.MARGIN,
 ) -> tuple[list[TurnResult], TurnResult]:
-    """What each orientation allows, by tilt and turn, refined about the best; and the best of all.
+    """Return what each orientation allows, by tilt and turn, refined about the best; and the best of all.
 
     ``paths_at`` gives the paths of all choices at a tilt, degrees. Only the best result has its path and half-spaces.
     """
@@ -193,7 +193,7 @@ class _Search:
         self.results: dict[tuple[float, float], TurnResult] = {}
 
     def judge(self, turn: float, tilt: float) -> TurnResult:
-        """The result at an orientation, degrees, without its path and half-spaces: those of many are large."""
+        """Return the result at an orientation, degrees, without its path and half-spaces: those of many are large."""
         key = (round(turn, _DECIMALS), round(tilt, _DECIMALS))
         if key not in self.results:
             found = best_of_turn(self._paths_at(key[1]), key[0], self._known, self._goal)
@@ -201,7 +201,7 @@ class _Search:
         return self.results[key]
 
     def best_ones(self, count: int) -> list[TurnResult]:
-        """The best of all orientations so far that are within reach."""
+        """Return the best of all orientations so far that are within reach."""
         reached = [one for one in self.results.values() if one.best is not None]
         # A stable order: of like ones the least tilt, then the least turn.
         reached.sort(key=lambda one: (one.cost is None, one.cost or 0.0, -round(one.margin, 6)))
@@ -253,7 +253,7 @@ class _Search:
         return next(result for seconds, result in found if seconds <= least * (1.0 + _LIKE_COST))
 
     def _rotary_room(self, result: TurnResult) -> float:
-        """What an orientation leaves of the travel of the rotary axes, degrees."""
+        """Return what an orientation leaves of the travel of the rotary axes, degrees."""
         path = next(path for path in self._paths_at(result.tilt) if path.choice is result.choice)
         key = (result.tilt, path.choice, 0.0 if path.has_like_rotary_room else result.turn)
         if key not in self._rooms:
@@ -262,7 +262,7 @@ class _Search:
         return self._rooms[key]
 
     def whole(self, result: TurnResult) -> TurnResult:
-        """A result with its path, half-spaces and settled place."""
+        """Return a result with its path, half-spaces and settled place."""
         paths = self._paths_at(result.tilt)
         found = replace(best_of_turn(paths, result.turn, self._known, self._goal), tilt=result.tilt)
         if found.cuts is not None and found.path is not None and self._goal not in OF_PLACE:
@@ -271,13 +271,15 @@ class _Search:
 
 
 def rotary_room(machine: Machine, positions: Floats) -> float:
-    """What positions (n, 2) leave of the travel of the rotary axes, degrees; infinite where they have no limits."""
+    """Return what positions (n, 2) leave of the travel of the rotary axes, degrees; infinite where they have
+    no limits.
+    """
     limits = machine.limits[list(machine.rotary)]
     return float(min((positions.min(axis=0) - limits[:, 0]).min(), (limits[:, 1] - positions.max(axis=0)).min()))
 
 
 def _best(results: Sequence[TurnResult]) -> TurnResult:
-    """The least cost, or without any the largest margin; of like ones the first."""
+    """Return the least cost, or without any the largest margin; of like ones the first."""
     best = results[0]
     for result in results[1:]:
         if _is_better(result, best):

@@ -22,7 +22,7 @@ _CHANGED = (Changes.PLACE, Changes.TURN)
 def with_bodies(
     found: Placement, rows: PathRows, guard: Guard, path: TurnedPath | None, drawn: Sequence[TurnedPath]
 ) -> Placement:
-    """The placement with the bodies that are nearest to each other at the best and at the present place.
+    """Return the placement with the bodies that are nearest to each other at the best and at the present place.
 
     ``path`` is that of the best place, ``drawn`` are those of the part as it is drawn, for each choice of branches.
     """
@@ -40,14 +40,14 @@ def with_bodies(
 
 
 def standing_at(best: TurnResult, guard: Guard) -> list[GuardedPair]:
-    """The pairs that a simulation does not check at the best place, where the part stands on bodies at home."""
+    """Return the pairs that a simulation does not check at the best place, where the part stands on bodies at home."""
     if best.path is None or best.best is None:
         return []
     return standing(best.path.machine, guard.pairs, Clamping(best.turn, best.tilt).rotation, best.best.zero)
 
 
 def touch_warnings(found: Placement) -> list[Problem]:
-    """A warning where bodies touch at the best place of a goal that does not judge them."""
+    """Return a warning where bodies touch at the best place of a goal that does not judge them."""
     touching = found.touching
     if touching is None:
         return []
@@ -68,7 +68,9 @@ def touch_warnings(found: Placement) -> list[Problem]:
 
 
 def with_distance(found: Placement, most: float | None) -> Placement:
-    """The placement with distances as the values of its places; no place has more than ``most`` mm, where known."""
+    """Return the placement with distances as the values of its places; no place has more than ``most`` mm,
+    where known.
+    """
     best, present = (
         place if place is None or place.nearest is None else replace(place, value=place.nearest.distance_mm)
         for place in (found.best, found.present)
@@ -85,7 +87,7 @@ def _with_nearest(place: PartPlace, rows: PathRows, guard: Guard, path: TurnedPa
 
 
 def _standing(place: PartPlace, guard: Guard, path: TurnedPath) -> list[GuardedPair]:
-    """The pairs that a simulation does not check at a place."""
+    """Return the pairs that a simulation does not check at a place."""
     turn = Clamping(place.turn_deg, place.tilt_deg).rotation
     return standing(path.machine, guard.pairs, turn, np.array(place.zero_mm))
 

@@ -53,7 +53,7 @@ class Extremes:
         return replace(self, turn=turn, pivot=pivot)
 
     def form(self, sample: int, slide: int) -> tuple[Floats, float]:
-        """Normal (3,) and offset, mm, of a slide in a sample."""
+        """Return normal (3,) and offset, mm, of a slide in a sample."""
         normal, offset = self.forms.normals[sample, slide], float(self.forms.offsets[sample, slide])
         turned = self.turn @ normal
         return turned, offset + float((normal - turned) @ self.pivot)

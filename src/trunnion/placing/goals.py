@@ -81,7 +81,7 @@ class PlaceCost:
         return PlaceCost(goal, normals, offsets, rows.begins, rows.seconds, turning, speeds)
 
     def at(self, zero: Floats) -> tuple[float, Floats, int]:
-        """The cost at a place (3,), a subgradient (3,), and the number of rows whose feed is not reached."""
+        """Return the cost at a place (3,), a subgradient (3,), and the number of rows whose feed is not reached."""
         gradient = np.zeros(3)
         cost, count = _cost(
             _CODES[self.goal], self.normals, self.offsets, self.begins, self.seconds, self.turning, self.speeds, zero,
@@ -90,7 +90,7 @@ class PlaceCost:
         return cost, gradient, count
 
     def value(self, zero: Floats) -> float:
-        """What is told of a place: the cost, or the number of rows."""
+        """Return what is told of a place: the cost, or the number of rows."""
         cost, _, count = self.at(zero)
         return float(count) if self.goal is Goal.OVERSPEED else cost
 
@@ -107,7 +107,7 @@ def _cost(
     zero: Floats,
     gradient: Floats,
 ) -> tuple[float, int]:
-    """The cost and the number of rows whose feed is not reached; adds a subgradient of the cost."""
+    """Return the cost and the number of rows whose feed is not reached; adds a subgradient of the cost."""
     cost, count = 0.0, 0
     for row in range(1, len(offsets)):
         if begins[row]:

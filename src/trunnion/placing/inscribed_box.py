@@ -39,7 +39,7 @@ class Box:
 
 
 def inscribed_box(cuts: CutSet, inside: Floats, low: Floats, high: Floats) -> Box:
-    """The box around a place (3,) that fits, in a region with the extent ``low`` to ``high`` (3,); mm.
+    """Return the box around a place (3,) that fits, in a region with the extent ``low`` to ``high`` (3,); mm.
 
     Each of its corners fits. Its volume is within a hundredth of the largest one. It is the place alone where rounding
     leaves no other.
@@ -61,7 +61,7 @@ def inscribed_box(cuts: CutSet, inside: Floats, low: Floats, high: Floats) -> Bo
 
 
 def _largest(cuts: CutSet, inside: Floats, low: Floats, high: Floats) -> Box:
-    """The largest box within the half-spaces so far: of its ends (6) and the logarithms of its edges (3)."""
+    """Return the largest box within the half-spaces so far: of its ends (6) and the logarithms of its edges (3)."""
     normals, bounds, _ = cuts.table()
     none = np.zeros((len(normals), 3))
     table = [np.block([np.minimum(normals, 0.0), np.maximum(normals, 0.0), none])]
@@ -82,7 +82,9 @@ def _largest(cuts: CutSet, inside: Floats, low: Floats, high: Floats) -> Box:
 
 
 def _fitting(cuts: CutSet, box: Box, inside: Floats) -> Box:
-    """The box a little smaller, in whole thousandths, so that every corner fits; the place alone if none does."""
+    """Return the box a little smaller, in whole thousandths, so that every corner fits; the place alone if
+    none does.
+    """
     for less in (0.0, _DIGIT, 4.0 * _DIGIT, 16.0 * _DIGIT):
         low = np.minimum(np.ceil((box.low + less) / _DIGIT - 1e-6) * _DIGIT, inside)
         high = np.maximum(np.floor((box.high - less) / _DIGIT + 1e-6) * _DIGIT, inside)

@@ -66,13 +66,13 @@ class _Solution:
     program: Any
 
     def holds(self, cuts: CutSet) -> list[Cut]:
-        """The half-spaces without which the margin would grow, the heaviest first."""
+        """Return the half-spaces without which the margin would grow, the heaviest first."""
         weights = -self.program.ineqlin.marginals[: len(cuts.cuts)]
         return [cuts.cuts[k] for k in np.argsort(-weights, kind="stable").tolist() if weights[k] > _NO_WEIGHT]
 
 
 def largest_margin(cuts: CutSet, near: Floats, *, settled: bool = True) -> BestPlace:
-    """The best place; ``near`` (3,) is where the search begins.
+    """Return the best place; ``near`` (3,) is where the search begins.
 
     Of places with the same margin, if ``settled``, the one whose other slides are farthest from their limits, and of
     like ones that next to ``near``; else any.
@@ -88,7 +88,7 @@ def largest_margin(cuts: CutSet, near: Floats, *, settled: bool = True) -> BestP
 
 
 def innermost(cuts: CutSet) -> tuple[Floats, float]:
-    """The place (3,) with the most left to limits and edges alike, and what that is, mm; ``cuts`` knows some."""
+    """Return the place (3,) with the most left to limits and edges alike, and what that is, mm; ``cuts`` knows some."""
     solution = _solve(cuts, lambda: _greatest_least(cuts, np.full(4, np.nan)))
     return solution.zero, cuts.at(solution.zero).least
 
@@ -125,7 +125,7 @@ def _seed(cuts: CutSet, near: Floats) -> None:
 
 
 def _solve(cuts: CutSet, solve: Callable[[], _Solution]) -> _Solution:
-    """The solution of a linear program of all half-spaces."""
+    """Return the solution of a linear program of all half-spaces."""
     for _ in range(_MOST_ROUNDS):
         solution = solve()
         wanted = np.repeat(solution.margins[:TABLE, None], 2, axis=1) - EXACT
@@ -135,7 +135,7 @@ def _solve(cuts: CutSet, solve: Callable[[], _Solution]) -> _Solution:
 
 
 def _greatest_least(cuts: CutSet, kept: Floats) -> _Solution:
-    """The greatest least margin, while slides and table keep ``kept`` (4,) mm; NaN: they have that least one."""
+    """Return the greatest least margin, while slides and table keep ``kept`` (4,) mm; NaN: they have that least one."""
     normals, bounds, slides = cuts.table()
     free = np.isnan(kept[slides])
     table = np.column_stack((normals, free))
@@ -146,7 +146,9 @@ def _greatest_least(cuts: CutSet, kept: Floats) -> _Solution:
 
 
 def _nearest(cuts: CutSet, margins: Floats, near: Floats) -> _Solution:
-    """The place that keeps margins (4,) mm and is next to ``near`` (3,): by its distances along X, Y and Z together."""
+    """Return the place that keeps margins (4,) mm and is next to ``near`` (3,): by its distances along X, Y and Z
+    together.
+    """
     normals, bounds, slides = cuts.table()
     none, eye = np.zeros((len(normals), 3)), np.eye(3)
     table = np.block([[normals, none], [eye, -eye], [-eye, -eye]])

@@ -31,7 +31,7 @@ class CheapestPlace:
 
 
 def least_cost(cuts: CutSet, cost: PlaceCost, start: Floats, margin: float) -> CheapestPlace:
-    """The cheapest place that keeps a margin, mm; ``start`` (3,) keeps it."""
+    """Return the cheapest place that keeps a margin, mm; ``start`` (3,) keeps it."""
     value, gradient, count = cost.at(start)
     best = CheapestPlace(start, value, count, 0.0)
     planes, heights = [gradient], [value - float(gradient @ start)]
@@ -51,7 +51,7 @@ def least_cost(cuts: CutSet, cost: PlaceCost, start: Floats, margin: float) -> C
 
 
 def _lowest(cuts: CutSet, planes: Floats, heights: Floats, margin: float) -> tuple[Floats, float]:
-    """The lowest point (3,) of planes within the half-spaces, and its height."""
+    """Return the lowest point (3,) of planes within the half-spaces, and its height."""
     normals, bounds, slides = cuts.table()
     scale = max(float(np.abs(heights).max()), 1.0)  # costs of millions of rows are large numbers
     table = np.block([[normals, np.zeros((len(normals), 1))], [planes / scale, -np.ones((len(planes), 1))]])

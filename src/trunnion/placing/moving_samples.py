@@ -103,7 +103,8 @@ def _turning_points(arcs: ArcPaths, normal: Floats) -> tuple[Ints, Floats]:
 
 
 def most_between(machine: Machine, rows: PathRows, positions: Floats, zero: Floats) -> float:
-    """The bound over the ways to all rows, mm, with the zero (3,) there; NaN if rotary axes stand between slides.
+    """Return the bound over the ways to all rows, mm, with the zero (3,) there; NaN if rotary axes stand between
+    slides.
 
     Parameters
     ----------

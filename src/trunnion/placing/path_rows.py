@@ -68,15 +68,15 @@ class PathRows:
         return flags
 
     def length_at(self, rows: Ints) -> Floats | None:
-        """The lengths of the tools in some rows, (k,) mm."""
+        """Return the lengths of the tools in some rows, (k,) mm."""
         return None if self.length is None else self.length[rows]
 
     def stretch_of(self, row: int) -> Stretch:
-        """The stretch of a row."""
+        """Return the stretch of a row."""
         return self.stretches[int(np.searchsorted(self._firsts, row, "right")) - 1]
 
     def turned(self, turn: Floats) -> "PathRows":
-        """The path of the part turned about the origin of the workpiece frame by a matrix (3, 3)."""
+        """Return the path of the part turned about the origin of the workpiece frame by a matrix (3, 3)."""
         if np.array_equal(turn, np.eye(3)):
             return self
         arcs, turn = self.arcs, turn.T
@@ -88,11 +88,11 @@ class PathRows:
         )
 
     def with_branch(self, branch: int) -> "PathRows":
-        """The path with all rows in one branch."""
+        """Return the path with all rows in one branch."""
         return replace(self, branch=np.full(len(self), branch, np.uint8))
 
     def select(self, keep: Flags) -> "PathRows":
-        """Some rows, (n,) bool, in the stretches that they are in."""
+        """Return some rows, (n,) bool, in the stretches that they are in."""
         rows = np.flatnonzero(keep)
         owner = np.searchsorted(self._firsts, rows, "right") - 1
         firsts = np.flatnonzero(np.diff(owner, prepend=-1) > 0)

@@ -73,7 +73,9 @@ class PlaceSearch:
     def _searched(
         self, paths_at: PathsAt, advance: Callable[[int], None]
     ) -> tuple[Sequence[TurnResult], TurnResult, float | None]:
-        """What each orientation allows, the best of them, and the most distance of bodies anywhere, where known."""
+        """Return what each orientation allows, the best of them, and the most distance of bodies anywhere,
+        where known.
+        """
         if self.guard is None or self.goal is not Goal.COLLISIONS or not self.guard.is_changed:
             sought = Goal.MARGIN if self.goal is Goal.COLLISIONS else self.goal
             return *best_orientations(paths_at, self.grid, advance, goal=sought), None
@@ -127,7 +129,7 @@ class PlaceSearch:
 
 
 def _first_guess(machine: Machine) -> Floats:
-    """A place near which the search begins: the present one, or where the part sits on the first rotary axis."""
+    """Return a place near which the search begins: the present one, or where the part sits on the first rotary axis."""
     if machine.workpiece_zero is not None:
         return np.array(machine.workpiece_zero)
     return np.array(machine.axes[machine.rotary[0]].point)
@@ -142,7 +144,7 @@ def _between(path: TurnedPath, found: PartPlace) -> float:
 
 
 def _with_value(place: PartPlace, path: TurnedPath | None, goal: Goal) -> PartPlace:
-    """A place with the value of the goal."""
+    """Return a place with the value of the goal."""
     angles = None if path is None else path.angles_at(place.turn_deg)
     if path is None or isinstance(angles, Obstacle) or angles is None:
         return place
@@ -160,7 +162,9 @@ def _with_value(place: PartPlace, path: TurnedPath | None, goal: Goal) -> PartPl
 
 
 def _present(machine: Machine, rows: PathRows, paths: Sequence[TurnedPath], goal: Goal) -> PartPlace | None:
-    """The place that the machine has been given; None if it has none, or rotary axes do not reach the path there."""
+    """Return the place that the machine has been given; None if it has none, or rotary axes do not reach the path
+    there.
+    """
     if machine.workpiece_zero is None:
         return None
     zero = np.array(machine.workpiece_zero)

@@ -282,7 +282,7 @@ class Placement:
         return sum(turn.fits for turn in asked) / max(len(asked), 1)
 
     def margin_at(self, zero_mm: Vector, turn_deg: float, tilt_deg: float = 0.0) -> float:
-        """The margin of any place, exact.
+        """Return the margin of any place, exact.
 
         Minus infinity where rotary axes do not reach the path, or the table is too small.
         """

@@ -15,7 +15,7 @@ from trunnion.planning.holes.hole_ends import hole_ends
 
 
 def rows_of_plan(machine: Machine, motions: Sequence[Motion]) -> PathRows:
-    """The rows of all motions; of holes that are cycles also their bottoms, and where the tool leaves them."""
+    """Return the rows of all motions; of holes that are cycles also their bottoms, and where the tool leaves them."""
     parts = [_rows_of_motion(machine, motion, tool) for motion, tool in zip(motions, _tools(motions), strict=True)]
     home = machine.home[list(machine.rotary)][None]
     rows = joined_rows([replace(part, start=home) for part in parts])
@@ -27,7 +27,7 @@ def rows_of_plan(machine: Machine, motions: Sequence[Motion]) -> PathRows:
 
 
 def _tools(motions: Sequence[Motion]) -> Iterator[str]:
-    """The number of the tool in the spindle in each motion; empty: none was loaded."""
+    """Yield the number of the tool in the spindle in each motion; empty: none was loaded."""
     number = ""
     for motion in motions:
         for event in motion.operation.events:
@@ -62,7 +62,7 @@ def branches(machine: Machine, tip: Floats, axis: Floats, rotary: Floats) -> Cod
 
 
 def _with_holes(rows: PathRows, holes: Ints, ends: Floats) -> PathRows:
-    """The rows with two more after each hole, its bottom and the point from which the tool goes on."""
+    """Return the rows with two more after each hole, its bottom and the point from which the tool goes on."""
     count = np.zeros(len(rows), np.int64)
     count[holes] = 2
     source = np.repeat(np.arange(len(rows)), 1 + count)

@@ -28,7 +28,9 @@ def placed_notices(clamping: Clamping, zero: Vector | None = None, tool_length: 
 
 
 def stated_place(program: Path) -> HeadNotices:
-    """What the head of a program states of its part; nothing where it cannot be read twice, as what a pipe holds."""
+    """Return what the head of a program states of its part; nothing where it cannot be read twice, as what a pipe
+    holds.
+    """
     if not program.is_file():
         return HeadNotices()
     try:
@@ -131,7 +133,7 @@ def _unlike_zero(program: Path, stated: HeadNotices, machine: Machine) -> list[P
 
 
 def _told(turn: float, tilt: float) -> str:
-    """The angles, as somebody is told to give them."""
+    """Return the angles, as somebody is told to give them."""
     if are_one_angle(turn, 0.0) and are_one_angle(tilt, 0.0):
         return "no turn and no tilt"
     tilted = "" if are_one_angle(tilt, 0.0) else f" and the tilt {number(tilt)}"

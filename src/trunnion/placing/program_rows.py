@@ -19,7 +19,7 @@ _ROTARY_WORDS = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWor
 
 
 def rows_of_run(run: Run) -> PathRows:
-    """The rows of a run that move slides to positions of the workpiece."""
+    """Return the rows of a run that move slides to positions of the workpiece."""
     machine = run.machine
     keep = _rows_at_workpiece(run)
     if not keep.any():

@@ -28,7 +28,7 @@ class ProgramUse:
 
 
 def other_positions(found: Placement, run: Run) -> ProgramUse | None:
-    """What a proven program does at feed; None where its rotary axes stay within what the place says of them."""
+    """Return what a proven program does at feed; None where its rotary axes stay within what the place says of them."""
     rows = np.flatnonzero(run.kind != Kind.RAPID)
     if found.best is None or not len(rows):
         return None
@@ -49,7 +49,7 @@ def _is_within(low: float, high: float, use: RotaryUse) -> bool:
 
 
 def _slide_margin(run: Run, rows: Ints) -> float:
-    """What the nearest slide has left in some rows, at their ends and on arcs, mm."""
+    """Return what the nearest slide has left in some rows, at their ends and on arcs, mm."""
     arcs, slides = RunArcs.of(run), list(run.machine.linear)
     reached, count = run.joints[rows][:, slides], np.isin(arcs.rows, rows)
     low = np.concatenate((reached, arcs.axes.low[count][:, slides])).min(axis=0)

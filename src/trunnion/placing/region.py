@@ -59,12 +59,14 @@ class Region:
         return all(np.allclose(one, other, rtol=0.0, atol=TOLERANCE) for one, other in ends)
 
     def margin(self, zero: Floats) -> float:
-        """What the linear axis nearest to a limit has left with the zero (3,) there, mm; negative: it does not fit."""
+        """Return what the linear axis nearest to a limit has left with the zero (3,) there, mm; negative: it does not
+        fit.
+        """
         return self.cuts.at(np.asarray(zero, np.float64)).margin
 
 
 def region_of(cuts: CutSet, best: BestPlace, inside: Floats | None = None) -> Region | None:
-    """The region around the best place, with a box around it or a place (3,) near it; None if there is none."""
+    """Return the region around the best place, with a box around it or a place (3,) near it; None if there is none."""
     if best.margin < 0.0:
         return None
     middle, room = (best.zero, best.margin) if cuts.edges is None else innermost(cuts)

@@ -48,7 +48,7 @@ class RotaryAngles:
 
 
 def rotary_angles(machine: Machine, rows: PathRows) -> RotaryAngles | Obstacle:
-    """The positions of the rotary axes in all rows."""
+    """Return the positions of the rotary axes in all rows."""
     positions, held = np.empty((len(rows), 2)), np.empty(len(rows), np.bool_)
     limits = np.array([(machine.axes[column].low, machine.axes[column].high) for column in machine.rotary])
     row, lacking = _fill_angles(
@@ -100,7 +100,9 @@ def _fill_angles(
 
 @inner
 def _nearest_turn(angle: float, last: float, low: float, high: float) -> float:
-    """The angle with the turns that bring it nearest to ``last`` within the limits, degrees; NaN if none does."""
+    """Return the angle with the turns that bring it nearest to ``last`` within the limits, degrees; NaN if
+    none does.
+    """
     turns = math.floor((last - angle) / 360.0 + 0.5)
     least, most = (low - _ROUNDING - angle) / 360.0, (high + _ROUNDING - angle) / 360.0
     if turns < least:

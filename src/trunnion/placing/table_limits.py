@@ -66,7 +66,7 @@ class ClampingArea:
 
     @staticmethod
     def of(machine: Machine) -> "ClampingArea | None":
-        """What a definition states; None: it states no table.
+        """Return what a definition states; None: it states no table.
 
         The middle is that of the definition, or else where the rotary axis about Z that carries the part stands.
         """
@@ -106,11 +106,11 @@ class Standing:
     points: Floats
 
     def turned(self, matrix: Floats) -> "Standing":
-        """The same, turned about the workpiece zero by a matrix (3, 3)."""
+        """Return the same, turned about the workpiece zero by a matrix (3, 3)."""
         return Standing(self.area, self.points @ matrix.T)
 
     def limits(self) -> "TableLimits":
-        """What the table asks of the zero."""
+        """Return what the table asks of the zero."""
         flat = np.column_stack((self.points[:, :2], np.zeros(len(self.points))))
         return TableLimits(self.area, np.ascontiguousarray(flat[hull_points(flat), :2]))
 
@@ -129,7 +129,7 @@ class TableLimits:
         return x, y
 
     def left(self, zero: Floats) -> float:
-        """What the outline has left to the nearest edge with the zero (3,) there, mm; negative beyond it."""
+        """Return what the outline has left to the nearest edge with the zero (3,) there, mm; negative beyond it."""
         from_centre = self.corners + zero[:2] - self.area.centre
         least = np.inf
         if self.area.size is not None:
@@ -139,13 +139,13 @@ class TableLimits:
         return least
 
     def nearest_edges(self, zero: Floats) -> list[TableEdge]:
-        """The edges to which the outline has the least left with the zero (3,) there."""
+        """Return the edges to which the outline has the least left with the zero (3,) there."""
         limits = [*self.straight_edges(), *filter(None, (self.rim_at(zero),))]
         left = [limit.bound - float(np.dot(limit.normal, zero[:2])) for limit in limits]
         return [limit.edge for limit, one in zip(limits, left, strict=True) if one <= min(left) + KEPT]
 
     def straight_edges(self) -> Iterator[EdgeLimit]:
-        """The half-spaces of a rectangle: of all its edges."""
+        """Yield the half-spaces of a rectangle: of all its edges."""
         if self.area.size is None:
             return
         low, high = self.corners.min(axis=0).tolist(), self.corners.max(axis=0).tolist()
@@ -155,7 +155,7 @@ class TableLimits:
             yield EdgeLimit(normal, self.area.edge_position(edges[1]) - high[axis], edges[1])
 
     def rim_at(self, zero: Floats) -> EdgeLimit | None:
-        """The tangent of the rim beside the corner that comes next to it with the zero (3,) there; None: no rim.
+        """Return the tangent of the rim beside the corner that comes next to it with the zero (3,) there; None: no rim.
 
         All places at which the outline is within the rim keep it.
         """
@@ -169,7 +169,7 @@ class TableLimits:
         return EdgeLimit((x, y), 0.5 * self.area.diameter - float(offset), TableEdge.RIM)
 
     def rim_around(self) -> Iterator[EdgeLimit]:
-        """Some tangents all round, to begin with."""
+        """Yield some tangents all round, to begin with."""
         far = 10.0 * (np.abs(self.corners).max() + (self.area.diameter or 0.0)) + np.abs(self.area.centre).max()
         for angle in np.arange(16) * (np.pi / 8.0):
             limit = self.rim_at(far * np.array([np.cos(angle), np.sin(angle), 0.0]))
@@ -191,7 +191,7 @@ def _corners(low: Floats, high: Floats) -> Floats:
 
 
 def _circle(radius: float) -> Floats:
-    """A polygon around a circle, of which no point is beyond by more than a hundred-thousandth of the radius."""
+    """Return a polygon around a circle, of which no point is beyond by more than a hundred-thousandth of the radius."""
     angles = (np.arange(_SIDES) + 0.5) * (2.0 * np.pi / _SIDES)
     outer = radius / float(np.cos(np.pi / _SIDES))
     return outer * np.column_stack((np.cos(angles), np.sin(angles)))

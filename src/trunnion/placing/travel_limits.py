@@ -116,12 +116,12 @@ class CutSet:
         return Cut((x, y, z), bound, slide, side, int(extremes.forms.row[sample]), part, sample)
 
     def row(self, reached: "Reached", slide: int, side: int) -> int:
-        """The row in which a slide goes farthest."""
+        """Return the row in which a slide goes farthest."""
         part = self.parts[int(reached.part[slide, side])]
         return int(part.forms.row[int(reached.sample[slide, side])])
 
     def table(self) -> tuple[Floats, Floats, Ints]:
-        """Normals (c, 3), bounds (c,), and slides (c,) or ``TABLE`` of the cuts so far."""
+        """Return normals (c, 3), bounds (c,), and slides (c,) or ``TABLE`` of the cuts so far."""
         normals = np.array([cut.normal for cut in self.cuts]).reshape(-1, 3)
         return normals, np.array([cut.bound for cut in self.cuts]), np.array([c.slide for c in self.cuts], np.int64)
 

@@ -31,7 +31,7 @@ def larger_than_table(machine: Machine, outline: tuple[float, float]) -> str:
 
 
 def limit_of_table(machine: Machine, edge: TableEdge) -> Limit:
-    """The edge of the table that holds a part."""
+    """Return the edge of the table that holds a part."""
     area = ClampingArea.of(machine)
     assert area is not None
     return Limit("table", str(edge), area.edge_position(edge), "", 0)
@@ -50,7 +50,7 @@ def obstacle_text(machine: Machine, rows: PathRows, obstacle: Obstacle) -> str:
 
 
 def place_at(machine: Machine, rows: PathRows, cuts: CutSet, zero: Floats, turn: float) -> PartPlace:
-    """A place with what it leaves each slide."""
+    """Return a place with what it leaves each slide."""
     reached = cuts.at(zero)
     axes = []
     for slide, column in enumerate(machine.linear):
@@ -62,7 +62,8 @@ def place_at(machine: Machine, rows: PathRows, cuts: CutSet, zero: Floats, turn:
 
 
 def rounded_zero(cuts: CutSet, zero: Floats) -> Floats:
-    """A place in whole thousandths of a millimetre, as controls have it, unless the part fits at the exact one only.
+    """Return a place in whole thousandths of a millimetre, as controls have it, unless the part fits at the exact one
+    only.
 
     Of the eight around it the nearest at which slides and stock keep their limits, else that which is nearest of all.
     """
@@ -89,14 +90,16 @@ def rotary_uses(machine: Machine, positions: Floats) -> tuple[RotaryUse, ...]:
 
 
 def limit_of_cut(machine: Machine, rows: PathRows, cut: Cut) -> Limit:
-    """The limit that a half-space is."""
+    """Return the limit that a half-space is."""
     if cut.slide == TABLE:
         return limit_of_table(machine, EDGES[cut.side])
     return limit_at(machine, rows, cut.row, cut.slide, cut.side)
 
 
 def nearest_limits(machine: Machine, cuts: CutSet, place: PartPlace) -> tuple[Limit, ...]:
-    """The limits to which slides have the least left at a place, like ones all; before them edges that are as near."""
+    """Return the limits to which slides have the least left at a place, like ones all; before them edges that are as
+    near.
+    """
     left = [(axis.least_mm - axis.low.limit_mm, axis.low) for axis in place.axes]
     left += [(axis.high.limit_mm - axis.greatest_mm, axis.high) for axis in place.axes]
     least = min(one for one, _ in left)
@@ -108,7 +111,7 @@ def nearest_limits(machine: Machine, cuts: CutSet, place: PartPlace) -> tuple[Li
 
 
 def limit_at(machine: Machine, rows: PathRows, row: int, slide: int, side: int) -> Limit:
-    """The limit of a slide with the row that comes nearest to it."""
+    """Return the limit of a slide with the row that comes nearest to it."""
     axis, stretch = machine.axes[machine.linear[slide]], rows.stretch_of(row)
     limit = axis.high if side else axis.low
     return Limit(axis.name, ("low", "high")[side], limit, stretch.file, int(rows.line[row]), stretch.operation)

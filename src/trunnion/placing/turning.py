@@ -59,7 +59,7 @@ def reaches_any_turn(machine: Machine) -> bool:
 
 
 def rows_that_stand(rows: PathRows, held: Flags) -> Flags:
-    """The rows that must be looked at for each turn, (n,) bool: of those held at the pole, hulls of their tips.
+    """Return the rows that must be looked at for each turn, (n,) bool: of those held at the pole, hulls of their tips.
 
     The first row after them is among them, for the way to it.
     """
@@ -98,7 +98,7 @@ def hull_points(points: Floats) -> Ints:
 
 
 def _flat_hull(points: Floats) -> Ints:
-    """The same for points of a plane or a line."""
+    """Return the same for points of a plane or a line."""
     scipy_spatial = import_extra("scipy.spatial", "place")
     middle = points.mean(axis=0)
     plane = np.linalg.svd(points - middle, full_matrices=False)[2]
@@ -112,7 +112,8 @@ def _flat_hull(points: Floats) -> Ints:
 
 
 def turned_head(forms: AxisEquations, turn: Floats, pivot: Floats) -> AxisEquations:
-    """The slides of a head that turns with the part, at a turn (3, 3), for a first rotary axis at ``pivot`` (3,) mm.
+    """Return the slides of a head that turns with the part, at a turn (3, 3), for a first rotary axis at ``pivot`` (3,)
+    mm.
 
     All normals are the same matrix M, so that offsets o are those of a point v with o = M (v - pivot): v turns.
     """

@@ -37,7 +37,9 @@ class Choice(StrEnum):
 
 
 def choices_of(rows: PathRows) -> Iterator[tuple[Choice, PathRows]]:
-    """The choices that differ, with their rows: as the planner or the program has it, and each branch throughout."""
+    """Yield the choices that differ, with their rows: as the planner or the program has it, and each branch
+    throughout.
+    """
     first, last = int(rows.branch.min()), int(rows.branch.max())
     yield Choice.AS_PLANNED, rows
     for branch, choice in enumerate((Choice.FIRST, Choice.SECOND)):
@@ -64,11 +66,13 @@ class TurnedPath:
     def of(
         machine: Machine, choice: Choice, rows: PathRows, near: Floats, standing: Standing | None = None
     ) -> "TurnedPath":
-        """A path on a machine, wherever its workpiece zero is."""
+        """Return a path on a machine, wherever its workpiece zero is."""
         return TurnedPath(replace(machine, workpiece_zero=None), choice, rows, near, standing)
 
     def at(self, turn: float) -> CutSet | Obstacle:
-        """The half-spaces of the path at a turn, degrees; or why it is out of reach there, or the table too small."""
+        """Return the half-spaces of the path at a turn, degrees; or why it is out of reach there, or the table too
+        small.
+        """
         if self.standing is None:
             return self._reached_at(turn)
         table = self.standing.turned(about_z(turn)).limits()
@@ -92,7 +96,7 @@ class TurnedPath:
         return self._of_parts(base, about_z(turn))
 
     def _of_parts(self, base: "_Base", turn: Floats) -> CutSet | Obstacle:
-        """The half-spaces of rows that turn along, and of those at the pole that do not."""
+        """Return the half-spaces of rows that turn along, and of those at the pole that do not."""
         parts = []
         if base.free is not None and self._turning is Turning.TABLE:
             parts.append(base.free.turned(turn, self._pivot))
@@ -111,7 +115,9 @@ class TurnedPath:
         return rotary_angles(self.machine, self.rows.turned(about_z(turn)))
 
     def rows_at(self, turn: float) -> tuple[PathRows, Floats]:
-        """The rows at a turn that is within reach, and the positions (n, 2) of the rotary axes in them, degrees."""
+        """Return the rows at a turn that is within reach, and the positions (n, 2) of the rotary axes in them,
+        degrees.
+        """
         angles = self.angles_at(turn)
         assert not isinstance(angles, Obstacle)
         return self.rows.turned(about_z(turn)), angles.positions
@@ -170,7 +176,7 @@ class _Base:
 
 
 def path_forms(machine: Machine, rows: PathRows, positions: Floats) -> AxisEquations | Obstacle:
-    """The slides in all rows, and after them in samples between them; ``positions`` (n, 2) degrees."""
+    """Return the slides in all rows, and after them in samples between them; ``positions`` (n, 2) degrees."""
     normals, offsets, failed = axis_equations(machine, rows.tip, positions, rows.length)
     if failed >= 0:
         return Obstacle(failed)
@@ -189,7 +195,7 @@ def path_forms(machine: Machine, rows: PathRows, positions: Floats) -> AxisEquat
 
 
 def _without(forms: AxisEquations, rows: PathRows, held: Flags) -> AxisEquations:
-    """The samples that neither belong to held rows nor to ways from these."""
+    """Return the samples that neither belong to held rows nor to ways from these."""
     if not held.any():
         return forms
     keep = ~held[forms.row]

@@ -54,7 +54,7 @@ def limit_violation_text(machine: Machine, column: int, value: float) -> Wording
 
 
 def limit_remedy(machine: Machine, column: int, value: float, remark: Wording | str = "") -> Wording:
-    """What brings an axis back within its limits, as the cure of a message with a ``remark``."""
+    """Return what brings an axis back within its limits, as the cure of a message with a ``remark``."""
     axis = machine.axes[column]
     lacking = axis.low - value if value < axis.low else value - axis.high
     if axis.is_rotary:

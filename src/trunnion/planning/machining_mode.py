@@ -39,7 +39,7 @@ _MIN_SINE: Final = 1e-3
 
 
 def mode_of(operation: Operation, requested: MachiningMode | None, negligible_tilt: float = 0.0) -> MachiningMode:
-    """The mode of an operation: the ``requested`` one, or else that by rule.
+    """Return the mode of an operation: the ``requested`` one, or else that by rule.
 
     ``negligible_tilt`` as in ``ControlCapabilities``.
     """
@@ -54,7 +54,9 @@ def mode_of(operation: Operation, requested: MachiningMode | None, negligible_ti
 
 
 def with_exact_upright_axis(operation: Operation) -> Operation:
-    """A three-axis operation with its tool axis exactly along +Z; it may be off by a tilt that prints as zero."""
+    """Return a three-axis operation with its tool axis exactly along +Z; it may be off by a tilt that prints
+    as zero.
+    """
     moves = operation.moves
     if (moves.axis[0] == _UP).all() and (moves.axis == _UP).all():
         return operation
@@ -64,7 +66,7 @@ def with_exact_upright_axis(operation: Operation) -> Operation:
 def supported_mode(
     file: str, operation: Operation, mode: MachiningMode, options: PlanOptions, capabilities: ControlCapabilities
 ) -> tuple[MachiningMode, list[Problem]]:
-    """The mode in which the control can make an operation, with a warning if it is not ``mode``."""
+    """Return the mode in which the control can make an operation, with a warning if it is not ``mode``."""
     replaceable = options.mode_for(operation.name) is None and options.simultaneous_mode in capabilities.modes
     if mode is MachiningMode.TILTED and mode not in capabilities.modes and replaceable:
         return options.simultaneous_mode, [
@@ -107,7 +109,7 @@ def mode_conflicts(
 
 
 def tilted_plane(axis: Floats, own_frame: Frame, x_direction: Floats | None = None) -> Frame:
-    """The tilted plane under a tool axis, in the program's coordinate system.
+    """Return the tilted plane under a tool axis, in the program's coordinate system.
 
     Parameters
     ----------

@@ -52,7 +52,7 @@ class PlannedOperation:
         return any(problem.severity is Severity.ERROR for problem in self.problems)
 
     def motions(self) -> list[Motion]:
-        """The operation as motions, with the rows of rewinds: one, or one for each part."""
+        """Return the operation as motions, with the rows of rewinds: one, or one for each part."""
         prepared = self.prepared
         feed_share = prepared.request.options.reengage_feed_share
         operation, rotary = insert_rewinds(self.operation, self.poses.rotary, self.rewinds, feed_share)

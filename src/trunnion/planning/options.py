@@ -68,7 +68,7 @@ class PlanOptions:
     explain: bool = False
 
     def mode_for(self, operation: str) -> MachiningMode | None:
-        """The mode requested for the operation of this name; None: by the rule."""
+        """Return the mode requested for the operation of this name; None: by the rule."""
         return self.mode_by_operation.get(operation, self.mode)
 
     @property

@@ -137,7 +137,9 @@ def measure(operation: Operation, before: Floats | None, spindle: SpindleState |
 
 
 def extents(operation: Operation) -> tuple[tuple[float, float, float], tuple[float, float, float]] | None:
-    """The lowest and the highest coordinates of points, arcs and holes, in those of the operation; None without any."""
+    """Return the lowest and the highest coordinates of points, arcs and holes, in those of the operation; None without
+    any.
+    """
     if not len(operation.moves):
         return None
     try:

@@ -27,7 +27,7 @@ _NAMED: Final = 5
 
 
 def unknown_speed_problems(file: str, request: PlanRequest) -> Iterable[Problem]:
-    """A warning if speeds of rotary axes are to be limited, and the definition does not state them."""
+    """Yield a warning if speeds of rotary axes are to be limited, and the definition does not state them."""
     machine, options = request.machine, request.options
     names = [machine.axes[column].name for column in machine.rotary if machine.axes[column].rapid is None]
     if names and (options.pole_strategy is not PoleStrategy.OFF or options.lower_feed):
@@ -78,7 +78,7 @@ def rewind_problems(chosen: ChosenPoses, rewinds: Sequence[Rewind], request: Pla
 
 
 def _made_rewinds(chosen: ChosenPoses, rewinds: Sequence[Rewind], feed_share: float) -> Problem:
-    """The warning about rewinds: where they are, what they cost, and why the first one is needed."""
+    """Return the warning about rewinds: where they are, what they cost, and why the first one is needed."""
     moves, first = chosen.operation.moves, rewinds[0]
     said: dict[str, object] = {"distance": max(one.retract_distance for one in rewinds), "reason": first.reason}
     variant = "one_rewind"
@@ -96,7 +96,9 @@ def _made_rewinds(chosen: ChosenPoses, rewinds: Sequence[Rewind], feed_share: fl
 
 
 def winding_problems(chosen: ChosenPoses, request: PlanRequest) -> Iterable[Problem]:
-    """A warning for each rotary axis that ends some turns from home, where it has to go back through all of them."""
+    """Yield a warning for each rotary axis that ends some turns from home, where it has to go back through all
+    of them.
+    """
     machine = request.machine
     for column, turns in wound_turns(machine, chosen.rotary):
         axis = machine.axes[column]

@@ -98,7 +98,9 @@ def _check_reach_and_travel(planned: Sequence[PlannedOperation], request: PlanRe
 
 
 def _frame_remedy(first: Frame, options: PlanOptions) -> Wording | str:
-    """What helps, besides tilting the workpiece, if the first operation's MSYS is tilted; empty if it is upright."""
+    """Return what helps, besides tilting the workpiece, if the first operation's MSYS is tilted; empty if it is
+    upright.
+    """
     upright = float(first.matrix()[2, 2])
     tilt = math.degrees(math.acos(min(max(upright, -1.0), 1.0)))
     if options.absolute_frame or tilt < _LEAST_TILT:
@@ -109,7 +111,7 @@ def _frame_remedy(first: Frame, options: PlanOptions) -> Wording | str:
 def _linearize(
     planned: Sequence[PlannedOperation], request: PlanRequest
 ) -> list[tuple[PlannedOperation, LinearizedMotion]]:
-    """The motions of all operations with the points that they need between CL points."""
+    """Return the motions of all operations with the points that they need between CL points."""
     motions = [(operation, motion) for operation in planned for motion in operation.motions()]
     without_tcp = [motion.operation for _, motion in motions if motion.mode is MachiningMode.WITHOUT_TCP]
     if without_tcp:

@@ -80,14 +80,14 @@ def prepare_operations(sources: Sequence[tuple[str, Operation]], request: PlanRe
 
 
 def _in_frame(request: PlanRequest, file: str, original: Operation, frame: Frame) -> PreparedOperation:
-    """The operation in the program's coordinate system ``frame``, with cycles around holes only."""
+    """Return the operation in the program's coordinate system ``frame``, with cycles around holes only."""
     operation = _with_feed_limit(into_frame(normalize_cycles(original), frame), request.options.feed_limit)
     own_frame = relative_frame(original.frame, frame)
     return PreparedOperation(request, file, original, operation, own_frame, request.options.simultaneous_mode)
 
 
 def _with_feed_limit(operation: Operation, limit: float | None) -> Operation:
-    """The operation with the feed limit as the feed of its cuts; holes, which are rapids here, keep theirs.
+    """Return the operation with the feed limit as the feed of its cuts; holes, which are rapids here, keep theirs.
 
     So do plunges, unless theirs is higher.
     """
@@ -100,7 +100,7 @@ def _with_feed_limit(operation: Operation, limit: float | None) -> Operation:
 
 
 def _plunges(operation: Operation) -> Flags:
-    """Moves that go down along the tool by more than they go across, (n,), a spline as a whole.
+    """Return moves that go down along the tool by more than they go across, (n,), a spline as a whole.
 
     So does the first, of which nobody knows where it begins.
     """
@@ -120,7 +120,7 @@ def _plunges(operation: Operation) -> Flags:
 
 
 def _in_mode(prepared: PreparedOperation) -> tuple[PreparedOperation, list[Problem]]:
-    """The operation with its machining mode, and why it cannot be made in that mode."""
+    """Return the operation with its machining mode, and why it cannot be made in that mode."""
     file, operation = prepared.file, prepared.operation
     options, capabilities = prepared.request.options, prepared.request.capabilities
     mode = mode_of(operation, options.mode_for(operation.name), capabilities.negligible_tilt)
@@ -132,7 +132,7 @@ def _in_mode(prepared: PreparedOperation) -> tuple[PreparedOperation, list[Probl
 
 
 def _with_lines_for_arcs(prepared: PreparedOperation) -> PreparedOperation:
-    """The operation with lines in place of the arcs that the control does not take."""
+    """Return the operation with lines in place of the arcs that the control does not take."""
     operation, capabilities = prepared.operation, prepared.request.capabilities
     is_tilted = prepared.mode is MachiningMode.TILTED
     written = operation
@@ -151,13 +151,13 @@ def _with_lines_for_arcs(prepared: PreparedOperation) -> PreparedOperation:
 
 
 def _with_lines_for_splines(prepared: PreparedOperation) -> PreparedOperation:
-    """The operation without the splines that must be the lines of their points."""
+    """Return the operation without the splines that must be the lines of their points."""
     operation, capabilities = prepared.operation, prepared.request.capabilities
     return prepared.with_operation(with_splines_kept(operation, prepared.mode, capabilities))
 
 
 def _with_holes(prepared: PreparedOperation, spindle: SpindleState | None) -> PreparedOperation:
-    """The operation with its parts, and with rows of motion in place of the cycles that the control lacks.
+    """Return the operation with its parts, and with rows of motion in place of the cycles that the control lacks.
 
     Parameters
     ----------

@@ -76,11 +76,11 @@ class PreparedOperation:
         return source_rows(self.original, self.operation)
 
     def with_operation(self, operation: Operation) -> "PreparedOperation":
-        """The same with other tool axes or feeds; rows stay."""
+        """Return the same with other tool axes or feeds; rows stay."""
         return replace(self, operation=operation)
 
     def plane(self, axis: Floats, rotary: Floats) -> Frame | None:
-        """The tilted plane under a tool axis (3,) at rotary positions (2,), degrees; None in other modes."""
+        """Return the tilted plane under a tool axis (3,) at rotary positions (2,), degrees; None in other modes."""
         if self.mode is not MachiningMode.TILTED:
             return None
         machine, capabilities = self.request.machine, self.request.capabilities
@@ -88,6 +88,6 @@ class PreparedOperation:
         return tilted_plane(axis, self.own_frame, x_direction)
 
     def decision(self, row: int, topic: DecisionTopic, text: str) -> Decision:
-        """A decision about a row; -1: about the whole operation."""
+        """Return a decision about a row; -1: about the whole operation."""
         line = int(self.operation.moves.line[max(row, 0)])
         return Decision(self.file, self.operation.name, line, row, topic, text)

@@ -18,7 +18,7 @@ def is_endless(machine: Machine) -> tuple[bool, bool]:
 
 
 def continuous_positions(machine: Machine, rotary: Floats) -> Floats:
-    """Displayed positions as the axes wind: endless axes take the shorter way, the others stay as they are.
+    """Return displayed positions as the axes wind: endless axes take the shorter way, the others stay as they are.
 
     Parameters
     ----------

@@ -113,12 +113,12 @@ def collect_content(
 
 
 def _told(problem: Problem) -> str:
-    """A problem without its place."""
+    """Return a problem without its place."""
     return f"{problem.what}; {problem.cure}".removesuffix("; ")
 
 
 def refused_content(machine: Machine, program: str, problems: Sequence[Problem]) -> ReportContent:
-    """The content for a program that was refused before it was run: one check, with the problems as places."""
+    """Return the content for a program that was refused before it was run: one check, with the problems as places."""
     errors = [problem for problem in problems if problem.severity is Severity.ERROR]
     places = tuple(
         Place(0, -1, math.nan, _told(problem), problem.file, problem.line, code=problem.code)

@@ -87,7 +87,7 @@ def _row(fitted: CurveFit) -> Iterator[str]:
 
 
 def _view(fitted: CurveFit, samples: _Samples) -> Iterator[str]:
-    """The curve in its plane, with points, control polygon and comb."""
+    """Yield the curve in its plane, with points, control polygon and comb."""
     middle = samples.points.mean(axis=0)
     plane = np.linalg.svd(samples.points - middle, full_matrices=False)[2][:2]
     flat = (samples.points - middle) @ plane.T

@@ -81,7 +81,7 @@ class AxisExtent:
 
 
 def block_reference(run: Run, row: int) -> BlockReference:
-    """The block of a row."""
+    """Return the block of a row."""
     file = int(run.file[row])
     return BlockReference(
         int(run.line[row]), int(run.block_number[row]), clean(Path(run.files[file]).name) if file else ""
@@ -89,7 +89,7 @@ def block_reference(run: Run, row: int) -> BlockReference:
 
 
 def tip_extent(run: Run, k: int, cutting: Flags, arcs: RunArcs) -> TipExtent:
-    """The extent of the tip along direction ``k``; ``cutting`` (n,) is False for rapids."""
+    """Return the extent of the tip along direction ``k``; ``cutting`` (n,) is False for rapids."""
     column = run.tip[:, k]
     whole, cut = (
         extremes_of(run, *_with_arcs(column[rows], rows, arcs, arcs.tip, k))
@@ -99,7 +99,7 @@ def tip_extent(run: Run, k: int, cutting: Flags, arcs: RunArcs) -> TipExtent:
 
 
 def axis_extent(run: Run, k: int, axis: Axis, arcs: RunArcs) -> AxisExtent:
-    """The extent of an axis, which is column ``k`` of ``run.joints``."""
+    """Return the extent of an axis, which is column ``k`` of ``run.joints``."""
     rows, zero_known = travel_rows(run, axis), is_zero_known(run, k)
     values, of_rows = _with_arcs(run.joints[rows, k], rows, arcs, arcs.axes, k)
     zero = 0.0 if zero_known else float(at_workpiece_zero(run.machine)[k])
@@ -122,7 +122,7 @@ def _with_arcs(values: Floats, rows: Ints, arcs: RunArcs, reach: Reach, k: int) 
 
 
 def extent_of(run: Run, axis: Axis, values: Floats, rows: Ints, *, zero_known: bool) -> AxisExtent:
-    """The extent of an axis that has taken values (k,) in rows (k,)."""
+    """Return the extent of an axis that has taken values (k,) in rows (k,)."""
     extremes = extremes_of(run, values, rows)
     low, high = (value if math.isfinite(value) else None for value in (axis.low, axis.high))
     return AxisExtent(

@@ -55,7 +55,7 @@ lets go.{limits}{FLOATING_NOTE if floating else ""} {escape(series.note)}</p>
 
 
 def element_prefix(series: PlotSeries) -> str:
-    """What the ids of the elements of a section begin with."""
+    """Return what the ids of the elements of a section begin with."""
     return f"{series.name}-" if series.name else ""
 
 

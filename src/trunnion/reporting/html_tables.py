@@ -93,7 +93,7 @@ def _result(check: Check) -> str:
 
 
 def _worst_places(checks: Sequence[Check]) -> str:
-    """The worst places of each check, failed checks first."""
+    """Return the worst places of each check, failed checks first."""
     tables = [_check_places(check) for check in sorted(checks, key=lambda check: check.passed) if check.places]
     return _section("Worst places", "".join(tables)) if tables else ""
 
@@ -117,7 +117,7 @@ def _check_places(check: Check) -> str:
 
 
 def _plot_button(place: Place) -> str:
-    """The button that zooms to a place, unless it has no block."""
+    """Return the button that zooms to a place, unless it has no block."""
     if not place.nc_line:
         return ""
     file = f' data-file="{escape(place.nc_file)}"' if place.nc_file else ""
@@ -125,7 +125,7 @@ def _plot_button(place: Place) -> str:
 
 
 def _nc_line(place: Place) -> str:
-    """The line of a block, with the subprogram in which it is."""
+    """Return the line of a block, with the subprogram in which it is."""
     if not place.nc_file:
         return str(place.nc_line or "")
     return f"{escape(place.nc_file)}:{place.nc_line}"
@@ -172,7 +172,7 @@ def _operation(operation: OperationUsage) -> str:
 
 
 def _decisions(content: ReportContent) -> str:
-    """The decisions of the planner and their reasons."""
+    """Return the decisions of the planner and their reasons."""
     rows = [
         f"<tr><td><bdi>{escape(decision.operation)}</bdi></td>"
         f'<td class=n title="{escape(decision.file)}">{decision.line or ""}</td>'
@@ -191,7 +191,7 @@ def _extents(content: ReportContent) -> str:
 
 
 def _used(content: ReportContent) -> str:
-    """What axes and spindle used of their travel in the recording."""
+    """Return what axes and spindle used of their travel in the recording."""
     if content.recorded is None or not content.recorded.extents:
         return ""
     rows = [_axis(axis) for axis in content.recorded.extents]

@@ -152,7 +152,7 @@ def _changes(run: Run, name: str) -> list[tuple[int, float]]:
 
 
 def _with_marks(text: bytes, ends: Ints, first: int, marks: Sequence[tuple[int, str]]) -> Iterator[bytes]:
-    """The lines of rows from ``first`` on, which end at ``ends`` (n,), with the lines before them."""
+    """Yield the lines of rows from ``first`` on, which end at ``ends`` (n,), with the lines before them."""
     done = 0
     for row, mark in marks:
         if first <= row < first + len(ends):
@@ -196,7 +196,7 @@ def row_texts(columns: Sequence[Column], texts: Sequence[str], text_of: Ints) ->
 
 
 def _slow_row_texts(columns: Sequence[Column], texts: Sequence[str], text_of: Ints) -> tuple[bytes, Ints]:
-    """The same for numbers of any size, of which large ones move what comes after them to the right."""
+    """Return the same for numbers of any size, of which large ones move what comes after them to the right."""
     lines = []
     for row, text in enumerate(text_of.tolist()):
         numbers = (_number(float(each.values[row]), each.decimals).rjust(each.width) for each in columns)

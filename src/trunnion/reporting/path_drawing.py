@@ -169,7 +169,7 @@ def _feature_edges(body: DrawnBody) -> Floats:
 
 
 def _triad(origin: Floats, view: Floats, names: str) -> Iterator[str]:
-    """The axes at the program zero, with their names."""
+    """Yield the axes at the program zero, with their names."""
     yield f'<circle class="zero" cx="{origin[0]:.1f}" cy="{origin[1]:.1f}" r="3"/>'
     for k, name in enumerate(names):
         end = origin + 34.0 * view[:2, k] * (1.0, -1.0)

@@ -51,7 +51,7 @@ class PathSeries:
 def collect_paths(
     operations: Iterable[tuple[str, Operation]], most: int = MAX_POINTS
 ) -> tuple[list[PathSeries], float]:
-    """The paths of operations.
+    """Return the paths of operations.
 
     Parameters
     ----------

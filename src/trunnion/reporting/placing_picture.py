@@ -125,7 +125,7 @@ def _scales(x: Floats, y: Floats) -> Iterator[str]:
 
 
 def _legend(top: float, present: bool) -> Iterator[str]:
-    """The bands with their margins, and the marks."""
+    """Yield the bands with their margins, and the marks."""
     left, width = _LEFT + _SIDE + 14.0, 14.0
     height = _SIDE / (len(_BANDS) + 1)
     for k, colour in enumerate(_BANDS):
@@ -143,7 +143,7 @@ def _legend(top: float, present: bool) -> Iterator[str]:
 
 
 def _turns(found: Placement) -> Iterator[str]:
-    """The best margin over the turns; marks at the foot where rotary axes do not reach the path."""
+    """Yield the best margin over the turns; marks at the foot where rotary axes do not reach the path."""
     left, right, top, low = _LEFT + _SIDE + 120.0, _WIDTH - 24.0, _TOP, _TOP + _SIDE
     tilt = 0.0 if found.best is None else found.best.tilt_deg
     tried = [turn for turn in found.turns if turn.tilt_deg == tilt]
@@ -190,7 +190,7 @@ def _field(x: float, y: float, width: float, height: float, fill: str) -> str:
 
 
 def _ticks(low: float, high: float) -> list[float]:
-    """A few round numbers between two."""
+    """Return a few round numbers between two."""
     span = max(high - low, 1e-9)
     step = 10.0 ** np.floor(np.log10(span / 4.0))
     step *= next(factor for factor in (1.0, 2.0, 5.0, 10.0) if span / (step * factor) <= 6.0)

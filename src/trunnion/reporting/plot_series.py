@@ -104,7 +104,7 @@ def collect_series(verification: Verification) -> PlotSeries:
 
 
 def _values(verification: Verification, seconds: Floats) -> dict[str, SingleFloats]:
-    """The columns of axis positions, rotary speeds and feeds; ``seconds`` (n,), 0 where not known."""
+    """Return the columns of axis positions, rotary speeds and feeds; ``seconds`` (n,), 0 where not known."""
     run, machine = verification.run, verification.machine
     values = {f"axis{k}": _as_float32(run.joints[:, k], run.start[k]) for k in range(len(machine.axes))}
     for k in machine.rotary:
@@ -117,7 +117,7 @@ def _values(verification: Verification, seconds: Floats) -> dict[str, SingleFloa
 
 
 def _lines(verification: Verification) -> dict[str, Lines]:
-    """The columns of line and block numbers."""
+    """Return the columns of line and block numbers."""
     run = verification.run
     lines = {
         "block": _as_int32(run.line),

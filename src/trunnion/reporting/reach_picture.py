@@ -74,7 +74,7 @@ def reach_picture(content: ReachPicture) -> str:
 
 
 def _sphere(content: ReachPicture) -> Iterator[str]:
-    """The sphere of tool axes, all of it in one disc: the distance from the middle is the tilt."""
+    """Yield the sphere of tool axes, all of it in one disc: the distance from the middle is the tilt."""
     x, y = _CENTRE
     yield f'<circle class="none" cx="{x:g}" cy="{y:g}" r="{_RADIUS:g}"/>\n'
     for each in content.tilts:
@@ -112,7 +112,7 @@ def _ring(tilt: float) -> float:
 
 
 def _sector(low: float, high: float, first: int, last: int, count: int) -> str:
-    """The outline of a piece of a ring; azimuths stand for half a step to both sides."""
+    """Return the outline of a piece of a ring; azimuths stand for half a step to both sides."""
     inner, outer = _ring(low), _ring(high)
     if last - first == count:
         return _circle(outer) + (_circle(inner) if inner else "")
@@ -125,7 +125,7 @@ def _sector(low: float, high: float, first: int, last: int, count: int) -> str:
 
 
 def _circle(radius: float) -> str:
-    """A whole circle in two halves; of two circles the even-odd rule fills what is between them."""
+    """Return a whole circle in two halves; of two circles the even-odd rule fills what is between them."""
     return f"M{_at(radius, 0.0)}A{radius:.2f} {radius:.2f} 0 1 0 {_at(radius, math.pi)}" + (
         f"A{radius:.2f} {radius:.2f} 0 1 0 {_at(radius, 0.0)}Z"
     )
@@ -190,7 +190,7 @@ def _stretches(tilts: Sequence[TiltOfPicture]) -> Iterator[list[TiltOfPicture]]:
 
 
 def _round_up(value: float) -> float:
-    """The next number above of few digits."""
+    """Return the next number above of few digits."""
     if value <= 0.0:
         return 1.0
     power = 10.0 ** math.floor(math.log10(value))

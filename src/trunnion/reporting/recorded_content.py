@@ -60,7 +60,7 @@ class RecordedContent:
 
 
 def recorded_content(verification: Verification) -> RecordedContent | None:
-    """The content of the recording; None if there is none."""
+    """Return the content of the recording; None if there is none."""
     found = verification.recorded
     if found is None:
         return None
@@ -147,7 +147,7 @@ def _extents(verification: Verification, found: RecordedComparison) -> Iterator[
 
 
 def _curves(verification: Verification, found: RecordedComparison) -> Iterator[tuple[str, tuple[int | None, Floats]]]:
-    """Recorded columns by their names, with the column of the machine's axis: slides first, or the tip."""
+    """Yield recorded columns by their names, with the column of the machine's axis: slides first, or the tip."""
     machine, joints = verification.machine, found.joints
     if joints is not None:
         for k in (*machine.linear, *machine.rotary):
@@ -175,7 +175,7 @@ def _plots(
 
 
 def _axis_plot(column: str, axis: Axis, values: Floats, is_placed: bool) -> Plot:
-    """An axis with its travel, which stands around the motion where nobody knows its place."""
+    """Return an axis with its travel, which stands around the motion where nobody knows its place."""
     limits = () if axis.endless else finite_values(axis.low, axis.high)
     note = "endless" if axis.endless else "" if limits else "limits not stated"
     known = values[np.isfinite(values)]

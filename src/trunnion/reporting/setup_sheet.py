@@ -192,7 +192,9 @@ def cut_ranges(run: Run, operation: OperationRows) -> CutRanges:
 
 
 def displayed_extent(axis: Axis, extent: AxisExtent) -> AxisExtent:
-    """The extent of an axis as the machine displays it; turns add up nowhere on an endless axis that shows one."""
+    """Return the extent of an axis as the machine displays it; turns add up nowhere on an endless axis that
+    shows one.
+    """
     if extent.extremes is None or not axis.endless:
         return extent
     low, high = axis.displayed_range(extent.extremes.low, extent.extremes.high, _DECIMALS)
@@ -200,7 +202,7 @@ def displayed_extent(axis: Axis, extent: AxisExtent) -> AxisExtent:
 
 
 def _turns(run: Run, joints: Floats, k: int, chosen: Flags) -> Range | None:
-    """The range of a rotary axis as the machine displays it."""
+    """Return the range of a rotary axis as the machine displays it."""
     found = _range(joints[:, k], chosen)
     return None if found is None else run.machine.axes[k].displayed_range(*found, _DECIMALS)
 

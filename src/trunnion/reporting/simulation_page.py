@@ -54,7 +54,7 @@ def render_simulation_page(content: SimulationContent) -> Iterator[bytes]:
 
 
 def simulation_section(content: SimulationContent) -> str:
-    """What a simulation found, in tables and pictures."""
+    """Return what a simulation found, in tables and pictures."""
     near = _findings(content.near, "#Apart mm") if content.near else ""
     parts = (
         ("Simulation: findings", _findings(content.findings, "#Deep mm") or '<p class="note">Nothing was found.</p>'),
@@ -121,7 +121,7 @@ def _state(state: StockState) -> str:
 
 
 def _histogram(bins: Sequence[DeviationBin]) -> str:
-    """The surface by its deviation; bars are to the scale of what deviates."""
+    """Return the surface by its deviation; bars are to the scale of what deviates."""
     if not bins:
         return ""
     width, height = _BAR
@@ -143,7 +143,7 @@ def _histogram(bins: Sequence[DeviationBin]) -> str:
 
 
 def _table(headings: Sequence[str], rows: Sequence[str], kind: str = "") -> str:
-    """A table; a heading with ``#`` is that of a column of numbers, ``-`` an empty one."""
+    """Return a table; a heading with ``#`` is that of a column of numbers, ``-`` an empty one."""
     cells = "".join(
         f"<th scope=col class=n>{head[1:]}</th>" if head[0] == "#" else f"<th scope=col>{head.strip('-')}</th>"
         for head in headings

@@ -70,7 +70,7 @@ def tool_usages(run: Run, seconds: Floats, moving: Floats, cutting: Flags) -> It
 def operation_usage(
     run: Run, operation: OperationRows, seconds: Floats, moving: Floats, cutting: Flags
 ) -> OperationUsage:
-    """The usage of one operation; the columns, (n,) each, are those of all rows as ``tool_usages`` has them."""
+    """Return the usage of one operation; the columns, (n,) each, are those of all rows as ``tool_usages`` has them."""
     rows = slice(operation.first, operation.end)
     return OperationUsage(
         name=clean(operation.name),
@@ -90,7 +90,9 @@ def _range(values: Floats) -> tuple[float, float] | None:
 
 
 def _first_row(run: Run, operation: OperationRows) -> int:
-    """The first row of an operation, in its own file where it has one: what ends the file before it leads to it too."""
+    """Return the first row of an operation, in its own file where it has one: what ends the file before it leads to it
+    too.
+    """
     if operation.first == 0:
         return 0
     others = np.flatnonzero(run.file[operation.first : operation.end] != run.file[operation.first - 1])

@@ -57,7 +57,8 @@ def render_report(
     decisions: Sequence[Decision] = (),
     simulation: SimulationContent | None = None,
 ) -> Iterator[bytes]:
-    """The bytes of a report, piece by piece; the arguments are those of ``write_report``, and what a simulation found.
+    """Return the bytes of a report, piece by piece; the arguments are those of ``write_report``, and what a simulation
+    found.
 
     Raises as ``write_report`` does, but writes nothing.
     """
@@ -89,7 +90,7 @@ def write_refusal(problems: Sequence[Problem], machine: Machine, program: str, p
 
 
 def _renderer(path: Path) -> Callable[[ReportContent, PlotSeries], Iterator[bytes]]:
-    """What makes a report of the form that a name asks for."""
+    """Return what makes a report of the form that a name asks for."""
     render = RENDERERS.get(path.suffix.lower())
     if render is None:
         raise InputError(Problem(str(path), 0, Wording("PAG310", "report_html_json")))

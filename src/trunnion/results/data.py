@@ -33,7 +33,7 @@ def to_data(value: Any, *, decimals: int | None = None, only: Sequence[str] = ()
 
 
 def as_json(value: Any) -> str:
-    """Data as text, one line for each value."""
+    """Return data as text, one line for each value."""
     return json.dumps(value, ensure_ascii=False, allow_nan=False, indent=1)
 
 
@@ -59,7 +59,7 @@ def _converted(value: Any, figure: Figure, decimals: int | None, only: tuple[str
 
 
 def _number(value: float, figure: Figure, decimals: int | None) -> float | None:
-    """A number of a figure; one that has a unit, and is rounded, is no count, even if it is whole."""
+    """Return a number of a figure; one that has a unit, and is rounded, is no count, even if it is whole."""
     places = decimals if figure.decimals is None else figure.decimals
     if isinstance(value, int) and not (figure.unit or figure.decimals is not None):
         return value
@@ -87,7 +87,7 @@ def _record(record: Any, decimals: int | None, only: tuple[str, ...]) -> dict[st
 
 
 def _remark(problem: Problem) -> dict[str, Any]:
-    """A problem; its subject is what of the file or the call it is about."""
+    """Return a problem; its subject is what of the file or the call it is about."""
     is_argument = bool(problem.argument)
     kind, name = ("argument", problem.argument) if is_argument else ("key", problem.key)
     return {

@@ -57,7 +57,7 @@ class Figure:
         return getter
 
     def key_of(self, name: str) -> str:
-        """The key of a field or property."""
+        """Return the key of a field or property."""
         key = self.name or name
         return key if not self.unit or f"_{key}".endswith(f"_{self.unit}") else f"{key}_{self.unit}"
 
@@ -71,7 +71,7 @@ class KeyFigure:
     figure: Figure
 
     def value(self, record: object) -> Any:
-        """The value in a record, before it becomes data; None where there is none."""
+        """Return the value in a record, before it becomes data; None where there is none."""
         found = getattr(record, self.attribute)
         if found is None or (self.figure.none is not None and found == self.figure.none):
             return None
@@ -79,7 +79,7 @@ class KeyFigure:
 
 
 def figures_of(kind: type) -> tuple[KeyFigure, ...]:
-    """The figures of a class of records, in the order of their data."""
+    """Return the figures of a class of records, in the order of their data."""
     return _figures_of(cast("Hashable", kind))  # mypy takes a class for one of its instances there
 
 

@@ -125,7 +125,7 @@ def spindle_turns(run: Run) -> Flags:
 
 
 def tool_name(run: Run, tool: int) -> str:
-    """A tool as messages name it; 0 where the program has called none."""
+    """Return a tool as messages name it; 0 where the program has called none."""
     return f"tool {run.tools[tool] or 0}"
 
 
@@ -147,7 +147,7 @@ def _runs(
 
 
 def rows_together(flags: Flags, pause: int = _PAUSE) -> Iterator[Ints]:
-    """The places of flags, in parts between which more than ``pause`` are off."""
+    """Yield the places of flags, in parts between which more than ``pause`` are off."""
     found = np.flatnonzero(flags)
     if len(found):
         yield from np.split(found, np.flatnonzero(np.diff(found) > 1 + pause) + 1)
@@ -161,5 +161,5 @@ def air_cuts(run: Run, rows: RowsCut) -> Ints:
 
 
 def file_of_row(run: Run, row: int) -> str:
-    """The file in which the block of a row stands."""
+    """Return the file in which the block of a row stands."""
     return run.files[int(run.state.file[row])]

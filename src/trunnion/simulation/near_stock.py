@@ -54,7 +54,7 @@ def pieces_with_near(shape: ToolShape, near: float, tolerance: float) -> tuple[R
 
 
 def _lines(section: Section) -> Iterator[tuple[Point, Point]]:
-    """The outline of a section as lines that go up."""
+    """Yield the outline of a section as lines that go up."""
     for element in section.outline:
         points = [element.start, element.end]
         if isinstance(element, ProfileArc):
@@ -64,7 +64,7 @@ def _lines(section: Section) -> Iterator[tuple[Point, Point]]:
 
 
 def _around(low: Point, high: Point, distance: float) -> tuple[ProfileLine, ...]:
-    """The outline of what is no farther than a distance from a frustum."""
+    """Return the outline of what is no farther than a distance from a frustum."""
     lean = math.atan2(low[0] - high[0], high[1] - low[1])  # of the normal, from level
     angles = [
         (low, np.linspace(-0.5 * math.pi, lean, _CORNER + 1)),

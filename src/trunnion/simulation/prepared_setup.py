@@ -47,11 +47,11 @@ class PreparedSetup:
         return self.clamping.rotation if self.clamping.is_turned else None
 
     def clamped_runs(self) -> list[Run]:
-        """The runs on the machine, where the part is as it is clamped."""
+        """Return the runs on the machine, where the part is as it is clamped."""
         return [as_the_tool_goes(run)[0] for run in self.runs]
 
     def programs(self) -> list[SimulatedProgram]:
-        """The programs as far as they are simulated, about the part as it is drawn.
+        """Return the programs as far as they are simulated, about the part as it is drawn.
 
         Raises
         ------

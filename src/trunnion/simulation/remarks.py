@@ -63,7 +63,7 @@ def _out_of_travel(machine: Machine, stock: StockShape) -> Iterator[Problem]:
 
 
 def _foreign_length(run: Run, row: int, number: int, names: Sequence[str]) -> list[Problem]:
-    """A tool that cuts with a length number which is not its own: an error where that is another tool's."""
+    """Return a tool that cuts with a length number which is not its own: an error where that is another tool's."""
     name = run.tools[int(run.tool[row])]
     if not name.isdecimal() or int(name) == number:
         return []
@@ -171,7 +171,7 @@ def _unknown_ways(runs: Sequence[Run], stock: StockShape) -> list[Problem]:
 
 
 def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]:
-    """What was taken for granted, and what is not simulated."""
+    """Return what was taken for granted, and what is not simulated."""
     found = [
         Problem(f"tool {name}", 0, remark, severity=Severity.WARNING, code="SIM155")
         for name, shape in shapes.items()

@@ -97,7 +97,9 @@ class Replay:
         return True
 
     def state(self, before: Sequence[Tile] = ()) -> tuple[Tile, ...]:
-        """The present tiles, which nothing will change; those of an earlier state where nothing has cut them since."""
+        """Return the present tiles, which nothing will change; those of an earlier state where nothing has cut them
+        since.
+        """
         tiles = self._stock.tiles
         if not before:
             return tuple(map(_copy, tiles))
@@ -114,13 +116,13 @@ class Replay:
                 del self._kept[row]
 
     def _bytes(self) -> int:
-        """What all states take."""
+        """Return what all states take."""
         tiles = {id(tile): tile for state in self._kept.values() for tile in state}
         return sum(each.ends.nbytes + each.rows.nbytes + each.normals.nbytes for each in tiles.values())
 
 
 def changed_box(before: Sequence[Tile], after: Sequence[Tile]) -> Floats | None:
-    """The lowest and the highest place at which two states differ, (2, 3), mm; None: nowhere."""
+    """Return the lowest and the highest place at which two states differ, (2, 3), mm; None: nowhere."""
     boxes = [_changes(old, new) for old, new in zip(before, after, strict=True) if not _is_same(old, new)]
     found = [box for box in boxes if box is not None]
     if not found:
@@ -129,7 +131,7 @@ def changed_box(before: Sequence[Tile], after: Sequence[Tile]) -> Floats | None:
 
 
 def _changes(old: Tile, new: Tile) -> Floats | None:
-    """The box of the ends of a tile that one of two states has only, (2, 3), mm; None without any."""
+    """Return the box of the ends of a tile that one of two states has only, (2, 3), mm; None without any."""
     differ = np.setxor1d(_end_keys(old), _end_keys(new))
     if not len(differ):
         return None
@@ -147,7 +149,7 @@ def _end_keys(tile: Tile) -> NDArray[np.complex128]:
 
 
 def _copy(tile: Tile) -> Tile:
-    """A tile with arrays of its own."""
+    """Return a tile with arrays of its own."""
     return Tile(
         tile.bundle, tile.first_u, tile.first_v, tile.u, tile.v, tile.count.copy(), tile.ends.copy(),
         tile.rows.copy(), tile.normals.copy(),

@@ -153,7 +153,7 @@ _ROLES: Final = {What.SHANK: (Role.SHANK,), What.HOLDER: (Role.HOLDER,), What.NE
 
 
 def setup_findings(cut: CutSetup) -> CutFindings:
-    """Records of what programs have cut, hit and come near to in a set-up, with their blocks and times."""
+    """Return records of what programs have cut, hit and come near to in a set-up, with their blocks and times."""
     found, programs, touched, setup = cut.simulation, cut.programs, cut.touched, cut.setup.name
     # Runs are taken as they were read; their rows are those of the programs.
     verified = [
@@ -192,7 +192,7 @@ def setup_findings(cut: CutSetup) -> CutFindings:
 
 
 def _named(found: Iterable[_Named], setup: str) -> tuple[_Named, ...]:
-    """Records with the name of their set-up."""
+    """Return records with the name of their set-up."""
     return tuple(replace(each, setup=setup) for each in found) if setup else tuple(found)
 
 
@@ -211,7 +211,7 @@ def _operation(
 
 
 def _blocks(run: Run, one: OperationCut, at: Floats) -> BlockRemoval:
-    """What each block of an operation removed; ``at`` are seconds at the ends of the run's rows.
+    """Return what each block of an operation removed; ``at`` are seconds at the ends of the run's rows.
 
     Rows that follow each other in one line are a block: a cycle, or an arc in pieces.
     """

@@ -302,7 +302,7 @@ def _add_gouges(one: OperationCut, programs: Sequence[SimulatedProgram], gouges:
 
 
 def _offset(programs: Sequence[SimulatedProgram], program: int) -> int:
-    """What is added to the rows of a program in the stock: rows of all programs count on."""
+    """Return what is added to the rows of a program in the stock: rows of all programs count on."""
     return sum(len(each.run) for each in programs[:program])
 
 
@@ -315,7 +315,8 @@ def _shifted(progress: Callable[[int, int], None] | None, before: int, total: in
 def tool_pieces(
     program: SimulatedProgram, model: CuttingModel, near: float = 0.0
 ) -> tuple[dict[int, RevolvedPieces], float]:
-    """The pieces of each tool by its index in the run, with what stands ``near`` mm around, and how far they are off,
+    """Return the pieces of each tool by its index in the run, with what stands ``near`` mm around, and how far they are
+    off,
     mm."""
     found, error, tolerance = {}, 0.0, _FACETS * model.tolerance
     for index, name in enumerate(program.run.tools):
@@ -355,6 +356,6 @@ def row_runs(rows: Ints) -> Iterator[tuple[int, int]]:
 
 
 def tip_lengths(run: Run) -> Floats:
-    """The straight way of the tip in each row, (n,), mm."""
+    """Return the straight way of the tip in each row, (n,), mm."""
     steps = np.diff(run.tip, axis=0, prepend=run.tip[:1])
     return np.asarray(np.linalg.norm(steps, axis=1))

@@ -143,7 +143,9 @@ class SetupSteps:
         def touching(
             programs: Sequence[SimulatedProgram], tell: Callable[[int], None] | None = None
         ) -> list[list[Collision]]:
-            """What touches on the machine, where the part is as it is clamped; places are those of the drawing."""
+            """Return what touches on the machine, where the part is as it is clamped; places are those of the
+            drawing.
+            """
             found = [
                 _collisions(replace(program, run=run), each, options.near, tell)
                 for program, run, each in zip(programs, clamped, bodies, strict=False)
@@ -184,7 +186,7 @@ class SetupSteps:
 
 
 def _told_once(tell: Callable[[int], None]) -> Callable[[int, int], None]:
-    """What tells of rows that are done, each of them once."""
+    """Return what tells of rows that are done, each of them once."""
     done = 0
 
     def progress(rows: int, _: int) -> None:
@@ -199,7 +201,7 @@ def _told_once(tell: Callable[[int], None]) -> Callable[[int, int], None]:
 def _up_to_first_hit(
     programs: Sequence[SimulatedProgram], touched: Sequence[Sequence[Collision]]
 ) -> list[SimulatedProgram]:
-    """The programs as far as the row in which bodies first touch."""
+    """Return the programs as far as the row in which bodies first touch."""
     kept = []
     for program, collisions in zip(programs, touched, strict=True):
         first = min((each.row for each in collisions if not each.is_near), default=None)
@@ -210,7 +212,7 @@ def _up_to_first_hit(
 
 
 def _until_stop(programs: Sequence[SimulatedProgram], found: Simulation) -> list[SimulatedProgram]:
-    """The programs as far as they were simulated."""
+    """Return the programs as far as they were simulated."""
     if found.stopped is None:
         return list(programs)
     last, row = found.stopped
@@ -225,7 +227,7 @@ def _bodies(
     remarks: list[Problem],
     of_machine: list[Problem],
 ) -> list[Body]:
-    """What a tool can hit while a program runs, and what the machine may hit with it."""
+    """Return what a tool can hit while a program runs, and what the machine may hit with it."""
     machine = program.run.machine
     bodies = [fixture_body(mesh, machine) for mesh in fixtures]
     if fixtures and part is not None:
@@ -242,7 +244,7 @@ def _bodies(
 def _collisions(
     program: SimulatedProgram, bodies: Sequence[Body], near: float, pairs_told: Callable[[int], None] | None = None
 ) -> list[Collision]:
-    """What touches, or comes near, while a program runs as far as it is simulated."""
+    """Return what touches, or comes near, while a program runs as far as it is simulated."""
     if not bodies:
         return []
     return check_collisions(program.run, bodies, program.tools, near=near, end=program.end, pairs_told=pairs_told)

@@ -98,7 +98,7 @@ def _radius_counts(run: Run, each: _Delta) -> bool:
 
 
 def _lengthened(run: Run, added: Floats) -> Run:
-    """The run with the tip so much farther along the tool axis in each row, (n,)."""
+    """Return the run with the tip so much farther along the tool axis in each row, (n,)."""
     rows = np.flatnonzero(added)
     if not len(rows):
         return run

@@ -21,7 +21,7 @@ from trunnion.simulation.meshes import TriangleMesh
 
 
 def run_of_drawn_part(run: Run, turn: Floats) -> Run:
-    """The run past the part as it is drawn; ``turn`` (3, 3) takes directions of the drawing to the program's.
+    """Return the run past the part as it is drawn; ``turn`` (3, 3) takes directions of the drawing to the program's.
 
     Words of the program are in its own coordinates, which are those of a rotated frame then (``Run.planes``).
     """
@@ -46,7 +46,7 @@ def run_of_drawn_part(run: Run, turn: Floats) -> Run:
 
 
 def _about_the_part(machine: Machine, turn: Floats) -> Machine:
-    """The machine turned about its workpiece zero as the part is turned back; its bodies stay away."""
+    """Return the machine turned about its workpiece zero as the part is turned back; its bodies stay away."""
     zero = np.array(machine.workpiece_zero or (0.0, 0.0, 0.0))
 
     def direction(vector: Vector) -> Vector:
@@ -68,14 +68,14 @@ def _about_the_part(machine: Machine, turn: Floats) -> Machine:
 
 
 def as_clamped(mesh: TriangleMesh, turn: Floats) -> TriangleMesh:
-    """A mesh that is given as it is drawn, as it stands on the machine, in workpiece coordinates."""
+    """Return a mesh that is given as it is drawn, as it stands on the machine, in workpiece coordinates."""
     pose = np.eye(4)
     pose[:3, :3] = turn
     return mesh.moved(pose)
 
 
 def places_of_drawing(collisions: Iterable[Collision], turn: Floats) -> list[Collision]:
-    """What touches, with its places in the coordinates of the drawing."""
+    """Return what touches, with its places in the coordinates of the drawing."""
     found = []
     for each in collisions:
         x, y, z = (np.array(each.place) @ turn).tolist()

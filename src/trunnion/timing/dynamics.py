@@ -36,7 +36,7 @@ class AxisDynamics:
 
     @staticmethod
     def of(machine: Machine) -> "AxisDynamics":
-        """What the definition of a machine states."""
+        """Return what the definition of a machine states."""
         axes, facts = machine.axes, machine.facts
         return AxisDynamics(
             np.array([math.inf if axis.rapid is None else axis.rapid / 60.0 for axis in axes]),

@@ -75,7 +75,9 @@ class FastestRun:
     _square: Any
 
     def at(self, seconds: Floats) -> AxisMotion:
-        """The motion at any times from 0 to ``duration``, by exact derivatives; at a step of the jerk that after it."""
+        """Return the motion at any times from 0 to ``duration``, by exact derivatives; at a step of the jerk that after
+        it.
+        """
         seconds = np.clip(np.asarray(seconds, float), 0.0, self.duration)
         place = self._places(seconds)
         last = place >= self.edges[-1]
@@ -202,7 +204,7 @@ def _unwarp(share: Floats) -> Floats:
 
 
 def _edges(breaks: Floats, pieces: int) -> Floats:
-    """Ends of about so many pieces as even as breaks let them be, none of which contains a break."""
+    """Return ends of about so many pieces as even as breaks let them be, none of which contains a break."""
     counts = np.maximum(np.ceil(np.diff(breaks) * pieces - 1e-9), 1.0).astype(int)
     parts = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(breaks[:-1], breaks[1:], counts, strict=True)]
     return np.concatenate((*parts, breaks[-1:]))

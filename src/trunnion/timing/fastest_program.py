@@ -50,11 +50,11 @@ class SquareRates:
         return len(self.knots) - DEGREE - 1
 
     def spline(self, coefficients: Floats) -> Any:
-        """The ``scipy.interpolate.BSpline``."""
+        """Return the ``scipy.interpolate.BSpline``."""
         return import_extra("scipy.interpolate", "geometry").BSpline(self.knots, coefficients, DEGREE)
 
     def middles(self) -> Floats:
-        """A place for each coefficient, near which it counts most."""
+        """Return a place for each coefficient, near which it counts most."""
         return np.array([self.knots[k + 1 : k + DEGREE + 1].mean() for k in range(self.count)])
 
     def places(self, even: int = 0) -> tuple[Floats, Flags]:
@@ -71,7 +71,7 @@ class SquareRates:
                   for k in range(3)),)  # fmt: skip
 
     def quadrature(self) -> tuple[Any, Floats]:
-        """A matrix that makes values at nodes, and the weights of these nodes."""
+        """Return a matrix that makes values at nodes, and the weights of these nodes."""
         nodes, weights = np.polynomial.legendre.leggauss(8)
         width = np.diff(self.edges)[:, None]
         return self._matrix((self.edges[:-1, None] + width * 0.5 * (1.0 + nodes)).ravel(), 0), (
@@ -129,7 +129,7 @@ class MotionLimits:
         )
 
     def in_unit(self, seconds: float) -> "MotionLimits":
-        """The same with another unit of time."""
+        """Return the same with another unit of time."""
         return replace(
             self,
             speed=self.speed / seconds,

@@ -39,14 +39,15 @@ class Path:
     counts: Ints
 
     def of_rows(self, column: Floats, combine: np.ufunc = np.add) -> Floats:
-        """Sums of a column of pieces for each row, or what else ``combine`` makes of them."""
+        """Return sums of a column of pieces for each row, or what else ``combine`` makes of them."""
         if not len(self.counts):
             return column
         return np.asarray(combine.reduceat(column, np.cumsum(self.counts) - self.counts))
 
 
 def steady(speeds: Floats) -> float:
-    """The highest of some speeds one after the other, (k,), at which nothing between the first and last is slower.
+    """Return the highest of some speeds one after the other, (k,), at which nothing between the first and last is
+    slower.
 
     Ramps at both ends do not count, since they lead up to it.
     """
@@ -97,7 +98,7 @@ class PathBuilder:
             self._rate = np.concatenate((self._rate, np.empty(more)))
 
     def result(self) -> Path:
-        """The whole path, once all rows have been added.
+        """Return the whole path, once all rows have been added.
 
         The axes stand still for a dwell, a stop and a tool change, and where the feed begins to count another length.
         """

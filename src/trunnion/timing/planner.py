@@ -56,7 +56,7 @@ def piece_seconds(path: Path, dynamics: AxisDynamics) -> Floats:
 
 
 def timed_pieces(path: Path, dynamics: AxisDynamics) -> PieceTimes:
-    """The pieces of a path that begins and ends at rest."""
+    """Return the pieces of a path that begins and ends at rest."""
     if dynamics.has_jerk:
         return _with_jerk(path, dynamics, phases=False)[0]
     columns, seconds = _planned(path, dynamics)
@@ -101,7 +101,8 @@ def _with_jerk(path: Path, dynamics: AxisDynamics, *, phases: bool) -> tuple[Pie
 
 
 def _stretches(path: Path, limits: Floats, reached: Floats) -> tuple[Floats, Ints, Floats, Flags]:
-    """The stretches of a path, the piece of each, the speeds at their ends, and which of them need no acceleration.
+    """Return the stretches of a path, the piece of each, the speeds at their ends, and which of them need no
+    acceleration.
 
     ``reached`` are speeds at most at the ends of pieces, or nothing: then corners have no length.
     """
@@ -122,7 +123,7 @@ def _stretches(path: Path, limits: Floats, reached: Floats) -> tuple[Floats, Int
 
 
 def _even_phases(length: Floats, columns: Floats) -> Phases:
-    """The phases of a plan without jerks: half a corner, up, evenly, down, half a corner."""
+    """Return the phases of a plan without jerks: half a corner, up, evenly, down, half a corner."""
     piece = np.flatnonzero(columns[:, ACCELERATION] > 0.0)
     corner, begin, end, top, acceleration = (columns[piece, k] for k in (CORNER, BEGIN, END, TOP, ACCELERATION))
     before, b_before = np.zeros(len(piece)), begin.copy()

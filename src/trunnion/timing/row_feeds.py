@@ -55,7 +55,8 @@ class RowFeeds:
         return feeds
 
     def _lengths(self, first: int, end: int, positions: PositionChunk, tcp: Flags) -> Floats:
-        """What F counts in rows that turn rotary axes without TCP, NaN in the others; empty where there are none.
+        """Return what F counts in rows that turn rotary axes without TCP, NaN in the others; empty where there are
+        none.
 
         A control that counts the slides alone is left to the kernel.
         """

@@ -154,7 +154,7 @@ class RowInterpolation:
         return found
 
     def _machine(self, length: float) -> Machine:
-        """The machine with a tool of this length."""
+        """Return the machine with a tool of this length."""
         if length not in self._machines:
             self._machines[length] = replace(self.run.machine, tool_length=length)
         return self._machines[length]

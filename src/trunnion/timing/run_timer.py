@@ -89,7 +89,7 @@ class RunTimer:
         return path.of_rows(times.seconds), 60.0 * speed
 
     def result(self) -> RowTimes:
-        """The times of all rows."""
+        """Return the times of all rows."""
         path = self._path.result()
         moving = path.of_rows(piece_seconds(path, self._dynamics))
         with np.errstate(divide="ignore", invalid="ignore"):

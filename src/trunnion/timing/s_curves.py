@@ -34,7 +34,7 @@ def ramp_way(one: float, two: float, acceleration: float, jerk: float) -> float:
 
 @inner
 def reach(speed: float, way: float, acceleration: float, jerk: float) -> float:
-    """The speed that one S-curve reaches over a way, which begins and ends without acceleration."""
+    """Return the speed that one S-curve reaches over a way, which begins and ends without acceleration."""
     if not jerk < np.inf:
         return math.sqrt(speed * speed + 2.0 * acceleration * way) if acceleration < np.inf else np.inf
     if acceleration < np.inf:
@@ -59,7 +59,7 @@ def reach(speed: float, way: float, acceleration: float, jerk: float) -> float:
 
 @inner
 def peak(one: float, two: float, way: float, acceleration: float, jerk: float, top: float) -> float:
-    """The highest speed on a way from one speed to another, no higher than ``top``."""
+    """Return the highest speed on a way from one speed to another, no higher than ``top``."""
     low = max(one, two)
     if ramp_way(one, two, acceleration, jerk) >= way or top <= low:
         return low

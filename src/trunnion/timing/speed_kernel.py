@@ -145,7 +145,7 @@ def _shorten_corners(steps: Floats2, length: Floats, acceleration: Floats, last:
 
 @inner
 def _before(plan: Floats2, at: int) -> int:
-    """The piece before one that moves, -1 for none."""
+    """Return the piece before one that moves, -1 for none."""
     at -= 1
     while at >= 0 and not plan[at, 4] > 0.0:
         at -= 1
@@ -154,14 +154,14 @@ def _before(plan: Floats2, at: int) -> int:
 
 @inner
 def _straight(length: float, before: float, after: float) -> float:
-    """What corners leave of a piece; of what rounding leaves, nothing."""
+    """Return what corners leave of a piece; of what rounding leaves, nothing."""
     straight = length - before - after
     return straight if straight > 1e-12 * length else 0.0
 
 
 @inner
 def _over(plan: Floats2, at: int, b: float, straight: float) -> float:
-    """What b can become over a straight part, or have been."""
+    """Return what b can become over a straight part, or have been."""
     return min(plan[at, 3], b + 2.0 * plan[at, 4] * straight) if straight > 0.0 else b
 
 
@@ -169,7 +169,7 @@ def _over(plan: Floats2, at: int, b: float, straight: float) -> float:
 def _through(
     steps: Floats2, length: Floats, one: int, two: int, corner: float, b: float, acceleration: Floats
 ) -> float:
-    """What b can become through the corner between two pieces, or have been; it is the greater one."""
+    """Return what b can become through the corner between two pieces, or have been; it is the greater one."""
     if not corner > 0.0:
         return b
     greatest = np.inf

@@ -28,7 +28,7 @@ class SpindleSpeeds:
     rate: float
 
     def at(self, seconds: Floats, after: Flags | None = None) -> tuple[Floats, Floats]:
-        """The speed and the speed that it leads to at some times, (k,) each.
+        """Return the speed and the speed that it leads to at some times, (k,) each.
 
         ``after`` (k,): where a change begins at that very time, it has begun.
         """

@@ -79,7 +79,7 @@ class Blocks:
         self._at = lru_cache(maxsize=256)(self._made)
 
     def at(self, seconds: Floats, row: Ints, is_end: Flags, told_rpm: Floats) -> tuple[BlockState, ...]:
-        """What is in force at times (k,).
+        """Return what is in force at times (k,).
 
         row       (k,)  that runs, or was run last; -1: none
         is_end    (k,)  it ends there, and what comes after it has not begun
@@ -102,11 +102,11 @@ class Blocks:
         return tuple(found)
 
     def before_start(self) -> BlockState:
-        """What is in force before the program has been started."""
+        """Return what is in force before the program has been started."""
         return self._at(-1, 0, False, -1, 0)
 
     def _made(self, row: int, passed: int, is_event: bool, changed: int, sense: int) -> BlockState:
-        """What is in force after ``passed`` events; the last of them is what happens if ``is_event``."""
+        """Return what is in force after ``passed`` events; the last of them is what happens if ``is_event``."""
         state = self._of_row(row)
         state = replace(state, m=self._m_functions(passed, sense))
         if changed >= 0:
@@ -120,7 +120,7 @@ class Blocks:
         )
 
     def _of_row(self, row: int) -> BlockState:
-        """What is in force while a row runs; -1: before the first."""
+        """Return what is in force while a row runs; -1: before the first."""
         run = self._run
         if row < 0 or not len(run):
             first = self._lines[0][0] if self._lines and self._lines[0] else ""
@@ -140,7 +140,7 @@ class Blocks:
         )
 
     def _feed(self, row: int) -> float:
-        """The programmed speed along the path; of a rapid, that of its F word, if this says one by itself."""
+        """Return the programmed speed along the path; of a rapid, that of its F word, if this says one by itself."""
         rate, state = float(self._timed.rates[row]), self._run.state
         if math.isfinite(rate):
             return rate
@@ -150,7 +150,7 @@ class Blocks:
         return feed * float(state.rpm[row]) if mode == _PER_REVOLUTION else feed
 
     def _number_in(self, text: str) -> str:
-        """The number of a block by its text."""
+        """Return the number of a block by its text."""
         found = (_PLAIN_NUMBER if ".heidenhain." in self._run.language else _NUMBER).match(text)
         return f"N{found.group(1)}" if found else ""
 

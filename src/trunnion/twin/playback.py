@@ -44,14 +44,14 @@ class Stretch:
     wall_end: float
 
     def wall(self, seconds: Floats) -> Floats:
-        """The wall time of times of the program in the stretch, (k,)."""
+        """Return the wall time of times of the program in the stretch, (k,)."""
         if self.end <= self.begin:
             return np.full(len(seconds), self.wall_end)
         done = (seconds - self.begin) / (self.end - self.begin)
         return np.asarray(self.wall_begin + done * (self.wall_end - self.wall_begin))
 
     def program(self, wall: Floats) -> Floats:
-        """The time of the program at wall times in the stretch, (k,)."""
+        """Return the time of the program at wall times in the stretch, (k,)."""
         done = (wall - self.wall_begin) / max(self.wall_end - self.wall_begin, 1e-12)
         return np.asarray(self.begin + done * (self.end - self.begin))
 
@@ -117,7 +117,7 @@ class Playback:
         return waiting / self.speed + (left - waiting) / rate if rate > 0.0 else np.inf
 
     def advance(self, wall: float) -> tuple[Stretch, ...]:
-        """What has run since the last call, in order; at most ``MOST_ENDS`` ends of blocks."""
+        """Return what has run since the last call, in order; at most ``MOST_ENDS`` ends of blocks."""
         if self.state is not PlayState.RUNNING or wall <= self._wall:
             return ()
         limit = self._limit()
@@ -161,7 +161,7 @@ class Playback:
                 return
 
     def _next_bound(self, limit: float) -> tuple[float, bool]:
-        """The time up to which the program moves or waits evenly, and whether it waits."""
+        """Return the time up to which the program moves or waits evenly, and whether it waits."""
         for begin, end in self._waits[np.searchsorted(self._waits[:, 1], self.seconds, "right") :].tolist():
             if begin > self.seconds:
                 return min(begin, limit), False

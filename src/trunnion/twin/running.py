@@ -216,7 +216,7 @@ class Twin:
         await self._tell_events(stretch)
 
     def _samples(self, stretch: Stretch) -> Floats:
-        """Times between the ends of blocks at which the machine is looked at."""
+        """Return times between the ends of blocks at which the machine is looked at."""
         period = self.period
         if self.playback.speed is None:
             grid = np.arange(math.floor(stretch.begin / period) + 1, math.floor(stretch.end / period) + 1) * period

@@ -94,7 +94,8 @@ class TwinProgram:
         return [e for e in self.timed.events if (begin < e.seconds <= end) or (e.seconds == begin == 0.0)]
 
     def at(self, seconds: Floats, ended: Ints, share: float = 1.0) -> Snapshots:
-        """The machine at times (k,), ascending; ``ended`` (k,) are the rows that end at them, -1 where none does.
+        """Return the machine at times (k,), ascending; ``ended`` (k,) are the rows that end at them, -1 where none
+        does.
 
         ``share``: of the speed, as the feed override has it; 0: the axes stand.
         """
@@ -119,7 +120,7 @@ class TwinProgram:
         )  # fmt: skip
 
     def before_start(self) -> Snapshots:
-        """The machine before the program has been started."""
+        """Return the machine before the program has been started."""
         joints = np.asarray(self.run.start)[None]
         none, still = np.zeros((1, 5)), np.zeros(1)
         return Snapshots(
@@ -128,7 +129,7 @@ class TwinProgram:
         )  # fmt: skip
 
     def tool_number(self, name: str) -> int:
-        """The number by which a tool is called; of a name, its place among the tools; 0 for none."""
+        """Return the number by which a tool is called; of a name, its place among the tools; 0 for none."""
         if name.isascii() and name.isdigit() and int(name) < 2**31:
             return int(name)
         return self.tools.index(name) + 1 if name in self.tools else 0
@@ -149,7 +150,7 @@ class TwinProgram:
 
 
 def displayed(machine: Machine, column: int, values: Floats) -> Floats:
-    """What a control shows of an axis: of one that turns without end, the turn in which the machine shows it."""
+    """Return what a control shows of an axis: of one that turns without end, the turn in which the machine shows it."""
     axis = machine.axes[column]
     if not axis.endless or math.isnan(axis.display_low):
         return values
@@ -158,7 +159,7 @@ def displayed(machine: Machine, column: int, values: Floats) -> Floats:
 
 
 def display_range(machine: Machine, column: int) -> tuple[float, float]:
-    """The range of what a control shows of an axis, finite.
+    """Return the range of what a control shows of an axis, finite.
 
     It is that of the travel where it is known where slides stand; without a workpiece zero nobody knows what of it
     their values use.

@@ -81,26 +81,26 @@ class Context:
     settings: ExpectedValues
 
     def place(self, row: int, value: float, text: str) -> Place:
-        """The place of a row."""
+        """Return the place of a row."""
         run = self.run
         file = self.file_name(run.state.file[row])
         return Place(run.lines[row], run.block_numbers[row], value, text, nc_file=file, row=row)
 
     def place_of_event(self, event: RunEvent, value: float, text: str) -> Place:
-        """The place of something that happens between rows."""
+        """Return the place of something that happens between rows."""
         row = min(event.before_row, len(self.run) - 1)
         return Place(event.line, -1, value, text, nc_file=self.file_name(event.file), row=row)
 
     def file_name(self, number: int) -> str:
-        """The file of a row or an event as places have it: empty for the program itself."""
+        """Return the file of a row or an event as places have it: empty for the program itself."""
         return self.run.files[number] if number else ""
 
     def next_row(self, row: int) -> int:
-        """The row after a row, or the last one."""
+        """Return the row after a row, or the last one."""
         return min(row + 1, len(self.run) - 1)
 
     def block_name(self, row: int) -> str:
-        """What a programmer calls the block of a row: ``N120``, or its line where it has no number."""
+        """Return what a programmer calls the block of a row: ``N120``, or its line where it has no number."""
         number = self.run.block_numbers[row]
         return f"N{number}" if number >= 0 else f"line {self.run.lines[row]}"
 
@@ -119,21 +119,21 @@ class ComparedContext(Context):
     matching: Matching
 
     def place_with_cl(self, row: int, value: float, text: str, cl: int) -> Place:
-        """The place of a row, with that of a CL row."""
+        """Return the place of a row, with that of a CL row."""
         return self.at_cl_row(self.place(row, value, text), cl)
 
     def at_cl_row(self, place: Place, cl: int) -> Place:
-        """A place with the file and line of a CL row."""
+        """Return a place with the file and line of a CL row."""
         return replace(place, cl_file=self.expected.section_at(cl).file, cl_line=self.expected.point(cl).line)
 
     def place_of_cl_row(self, cl: int, value: float, text: str) -> Place:
-        """The place of a CL row, at the motion that goes to it."""
+        """Return the place of a CL row, at the motion that goes to it."""
         if cl not in self.matching.cl:
             return replace(self.place_of_missing(cl, text), value=value)
         return self.place_with_cl(self.matching.nc[self.matching.cl.count_before(cl)], value, text, cl)
 
     def place_of_missing(self, cl: int, text: str) -> Place:
-        """The place of a CL row to which no motion goes: the block before which one is missing."""
+        """Return the place of a CL row to which no motion goes: the block before which one is missing."""
         nc, k = self.matching.nc, self.matching.cl.count_before(cl)
         ends = [event for event in self.run.events if event.kind == "end"]
         if not len(nc) and ends:  # the program ends before the first one
@@ -144,7 +144,9 @@ class ComparedContext(Context):
         return self.place_with_cl(row, 0.0, text, cl)
 
     def rotary_positioning_place(self, row: int) -> Place | None:
-        """The block before a row that positioned the rotary axes for it; None if that is the row itself or a match."""
+        """Return the block before a row that positioned the rotary axes for it; None if that is the row itself or a
+        match.
+        """
         run, first = self.run, max(row - _POSITIONING_WINDOW, 0)
         bits = int(ProgrammedWord.FIRST | ProgrammedWord.SECOND | ProgrammedWord.VECTOR)
         written = np.flatnonzero((run.programmed[first : row + 1] & bits) != 0)
@@ -157,7 +159,7 @@ class ComparedContext(Context):
 
 
 def check_from_places(key: str, title: str, places: Sequence[Place], good: str, count: int | None = None) -> Check:
-    """A check that passes if there are no places.
+    """Return a check that passes if there are no places.
 
     Parameters
     ----------

@@ -176,7 +176,7 @@ def rows_from_starts(
 
 
 def _row_of(run: Run, operation: OperationRows, start: OperationStart) -> int:
-    """The first row of an operation behind its start; if there is none, the first that its points give it."""
+    """Return the first row of an operation behind its start; if there is none, the first that its points give it."""
     rows = slice(operation.first, operation.end)
     names = [Path(file).name for file in run.files]
     is_here = np.array([k == 0 if not start.file else k > 0 and name == start.file for k, name in enumerate(names)])

@@ -39,7 +39,7 @@ class RowRanges:
 
     @staticmethod
     def from_flags(pieces: Iterable[tuple[int, Flags]]) -> "RowRanges":
-        """The rows whose flag is set; consecutive pieces as (number of the first row, flags)."""
+        """Return the rows whose flag is set; consecutive pieces as (number of the first row, flags)."""
         first, count = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
         for start, flags in pieces:
             edges = np.flatnonzero(np.diff(flags, prepend=False, append=False)).reshape(-1, 2)
@@ -62,7 +62,7 @@ class RowRanges:
         return k < len(self) and self[k] == row
 
     def rows(self, start: int, end: int) -> Ints:
-        """The ``start``-th number to the one before the ``end``-th, (k,); fewer where there are no more."""
+        """Return the ``start``-th number to the one before the ``end``-th, (k,); fewer where there are no more."""
         first, count = self._clip(start, end)
         if len(first) == 1:
             return np.arange(first[0], first[0] + count[0])
@@ -70,7 +70,7 @@ class RowRanges:
         return np.arange(behind[-1] if len(behind) else 0) + np.repeat(first - behind + count, count)
 
     def ranges(self, start: int, end: int) -> list[tuple[int, int]]:
-        """The numbers of ``rows`` as (first number, count)."""
+        """Return the numbers of ``rows`` as (first number, count)."""
         first, count = self._clip(start, end)
         return list(zip(first.tolist(), count.tolist(), strict=True))
 

@@ -15,7 +15,7 @@ def check_lines(verification: Verification) -> Iterator[str]:
 
 
 def place_lines(verification: Verification, *, failed_only: bool = False, most: int = 5) -> Iterator[str]:
-    """The worst places of each check, failed checks first: ``nc:line (N…), cl:line: text [check]``.
+    """Yield the worst places of each check, failed checks first: ``nc:line (N…), cl:line: text [check]``.
 
     A line says where those of checks that passed begin.
     """
@@ -38,7 +38,7 @@ def place_line(program: str, place: Place) -> str:
 
 
 def time_lines(verification: Verification) -> Iterator[str]:
-    """The time of the program and of each operation, if times were asked for."""
+    """Yield the time of the program and of each operation, if times were asked for."""
     seconds = np.where(np.isfinite(verification.seconds), verification.seconds, 0.0)
     if len(seconds):
         cuts = moving_seconds(verification)[verification.run.kind != Kind.RAPID]
@@ -50,5 +50,5 @@ def time_lines(verification: Verification) -> Iterator[str]:
 
 
 def failures(verification: Verification) -> list[Check]:
-    """The checks that failed."""
+    """Return the checks that failed."""
     return [check for check in verification.checks if not check.passed]

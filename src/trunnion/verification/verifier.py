@@ -78,7 +78,8 @@ def verify(
 def reachable_feeds(
     run: Run, toolpaths: Sequence[Toolpath], tolerances: Sequence[Tolerances], settings: ExpectedValues
 ) -> list[tuple[Floats, Flags]]:
-    """The feeds that the axes reach on the way to the points of each operation that moves, (n,) mm/min, (n,) bool each.
+    """Return the feeds that the axes reach on the way to the points of each operation that moves, (n,) mm/min, (n,)
+    bool each.
 
     NaN where that is no question (rapids, holes, feeds per revolution) or not known. True where the feed of the CL file
     is kept, as lower ones would take far longer. Parameters as for ``verify``; the program has the greatest feeds.
@@ -103,7 +104,7 @@ def _expected_path(
     tolerances: Tolerances | Sequence[Tolerances] | Callable[[Operation], Tolerances] | None,
     settings: ExpectedValues,
 ) -> ExpectedPath:
-    """The path that the CL files ask for, with the splines that the program writes."""
+    """Return the path that the CL files ask for, with the splines that the program writes."""
     path = partial(ExpectedPath, toolpaths, tolerances or Tolerances(), settings.absolute, settings.for_operation)
     expected = path()
     written = written_splines(run, expected)
@@ -111,7 +112,7 @@ def _expected_path(
 
 
 def with_recording(verification: Verification, recording: Recording, tolerance: float) -> Verification:
-    """A verification with the check of a recording of the machine.
+    """Return a verification with the check of a recording of the machine.
 
     Parameters
     ----------
@@ -135,7 +136,7 @@ def with_recording(verification: Verification, recording: Recording, tolerance: 
 
 
 def _measure_alone(run: Run, settings: ExpectedValues, analyzer: AxisMotionAnalyzer) -> Measured:
-    """What is known of a program without CL files."""
+    """Return what is known of a program without CL files."""
     context = Context(run, settings)
     errors = _linearization_errors(context, [Tolerances()])
     _add_rows(run, analyzer, errors)
@@ -143,7 +144,7 @@ def _measure_alone(run: Run, settings: ExpectedValues, analyzer: AxisMotionAnaly
 
 
 def _compare_all(original: ExpectedPath, run: Run, settings: ExpectedValues, analyzer: AxisMotionAnalyzer) -> Compared:
-    """What is known of a program beside its expected path, which has the feeds and tool axes of the CL files."""
+    """Return what is known of a program beside its expected path, which has the feeds and tool axes of the CL files."""
     if settings.fastest_feed and settings.feeds_as_programmed:
         compared, _, _ = _compare(original, run, settings)
         original = with_feeds_of_program(run, original, compared.matching, settings.feed_limit)
@@ -190,7 +191,7 @@ def _measure(
 
 
 def _linearization_errors(context: Context, tolerances: Sequence[Tolerances]) -> LinearizationErrors:
-    """The collector of errors between points."""
+    """Return the collector of errors between points."""
     settings = context.settings
     tolerance = max(each.tip for each in tolerances)
     rounding = 2.0 * max(each.angle for each in tolerances)

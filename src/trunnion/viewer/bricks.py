@@ -54,14 +54,14 @@ class BrickRange:
 
     @staticmethod
     def around(low: Ints, high: Ints, counts: tuple[int, int, int]) -> "BrickRange":
-        """The bricks whose bytes depend on the cells ``low`` to ``high`` (inclusive)."""
+        """Return the bricks whose bytes depend on the cells ``low`` to ``high`` (inclusive)."""
         many = BrickRange.whole(counts).many
         # A centre is a corner of the cubes before and after it; a cell is one of the four beside an edge that touches.
         first = np.clip((low - 2) // SIDE, 0, many - 1)
         return BrickRange(first, np.clip((high + 3) // SIDE + 1, first + 1, many), many)
 
     def cells(self, beyond: int, counts: tuple[int, int, int]) -> tuple[Ints, Ints]:
-        """The cells that they take and so many beyond: from the first to the end (exclusive)."""
+        """Return the cells that they take and so many beyond: from the first to the end (exclusive)."""
         low, high = SIDE * self.first - 2 - beyond, SIDE * self.end + beyond
         return np.clip(low, 0, counts), np.clip(high, 0, counts)
 
@@ -76,7 +76,7 @@ def brick_frame(grid: SurfaceGrid, cell: Floats, rows: int) -> BrickFrame:
 def changed_frame(
     before: BrickFrame, grid: SurfaceGrid, cell: Floats, rows: int, own: BrickRange, first: Ints
 ) -> BrickFrame:
-    """A frame of which only some bricks differ from the one before; ``grid`` begins at the cell ``first``."""
+    """Return a frame of which only some bricks differ from the one before; ``grid`` begins at the cell ``first``."""
     new = dict(_bricks(grid, cell, own, first))
     numbers = set(_numbers(own).tolist())
     kept = {number: bytes_ for number, bytes_ in before.bricks.items() if number not in numbers}
@@ -92,7 +92,7 @@ def brick_values(grid: SurfaceGrid, values: Floats) -> Floats:
 
 
 def message(frame: BrickFrame, before: BrickFrame | None) -> bytes:
-    """What makes a frame of the one before it."""
+    """Return what makes a frame of the one before it."""
     old: Mapping[int, bytes] = {} if before is None else before.bricks
     new = {number: own for number, own in frame.bricks.items() if old.get(number) != own}
     new |= {number: b"" for number in old if number not in frame.bricks}
@@ -103,7 +103,7 @@ def message(frame: BrickFrame, before: BrickFrame | None) -> bytes:
 
 
 def _numbers(own: BrickRange) -> Ints:
-    """The numbers of bricks, Z fastest."""
+    """Return the numbers of bricks, Z fastest."""
     i, j, k = (np.arange(first, end) for first, end in zip(own.first, own.end, strict=True))
     _, y, z = own.many.tolist()
     return np.asarray(((i[:, None, None] * y + j[:, None]) * z + k).ravel())
@@ -133,7 +133,7 @@ def _vertex_numbers(grid: SurfaceGrid, own: BrickRange, first: Ints) -> Iterator
 
 
 def _bricks(grid: SurfaceGrid, cell: Floats, own: BrickRange, first: Ints) -> Iterator[tuple[int, bytes]]:
-    """Number and bytes of each brick that has a surface."""
+    """Yield number and bytes of each brick that has a surface."""
     centres = _placed(grid.inside, own, first, 0, 2)
     places = np.round(254.0 * (grid.vertices - grid.lows) / cell).clip(0, 254).astype(np.uint8)
     for number, (part, vertices) in zip(_numbers(own).tolist(), _vertex_numbers(grid, own, first), strict=True):

@@ -183,7 +183,7 @@ def _place(content: ViewContent, row: int) -> dict[str, int]:
 
 
 def _phases(verification: Verification, toolpaths: Sequence[Toolpath]) -> NDArray[np.int32]:
-    """The ``Phase`` of each row, (n,), as the CL line has it that the row belongs to; -1 for none."""
+    """Return the ``Phase`` of each row, (n,), as the CL line has it that the row belongs to; -1 for none."""
     found = np.full(len(verification.run), -1, np.int32)
     if not len(verification.cl_line):
         return found
@@ -215,7 +215,7 @@ def _length(shape: ToolShape | None, machine: Machine) -> float:
 
 
 def _needle(machine: Machine, name: str) -> Iterable[Body]:
-    """What stands for a tool of unknown form; nothing for no tool."""
+    """Yield what stands for a tool of unknown form; nothing for no tool."""
     if name in _NO_TOOL:
         return
     diameter, length = _NEEDLE
@@ -224,7 +224,7 @@ def _needle(machine: Machine, name: str) -> Iterable[Body]:
 
 
 def machine_scene(machine: Machine) -> dict[str, Any]:
-    """The chain of a machine, mm and degrees, as ``web/kinematics.js`` takes it."""
+    """Return the chain of a machine, mm and degrees, as ``web/kinematics.js`` takes it."""
     chain = link_chain(machine)
     return {
         "key": machine.key,
@@ -279,7 +279,7 @@ def _rewinds(run: Run) -> list[dict[str, Any]]:
 
 
 def _findings(checks: Sequence[Check], run: Run) -> list[dict[str, Any]]:
-    """The places of the checks that have not passed, as rows."""
+    """Return the places of the checks that have not passed, as rows."""
     numbers = {name: k for k, name in enumerate(run.files)}
     found = []
     for check in checks:
@@ -291,7 +291,8 @@ def _findings(checks: Sequence[Check], run: Run) -> list[dict[str, Any]]:
 
 
 def _row_of(run: Run, file: int, line: int) -> int:
-    """The row at a line: the first one of that line, else of the nearest line after it that moves, else before it.
+    """Return the row at a line: the first one of that line, else of the nearest line after it that moves, else before
+    it.
 
     Rows are in the order in which the program runs, which is not that of lines where there are subprograms and jumps.
     """
@@ -304,7 +305,7 @@ def _row_of(run: Run, file: int, line: int) -> int:
 
 
 def _diagnostics(run: Run) -> list[dict[str, Any]]:
-    """What the reader did not understand, at its line."""
+    """Return what the reader did not understand, at its line."""
     numbers = {name: k for k, name in enumerate(run.files)}
     found = []
     for each in run.errors:

@@ -55,7 +55,7 @@ class LiveView:
                 self._changed.notify_all()
 
     async def events(self) -> AsyncGenerator[bytes, None]:
-        """The newest pose, and each time that it has changed; those that come too quickly are left out."""
+        """Yield the newest pose, and each time that it has changed; those that come too quickly are left out."""
         sent = -1
         while True:
             if sent == self._count:

@@ -68,7 +68,7 @@ class Access:
         return secrets.compare_digest(given.encode(), self.token.encode())
 
     def guarded(self, answer: Callable[[Any], Any]) -> Callable[[Any], Any]:
-        """An endpoint that answers those who are allowed; None becomes "not found"."""
+        """Return an endpoint that answers those who are allowed; None becomes "not found"."""
         responses = import_extra("starlette.responses", "view")
 
         async def respond(request: Any) -> Any:
@@ -81,7 +81,7 @@ class Access:
         return respond
 
     def page(self, page: bytes) -> Any:
-        """The answer with the page, and with the token's cookie."""
+        """Return the answer with the page, and with the token's cookie."""
         made = import_extra("starlette.responses", "view").Response(page, 200, HEADERS, "text/html")
         if self.token:
             made.set_cookie(self.cookie, self.token, httponly=True, samesite="strict")
@@ -89,7 +89,7 @@ class Access:
 
 
 def application_of(routes: list[Any], **more: Any) -> Any:
-    """A Starlette application of routes; what is at none of them is answered with our headers as well."""
+    """Return a Starlette application of routes; what is at none of them is answered with our headers as well."""
     responses = import_extra("starlette.responses", "view")
 
     def refuse(_request: Any, error: Any) -> Any:

@@ -68,6 +68,6 @@ def bundle(modules: Iterable[str], before: str = "") -> str:
 
 
 def _library() -> str:
-    """The library that draws, preceded by its licence."""
+    """Return the library that draws, preceded by its licence."""
     licence = (_WEB / "vendor" / "LICENSE-three").read_text(encoding="utf-8").strip()
     return f"\n/*\n{licence}\n*/\n" + (_WEB / "vendor" / "three.iife.min.js").read_text(encoding="utf-8")

@@ -89,7 +89,7 @@ class StockView:
         return self._job.end
 
     def scene(self) -> dict[str, Any]:
-        """What the page says of it, and what its messages count in."""
+        """Return what the page says of it, and what its messages count in."""
         lattice, setup = self._lattice, self._simulation.model
         found: dict[str, Any] = {
             "low": lattice.low.tolist(), "cell": lattice.cell.tolist(), "counts": list(lattice.counts),
@@ -100,7 +100,8 @@ class StockView:
         return found
 
     def columns(self) -> dict[str, NDArray[np.float32] | NDArray[np.int32]]:
-        """What each row takes away, mm³; deviations in units of ``scene``: of the vertices of the finished stock, and
+        """Return what each row takes away, mm³; deviations in units of ``scene``: of the vertices of the finished
+        stock, and
         the worst that each row has left.
         """
         if self._finished.deviation is None:
@@ -133,7 +134,7 @@ class StockView:
         return self._packed
 
     def answer(self, rows: int, before: int) -> bytes | None:
-        """What makes the stock after some rows of that after others, which the browser has.
+        """Return what makes the stock after some rows of that after others, which the browser has.
 
         None: a later question has come, or there are no such rows. It is called by many threads.
         """
@@ -152,7 +153,7 @@ class StockView:
         self._newest += 1
 
     def _frame(self, rows: int) -> BrickFrame:
-        """The surface after some rows."""
+        """Return the surface after some rows."""
         if rows not in self._frames:
             self._replay.go_to(rows)
             self._frames[rows] = self._made(rows)
@@ -162,7 +163,7 @@ class StockView:
         return self._frames[rows]
 
     def _made(self, rows: int) -> BrickFrame:
-        """The surface of the present stock: of the last one what is the same, and the rest anew."""
+        """Return the surface of the present stock: of the last one what is the same, and the rest anew."""
         cell, counts, stock = self._lattice.cell, self._lattice.counts, self._replay.stock
         before, tiles = self._last if self._last is not None else (None, ())
         state = self._replay.state(tiles)
@@ -193,7 +194,7 @@ class StockView:
 
 
 def _picture_cell(shape: StockShape, narrowest: float) -> float:
-    """The finest cell in which a stock is shown, mm."""
+    """Return the finest cell in which a stock is shown, mm."""
     x, y, z = shape.high - shape.low
     finest = math.sqrt(2.0 * float(x * y + y * z + z * x) / _MOST_CUBES)
     if 0.5 * narrowest < finest:
@@ -227,7 +228,7 @@ def _with_length(own: bytes) -> bytes:
 
 
 def _worst_of_rows(points: SurfacePoints, rows: int) -> Floats:
-    """The greatest deviation of the points that each row made, with its sign; 0 where it made none."""
+    """Return the greatest deviation of the points that each row made, with its sign; 0 where it made none."""
     found = np.zeros(rows)
     if points.deviation is not None:
         own = np.flatnonzero((points.row >= 0) & (points.row < rows))

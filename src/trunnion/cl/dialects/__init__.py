@@ -21,5 +21,5 @@ DIALECTS: Final[dict[str, Dialect]] = {
 
 
 def recognize_dialect(head: bytes) -> Recognition:
-    """The dialect of a file by the lines at its head; a file without any mark is taken as an NX CLSF."""
+    """Return the dialect of a file by the lines at its head; a file without any mark is taken as an NX CLSF."""
     return recognize(head, DIALECTS.values(), CLSF)

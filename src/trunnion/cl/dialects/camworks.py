@@ -69,7 +69,7 @@ def _rotabl(state: ReaderState, statement: Statement) -> None:
 
 
 def _system(angles: tuple[float, ...], axis: tuple[float, ...]) -> tuple[float, ...]:
-    """The axes of a setup in the model, in rows of four; its origin is not in the file.
+    """Return the axes of a setup in the model, in rows of four; its origin is not in the file.
 
     angles  A, B, C in radians, of which one may turn: the order of several is not settled
     axis    where its Z points, which must agree
@@ -90,7 +90,7 @@ def _system(angles: tuple[float, ...], axis: tuple[float, ...]) -> tuple[float, 
 
 
 def _circle(state: ReaderState, statement: Statement) -> None:
-    """An arc by centre, axis and radius; a word gives its sense."""
+    """Read an arc by centre, axis and radius; a word gives its sense."""
     given, sense = statement.values[:-1], statement.values[-1:]
     if sense not in (("CLOCKWISE",), ("COUNTERCLOCKWISE",)):
         raise StatementError(Wording("CL330", "circle_not_known", listed=statement.listed()))

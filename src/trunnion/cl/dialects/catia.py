@@ -64,7 +64,7 @@ def _comment(state: ReaderState, text: str) -> None:
 
 
 def _numbers_of(lines: Sequence[str]) -> tuple[float, ...]:
-    """The twelve numbers of a machining axis system."""
+    """Return the twelve numbers of a machining axis system."""
     rows = [row.split() for row in lines]
     try:
         numbers = tuple(float(number) for row in rows for number in row)
@@ -124,7 +124,7 @@ def _set_system(state: ReaderState, numbers: tuple[float, ...]) -> None:
 
 
 def _frame(numbers: tuple[float, ...]) -> Frame:
-    """A machining axis system in the model, made exactly unit and square."""
+    """Return a machining axis system in the model, made exactly unit and square."""
     matrix = np.array(numbers).reshape(3, 4)
     x, y, z = matrix[:, :3].T
     is_near = np.abs(matrix).max() <= _FARTHEST
@@ -136,20 +136,24 @@ def _frame(numbers: tuple[float, ...]) -> Frame:
 
 
 def _goto(state: ReaderState, statement: Statement) -> None:
-    """A point: tip, and tool axis. More numbers are a vector of compensation, or a contact point with its normal."""
+    """Read a point: tip, and tool axis. More numbers are a vector of compensation, or a contact point with its
+    normal.
+    """
     if len(statement.values) in (9, 12):
         raise StatementError(Wording("CL470", "goto_numbers_compensation", count=len(statement.values)))
     motion.goto(state, statement)
 
 
 def _tlaxis(state: ReaderState, statement: Statement) -> None:
-    """The tool axis of the points behind it, which then have none of their own until the next MULTAX."""
+    """Read the tool axis of the points behind it, which then have none of their own until the next MULTAX."""
     state.vectors = False
     apt_motion.tlaxis(state, statement)
 
 
 def _toolno(state: ReaderState, statement: Statement) -> None:
-    """The number of the tool, which LOADTL must have as well, and its kind: turning points are not those of a mill."""
+    """Read the number of the tool, which LOADTL must have as well, and its kind: turning points are not those of a
+    mill.
+    """
     if "TURN" in statement.words():
         raise StatementError(Wording("CL260", "toolno_belongs_turning", listed=statement.listed()))
     number = whole_number("TOOLNO", statement.values[:1])

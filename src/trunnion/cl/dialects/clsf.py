@@ -20,7 +20,7 @@ _CONTOUR: Final = re.compile(r"\s*contact\b.*\bdata\s*", re.IGNORECASE)
 
 
 def _comment(state: ReaderState, text: str) -> None:
-    """A comment that says what the points are: those of the contour are no tips."""
+    """Read a comment that says what the points are: those of the contour are no tips."""
     if _CONTOUR.fullmatch(text):
         raise StatementError(Wording("CL470", "points_those_contour", text=text))
 

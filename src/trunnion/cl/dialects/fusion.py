@@ -24,14 +24,14 @@ def _partno(state: ReaderState, statement: Statement) -> None:
 
 
 def _units(state: ReaderState, statement: Statement) -> None:
-    """The length unit, which old revisions repeat for each operation."""
+    """Read the length unit, which old revisions repeat for each operation."""
     if state.length_unit is not None:
         raise StatementError(Wording("CL460", "units_each_operation"))
     operations.units(state, statement)
 
 
 def _loadtl(state: ReaderState, statement: Statement) -> None:
-    """The tool, at the beginning of each operation."""
+    """Read the tool, at the beginning of each operation."""
     if "IN" in statement.words():
         raise StatementError(Wording("CL460", "loadtl_export_writes"))
     state.split_operation()
@@ -39,7 +39,7 @@ def _loadtl(state: ReaderState, statement: Statement) -> None:
 
 
 def _spindl(state: ReaderState, statement: Statement) -> None:
-    """The spindle; the words alone are the wrong way round in all revisions of these posts."""
+    """Read the spindle; the words alone are the wrong way round in all revisions of these posts."""
     if statement.values in (("ON",), ("OFF",)):
         raise StatementError(Wording("CL740", "spindl_alone_these", listed=statement.listed()))
     events.spindl(state, statement)

@@ -14,23 +14,23 @@ from trunnion.messages import Wording
 
 
 def _csys(state: ReaderState, statement: Statement) -> None:
-    """The coordinate system of the points in that of the model: it may not change."""
+    """Read the coordinate system of the points in that of the model: it may not change."""
     state.set_system(statement.numbers(12))
 
 
 def _alias(state: ReaderState, statement: Statement) -> None:
-    """The coordinate system under a name of the shop's own: an NC alias may stand for ``$$-> CSYS``."""
+    """Read the coordinate system under a name of the shop's own: an NC alias may stand for ``$$-> CSYS``."""
     state.diagnostics.remark(state.line, Wording("CL240", "taken_csys_under", major=statement.major))
     _csys(state, statement)
 
 
 def _featno(state: ReaderState, statement: Statement) -> None:
-    """The number of the sequence names the operation."""
+    """Read the number of the sequence names the operation."""
     state.name_operation(f"FEATNO {statement.listed()}")
 
 
 def _mfgno(state: ReaderState, statement: Statement) -> None:
-    """The number of the manufacturing model names the part, if PARTNO does not."""
+    """Read the number of the manufacturing model names the part, if PARTNO does not."""
     state.part = state.part or statement.listed()
 
 
@@ -41,12 +41,12 @@ def _geometry_type(state: ReaderState, statement: Statement) -> None:
 
 
 def _comment(state: ReaderState, text: str) -> None:
-    """A comment, which is a command also where blanks stand in front of its arrow."""
+    """Read a comment, which is a command also where blanks stand in front of its arrow."""
     _command(state, text.strip())
 
 
 def _remark(state: ReaderState, statement: Statement) -> None:
-    """A comment, in which an alias may put what otherwise stands behind ``$$->``."""
+    """Read a comment, in which an alias may put what otherwise stands behind ``$$->``."""
     _command(state, statement.text)
 
 

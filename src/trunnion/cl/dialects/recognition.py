@@ -23,7 +23,7 @@ class Recognition:
 
 
 def recognize(head: bytes, dialects: Iterable[Dialect], default: Dialect) -> Recognition:
-    """The dialect with most different marks in the lines of ``head``, the first one among equals.
+    """Return the dialect with most different marks in the lines of ``head``, the first one among equals.
 
     A general one counts where no other has a mark; without any mark it is the ``default``.
     """
@@ -42,7 +42,7 @@ def recognize(head: bytes, dialects: Iterable[Dialect], default: Dialect) -> Rec
 
 
 def _marks(dialect: Dialect, lines: dict[bytes, int]) -> list[tuple[int, str]]:
-    """The first line with each mark of a dialect, and the mark as it stands there."""
+    """Return the first line with each mark of a dialect, and the mark as it stands there."""
     found = []
     for mark in dialect.marks:
         for line, number in lines.items():

@@ -35,7 +35,9 @@ class _Note:
 
 
 def _insert(state: ReaderState, statement: Statement) -> None:
-    """A note: it begins an operation, and names the tool if CUTTER follows. It never goes into the program as it is."""
+    """Read a note: it begins an operation, and names the tool if CUTTER follows. It never goes into the program as it
+    is.
+    """
     state.split_operation()
     note = state.own(_Note)
     note.line, note.text = state.line, statement.text.strip()
@@ -43,7 +45,7 @@ def _insert(state: ReaderState, statement: Statement) -> None:
 
 
 def _cutter(state: ReaderState, statement: Statement) -> None:
-    """The tool, under the name of the note before it, which may begin with its holder."""
+    """Read the tool, under the name of the note before it, which may begin with its holder."""
     apt_tools.cutter(state, statement)
     note = state.own(_Note)
     if note.line and note.line + 1 == state.line:
@@ -59,7 +61,9 @@ def _trntyp(state: ReaderState, statement: Statement) -> None:
 
 
 def _csys(state: ReaderState, statement: Statement) -> None:
-    """The coordinate system of the operation: Z, its third column, is the tool axis; the points stay in the world's."""
+    """Read the coordinate system of the operation: Z, its third column, is the tool axis; the points stay in the
+    world's.
+    """
     numbers = statement.numbers(12)
     columns = np.array(numbers).reshape(3, 4)[:, :3]
     if np.abs(columns.T @ columns - np.eye(3)).max() > _SQUARE:
@@ -72,13 +76,13 @@ def _csys(state: ReaderState, statement: Statement) -> None:
 
 
 def _spindl(state: ReaderState, statement: Statement) -> None:
-    """The spindle speed, which stands at the beginning of each operation."""
+    """Read the spindle speed, which stands at the beginning of each operation."""
     state.split_operation()
     events.spindl(state, statement)
 
 
 def _circle(state: ReaderState, statement: Statement) -> None:
-    """An arc by centre and normal; its radius is the distance of its start."""
+    """Read an arc by centre and normal; its radius is the distance of its start."""
     motion.begin_circle(state, (*statement.numbers(6), float("nan")), 1)
 
 
@@ -89,7 +93,7 @@ def _cycle(state: ReaderState, statement: Statement) -> None:
 
 
 def pecking_cycle(state: ReaderState, statement: Statement) -> None:
-    """A cycle with pecks, and a remark where the later ones are longer than the first."""
+    """Read a cycle with pecks, and a remark where the later ones are longer than the first."""
     cycle(state, statement)
     pecks = dict(zip(statement.values, statement.values[1:], strict=False))
     first, others = pecks.get("1STPECK", 0.0), pecks.get("SUBPECK", 0.0)
@@ -106,7 +110,7 @@ def _extension(state: ReaderState, statement: Statement) -> None:
 
 
 def _settle_cycle(found: CycleParts) -> None:
-    """The first peck, and then pecks of one length: as first, decrease and minimum.
+    """Read the first peck, and then pecks of one length: as first, decrease and minimum.
 
     Pecks that grow have no words; shorter ones are safe for the drill.
     """

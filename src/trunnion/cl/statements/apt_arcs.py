@@ -126,7 +126,9 @@ def _unit(vector: Sequence[float]) -> _Vector:
 
 
 def _normal(radial: _Vector, direction: _Vector, given: _Vector | None) -> _Vector:
-    """The unit vector about which the arc turns by the right-hand rule: by its start, its direction and its axis."""
+    """Return the unit vector about which the arc turns by the right-hand rule: by its start, its direction and its
+    axis.
+    """
     direction = _unit(direction)
     if given is not None:
         axis = _unit(given)
@@ -146,7 +148,7 @@ def _normal(radial: _Vector, direction: _Vector, given: _Vector | None) -> _Vect
 
 
 def _on_circle(centre: Sequence[float], normal: _Vector, radius: float, towards: Sequence[float]) -> _Vector:
-    """The point of the circle in the direction of ``towards``, at its height."""
+    """Return the point of the circle in the direction of ``towards``, at its height."""
     offset = _minus(towards, centre)
     height = _dot(offset, normal)
     radial = _minus(offset, (height * normal[0], height * normal[1], height * normal[2]))

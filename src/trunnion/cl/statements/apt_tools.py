@@ -64,7 +64,7 @@ def cutter_in_section(state: ReaderState, statement: Statement) -> None:
 
 
 def _form(statement: Statement) -> Tool:
-    """The tool that a CUTTER describes."""
+    """Return the tool that a CUTTER describes."""
     values = statement.values[:-1] if statement.values[-1:] == ("",) else statement.values
     given = statement._replace(values=values).numbers(1, 2, 7)
     d, r, e, f, a, b, h = (*given, *(0.0,) * (7 - len(given)))

@@ -182,7 +182,7 @@ def _with_part(found: CycleParts, word: str, given: tuple[float, ...], following
 
 
 def _one_number(word: str, given: tuple[float, ...], most: int = 1) -> tuple[float, ...]:
-    """The numbers behind a word: one, or up to ``most``."""
+    """Return the numbers behind a word: one, or up to ``most``."""
     if not given:
         raise StatementError(Wording("CL820", "cycle_without_number", word=word))
     if len(given) > most:

@@ -131,7 +131,7 @@ def _speed_and_diameter(statement: Statement) -> tuple[float | None, float | Non
 
 
 def _sense(state: ReaderState, words: set[str]) -> Sense:
-    """The sense named, else the last one."""
+    """Return the sense named, else the last one."""
     for sense in Sense:
         if sense.value in words:
             return sense

@@ -162,7 +162,7 @@ def keep_axis(state: ReaderState) -> None:
 
 
 def current_tip(state: ReaderState) -> tuple[float, float, float] | None:
-    """The last point, of the operation before if this one continues it; None before the first."""
+    """Return the last point, of the operation before if this one continues it; None before the first."""
     starts = state.builder.starts
     if starts and starts[-1].row == state.operation_row:
         return starts[-1].tip

@@ -177,7 +177,7 @@ def outtol(state: ReaderState, statement: Statement) -> None:
 
 
 def _tolerance(state: ReaderState, statement: Statement) -> float:
-    """A tolerance in units of the file, 0 or more."""
+    """Return a tolerance in units of the file, 0 or more."""
     (tolerance,) = statement.numbers(1)
     if tolerance < 0.0:
         raise StatementError(Wording("CL340", "negative", major=statement.major, tolerance=tolerance))

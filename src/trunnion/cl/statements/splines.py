@@ -59,7 +59,7 @@ def cntrl(state: ReaderState, statement: Statement) -> None:
 
 
 def _numbers(state: ReaderState, statement: Statement, *counts: int) -> tuple[float, ...]:
-    """The numbers of a statement; without them the spline is given up."""
+    """Return the numbers of a statement; without them the spline is given up."""
     try:
         return statement.numbers(*counts)
     except StatementError:

@@ -95,7 +95,7 @@ class AptWriter(ClWriter):
             self.remark(0, UNSETTLED_SYSTEM)
 
     def system_numbers(self) -> list[str]:
-        """The coordinate system of the file in that of the model, if it comes from a file of this dialect."""
+        """Return the coordinate system of the file in that of the model, if it comes from a file of this dialect."""
         if self.source.dialect != self.name:
             return []
         unit = INCH if self.inch else 1.0
@@ -164,7 +164,7 @@ class AptWriter(ClWriter):
         yield from self._feed_losses(operation)
 
     def arc_losses(self, operation: Operation, index: int) -> Iterator[Problem]:
-        """What the dialect cannot say of a flat arc."""
+        """Yield what the dialect cannot say of a flat arc."""
         yield from ()
 
     def _cycle_losses(self, event: CycleOn) -> Iterator[Problem]:
@@ -203,7 +203,7 @@ class AptWriter(ClWriter):
         return Problem(self.source.file, line, wording)
 
     def begin(self, number: int, operation: Operation) -> list[str]:
-        """The name, the tool and the tolerances."""
+        """Return the name, the tool and the tolerances."""
         self._title = self.title_lines(number, operation)
         self._rows = len(operation.moves)
         self.set_length = [self.length(operation.tool.set_length)] if operation.tool.set_length else []
@@ -214,33 +214,33 @@ class AptWriter(ClWriter):
         return lines
 
     def event(self, event: Event) -> list[str]:
-        """The statements of an event; behind GOHOME another operation begins, which gets the same name."""
+        """Return the statements of an event; behind GOHOME another operation begins, which gets the same name."""
         lines = super().event(event)
         return [*lines, *self._title] if isinstance(event, GoHome) and event.row < self._rows else lines
 
     def end(self, operation: Operation) -> list[str]:
-        """The ends of a cycle and of radius compensation: in a toolpath they end with their operation."""
+        """Return the ends of a cycle and of radius compensation: in a toolpath they end with their operation."""
         cycles = [event for event in operation.events if isinstance(event, CycleOn | CycleOff)]
         lines = self.statement("CYCLE", "OFF") if cycles and isinstance(cycles[-1], CycleOn) else []
         sides = [event.side for event in operation.events if isinstance(event, CutterComp)]
         return [*lines, *(self.statement("CUTCOM", "OFF") if sides and sides[-1] != "OFF" else [])]
 
     def foot(self) -> list[str]:
-        """The end of the file."""
+        """Return the end of the file."""
         return ["FINI"]
 
     @abstractmethod
     def title_lines(self, number: int, operation: Operation) -> list[str]:
-        """The lines that name an operation."""
+        """Return the lines that name an operation."""
 
     def tool_lines(self, tool: Tool) -> list[str]:
-        """The tool's form and name."""
+        """Return the tool's form and name."""
         lines = self.cutter([number_text(number, 6) for number in _cutter_numbers(tool)])
         names = ",".join(name for name in (tool.name, tool.holder) if name or tool.holder)
         return [*lines, *([f"TPRINT/{names}"] if names else [])]
 
     def cutter(self, numbers: list[str]) -> list[str]:
-        """The statement of a tool's form; none if nothing is known of it."""
+        """Return the statement of a tool's form; none if nothing is known of it."""
         return self.statement("CUTTER", *numbers) if numbers else []
 
     def select_tool(self, event: SelectTool) -> list[str]:
@@ -248,7 +248,9 @@ class AptWriter(ClWriter):
         return self.statement("SELCTL", str(event.number))
 
     def message(self, event: Message) -> list[str]:
-        """A text; quotation marks around a text of the program are not part of it, so that its own need others."""
+        """Return a text; quotation marks around a text of the program are not part of it, so that its own need
+        others.
+        """
         quoted = len(event.text) > 1 and event.text[0] == event.text[-1] == "'"
         if not event.display and quoted:
             return [f"PPRINT/'{event.text}'"]
@@ -259,11 +261,11 @@ class AptWriter(ClWriter):
         return []
 
     def hole_word(self, event: CycleOn) -> str:
-        """The word for the kind of a hole."""
+        """Return the word for the kind of a hole."""
         return _CYCLES[event.mode]
 
     def hole_values(self, event: CycleOn) -> dict[str, list[str]]:
-        """The numbers of a cycle by their words, a depth without its sign, feeds under FEED with their unit."""
+        """Return the numbers of a cycle by their words, a depth without its sign, feeds under FEED with their unit."""
         found: dict[str, list[str]] = {}
         for word, numbers in event.values:
             texts = [number_text(number, 4) for number in numbers]
@@ -284,7 +286,7 @@ def _loads(operation: Operation) -> bool:
 
 
 def _cutter_numbers(tool: Tool) -> list[float]:
-    """The numbers of CUTTER: d, r, e, f, a, b, h; none for an unknown tool without sizes."""
+    """Return the numbers of CUTTER: d, r, e, f, a, b, h; none for an unknown tool without sizes."""
     if tool.kind == "UNKNOWN" and not tool.diameter:
         return []
     return list(apt_cutter(tool))

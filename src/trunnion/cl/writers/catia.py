@@ -35,13 +35,13 @@ class CatiaWriter(AptWriter):
         return [*head, f"UNITS/{'INCHES' if self.inch else 'MM'}", "MULTAX"]
 
     def _system(self) -> list[str]:
-        """The coordinate system as a CATIA file had it: an identifier and three lines of four numbers."""
+        """Return the coordinate system as a CATIA file had it: an identifier and three lines of four numbers."""
         numbers = self.system_numbers()
         rows = [numbers[k : k + 4] for k in range(0, len(numbers), 4)]
         return ["$$*CATIA0", "$$ SYSTEM", *(f"$$ {' '.join(row)}" for row in rows)] if rows else []
 
     def title_lines(self, number: int, operation: Operation) -> list[str]:
-        """The comment that names an operation."""
+        """Return the comment that names an operation."""
         return [f"$$ OPERATION NAME : {operation.name}"]
 
     def load_tool(self, event: LoadTool) -> list[str]:
@@ -52,11 +52,11 @@ class CatiaWriter(AptWriter):
         return self.statement("LOADTL", number, "LENGTH", *self.set_length, *["OSETNO", *register] * bool(register))
 
     def spindle(self, event: SpindleOn) -> list[str]:
-        """The speed stands first."""
+        """Return the speed stands first."""
         return self.statement("SPINDL", number_text(event.rpm, 4), "RPM", event.sense.value)
 
     def cycle(self, event: CycleOn) -> list[str]:
-        """A cycle in couplets."""
+        """Return a cycle in couplets."""
         values = self.hole_values(event)
         fields = [self.hole_word(event), "DEPTH", *values.pop("DEPTH")]
         if "STEP" in values:
@@ -68,14 +68,14 @@ class CatiaWriter(AptWriter):
         return self.statement("CYCLE", *fields)
 
     def arc_losses(self, operation: Operation, index: int) -> Iterator[Problem]:
-        """An arc along which the tool turns: its statement has a place for the tip alone."""
+        """Yield an arc along which the tool turns: its statement has a place for the tip alone."""
         row = int(operation.arcs.row[index])
         start = _axis_before(operation, row)
         if start is not None and float(np.abs(operation.moves.axis[row] - start).max()) > _SAME_AXIS:
             yield Problem(self.source.file, int(operation.moves.line[row]), Wording("CL910", "tool_axis_turns"))
 
     def arc(self, operation: Operation, index: int) -> tuple[list[str], bool]:
-        """The direction at the start, the circle, and where it ends."""
+        """Return the direction at the start, the circle, and where it ends."""
         arcs, row = operation.arcs, int(operation.arcs.row[index])
         start, end = _tip_before(operation, row), operation.moves.tip[row]
         centre, normal = arcs.centre[index], arcs.normal[index]
@@ -114,7 +114,7 @@ def _tip_before(operation: Operation, row: int) -> Floats:
 
 
 def _turn(start: Floats, end: Floats, normal: Floats) -> float:
-    """The angle of an arc, radians, from 0 to a full turn."""
+    """Return the angle of an arc, radians, from 0 to a full turn."""
     across = float(np.cross(start, end) @ normal)
     along = float(start @ end - (start @ normal) * (end @ normal))
     return math.atan2(across, along) % (2.0 * math.pi)

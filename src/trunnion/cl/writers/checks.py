@@ -29,12 +29,12 @@ _CONTINUATION: Final = re.compile(r"\$[ \t\r]*(?:\$\$[^\n]*)?\n[ \t]*")
 
 
 def joined(text: str) -> str:
-    """A statement with its continuation lines as one line."""
+    """Return a statement with its continuation lines as one line."""
     return _CONTINUATION.sub("", text)
 
 
 def called(operation: Operation) -> str:
-    """What messages call the tool of an operation: by its name, or by its number where it has none."""
+    """Return what messages call the tool of an operation: by its name, or by its number where it has none."""
     numbers = (event.number for event in operation.events if isinstance(event, LoadTool) and event.number is not None)
     number = next(numbers, None)
     return f"tool {operation.tool.name or number}" if operation.tool.name or number is not None else "its tool"

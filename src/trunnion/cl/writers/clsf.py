@@ -30,7 +30,7 @@ class ClsfWriter(ClWriter):
     divides_lines = False
 
     def prepared(self, toolpath: Toolpath) -> Toolpath:
-        """The toolpath as it is; a coordinate system whose meaning is not settled is lost."""
+        """Return the toolpath as it is; a coordinate system whose meaning is not settled is lost."""
         if toolpath.system and toolpath.system != _IDENTITY:
             self.remark(0, UNSETTLED_SYSTEM)
         for operation in toolpath.operations:
@@ -74,7 +74,7 @@ class ClsfWriter(ClWriter):
         return lines
 
     def end(self, operation: Operation) -> list[str]:
-        """The end of the path."""
+        """Return the end of the path."""
         return ["END-OF-PATH"]
 
     def colours(self, operation: Operation) -> list[tuple[int, str]]:
@@ -99,7 +99,7 @@ class ClsfWriter(ClWriter):
         return [(row, f"PAINT/COLOR,{colour}") for row, colour in colours]
 
     def feed(self, value: float, *, per_rev: bool) -> list[str]:
-        """The unit stands in front of the feed."""
+        """Return the unit stands in front of the feed."""
         return [f"FEDRAT/{self.feed_unit(per_rev=per_rev)},{number_text(value, 4)}"]
 
     def arc(self, operation: Operation, index: int) -> tuple[list[str], bool]:
@@ -117,7 +117,7 @@ class ClsfWriter(ClWriter):
         return [f"SELECT/TOOL,{event.number}"]
 
     def cycle(self, event: CycleOn) -> list[str]:
-        """A cycle: its mode words, then couplets and words without numbers, each in their order."""
+        """Return a cycle: its mode words, then couplets and words without numbers, each in their order."""
         values = list(event.values)
         parts = list(event.mode)
         if values and parts and values[0][0] == parts[-1]:
@@ -139,7 +139,7 @@ class ClsfWriter(ClWriter):
 
 
 def _tldata(tool: Tool) -> list[str]:
-    """The statement of the tool; none for an unknown tool."""
+    """Return the statement of the tool; none for an unknown tool."""
     if tool.kind in ("MILL", "BARREL"):
         numbers = [tool.diameter, tool.corner_radius, tool.length, tool.taper_angle, tool.tip_angle]
         if tool.upper_radius or tool.corner_centre:

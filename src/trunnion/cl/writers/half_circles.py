@@ -10,7 +10,7 @@ from trunnion.model.toolpath import From, Kind, Operation
 
 
 def with_half_circles(operation: Operation) -> tuple[Operation, int]:
-    """The operation with a point halfway round each full circle, and how many circles these are.
+    """Return the operation with a point halfway round each full circle, and how many circles these are.
 
     Helices and arcs of several turns stay as they are.
     """

@@ -18,7 +18,9 @@ _IN_LENGTHS: Final = frozenset({"RAPTO", "FEDTO", "RTRCTO", "CLEAR", "STEP", "CS
 
 
 def in_unit(operation: Operation, unit: float) -> Operation:
-    """The operation with all lengths and feeds in a unit, mm; words such as MMPM stay, and mean that unit then."""
+    """Return the operation with all lengths and feeds in a unit, mm; words such as MMPM stay, and mean that
+    unit then.
+    """
 
     def one(value: float) -> float:
         return round(value / unit, _DECIMALS)

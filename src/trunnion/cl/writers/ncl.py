@@ -37,16 +37,16 @@ class NclWriter(AptWriter):
         return [*lines, "MULTAX / ON"]
 
     def foot(self) -> list[str]:
-        """The end of the file."""
+        """Return the end of the file."""
         return ["$$-> END / ", "FINI"]
 
     def title_lines(self, number: int, operation: Operation) -> list[str]:
-        """The number of the operation, with its name as a comment."""
+        """Return the number of the operation, with its name as a comment."""
         found = _NUMBER.fullmatch(operation.name)
         return [f"$$-> FEATNO / {found[1]}"] if found else [f"$$ {operation.name}", f"$$-> FEATNO / {number}"]
 
     def cutter(self, numbers: list[str]) -> list[str]:
-        """A command of Creo's own: the diameter alone for a flat mill."""
+        """Return a command of Creo's own: the diameter alone for a flat mill."""
         if not numbers:
             return []
         d, r, _, _, *others = numbers
@@ -59,7 +59,7 @@ class NclWriter(AptWriter):
         return self.statement("LOADTL", str(event.number), *length, *["OSETNO", str(event.adjust)] * bool(event.adjust))
 
     def cycle(self, event: CycleOn) -> list[str]:
-        """A cycle in couplets; RETURN,0 is the height before it."""
+        """Return a cycle in couplets; RETURN,0 is the height before it."""
         values = self.hole_values(event)
         fields = [self.hole_word(event), "DEPTH", *values.pop("DEPTH")]
         if "STEP" in values:

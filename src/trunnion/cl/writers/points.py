@@ -56,7 +56,7 @@ class PointForm:
     axis: AxisRule = AxisRule.CHANGED
 
     def line(self, lengths: list[str], axis: list[str]) -> str:
-        """A point as a line, or two; without a tool axis if ``axis`` is empty."""
+        """Return a point as a line, or two; without a tool axis if ``axis`` is empty."""
         return self.begin + self.comma.join(lengths) + (self.before_axis + self.comma.join(axis) if axis else "")
 
     def bytes(self) -> tuple[Bytes, Bytes, Bytes]:
@@ -73,13 +73,13 @@ def encode_lines(lines: Iterable[str]) -> bytes:
 
 
 def number_text(value: float, decimals: int) -> str:
-    """A number with these decimals, or with as many more as it needs to be exact."""
+    """Return a number with these decimals, or with as many more as it needs to be exact."""
     text = f"{value + 0.0:.{decimals}f}"
     return text if float(text) == value else np.format_float_positional(value, unique=True, trim="0")
 
 
 def axis_texts(axis: tuple[float, float, float]) -> list[str]:
-    """The numbers of a tool axis, as the kernel writes them."""
+    """Return the numbers of a tool axis, as the kernel writes them."""
     line = np.empty(_MAX_LINE_BYTES, np.uint8)
     _, comma, _ = PointForm().bytes()
     at = _format_axis(*axis, comma, line)
@@ -114,7 +114,7 @@ def _write_long_point(moves: Moves, row: int, form: PointForm, modal_axis: Float
 
 
 def point_line(form: PointForm, moves: Moves, row: int, *, with_axis: bool) -> str:
-    """A row as a line, with or without its tool axis."""
+    """Return a row as a line, with or without its tool axis."""
     i, j, k = moves.axis[row].tolist()
     return form.line([number_text(value, 6) for value in moves.tip[row].tolist()], axis_texts((i, j, k)) * with_axis)
 

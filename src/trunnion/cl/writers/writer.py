@@ -90,7 +90,7 @@ class ClWriter(ABC):
         self.inch = inch
 
     def prepared(self, toolpath: Toolpath) -> Toolpath:
-        """The toolpath as the dialect can say it; what it cannot say goes to ``remarks``."""
+        """Return the toolpath as the dialect can say it; what it cannot say goes to ``remarks``."""
         return toolpath
 
     def problems(self, comments: Sequence[str]) -> list[Problem]:
@@ -165,7 +165,7 @@ class ClWriter(ABC):
             found[event.row].axis = event.axis
 
     def statement(self, major: str, *values: str) -> list[str]:
-        """A statement in one line, or in several that are continued."""
+        """Return a statement in one line, or in several that are continued."""
         lines, line = [], f"{major}{self.slash}"
         for n, value in enumerate(values):
             text = value + (self.comma if n + 1 < len(values) else "")
@@ -176,40 +176,40 @@ class ClWriter(ABC):
         return [*lines, line]
 
     def length(self, value: float) -> str:
-        """A length as text."""
+        """Return a length as text."""
         return number_text(value, 6)
 
     def feed_unit(self, *, per_rev: bool) -> str:
-        """The word of feeds."""
+        """Return the word of feeds."""
         return ("IPR" if per_rev else "IPM") if self.inch else ("MMPR" if per_rev else "MMPM")
 
     @abstractmethod
     def head(self, comments: Sequence[str]) -> list[str]:
-        """The lines at the beginning of the file."""
+        """Return the lines at the beginning of the file."""
 
     def foot(self) -> list[str]:
-        """The lines at its end."""
+        """Return the lines at its end."""
         return []
 
     @abstractmethod
     def begin(self, number: int, operation: Operation) -> list[str]:
-        """The lines at the beginning of an operation, the ``number``-th of the file."""
+        """Return the lines at the beginning of an operation, the ``number``-th of the file."""
 
     @abstractmethod
     def end(self, operation: Operation) -> list[str]:
-        """The lines at its end."""
+        """Return the lines at its end."""
 
     def colours(self, operation: Operation) -> list[tuple[int, str]]:
         """Rows, and the statements before them that give the phase."""
         return []
 
     def feed(self, value: float, *, per_rev: bool) -> list[str]:
-        """The statement of a feed."""
+        """Return the statement of a feed."""
         return self.statement("FEDRAT", number_text(value, 4), self.feed_unit(per_rev=per_rev))
 
     @abstractmethod
     def arc(self, operation: Operation, index: int) -> tuple[list[str], bool]:
-        """The statement of an arc, and whether it has the end point in it."""
+        """Return the statement of an arc, and whether it has the end point in it."""
 
     def circle(self, arcs: Arcs, index: int) -> list[str]:
         """Centre, normal and radius of an arc as numbers."""
@@ -219,31 +219,31 @@ class ClWriter(ABC):
 
     @abstractmethod
     def load_tool(self, event: LoadTool) -> list[str]:
-        """The statement that loads a tool."""
+        """Return the statement that loads a tool."""
 
     @abstractmethod
     def select_tool(self, event: SelectTool) -> list[str]:
-        """The statement that preselects a tool."""
+        """Return the statement that preselects a tool."""
 
     def spindle(self, event: SpindleOn) -> list[str]:
-        """The statement that turns the spindle on."""
+        """Return the statement that turns the spindle on."""
         return self.statement("SPINDL", "RPM", number_text(event.rpm, 4), event.sense.value)
 
     @abstractmethod
     def cycle(self, event: CycleOn) -> list[str]:
-        """The statement that begins a cycle."""
+        """Return the statement that begins a cycle."""
 
     def message(self, event: Message) -> list[str]:
-        """A text in the program, or on the display."""
+        """Return a text in the program, or on the display."""
         return [f"{'DISPLY' if event.display else 'PPRINT'}/{event.text}"]
 
     def mode(self, event: SetMode) -> list[str]:
-        """A statement about the form of a program that every program fulfils."""
+        """Return a statement about the form of a program that every program fulfils."""
         major, *words = event.words
         return [major + (f"/{','.join(words)}" if words else "")]
 
     def event(self, event: Event) -> list[str]:
-        """The statements of an event."""
+        """Return the statements of an event."""
         match event:
             case LoadTool():
                 return self.load_tool(event)
@@ -266,7 +266,7 @@ class ClWriter(ABC):
         return self._switch(event)
 
     def _switch(self, event: Event) -> list[str]:
-        """The statements of events that all dialects write alike."""
+        """Return the statements of events that all dialects write alike."""
         match event:
             case SpindleOff():
                 return self.statement("SPINDL", "OFF")
@@ -293,7 +293,9 @@ class ClWriter(ABC):
 
 
 def _written_events(operation: Operation) -> tuple[Event, ...]:
-    """The events without those that a statement says of which only some words are not known: it is written whole."""
+    """Return the events without those that a statement says of which only some words are not known: it is written
+    whole.
+    """
     whole = {event.line for event in operation.events if isinstance(event, UnknownStatement) and event.words}
     if not whole:
         return operation.events

@@ -36,7 +36,7 @@ _WIDEST: Final = 200
 
 
 def rendering_of(context: Context) -> Rendering:
-    """The writing of a template that is going on."""
+    """Return the writing of a template that is going on."""
     rendering = context.parent[RENDERING]
     assert isinstance(rendering, Rendering)
     return rendering
@@ -53,7 +53,7 @@ def printed(context: Context, value: object) -> str:
 
 @pass_context
 def _format(context: Context, value: object, name: str) -> str | None:
-    """A number in a number format of the control."""
+    """Return a number in a number format of the control."""
     if value is None or value == "":
         return None
     printing, number = rendering_of(context).printing, as_number(value)
@@ -67,7 +67,7 @@ def _format(context: Context, value: object, name: str) -> str | None:
 
 @pass_context
 def _each(context: Context, items: object, steps: int) -> tuple[object, ...]:
-    """What a loop goes through, once its passes are paid for."""
+    """Return what a loop goes through, once its passes are paid for."""
     if items is None:
         return ()
     if not isinstance(items, tuple | list | range):
@@ -97,7 +97,7 @@ def _joined(context: Context, first: object, *others: object) -> str | None:
 
 
 def _of_text(what: str, change: Callable[..., str]) -> Callable[..., str | None]:
-    """A filter of texts, which leaves an absent one absent."""
+    """Return a filter of texts, which leaves an absent one absent."""
 
     def changed(value: object, *arguments: object) -> str | None:
         return None if value is None else bounded_text(change(_plain(value, what), *arguments))
@@ -223,7 +223,7 @@ _PRINTING: Final = frozenset({"default", JOINED})
 
 
 def _priced(name: str, change: Callable[..., Any]) -> Callable[..., Any]:
-    """A filter that is paid for by the letters of its texts, as loops are by their passes."""
+    """Return a filter that is paid for by the letters of its texts, as loops are by their passes."""
     a_step = 1 if name in _SLOW else _LETTERS_A_STEP
     takes_context = hasattr(change, "jinja_pass_arg")
 

@@ -102,7 +102,7 @@ def _tags(text: str) -> Iterator[_Tag]:
 
 
 def _end(text: str, at: int, closing: str, *, plain: bool) -> int | str:
-    """The place of what closes a tag; else why there is none: a quotation mark that is open, or empty."""
+    """Return the place of what closes a tag; else why there is none: a quotation mark that is open, or empty."""
     if plain:
         found = text.find(closing, at)
         return found if found >= 0 else ""
@@ -130,7 +130,7 @@ def _unended(opening: str, quote: str, line: int, text: str, at: int) -> Fault:
 
 
 def _rest(text: str, at: int) -> str:
-    """The rest of a line."""
+    """Return the rest of a line."""
     return text[at:].partition("\n")[0]
 
 
@@ -138,7 +138,7 @@ def _rest(text: str, at: int) -> str:
 
 
 def _nesting(tags: list[_Tag]) -> Fault | None:
-    """What is wrong with the beginnings and ends of statements."""
+    """Return what is wrong with the beginnings and ends of statements."""
     open_: list[_Tag] = []
     for tag in tags:
         name = tag.statement
@@ -164,7 +164,7 @@ def _nesting(tags: list[_Tag]) -> Fault | None:
 
 
 def _slip(tag: _Tag) -> Fault | None:
-    """What is wrong within a tag."""
+    """Return what is wrong within a tag."""
     if tag.opening == "{#" or tag.fault is not None:
         return tag.fault
     bare = _TEXT.sub(lambda found: "'" + "_" * (len(found[0]) - 2) + "'", tag.expression)
@@ -189,7 +189,7 @@ def _code_of(sign: str) -> str:
 
 
 def _statement_slip(tag: _Tag, bare: str) -> tuple[str, str] | None:
-    """A statement that there is not, or one with words that do not belong to it."""
+    """Return a statement that there is not, or one with words that do not belong to it."""
     name = tag.statement
     if tag.opening == "{{":
         return None
@@ -243,7 +243,7 @@ def _sign_slip(tag: _Tag, bare: str) -> tuple[str, str] | None:
 
 
 def _comparison_slip(tag: _Tag, bare: str) -> tuple[str, str] | None:
-    """A single equals sign where something is compared."""
+    """Return a single equals sign where something is compared."""
     value = bare.partition("=")[2] if tag.statement == "set" else bare
     if re.search(r"(?<![=!<>])=(?!=)", value):
         return f"has {tag} with =, which compares nothing", "write == to compare"

@@ -167,7 +167,7 @@ def text_template(name: str, text: str, file: str, line: int) -> tuple[TextTempl
 
 
 def _compiled(name: str, text: str) -> tuple[tuple[tuple[int, str, str], ...], frozenset[str], jinja2.Template, int]:
-    """What a template asks for, its code, and how many operations it is."""
+    """Return what a template asks for, its code, and how many operations it is."""
     checked = tree.with_fields(tree.parsed(text))
     formats = list(tree.formats_of(checked))
     asked = [(node.lineno, node.name) for node in checked.find_all(nodes.Name) if node.ctx == "load"]
@@ -182,7 +182,7 @@ def _compiled(name: str, text: str) -> tuple[tuple[tuple[int, str, str], ...], f
 
 
 def _prepared(name: str, value: Value, printing: Printing) -> object:
-    """A value as expressions have it: numbers as such, and lengths as lengths."""
+    """Return a value as expressions have it: numbers as such, and lengths as lengths."""
     if value is None or value == "":
         return None
     if name in printing.lengths and (number := as_number(value)) is not None:

@@ -100,7 +100,7 @@ def with_fields(tree: nodes.Template) -> nodes.Template:
 
 
 def formats_of(tree: nodes.Template) -> Iterator[tuple[int, str, str]]:
-    """The number formats of a template: line, the name or number that is printed, else "", and the format."""
+    """Yield the number formats of a template: line, the name or number that is printed, else "", and the format."""
     for node in tree.find_all(nodes.Filter):
         if node.name not in filters.ALL:
             what = node.node

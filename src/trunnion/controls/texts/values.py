@@ -81,7 +81,7 @@ class Rendering:
 
 
 def shown(value: object) -> str:
-    """A value in a message, cut short."""
+    """Return a value in a message, cut short."""
     if isinstance(value, str):
         return repr(value[:40])
     if isinstance(value, tuple | list | range):
@@ -90,7 +90,7 @@ def shown(value: object) -> str:
 
 
 def number_of(value: object, what: str) -> float:
-    """A value that must be a number."""
+    """Return a value that must be a number."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         cure = "join texts by ~, and make a number of a text by | number"
         raise Fault(f"has {shown(value)} where {what} wants a number", cure)
@@ -98,7 +98,7 @@ def number_of(value: object, what: str) -> float:
 
 
 def as_number(value: object) -> float | None:
-    """A number, or a text of one, as a number; None if it is none."""
+    """Return a number, or a text of one, as a number; None if it is none."""
     if isinstance(value, bool):
         return None
     if isinstance(value, int | float):
@@ -110,21 +110,21 @@ def as_number(value: object) -> float | None:
 
 
 def bounded(number: float) -> float:
-    """A calculated number, if it is not too large."""
+    """Return a calculated number, if it is not too large."""
     if not (math.isfinite(number) and abs(number) <= _GREATEST):
         raise Fault("calculates a number that is too large")
     return number
 
 
 def bounded_text(text: str) -> str:
-    """A text that was made, if it is not too long."""
+    """Return a text that was made, if it is not too long."""
     if len(text) > LONGEST_TEXT:
         raise Fault(f"makes a text of more than {LONGEST_TEXT} letters")
     return text
 
 
 def text_of(value: object, unit: float = 1.0) -> str:
-    """A value as the text of a program that counts in ``unit``, mm; no line break comes of it."""
+    """Return a value as the text of a program that counts in ``unit``, mm; no line break comes of it."""
     if value is None:
         return ABSENT
     if isinstance(value, str):
@@ -138,7 +138,7 @@ def text_of(value: object, unit: float = 1.0) -> str:
 
 
 def calculated(operator: str, left: object, right: object) -> float | None:
-    """The result of arithmetic; None if one of the numbers is absent.
+    """Return the result of arithmetic; None if one of the numbers is absent.
 
     A length stays one where it is added to, or multiplied by a number.
     """

@@ -58,7 +58,7 @@ class BladeFlank:
     neighbour: float
 
     def as_pass(self, count: int = 401) -> tuple[Pass, Floats]:
-        """The pass of the ball at the cutter's end, and the tool's axes (n, 3), for ``paths.linking``.
+        """Return the pass of the ball at the cutter's end, and the tool's axes (n, 3), for ``paths.linking``.
 
         Normals point from the blade to the cutter: across the axis and the way.
 
@@ -125,7 +125,9 @@ def _surface(blade: Blade, side: float, w: Floats, v: Floats) -> tuple[Floats, F
 
 
 def _begins(impeller: Impeller, blade: Blade, side: float, ball: float, w: Floats) -> Floats:
-    """The least v (k,) at which a ball that touches the flank is clear of the hub; 1 where none is below the tip."""
+    """Return the least v (k,) at which a ball that touches the flank is clear of the hub; 1 where none is below the
+    tip.
+    """
     low, high = np.zeros(len(w)), np.ones(len(w))
     for _ in range(_HALVINGS):
         middle = (low + high) / 2.0
@@ -136,7 +138,7 @@ def _begins(impeller: Impeller, blade: Blade, side: float, ball: float, w: Float
 
 
 def _until(impeller: Impeller, blade: Blade, side: float, ball: float) -> float:
-    """The w at which a flank ends."""
+    """Return the w at which a flank ends."""
     w = np.linspace(0.0, 1.0, 401)
     low = _begins(impeller, blade, side, ball, w) > _LOW
     if low[:40].any():
@@ -145,7 +147,7 @@ def _until(impeller: Impeller, blade: Blade, side: float, ball: float) -> float:
 
 
 def _grid(impeller: Impeller, blade: Blade, side: float, ball: float, until: float, size: tuple[int, int]) -> Flank:
-    """The flank with so many points along and across."""
+    """Return the flank with so many points along and across."""
     along, across = size
     w = np.linspace(0.0, until, along)
     begins = _begins(impeller, blade, side, ball, w)
@@ -163,7 +165,7 @@ def _axis_points(cut: FlankCut, cutter: FlankCutter) -> tuple[Floats, Floats]:
 
 
 def _neighbour(impeller: Impeller, blade: Blade, points: Floats, radii: Floats) -> float:
-    """The least distance of balls to all blades but one."""
+    """Return the least distance of balls to all blades but one."""
     own = next(angle for one, angle in impeller.blades() if one is blade)
     found = np.inf
     for other, angle in impeller.blades():

@@ -16,7 +16,7 @@ _GOLDEN = 0.6180339887498949
 
 @inner
 def _distance(pose: Floats, cutter: Floats, x: float, y: float, z: float) -> float:
-    """The distance of a point to the cutter (radius, slope, length) in a pose (lower point, axis)."""
+    """Return the distance of a point to the cutter (radius, slope, length) in a pose (lower point, axis)."""
     dx, dy, dz = x - pose[0], y - pose[1], z - pose[2]
     up = dx * pose[3] + dy * pose[4] + dz * pose[5]
     square = max(dx * dx + dy * dy + dz * dz - up * up, 0.0)

@@ -63,7 +63,7 @@ class Slopes:
     outward: Floats
 
     def changes(self) -> Floats:
-        """Changes (n, 6 k) by the coordinates of lower, then of upper control points.
+        """Return changes (n, 6 k) by the coordinates of lower, then of upper control points.
 
         At a minimum along the path and the axis, what moves along them changes nothing.
         """

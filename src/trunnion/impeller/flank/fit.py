@@ -47,7 +47,7 @@ class Limits:
     rounds: int = 60
 
     def merit(self, deviations: Floats) -> float:
-        """What is made least, of deviations (n,)."""
+        """Return what is made least, of deviations (n,)."""
         both = Deviations.of(deviations)
         if self.overcut is None:
             return both.largest
@@ -79,7 +79,7 @@ class Floor:
 def fit_path(
     path: FlankPath, points: Floats, limits: Limits, floor: Floor | None = None, advance: Advance = ignore
 ) -> Fit:
-    """The path fitted to points (n, 3) of a flank, from one that is near."""
+    """Return the path fitted to points (n, 3) of a flank, from one that is near."""
     merit, found, at = _left(path, points, limits, floor)
     history = [merit]
     region = min(max(2.0 * merit, 1e-3), 0.25 * path.cutter.radius)
@@ -110,7 +110,7 @@ def _rests(history: list[float]) -> bool:
 
 
 def _left(path: FlankPath, points: Floats, limits: Limits, floor: Floor | None) -> tuple[float, Floats, Floats]:
-    """What is made least, the deviations and where they are."""
+    """Return what is made least, the deviations and where they are."""
     found, at = deviations_of(path, points, _MINIMA)
     merit = limits.merit(found[:, 0])
     if floor is not None:
@@ -128,7 +128,7 @@ def _step(
     region: float,
     floor: Floor | None,
 ) -> tuple[Floats, float]:
-    """The step of the lower and upper control points (2, k, 3), and what is left after it by the linear program.
+    """Return the step of the lower and upper control points (2, k, 3), and what is left after it by the linear program.
 
     Unknowns: the control points' moves, what is made least, what is beyond a limit, roughness.
     """
@@ -183,12 +183,12 @@ def _rows(sparse: Any, change: Floats, left: float, beyond: float) -> Any:
 
 
 def _change(path: FlankPath, points: Floats, at: Floats) -> Floats:
-    """Changes (n, 6 k) of distances by the coordinates of lower, then of upper control points."""
+    """Return changes (n, 6 k) of distances by the coordinates of lower, then of upper control points."""
     return slopes_of(path, points, at).changes()
 
 
 def _floor_change(path: FlankPath, places: Floats, grow: Floats) -> Floats:
-    """Changes (n, 6 k) of the lower points' distances to the floor."""
+    """Return changes (n, 6 k) of the lower points' distances to the floor."""
     weights = basis(places, len(path.lower))
     part = (weights[:, :, None] * grow[:, None]).reshape(len(places), -1)
     return np.concatenate((part, np.zeros_like(part)), axis=1)

@@ -26,7 +26,7 @@ class Flank:
         return self.points.reshape(-1, 3)
 
     def smoothed(self, share: float) -> "Flank":
-        """The same points with the mean of the normals over so large a share of the flank's length."""
+        """Return the same points with the mean of the normals over so large a share of the flank's length."""
         count = len(self.normals)
         half = max(int(share * count / 2.0), 1)
         total = np.concatenate((np.zeros((1, *self.normals.shape[1:])), np.cumsum(self.normals, axis=0)))

@@ -64,7 +64,7 @@ def mill_flank(
     floor: Floor | None = None,
     progress: Progress = silent,
 ) -> FlankCut:
-    """The pass that leaves least of a flank.
+    """Return the pass that leaves least of a flank.
 
     Parameters
     ----------

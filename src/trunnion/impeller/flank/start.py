@@ -49,7 +49,7 @@ def start_path(flank: Flank, cutter: FlankCutter, count: int, below: float, lead
 def double_point_offset(
     flank: Flank, cutter: FlankCutter, count: int, touch: tuple[float, float], below: float, lead: float
 ) -> FlankPath:
-    """A path of so many control points whose cutter touches the flank at two heights at each station.
+    """Return a path of so many control points whose cutter touches the flank at two heights at each station.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def double_point_offset(
 
 
 def _through(lower: Floats, upper: Floats, cutter: FlankCutter, count: int, lead: float) -> FlankPath:
-    """The path nearest to axes at stations, with straight leads at either end."""
+    """Return the path nearest to axes at stations, with straight leads at either end."""
     middle = (lower + upper) / 2.0
     places = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(middle, axis=0), axis=1))]
     places /= places[-1]

@@ -55,7 +55,7 @@ class Sheet(Protocol):
 
 
 def stations_at(s: Floats, end: float) -> Stations:
-    """The stations of numbers (k,); sides go to w = ``end``."""
+    """Return the stations of numbers (k,); sides go to w = ``end``."""
     part = np.select([s <= 1.0, s < 2.0, s <= 3.0, s < 4.0], [2, 1, 0, 3], 2)
     at = np.select([s <= 1.0, s < 2.0, s <= 3.0, s < 4.0], [end * (1.0 - s), 2.0 - s, end * (s - 2.0), 4.0 - s], end)
     return Stations(part.astype(np.int64), at)
@@ -132,7 +132,7 @@ def row_depths(sheet: Sheet, count: int, first: float, last: float, radius: floa
 
 
 def lay_passes(sheet: Sheet, s: Floats, rows: Floats, radius: float, way: Way) -> PassFamily:
-    """Passes of a sheet over the stations ``s`` at the depths of rows, from the first to the last.
+    """Return passes of a sheet over the stations ``s`` at the depths of rows, from the first to the last.
 
     A spiral begins with a whole turn at the first row and ends with one at the last; between them it sinks evenly.
 

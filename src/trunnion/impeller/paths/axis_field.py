@@ -56,7 +56,7 @@ class AxisField:
     is_closed: bool
 
     def axes(self, places: Floats) -> Floats:
-        """Unit vectors (n, 3) at places (n, k)."""
+        """Return unit vectors (n, 3) at places (n, k)."""
         vectors = self.basis(places) @ self.coefficients.reshape(-1, 3)
         return np.asarray(vectors / np.linalg.norm(vectors, axis=1)[:, None])
 
@@ -89,7 +89,7 @@ def even_knots(spans: int, degree: int, *, is_closed: bool) -> Floats:
 
 
 def _slopes(knots: Floats, degree: int, *, is_closed: bool) -> Floats:
-    """The matrix that makes a derivative's coefficients of a spline's."""
+    """Return the matrix that makes a derivative's coefficients of a spline's."""
     count = len(knots) - degree - 1
     width = knots[degree + 1 : degree + count] - knots[1:count]
     found = np.zeros((count - 1, count))
@@ -115,7 +115,7 @@ class FieldFit:
 def fit_field(
     places: Floats, regions: Regions, spans: tuple[int, ...], lengths: Floats, *, is_closed: bool
 ) -> FieldFit | None:
-    """The field that turns least; None if its linear program finds no end.
+    """Return the field that turns least; None if its linear program finds no end.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def fit_field(
 
 
 def _over_all(sparse: Any, matrix: Floats, parameter: int, sizes: tuple[int, ...]) -> Any:
-    """A matrix for one parameter's coefficients as one for those of all, and for the three coordinates."""
+    """Return a matrix for one parameter's coefficients as one for those of all, and for the three coordinates."""
     parts = [sparse.csr_matrix(matrix) if k == parameter else sparse.identity(n) for k, n in enumerate(sizes)]
     return sparse.kron(reduce(sparse.kron, parts), sparse.identity(3), format="csr")
 

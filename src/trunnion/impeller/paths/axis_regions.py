@@ -69,7 +69,7 @@ class Regions:
     width: Floats
 
     def joined(self, other: "Regions") -> "Regions":
-        """These places and then others."""
+        """Return these places and then others."""
         owner = np.r_[self.owner, other.owner + len(self.middle)]
         parts = ((self.middle, other.middle), (self.walls, other.walls), (self.width, other.width))
         middle, walls, width = (np.concatenate(pair) for pair in parts)
@@ -125,7 +125,7 @@ def grow_regions(places: Floats, margin: Margin, advance: Advance = ignore) -> R
 
 
 def _nearest_left(tree: Any, places: Floats, tried: Flags, found: Flags) -> tuple[Ints, Ints, Ints]:
-    """The place that has not been tried and is nearest to one with a region, as rows and pairs of the search."""
+    """Return the place that has not been tried and is nearest to one with a region, as rows and pairs of the search."""
     left, known = np.flatnonzero(~tried), np.flatnonzero(found)
     if not len(left):
         return left, left, np.empty((0, 2), np.int64)
@@ -205,7 +205,9 @@ def frames_about(directions: Floats) -> tuple[Floats, Floats]:
 
 
 def _nearest_allowed(rows: Ints, start: Floats, margin: Margin) -> Floats:
-    """The directions (n, 3) themselves where they are allowed, else the nearest of a fan; NaN where none is found."""
+    """Return the directions (n, 3) themselves where they are allowed, else the nearest of a fan; NaN where none is
+    found.
+    """
     found = start.copy()
     missing = np.flatnonzero(margin(rows, start, 0.0) < 0.0)
     found[missing] = np.nan

@@ -48,7 +48,7 @@ class Surroundings:
 
 
 def surroundings_of(impeller: Impeller, blade: Blade) -> Surroundings:
-    """What is around a blade or splitter, seen from it."""
+    """Return what is around a blade or splitter, seen from it."""
     pitch = 2.0 * np.pi / impeller.definition.number
     around = [(other, angle) for other, angle in impeller.blades()]
     own = next(angle for other, angle in around if other is blade)

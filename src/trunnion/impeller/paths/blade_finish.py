@@ -54,7 +54,7 @@ class _Flank:
 
 
 def blade_finish(impeller: Impeller, blade: Blade, step: BladeFinish) -> PassFamily:
-    """Passes of a ball round a blade or splitter.
+    """Return passes of a ball round a blade or splitter.
 
     The last row is where the ball touches the hub too; a ball smaller than the fillet ends at the fillet's upper edge.
     Passes at a cut trailing edge go on until the ball is out of the stock.

@@ -30,7 +30,7 @@ class Cells:
 
 
 def cell_tree(balls: Floats, kept: Flags) -> Cells:
-    """The cells of a surface.
+    """Return the cells of a surface.
 
     Parameters
     ----------

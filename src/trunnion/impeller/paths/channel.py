@@ -94,7 +94,9 @@ class Channel:
         return Extent(np.where(fits, low, middle), np.where(fits, high, middle), middle, room)
 
     def narrowed(self, places: Floats, wanted: float, extent: Extent, rows: Ints) -> Extent:
-        """The same extent, but that the angles of rows go towards the middle where they do not keep the distance."""
+        """Return the same extent, but that the angles of rows go towards the middle where they do not keep the
+        distance.
+        """
         before, behind = self._beyond(places[rows], wanted)
         low, high = extent.low.copy(), extent.high.copy()
         low[rows] = _root(before, low[rows], extent.middle[rows], TOUCH)
@@ -134,7 +136,7 @@ class Channel:
 
 
 def channels_of(impeller: Impeller) -> tuple[Channel, ...]:
-    """The channels from the first blade to the second one: one, or with splitters two."""
+    """Return the channels from the first blade to the second one: one, or with splitters two."""
     angles = [(blade, angle) for blade, angle in impeller.blades()]
     count = len(angles)
     around = [(blade, angle + turn * 2.0 * np.pi) for turn in (-1, 0, 1) for blade, angle in angles]

@@ -99,7 +99,7 @@ def layers_of(channel: Channel, ball: Ball, step_down: float | None, progress: P
 
 
 def _laid(channel: Channel, ball: Ball, sheet: Sheet) -> tuple[Layer, _Throat]:
-    """The layer of a sheet, and where it is narrowest."""
+    """Return the layer of a sheet, and where it is narrowest."""
     u = np.linspace(sheet.first, sheet.last, _count(sheet, ball))
     place = sheet.points(u)
     extent = channel.extent(place, ball.to_blade)
@@ -137,7 +137,9 @@ def _swung(place: Floats, extent: Extent) -> Extent:
 
 
 def eased(values: Floats, most: Floats) -> Floats:
-    """The least values (n,) that are nowhere below others, and change by no more than ``most`` (n,) at a node."""
+    """Return the least values (n,) that are nowhere below others, and change by no more than ``most`` (n,) at
+    a node.
+    """
     way = np.r_[0.0, np.cumsum((most[1:] + most[:-1]) / 2.0)]
     behind = np.maximum.accumulate(values + way) - way
     before = np.maximum.accumulate((values - way)[::-1])[::-1] + way
@@ -151,7 +153,7 @@ def _throat(u: Floats, place: Floats, extent: Extent) -> _Throat:
 
 
 def _too_narrow(channel: Channel, ball: Ball, step_down: float | None, throat: _Throat) -> Problem:
-    """A channel that is too narrow for a ball."""
+    """Return a channel that is too narrow for a ball."""
     what = f"a ball of {2.0 * ball.radius:g} mm does not fit between two blades at {_named(channel.impeller, throat)}"
     allowance = ball.blade_allowance
     radius = throat.room - allowance
@@ -171,7 +173,7 @@ def _too_narrow(channel: Channel, ball: Ball, step_down: float | None, throat: _
 
 
 def _named(impeller: Impeller, throat: _Throat) -> str:
-    """A place by w, height and radius."""
+    """Return a place by w, height and radius."""
     x, y, z = throat.point
     middle = float(impeller.blade.edges[0].mean()), float(impeller.blade.edges[1].mean())
     w = (throat.u - middle[0]) / (middle[1] - middle[0])

@@ -81,7 +81,7 @@ class _Pattern:
             yield self.stretch(lane, 0.0, last)[:: 1 if k % 2 else -1]
 
     def _turning(self, lanes: list[_Lane], end: float) -> Iterator[Floats]:
-        """Passes that come in from an end, along one lane to the middle, and go out along the next one."""
+        """Yield passes that come in from an end, along one lane to the middle, and go out along the next one."""
 
         def tip(lane: _Lane) -> float:
             return lane.rear if end else lane.front
@@ -103,7 +103,7 @@ _MIDDLE: Final = _Lane(sys.maxsize, is_high=False, front=0.0, rear=0.0)
 def passes_on(
     layer: Layer, radius: float, stepover: Stepover, tolerance: float, along: tuple[float, float], below: float
 ) -> list[Pass]:
-    """Passes from the lower to the higher angle of a layer.
+    """Return passes from the lower to the higher angle of a layer.
 
     Parameters
     ----------
@@ -189,7 +189,7 @@ def _steps(layer: Layer, radius: float, stepover: Stepover, below: float) -> Flo
 
 
 def _pattern(steps: Floats) -> _Pattern:
-    """The lanes of a layer in their order from the lower to the higher angle.
+    """Return the lanes of a layer in their order from the lower to the higher angle.
 
     From its throat the layer counts as nowhere narrower towards either end, so that every lane goes out of an end.
     """

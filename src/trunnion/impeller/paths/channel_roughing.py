@@ -26,7 +26,7 @@ def channel_roughing(
     hub_allowance: float = 0.0,
     progress: Progress = silent,
 ) -> PassFamily:
-    """Passes of a ball that clears a channel.
+    """Return passes of a ball that clears a channel.
 
     Parameters
     ----------

@@ -152,7 +152,7 @@ def _is_clear(impeller: Impeller, ball: Ball, centres: Floats) -> Flags:
 
 
 def _floor(impeller: Impeller, u: Floats, v: Floats, to_hub: float) -> Floats:
-    """The v (k,) at which the mean surface is so far from the hub, near given ones: Newton's method."""
+    """Return the v (k,) at which the mean surface is so far from the hub, near given ones: Newton's method."""
     v = v.copy()
     for _ in range(_STEPS):
         place, _, slope, *_ = impeller.blade.surface.derivatives(u, v)
@@ -165,7 +165,7 @@ def _floor(impeller: Impeller, u: Floats, v: Floats, to_hub: float) -> Floats:
 
 
 def _raised(impeller: Impeller, u: Floats, v: Floats, step_down: float) -> Floats:
-    """The v (k,) that is a step farther from the hub in the plane of radius and height, by the midpoint rule."""
+    """Return the v (k,) that is a step farther from the hub in the plane of radius and height, by the midpoint rule."""
     half = v + 0.5 * step_down / _speed(impeller, u, v)
     return np.asarray(v + step_down / _speed(impeller, u, half))
 

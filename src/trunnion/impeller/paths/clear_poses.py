@@ -20,7 +20,7 @@ _POINT = 1e-4
 def pose_check(
     obstacles: Obstacles, tool: ToolShape, radius: float, tolerance: float, side_tolerance: float = 0.0
 ) -> IsClear:
-    """A function that says of poses whether the ball and all above it are clear.
+    """Return a function that says of poses whether the ball and all above it are clear.
 
     Parameters
     ----------

@@ -54,7 +54,7 @@ class Obstacles:
 
 
 def obstacles_of(impeller: Impeller, clamping: Floats | None = None) -> Obstacles:
-    """The bodies of a finished impeller: blades, splitters, and the hub within its stock.
+    """Return the bodies of a finished impeller: blades, splitters, and the hub within its stock.
 
     Parameters
     ----------
@@ -91,7 +91,9 @@ def _grid(counts: tuple[int, int]) -> tuple[Floats, Floats]:
 
 
 def _blade_cells(impeller: Impeller, blade: Blade) -> Cells:
-    """The cells of a blade that reach into the part: not those beyond shroud and stock, nor those deep in the hub."""
+    """Return the cells of a blade that reach into the part: not those beyond shroud and stock, nor those deep in the
+    hub.
+    """
     s, t = _grid(_BLADE)
     w, v = s.ravel(), blade.low + t.ravel() * (blade.high - blade.low)
     frames = blade.frames(w, v)
@@ -121,7 +123,7 @@ def _marked(shape: tuple[int, ...], where: tuple[slice, slice]) -> Flags:
 
 
 def _hub_outline(impeller: Impeller) -> Floats:
-    """The hub within the stock, from the axis above to the axis below, (m, 2) radius and height."""
+    """Return the hub within the stock, from the axis above to the axis below, (m, 2) radius and height."""
     stock = impeller.definition.stock
     radius = stock.diameter / 2.0
     points = impeller.hub.outline(_TOOL, 2.0 * (stock.height + stock.diameter))
@@ -133,7 +135,7 @@ def _hub_outline(impeller: Impeller) -> Floats:
 
 
 def _cut(points: Floats, beyond: Floats) -> Floats:
-    """The first run of a polygon's points where ``beyond`` (n,) is not above 0, up to the places where it is."""
+    """Return the first run of a polygon's points where ``beyond`` (n,) is not above 0, up to the places where it is."""
     inside = np.flatnonzero(beyond <= 0.0)
     first = int(inside[0])
     after = np.flatnonzero(beyond[first:] > 0.0)
@@ -148,7 +150,7 @@ def _cut(points: Floats, beyond: Floats) -> Floats:
 
 
 def _smooth(outline: Floats) -> list[Floats]:
-    """The parts of an outline between its corners; those without length are none."""
+    """Return the parts of an outline between its corners; those without length are none."""
     steps = np.diff(outline, axis=0)
     length = np.linalg.norm(steps, axis=1)
     keep = np.r_[True, length > 1e-9]
@@ -160,7 +162,7 @@ def _smooth(outline: Floats) -> list[Floats]:
 
 
 def _turned_cells(line: Floats) -> Cells:
-    """The cells of what a line (m, 2) of radius and height sweeps about Z."""
+    """Return the cells of what a line (m, 2) of radius and height sweeps about Z."""
     way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))]
     counts = _TURNED if len(line) > 2 else _STRAIGHT
     s, t = _grid(counts)
@@ -187,13 +189,13 @@ class ToolBody:
     wide_roles: tuple[Role, ...]
 
     def part(self, role: Role) -> ToolData:
-        """The pieces of ``real`` of a role."""
+        """Return the pieces of ``real`` of a role."""
         which = [k for k, one in enumerate(self.roles) if one is role]
         first = self.real.first
         return _data([self.real.corners[first[k] : first[k + 1]] for k in which], [0.0] * len(which))
 
     def up_to(self, role: Role) -> ToolData:
-        """The pieces of ``wide`` up to the last one of a role."""
+        """Return the pieces of ``wide`` up to the last one of a role."""
         count = 1 + max(k for k, one in enumerate(self.wide_roles) if one is role)
         first = self.wide.first[: count + 1]
         return ToolData(first, self.wide.corners[: first[-1]], self.wide.wanted[:count])
@@ -210,7 +212,7 @@ class Margins:
 
 
 def tool_body(shape: ToolShape, radius: float, margins: Margins) -> ToolBody:
-    """The pieces of a ball-ended tool.
+    """Return the pieces of a ball-ended tool.
 
     Raises
     ------
@@ -261,7 +263,7 @@ def _corners(elements: Floats, radius: float) -> Floats:
 
 
 def _from(corners: Floats, z: float) -> Floats:
-    """A side from a height on."""
+    """Return a side from a height on."""
     if len(corners) < 2 or corners[-1, 1] <= z:
         return np.empty((0, 2))
     if corners[0, 1] >= z:
@@ -271,7 +273,7 @@ def _from(corners: Floats, z: float) -> Floats:
 
 
 def _widened(corners: Floats, extra: float, slope: float) -> Floats:
-    """A side, wider by ``extra``; near the ball's centre by as much as a line of a slope allows."""
+    """Return a side, wider by ``extra``; near the ball's centre by as much as a line of a slope allows."""
     z = corners[:, 1]
     full = (extra + SLACK) / slope
     heights = np.unique(np.r_[z, full]) if z[0] < full < z[-1] else z
@@ -280,13 +282,15 @@ def _widened(corners: Floats, extra: float, slope: float) -> Floats:
 
 
 def _closed(side: Floats) -> Floats:
-    """A side with the axis below and above it."""
+    """Return a side with the axis below and above it."""
     found = np.vstack(([[0.0, side[0, 1]]], side, [[0.0, side[-1, 1]]]))
     return found[np.r_[True, np.linalg.norm(np.diff(found, axis=0), axis=1) > 1e-12]]
 
 
 def margins_of(obstacles: Obstacles, tool: ToolData, centre: Floats, axis: Floats, low: float, high: float) -> Floats:
-    """What the clearance of poses (n,) is above that wanted, at most ``high``; below ``low`` it may be less still."""
+    """Return what the clearance of poses (n,) is above that wanted, at most ``high``; below ``low`` it may be less
+    still.
+    """
     found = np.empty(len(centre))
 
     def work(rows: slice) -> None:

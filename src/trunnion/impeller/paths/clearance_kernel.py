@@ -82,7 +82,8 @@ def _bound(
     first: int,
     last: int,
 ) -> tuple[float, float]:
-    """The distance of the ball in the middle of a part of a cell to a piece, and one that none of its balls is below.
+    """Return the distance of the ball in the middle of a part of a cell to a piece, and one that none of its balls is
+    below.
 
     The part is about s and t, and of a size against the cell's own.
     """
@@ -114,7 +115,7 @@ def _least(
     waiting: Ints,
     wait: Floats2,
 ) -> float:
-    """The distance of a piece of a tool to a body, or ``limit`` if that is less.
+    """Return the distance of a piece of a tool to a body, or ``limit`` if that is less.
 
     Of what waits, ``waiting`` is the cell, and ``wait`` its bound and which part of it is meant.
     """
@@ -166,7 +167,7 @@ def _least(
 def _turned(
     centre: Floats2, axis: Floats2, row: int, cosine: float, sine: float
 ) -> tuple[float, float, float, float, float, float]:
-    """A pose in the frame of a body that is turned about Z."""
+    """Return a pose in the frame of a body that is turned about Z."""
     return (
         cosine * centre[row, 0] + sine * centre[row, 1],
         cosine * centre[row, 1] - sine * centre[row, 0],

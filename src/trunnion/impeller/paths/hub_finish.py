@@ -23,7 +23,7 @@ def hub_finish(
     hub_allowance: float = 0.0,
     progress: Progress = silent,
 ) -> PassFamily:
-    """Passes of a ball on the hub of a channel, along the blades.
+    """Return passes of a ball on the hub of a channel, along the blades.
 
     Parameters
     ----------

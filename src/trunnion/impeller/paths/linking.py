@@ -73,7 +73,7 @@ class LinkedPath:
     phase: Codes
 
     def turned(self, angle: float) -> "LinkedPath":
-        """The same path, turned about Z by an angle in radians."""
+        """Return the same path, turned about Z by an angle in radians."""
         return LinkedPath(rotated(self.centre, angle), rotated(self.axis, angle), self.kind, self.phase)
 
 
@@ -91,7 +91,7 @@ class FreeSpace:
 
     @staticmethod
     def around(stock: StockSize, clearance: float, radius: float, outline: Floats, axes: Floats) -> "FreeSpace":
-        """The space around a stock, for a ball of a radius.
+        """Return the space around a stock, for a ball of a radius.
 
         Parameters
         ----------
@@ -139,7 +139,7 @@ class _Path:
             self.phase.append(int(phase))
 
     def done(self) -> LinkedPath:
-        """The path as columns."""
+        """Return the path as columns."""
         return LinkedPath(
             np.array(self.centre), np.array(self.axis), np.array(self.kind, np.uint8), np.array(self.phase, np.uint8)
         )
@@ -243,7 +243,7 @@ def _approach(path: _Path, lead: Floats, direction: Floats, space: FreeSpace, is
 
 
 def _raised(point: Floats, space: FreeSpace) -> Floats:
-    """The point at the safe height above, or itself where it is higher."""
+    """Return the point at the safe height above, or itself where it is higher."""
     return np.array([point[0], point[1], max(float(point[2]), space.height)])
 
 

@@ -36,7 +36,9 @@ class Stepover:
     scallop: float = 0.0
 
     def on(self, radius: float, bend: float = 0.0) -> float:
-        """The distance in mm for a ball of a radius on a surface of curvature ``bend`` (1/mm, above 0: convex)."""
+        """Return the distance in mm for a ball of a radius on a surface of curvature ``bend`` (1/mm, above 0:
+        convex).
+        """
         if self.distance:
             return self.distance
         # On a plane, two balls s apart leave a ridge of r − √(r² − s²/4); where it bends by k, one of s²·(1/r + k)/8.
@@ -64,7 +66,7 @@ class Pass:
         return len(self.centre)
 
     def backwards(self) -> "Pass":
-        """The same pass cut the other way."""
+        """Return the same pass cut the other way."""
         return Pass(self.centre[::-1], self.normal[::-1], self.place[::-1], self.layer)
 
 
@@ -84,11 +86,11 @@ class PassFamily:
         return np.concatenate([one.centre for one in self.passes])
 
     def places(self) -> Floats:
-        """The parameters (n, k) of all ball centres."""
+        """Return the parameters (n, k) of all ball centres."""
         return np.concatenate([one.place for one in self.passes])
 
     def turned(self, angle: float) -> "PassFamily":
-        """The same passes turned about Z by an angle in radians."""
+        """Return the same passes turned about Z by an angle in radians."""
         cosine, sine = math.cos(angle), math.sin(angle)
         turn = np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
         passes = tuple(Pass(one.centre @ turn, one.normal @ turn, one.place, one.layer) for one in self.passes)

@@ -107,7 +107,7 @@ class _Root:
 
 
 def root_blend(impeller: Impeller, blade: Blade, step: RootBlend) -> PassFamily:
-    """Passes of a ball round the root of a blade or splitter, from the blade out to the hub.
+    """Return passes of a ball round the root of a blade or splitter, from the blade out to the hub.
 
     Raises
     ------
@@ -134,7 +134,7 @@ def root_blend(impeller: Impeller, blade: Blade, step: RootBlend) -> PassFamily:
 
 
 def _root(around: Surroundings, stations: Stations, step: RootBlend) -> _Root:
-    """The root at stations, with its strips."""
+    """Return the root at stations, with its strips."""
     impeller, blade, radius = around.impeller, around.blade, around.impeller.definition.fillet
     fillet = root_fillet(blade, impeller.hub, radius, stations)
     cosine = np.einsum("ij,ij->i", fillet.to_blade, fillet.to_hub)

@@ -44,7 +44,7 @@ class TurnedPasses:
 def stock_roughing(
     impeller: Impeller, radius: float, step_down: float, widest: float, allowance: float, tolerance: float
 ) -> TurnedPasses:
-    """A helix of a flat mill of a radius, tool axis Z: ball centres are its tips.
+    """Return a helix of a flat mill of a radius, tool axis Z: ball centres are its tips.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def stock_roughing(
 def shroud_finish(
     impeller: Impeller, radius: float, stepover: Stepover, tilt: float, allowance: float, tolerance: float
 ) -> TurnedPasses:
-    """A helix of a ball down the form of the shroud.
+    """Return a helix of a ball down the form of the shroud.
 
     Parameters
     ----------
@@ -190,7 +190,9 @@ def _angles(radius: float, turns: float, tolerance: float) -> Floats:
 
 
 def _helix(around: Floats, z: Floats, angle: Floats, up: Floats, out: Floats, layer: int = 0) -> Pass:
-    """A pass clockwise round Z, seen from above: with the part on its right, a tool that turns clockwise climbs."""
+    """Return a pass clockwise round Z, seen from above: with the part on its right, a tool that turns
+    clockwise climbs.
+    """
     cosine, sine = np.cos(angle), -np.sin(angle)
     centre = np.column_stack((around * cosine, around * sine, z))
     normal = np.column_stack((out * cosine, out * sine, up))

@@ -90,7 +90,7 @@ def stock_clearances(
 
 
 def stock_before(impeller: Impeller, step: MachiningStep, width: float) -> Callable[[Pass], Outline]:
-    """The stock before a pass of a step; ``width`` is what one pass of stock roughing takes across."""
+    """Return the stock before a pass of a step; ``width`` is what one pass of stock roughing takes across."""
     definition = impeller.definition
     stock = definition.stock
     outside, ends = stock.diameter / 2.0, np.array([stock.top, stock.bottom])
@@ -116,13 +116,13 @@ def is_roughed(definition: ImpellerDefinition, step: MachiningStep) -> bool:
 
 
 def rough_before(definition: ImpellerDefinition, step: MachiningStep) -> MachiningStep | None:
-    """The last stock roughing before a step; None: there is none."""
+    """Return the last stock roughing before a step; None: there is none."""
     earlier = definition.steps[: definition.steps.index(step)]
     return next((one for one in reversed(earlier) if one.kind is StepKind.STOCK_ROUGHING), None)
 
 
 def _into(role: Role, off: float, tip: Floats) -> Wording:
-    """What is wrong where a part comes into the stock."""
+    """Return what is wrong where a part comes into the stock."""
     at: dict[str, object] = {"radius": np.hypot(tip[0], tip[1]), "height": tip[2]}
     if off < -_SPACING:
         return Wording("IMP323", "shank_in_stock" if role is Role.SHANK else "holder_in_stock", depth=-off, **at)
@@ -130,7 +130,7 @@ def _into(role: Role, off: float, tip: Floats) -> Wording:
 
 
 def _dense(side: Floats) -> Outline:
-    """The outline of a stock from the points of its side, (n, 2), from the top down."""
+    """Return the outline of a stock from the points of its side, (n, 2), from the top down."""
     return filled(np.vstack(([[0.0, side[0, 1]]], side)))
 
 

@@ -74,7 +74,7 @@ class Wanted:
     tilt: float = 100.0
 
     def margins(self, share: float) -> Margins:
-        """What is asked for if only a share of the clearances can be had."""
+        """Return what is asked for if only a share of the clearances can be had."""
         shank, holder = (max(share * value, min(self.least, value)) for value in (self.shank, self.holder))
         return Margins(share * self.cutter, shank, holder, max(share * self.lean, min(_LEAST_LEAN, self.lean)))
 
@@ -158,7 +158,7 @@ class _Search:
         self._has_end = True
 
     def field(self, body: ToolBody) -> AxisField | None:
-        """A field that keeps a tool clear everywhere; None if none is found."""
+        """Return a field that keeps a tool clear everywhere; None if none is found."""
         nodes = self._nodes
         with self._progress("tool axes", len(nodes), "places") as advance:
             regions = grow_regions(self._apart(self.places[nodes]), self._margin_at(body.wide, nodes), advance)
@@ -177,7 +177,9 @@ class _Search:
         return None
 
     def _checked(self, body: ToolBody, nodes: Ints, regions: Regions, spans: tuple[int, ...]) -> AxisField | None:
-        """The field with so many spans, after as many rounds of checking as it takes; None: that does not end."""
+        """Return the field with so many spans, after as many rounds of checking as it takes; None: that does
+        not end.
+        """
         with self._progress("field of tool axes", _ROUNDS, "rounds") as advance:
             return self._rounds(body, nodes, regions, spans, advance)
 
@@ -215,7 +217,7 @@ class _Search:
         return fit_field(self.places[nodes], regions, spans, lengths, is_closed=self._is_closed)
 
     def _worst(self, fit: FieldFit, nodes: Ints, regions: Regions) -> int:
-        """The node whose cone a field is farthest out of."""
+        """Return the node whose cone a field is farthest out of."""
         axes = fit.field.axes(self.places[nodes])
         inside = np.einsum("ij,ij->i", axes[regions.owner], regions.walls)
         return int(regions.owner[inside.argmin()])
@@ -236,7 +238,7 @@ class _Search:
         return np.column_stack((radius * np.cos(angle), radius * np.sin(angle), scaled[:, 1:]))
 
     def _margin_at(self, tool: ToolData, nodes: Ints | None) -> Margin:
-        """The margins of directions at nodes, or at points."""
+        """Return the margins of directions at nodes, or at points."""
 
         def margin(rows: Ints, directions: Floats, low: float) -> Floats:
             return self._margins(
@@ -303,7 +305,9 @@ def _place_words(place: Floats, centre: Floats) -> str:
 
 
 def _lengths(family: PassFamily) -> Floats:
-    """What a parameter from 0 to 1 is in mm: along, the median of the passes; else as centres change on average."""
+    """Return what a parameter from 0 to 1 is in mm: along, the median of the passes; else as centres change on
+    average.
+    """
     along = []
     for one in family.passes:
         way = np.linalg.norm(np.diff(one.centre, axis=0), axis=1).sum()

@@ -52,7 +52,7 @@ class CuttingData:
 def operation_of(
     name: str, path: LinkedPath, tool: Tool, number: int, radius: float, data: CuttingData, tolerance: float
 ) -> Operation:
-    """The operation of a path.
+    """Return the operation of a path.
 
     Parameters
     ----------

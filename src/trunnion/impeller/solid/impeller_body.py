@@ -107,7 +107,7 @@ def impeller_body(impeller: Impeller, density: Density) -> tuple[Body, Floats]:
 
 
 def _hub_meridian(impeller: Impeller, feet: Floats) -> tuple[Meridian, bool]:
-    """The hub from the axis, or from outside of stock or inside of the bore, to outside of the stock.
+    """Return the hub from the axis, or from outside of stock or inside of the bore, to outside of the stock.
 
     Also whether it begins on the axis.
     """
@@ -144,7 +144,7 @@ def _hub_meridian(impeller: Impeller, feet: Floats) -> tuple[Meridian, bool]:
 
 
 def _shroud_meridian(impeller: Impeller, loops: Sequence[RootLoop]) -> Meridian:
-    """The shroud as far as blades reach it."""
+    """Return the shroud as far as blades reach it."""
     at = np.concatenate([part.shroud[:, 1] for loop in loops for part in loop.parts])
     return Meridian.of(impeller.shroud, min(0.0, float(at.min()) - _MORE), max(1.0, float(at.max()) + _MORE))
 

@@ -120,7 +120,7 @@ def impeller_solid(impeller: Impeller, tolerance: float) -> ImpellerSolid:
 
 
 def _within(impeller: Impeller, tolerance: float) -> tuple[Made, float]:
-    """The first solid that is within the tolerance, and how far it is off."""
+    """Return the first solid that is within the tolerance, and how far it is off."""
     fillets = list(_fine_fillets(impeller))
     why = ""
     for density in _DENSITIES:
@@ -144,7 +144,7 @@ def _fine_fillets(impeller: Impeller) -> Iterator[tuple[Blade, Fillet]]:
 
 
 def _free_angle(angles: Floats) -> float:
-    """The angle about Z that is farthest from those given (k,)."""
+    """Return the angle about Z that is farthest from those given (k,)."""
     once = np.sort(angles % (2.0 * np.pi))
     gaps = np.diff(np.r_[once, once[0] + 2.0 * np.pi])
     k = int(gaps.argmax())
@@ -152,7 +152,7 @@ def _free_angle(angles: Floats) -> float:
 
 
 def _asked(order: Order) -> Made | Refusal:
-    """What the kernel answers, in a process of its own.
+    """Return what the kernel answers, in a process of its own.
 
     Raises
     ------

@@ -107,7 +107,7 @@ def make(order: Order) -> Made | Refusal:
 
 
 def _solid(body: Body) -> Any:
-    """The body as a solid."""
+    """Return the body as a solid."""
     builder = BRep_Builder()
     vertices = []
     for point in body.vertices:
@@ -159,7 +159,7 @@ def _face(builder: Any, face: Face, known: Sequence[Edge], edges: Sequence[Any])
 
 
 def _curve(curve: Curve) -> Any:
-    """A curve in space."""
+    """Return a curve in space."""
     if isinstance(curve, Circle):
         return Geom_Circle(gp_Ax2(gp_Pnt(0.0, 0.0, curve.height), _Z, gp_Dir(1.0, 0.0, 0.0)), curve.radius)
     if isinstance(curve, Line):
@@ -175,7 +175,7 @@ def _spline(curve: Spline) -> Any:
 
 
 def _flat(curve: Curve) -> Any:
-    """A curve in the parameters of a surface."""
+    """Return a curve in the parameters of a surface."""
     if isinstance(curve, Circle):
         return Geom2d_Circle(gp_Ax22d(gp_Pnt2d(0.0, 0.0), gp_Dir2d(1.0, 0.0)), curve.radius)
     if isinstance(curve, Line):
@@ -221,7 +221,7 @@ def _towards(angle: float) -> Any:
 
 
 def _blank(order: Order) -> Any:
-    """The stock, with its seams where no blade is."""
+    """Return the stock, with its seams where no blade is."""
     stock = order.stock
     if not stock.bore:
         return _cylinder(stock.diameter / 2.0, stock.bottom, stock.height, order.seam)
@@ -246,7 +246,7 @@ def _solids(shape: Any) -> list[Any]:
 
 
 def _fault(solid: Any) -> str:
-    """What is wrong with a solid; '' if it is valid and closed."""
+    """Return what is wrong with a solid; '' if it is valid and closed."""
     faces_of = IndexedDataMap_TopoDS_Shape_List_TopoDS_Shape_TopTools_ShapeMapHasher()
     TopExp.MapShapesAndAncestors_s(solid, TopAbs_EDGE, TopAbs_FACE, faces_of)
     free = sum(faces_of.FindFromIndex(k).Size() < 2 for k in range(1, faces_of.Extent() + 1) if _has_curve(faces_of, k))
@@ -266,7 +266,7 @@ def _volume(solid: Any) -> float:
 
 
 def _written(solid: Any, name: str) -> bytes:
-    """The STEP file of a solid, without the date of today."""
+    """Return the STEP file of a solid, without the date of today."""
     writer, stream = STEPControl_Writer(), io.BytesIO()
     # These settings are there once a writer is.
     Interface_Static.SetCVal_s("write.step.schema", "AP214IS")
@@ -285,7 +285,7 @@ def _written(solid: Any, name: str) -> bytes:
 
 
 def _text(name: str) -> bytes:
-    """A name as a text of ISO 10303-21."""
+    """Return a name as a text of ISO 10303-21."""
     plain = name.replace("\\", "\\\\").replace("'", "''")
     return ("'" + re.sub(r"[^ -~]", lambda one: f"\\X4\\{ord(one[0]):08X}\\X0\\", plain) + "'").encode("ascii")
 

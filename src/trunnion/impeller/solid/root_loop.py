@@ -131,7 +131,7 @@ def root_loop(impeller: Impeller, blade: Blade, density: Density, near: float | 
 
 
 def carried_on(impeller: Impeller, blade: Blade) -> Blade:
-    """A blade as it is; or, where the stock cuts it, one that ends so far outside that its fillet does so too.
+    """Return a blade as it is; or, where the stock cuts it, one that ends so far outside that its fillet does so too.
 
     It ends no farther outside than that takes: there its fillet may reach the shroud.
     """

@@ -132,10 +132,10 @@ class Body:
 
 
 def along_u(u: float, v: float) -> Line:
-    """The line on a surface from a place along u."""
+    """Return the line on a surface from a place along u."""
     return Line((float(u), float(v)), (1.0, 0.0))
 
 
 def along_v(u: float, v: float) -> Line:
-    """The line on a surface from a place along v."""
+    """Return the line on a surface from a place along v."""
     return Line((float(u), float(v)), (0.0, 1.0))

@@ -11,13 +11,13 @@ from trunnion.impeller.solid.shapes import Spline, SplineSurface
 
 
 def spline_through(parameters: Floats, points: Floats) -> Spline:
-    """The cubic through points (k, 2) or (k, 3) at parameters (k,), at least four."""
+    """Return the cubic through points (k, 2) or (k, 3) at parameters (k,), at least four."""
     found = import_extra("scipy.interpolate", "impeller").make_interp_spline(parameters, points, k=3)
     return Spline(found.t, found.c)
 
 
 def surface_through(u: Floats, v: Floats, points: Floats) -> SplineSurface:
-    """The surface through points (k, m, 3) at parameters (k,) and (m,), at least four of each.
+    """Return the surface through points (k, m, 3) at parameters (k,) and (m,), at least four of each.
 
     Its edges are the cubics through the outermost points.
     """
@@ -28,7 +28,7 @@ def surface_through(u: Floats, v: Floats, points: Floats) -> SplineSurface:
 
 
 def spline_of_slopes(parameters: Floats, points: Floats, slopes: Floats) -> Spline:
-    """The cubic through points (k, 3) with derivatives (k, 3) at parameters (k,): two knots at each."""
+    """Return the cubic through points (k, 3) with derivatives (k, 3) at parameters (k,): two knots at each."""
     third = np.diff(parameters)[:, None] / 3.0
     inner = np.stack((points[:-1] + third * slopes[:-1], points[1:] - third * slopes[1:]), axis=1)
     first, last = parameters[0], parameters[-1]

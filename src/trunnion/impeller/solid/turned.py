@@ -31,7 +31,7 @@ class Meridian:
 
     @staticmethod
     def of(profile: Profile, low: float, high: float) -> "Meridian":
-        """The profile with straight ends."""
+        """Return the profile with straight ends."""
         at = np.linspace(0.0, 1.0, _INTERVALS + 1)
         points, slopes = profile.curve.derivatives(at, 1)
         if low < 0.0:
@@ -43,7 +43,7 @@ class Meridian:
         return Meridian(profile, low, high, spline_of_slopes(at, points, slopes))
 
     def turned(self, angle: float) -> Spline:
-        """The curve at an angle about Z."""
+        """Return the curve at an angle about Z."""
         return Spline(self.curve.knots, rotated(self.curve.points, angle))
 
     def place(self, at: float) -> tuple[float, float]:

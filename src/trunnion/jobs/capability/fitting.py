@@ -181,7 +181,7 @@ def _rank(each: MachineFit) -> tuple[int, bool, float, float]:
 
 
 def _asked(machines: str | Iterable[MachineLike]) -> list[MachineLike]:
-    """The machines that are asked, each once."""
+    """Return the machines that are asked, each once."""
     if isinstance(machines, str):
         names = shipped_machines() if machines == "all" else [name.strip() for name in machines.split(",")]
         asked: list[MachineLike] = [name for name in dict.fromkeys(names) if name]
@@ -245,7 +245,7 @@ def _toolpaths(
 
 
 def _stated_length(toolpaths: Sequence[Toolpath]) -> float | None:
-    """The greatest length of a tool in the spindle, mm; None if one that moves has none."""
+    """Return the greatest length of a tool in the spindle, mm; None if one that moves has none."""
     lengths = [each.tool.set_length for path in toolpaths for each in path.operations if len(each.moves)]
     return max(lengths) if lengths and min(lengths) > 0.0 else None
 
@@ -256,7 +256,7 @@ def _fit(
     tool_length: str | float | None,
     turns: float | Sequence[float] | None,
 ) -> MachineFit:
-    """What a machine makes of it; whatever is wrong with the machine is its reason."""
+    """Return what a machine makes of it; whatever is wrong with the machine is its reason."""
     key = asked.key if isinstance(asked, Machine) else os.fspath(asked)
     try:
         machine = set_up_machine(as_machine(asked, "machines"), None, tool_length)
@@ -303,7 +303,7 @@ def _length_reasons(machine: Machine) -> tuple[str, ...]:
 
 
 def _beyond(asked: MachineLike, machine: Machine, found: Placement) -> MachineFit:
-    """A machine whose axes do not reach it at any place."""
+    """Return a machine whose axes do not reach it at any place."""
     tried = _turns_tried(found)
     if found.best is None:
         obstacles = tuple(dict.fromkeys(turn.obstacle for turn in found.turns if turn.obstacle))
@@ -377,6 +377,6 @@ def _seconds(posted: PostResult) -> float | None:
 
 
 def _reasons(error: TrunnionError) -> tuple[str, ...]:
-    """What was wrong, in sentences; errors before warnings, and not what only sums them up."""
+    """Return what was wrong, in sentences; errors before warnings, and not what only sums them up."""
     errors = [each for each in error.problems if each.severity is Severity.ERROR and each.code != "CTL940"]
     return tuple(str(each) for each in (errors or list(error.problems))[:_MOST])

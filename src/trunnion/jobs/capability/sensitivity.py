@@ -116,7 +116,7 @@ def _check_amount(name: str, value: object) -> None:
 
 
 def _remarks(run: Run) -> list[Problem]:
-    """What was assumed."""
+    """Return what was assumed."""
     machine, file = run.machine, run.files[0] if run.files else "nc"
     found = []
     if run.errors:

@@ -48,7 +48,7 @@ def amount_text(each: NumberSensitivity) -> str:
 
 
 def place_text(extent: ErrorExtent, run: Run) -> str:
-    """The block of the largest error as programmers call it; empty where there is none."""
+    """Return the block of the largest error as programmers call it; empty where there is none."""
     place = extent.place
     if extent.largest < _NONE:
         return ""
@@ -93,7 +93,7 @@ def _cells(extent: ErrorExtent, run: Run) -> ErrorCells:
 
 
 def _series(found: Sensitivity) -> PlotSeries:
-    """The errors of the worst numbers, one point a motion at feed and one before the first."""
+    """Return the errors of the worst numbers, one point a motion at feed and one before the first."""
     drawn = found.numbers[:_DRAWN]
     rows, errors = errors_over(found, [each.number for each in drawn])
     run = found.run
@@ -125,13 +125,13 @@ def _series(found: Sensitivity) -> PlotSeries:
 
 
 def _micrometres(errors: Floats) -> SingleFloats:
-    """A column in micrometres with a point before it, finite throughout."""
+    """Return a column in micrometres with a point before it, finite throughout."""
     column = np.concatenate((errors[:1], errors)) * 1e3
     column[~np.isfinite(column)] = 0.0
     return column.astype(np.float32)
 
 
 def _whole(column: NDArray[np.integer], rows: Ints, before: int) -> Lines:
-    """A column of rows as int32 with a point before it; numbers that do not fit become -1."""
+    """Return a column of rows as int32 with a point before it; numbers that do not fit become -1."""
     chosen = np.asarray(column)[rows].astype(np.int64)
     return np.concatenate(([before], np.where(np.abs(chosen) < 2**31, chosen, -1))).astype(np.int32)

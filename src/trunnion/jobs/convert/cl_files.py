@@ -68,7 +68,7 @@ def convert_cl(
 
 
 def _checked(settings: Settings | None) -> dict[str, str]:
-    """The settings as texts."""
+    """Return the settings as texts."""
     texts = as_texts(settings)
     problems = [
         argument_problem(

@@ -238,13 +238,13 @@ def _refuse_for_cl(**given: object) -> None:
 
 
 def _with_settings(job: PostJob, carried: Mapping[str, str]) -> PostJob:
-    """A job with settings of which some are those of single operations; they have been judged."""
+    """Return a job with settings of which some are those of single operations; they have been judged."""
     own = _by_operation(carried, job.control)
     return replace(job, settings={**job.settings, **own.pop("")}, own_settings=own)
 
 
 def _by_operation(settings: Mapping[str, str], control: Control) -> dict[str, dict[str, str]]:
-    """Settings by the names of their operations, at least those of all operations, which have no name."""
+    """Return settings by the names of their operations, at least those of all operations, which have no name."""
     found: dict[str, dict[str, str]] = {"": {}}
     for key, text in settings.items():
         for operation, value in control.values_by_operation(key, text):
@@ -253,7 +253,7 @@ def _by_operation(settings: Mapping[str, str], control: Control) -> dict[str, di
 
 
 def _with_own(settings: Mapping[str, str], job: PostJob) -> dict[str, str]:
-    """Settings with those that the job has for single operations in place of theirs."""
+    """Return settings with those that the job has for single operations in place of theirs."""
     found = dict(settings)
     for operation, values in job.own_settings.items():
         for key, value in values.items():
@@ -263,7 +263,9 @@ def _with_own(settings: Mapping[str, str], job: PostJob) -> dict[str, str]:
 
 
 def _setting_faults(settings: Mapping[str, str], job: PostJob) -> dict[str, str]:
-    """The settings that the job's control cannot have for all operations or for one of them, each with its cure."""
+    """Return the settings that the job's control cannot have for all operations or for one of them, each with
+    its cure.
+    """
     by_operation = _by_operation(settings, job.control)
     faults = [
         fault
@@ -304,7 +306,9 @@ class _ProgramConverter:
         self._observer.problems(problems)
 
     def read(self, run: Run, control: Control, target: Machine | None) -> Conversion:
-        """The toolpath of a run for another machine, None for a CL file; one that was not understood is refused."""
+        """Return the toolpath of a run for another machine, None for a CL file; one that was not understood is
+        refused.
+        """
         found = [Problem(one.file, one.line, one.text, "", one.severity, code=one.code) for one in run.diagnostics]
         errors = [problem for problem in found if problem.severity is Severity.ERROR]
         if errors and not self._force:
@@ -354,7 +358,8 @@ class _ProgramConverter:
         )
 
     def carry(self, stated: Mapping[str, str], control: Control, job: PostJob, source: Machine) -> dict[str, str]:
-        """The settings of the new program: those that the old one states, as far as they mean the same, and the job's.
+        """Return the settings of the new program: those that the old one states, as far as they mean the same, and the
+        job's.
 
         Warns of each that is not carried over.
         """
@@ -381,7 +386,9 @@ class _ProgramConverter:
     def _carried_offset(
         self, stated: Mapping[str, str], control: Control, job: PostJob, source: Machine
     ) -> dict[str, str]:
-        """The work offset as the other control says it, unless that is its default; one that it lacks is refused."""
+        """Return the work offset as the other control says it, unless that is its default; one that it lacks is
+        refused.
+        """
         target = job.control
         if control.name == target.name or "work_offset" in job.settings or "work_offset" not in control.settings:
             return {}

@@ -96,7 +96,7 @@ def _inherited(table: Table) -> Iterator[str]:
 
 
 def _left_open(machine: Machine) -> Iterator[str]:
-    """What the definition does not state, and what that means."""
+    """Yield what the definition does not state, and what that means."""
     if machine.workpiece_zero is None:
         yield (
             "Workpiece zero: not stated, and taken for the origin. Slides are checked for whether the program fits "

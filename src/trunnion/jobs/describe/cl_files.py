@@ -334,7 +334,7 @@ class _Description:
         self._go_on(moved)
 
     def tools(self) -> tuple[ToolDescription, ...]:
-        """The tools in the order of their first use."""
+        """Return the tools in the order of their first use."""
         return tuple(
             ToolDescription(
                 number=number, register=register, name=tool.name, kind=tool.kind, diameter=tool.diameter,

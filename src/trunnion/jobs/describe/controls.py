@@ -259,7 +259,7 @@ def _method_default(control: Control, name: str) -> str:
 
 
 def _abilities(control: Control) -> list[str]:
-    """What a control can do with its own settings, and what it cannot, in sentences."""
+    """Return what a control can do with its own settings, and what it cannot, in sentences."""
     modes = control.modes({})
     has = {mode: "yes" if mode in modes else "no" for mode in MachiningMode}
     planes = [
@@ -292,7 +292,9 @@ def _yes(answer: bool) -> str:
 
 
 def _cycles(control: Control) -> list[str]:
-    """The hole-making cycles that a control has words for, those that become motion, and those that are refused."""
+    """Return the hole-making cycles that a control has words for, those that become motion, and those that are
+    refused.
+    """
     outcomes = {method: _outcome(control, method) for method in HoleMethod}
     kinds = dict.fromkeys(kind for kind, _ in outcomes.values())
     return [
@@ -302,7 +304,7 @@ def _cycles(control: Control) -> list[str]:
 
 
 def _outcome(control: Control, method: HoleMethod) -> tuple[str, str]:
-    """What becomes of a hole with the control's own settings, and why."""
+    """Return what becomes of a hole with the control's own settings, and why."""
     hole = Cycle(method, 2.0, 20.0, 10.0, (5.0, 0.0, 0.0), 0.0, False, 1.0, True, 0.0)
     spindle, formats = SpindleState(1000.0, Sense.CLW), control.number_formats(three_axis=True)
     try:

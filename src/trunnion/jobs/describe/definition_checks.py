@@ -57,5 +57,5 @@ def all_problems(checks: Iterable[Callable[[], object]]) -> list[Problem]:
 
 
 def stand_in(file: str, control: Table) -> Machine:
-    """A machine with a control: what a definition says to readers can be judged although its axes are wrong."""
+    """Return a machine with a control: what a definition says to readers can be judged although its axes are wrong."""
     return replace(load_machine(shipped_machines()[0]), key=file, name=file, control=control, files=())

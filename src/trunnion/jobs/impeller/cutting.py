@@ -256,7 +256,7 @@ def _cut(
 
 
 def _chosen(impeller: Impeller, names: Sequence[str]) -> list[str]:
-    """The names of the steps to be made.
+    """Return the names of the steps to be made.
 
     Raises
     ------
@@ -305,7 +305,7 @@ def reachable_axes(machine: Machine) -> Callable[[Floats], Flags]:
 
 
 def step_toolpath(paths: StepPaths, part: str, file: str) -> Toolpath:
-    """The operations of a step as the content of a CL file."""
+    """Return the operations of a step as the content of a CL file."""
     step = paths.step
     data = CuttingData(step.rpm, step.feed, step.lead_feed, step.coolant)
     tool = cl_tool(paths.tool)
@@ -317,7 +317,7 @@ def step_toolpath(paths: StepPaths, part: str, file: str) -> Toolpath:
 
 
 def cl_tool(tool: LibraryTool) -> Tool:
-    """A tool as CL files describe it: its cutter."""
+    """Return a tool as CL files describe it: its cutter."""
     sizes = tool.sizes
     radius = 0.0 if sizes.kind is ToolKind.FLAT else sizes.diameter / 2.0
     centre = (0.0, radius) if sizes.kind is ToolKind.TAPER_BALL else None
@@ -329,7 +329,7 @@ def cl_tool(tool: LibraryTool) -> Tool:
 
 
 def cl_text(toolpath: Toolpath) -> bytes:
-    """A toolpath as a CL file.
+    """Return a toolpath as a CL file.
 
     Raises
     ------
@@ -344,7 +344,7 @@ def cl_text(toolpath: Toolpath) -> bytes:
 def _steps(
     impeller: Impeller, made: Sequence[StepPaths], toolpaths: Sequence[Toolpath], result: PostResult
 ) -> Iterator[CutStep]:
-    """The steps with the times of their operations."""
+    """Yield the steps with the times of their operations."""
     before = {
         step.name: stands for step, stands in zip(impeller.definition.steps, material_before(impeller), strict=False)
     }
@@ -369,7 +369,7 @@ def _steps(
 
 
 def _shared(file: str, paths: StepPaths) -> Problem:
-    """The warning about a step that keeps only a share of its clearances."""
+    """Return the warning about a step that keeps only a share of its clearances."""
     cutter, shank, holder, _ = paths.step.clearance
     wanted = f"{cutter:g}, {shank:g} and {holder:g} mm are wanted of cutter, shank and holder"
     what = f"{paths.step.name}: keeps only {paths.share:.0%} of its clearances: {wanted}"
@@ -379,7 +379,9 @@ def _shared(file: str, paths: StepPaths) -> Problem:
 
 
 def _one_layer(file: str, paths: StepPaths) -> Iterator[Problem]:
-    """The warning about a step that takes the whole depth of a channel at once, and more than its ball's radius."""
+    """Yield the warning about a step that takes the whole depth of a channel at once, and more than its ball's
+    radius.
+    """
     step, passes = paths.step, [one for family in paths.families for one in family.passes]
     if (
         step.kind is StepKind.CHANNEL_ROUGHING
@@ -395,7 +397,7 @@ def _one_layer(file: str, paths: StepPaths) -> Iterator[Problem]:
 def _simulated(
     impeller: Impeller, machine: Machine, steps: Sequence[CutStep], result: PostResult, cell: float, observer: Observer
 ) -> SimulationResult:
-    """What the program leaves of the stock, compared with the model."""
+    """Return what the program leaves of the stock, compared with the model."""
     definition = impeller.definition
     stock = definition.stock
     called = {one.step.tool for one in steps}

@@ -49,7 +49,7 @@ class ImpellerFiles:
         return self.folder / f"{self.stem}_stock.png"
 
     def cl_file(self, step: MachiningStep) -> Path:
-        """The CL file of a step."""
+        """Return the CL file of a step."""
         return self.folder / f"{self.stem}_{file_stem(step.name)}.cls"
 
     def check_own(self) -> None:
@@ -100,7 +100,7 @@ class ImpellerFiles:
 
 @contextmanager
 def output_folder(output: object) -> Iterator[Path]:
-    """The folder of the files, made if there is none; one that is made and stays empty is removed.
+    """Yield the folder of the files, made if there is none; one that is made and stays empty is removed.
 
     Raises
     ------

@@ -9,7 +9,8 @@ from trunnion.model.machining_method import machining_method
 
 
 def program_settings(control: Control, name: str, stem: str) -> dict[str, str]:
-    """Settings of the run: title, the program's name where it has one, subprograms and TCP where the control has them.
+    """Return settings of the run: title, the program's name where it has one, subprograms and TCP where the control has
+    them.
 
     Parameters
     ----------
@@ -32,7 +33,7 @@ def program_settings(control: Control, name: str, stem: str) -> dict[str, str]:
 def operation_settings(
     steps: Iterable[StepPaths], control: Control, given: Mapping[str, str], own: Mapping[str, Mapping[str, str]]
 ) -> dict[str, dict[str, str]]:
-    """Settings of single operations, by their names: method and stock, where the control has these settings.
+    """Return settings of single operations, by their names: method and stock, where the control has these settings.
 
     Parameters
     ----------
@@ -51,12 +52,16 @@ def operation_settings(
 
 
 def stock_left(step: MachiningStep) -> float:
-    """What a step is to leave, mm: the most, where it leaves one allowance on blades and another one on the hub."""
+    """Return what a step is to leave, mm: the most, where it leaves one allowance on blades and another one on
+    the hub.
+    """
     return max(step.allowance, step.hub_allowance)
 
 
 def _method(step: MachiningStep, operation: str) -> str:
-    """The kind of a step, in words that mean the method of its tolerances and name: what they mean decides a mode."""
+    """Return the kind of a step, in words that mean the method of its tolerances and name: what they mean decides a
+    mode.
+    """
     kind, method = step.kind.upper(), machining_method(operation, step.tolerance, step.tolerance)
     if method == "ROUGH":
         kind = kind.replace("FINISHING", "").replace("FINISH", "").strip()

@@ -12,7 +12,7 @@ from trunnion.wording import counted
 
 
 def winding_problems(file: str, step: MachiningStep, motions: Sequence[Motion], machine: Machine) -> Iterator[Problem]:
-    """A warning if the tilt of a step round the part costs rewinds or whole turns back home.
+    """Yield a warning if the tilt of a step round the part costs rewinds or whole turns back home.
 
     Parameters
     ----------

@@ -12,13 +12,13 @@ _Choice = TypeVar("_Choice", bound=str)
 
 
 def wrong_argument(name: str, value: object, cure: str) -> InputError:
-    """The error for an argument of a type or value that cannot be used."""
+    """Return the error for an argument of a type or value that cannot be used."""
     shown = repr(value) if isinstance(value, str | int | float | bytes | tuple | None) else f"a {type(value).__name__}"
     return InputError(argument_problem(name, f"is {shown}", cure, code="ARG140"))
 
 
 def check_path(name: str, value: object) -> Path:
-    """A path; errors name the argument."""
+    """Return a path; errors name the argument."""
     if isinstance(value, str | os.PathLike) and isinstance(text := os.fspath(value), str) and text and "\0" not in text:
         return Path(text)
     raise wrong_argument(name, value, "give the path of a file")
@@ -45,7 +45,7 @@ def check_choice(name: str, value: object, choices: Sequence[_Choice]) -> _Choic
 
 
 def check_whole(name: str, value: object, least: int) -> int:
-    """A whole number, also as text."""
+    """Return a whole number, also as text."""
     text = str(value) if isinstance(value, str | int) and not isinstance(value, bool) else ""
     if text.isascii() and text.isdecimal() and int(text) >= least:
         return int(text)

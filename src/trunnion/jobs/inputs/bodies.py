@@ -31,7 +31,7 @@ def listed(name: str, values: Any, record: type) -> list[Any]:
 
 
 def read_mesh(mesh: MeshLike, name: str, remarks: list[Problem], deviation: float = DEVIATION) -> TriangleMesh:
-    """A mesh as it is given, or of a file, with its name; remarks get what is odd about it."""
+    """Return a mesh as it is given, or of a file, with its name; remarks get what is odd about it."""
     if isinstance(mesh, TriangleMesh):
         return mesh.named(name)
     check_path(name, mesh)
@@ -39,7 +39,9 @@ def read_mesh(mesh: MeshLike, name: str, remarks: list[Problem], deviation: floa
 
 
 def fixture_names(fixtures: Sequence[MeshLike]) -> list[str]:
-    """What findings call fixtures: by their files, and by their numbers where these are the same or there is none."""
+    """Return what findings call fixtures: by their files, and by their numbers where these are the same or there is
+    none.
+    """
     files = ["" if isinstance(each, TriangleMesh) else Path(each).name for each in fixtures]
     alone = [name and files.count(name) == 1 for name in files]
     return [
@@ -49,7 +51,7 @@ def fixture_names(fixtures: Sequence[MeshLike]) -> list[str]:
 
 
 def fixture_meshes(fixtures: Any, remarks: list[Problem], deviation: float = DEVIATION) -> tuple[TriangleMesh, ...]:
-    """The meshes of fixtures, with their names."""
+    """Return the meshes of fixtures, with their names."""
     given: list[MeshLike] = listed("fixtures", fixtures, TriangleMesh)
     named = zip(given, fixture_names(given), strict=True)
     return tuple(read_mesh(fixture, name, remarks, deviation) for fixture, name in named)
@@ -64,7 +66,7 @@ class KnownTools:
     of_cl_files: Sequence[ClTool]
 
     def choose(self, called: Iterable[str]) -> dict[str, ToolShape]:
-        """The body of each tool that a program calls, by the word of the program.
+        """Return the body of each tool that a program calls, by the word of the program.
 
         Raises
         ------

@@ -108,7 +108,7 @@ def replace_unknown_statements(
 
 
 def _replaced(toolpath: Toolpath, entries: _Entries, words: frozenset[str]) -> Toolpath:
-    """The toolpath without the statements that ``entries`` or templates have; its remarks are about those left.
+    """Return the toolpath without the statements that ``entries`` or templates have; its remarks are about those left.
 
     words  those of statements that have templates
     """
@@ -121,7 +121,7 @@ def _replaced(toolpath: Toolpath, entries: _Entries, words: frozenset[str]) -> T
 
 
 def _without_unknown(toolpath: Toolpath) -> Toolpath:
-    """The toolpath without the statements that nothing becomes of; its remarks name them."""
+    """Return the toolpath without the statements that nothing becomes of; its remarks name them."""
     operations = tuple(
         replace(each, events=tuple(event for event in each.events if not isinstance(event, UnknownStatement)))
         if any(isinstance(event, UnknownStatement) for event in each.events)
@@ -149,7 +149,7 @@ def _replaced_event(event: Event, entries: _Entries, templates: frozenset[str]) 
 
 
 def _events(machine: Machine, word: str, text: str) -> tuple[Event, ...]:
-    """What an entry of ``[cl.words]`` is."""
+    """Return what an entry of ``[cl.words]`` is."""
     try:
         return events_of(text)
     except StatementError as error:

@@ -8,7 +8,7 @@ from trunnion.machines import Machine
 
 
 def written_control(machine: Machine) -> Control | None:
-    """The control of a machine; None where its programs can be read but not written."""
+    """Return the control of a machine; None where its programs can be read but not written."""
     try:
         return load_control(machine.control.unread_copy())
     except InputError:
@@ -16,11 +16,11 @@ def written_control(machine: Machine) -> Control | None:
 
 
 def default_settings(control: Control | None) -> Mapping[str, str]:
-    """The settings of a control's definition; usual ones where its programs can be read but not written."""
+    """Return the settings of a control's definition; usual ones where its programs can be read but not written."""
     return control.settings if control else {"edge": "1"}
 
 
 def rapid_feed_of(machine: Machine) -> float | None:
-    """The feed at which lines are rapids on a machine, mm/min; None where rapids are written as rapids."""
+    """Return the feed at which lines are rapids on a machine, mm/min; None where rapids are written as rapids."""
     feed = default_settings(written_control(machine)).get("rapid_feed")
     return float(feed) if feed else None

@@ -26,20 +26,22 @@ def cl_files(cl: ToolpathLike | Iterable[ToolpathLike]) -> list[FilePath]:
 
 
 def definition_files(machine: MachineLike, loaded: Machine) -> list[FilePath]:
-    """The files of a machine's definition and of its control's, with all that they extend."""
+    """Return the files of a machine's definition and of its control's, with all that they extend."""
     named = [machine] if isinstance(machine, str | os.PathLike) and os.fspath(machine).endswith(".toml") else []
     control = resolve_extends(loaded.control.unread_copy(), control_library())
     return [*named, *loaded.files, *control.files()]
 
 
 def machine_files(machine: MachineLike, loaded: Machine) -> list[FilePath]:
-    """The files of a machine: those of its definition, and the meshes of its bodies, which only a simulation opens."""
+    """Return the files of a machine: those of its definition, and the meshes of its bodies, which only a simulation
+    opens.
+    """
     meshes = [body.shape for body in loaded.bodies if isinstance(body.shape, BodyFile)]
     return [*definition_files(machine, loaded), *(Path(mesh.of).parent / mesh.file for mesh in meshes)]
 
 
 def verified_files(verification: Verification) -> list[FilePath]:
-    """The files that a verification is about."""
+    """Return the files that a verification is about."""
     run = verification.run
     cl = {file_on_disk(operation.cl_file) for operation in verification.operations}
     return [verification.program, *run.files, *cl, *machine_files(run.machine, run.machine)]

@@ -111,7 +111,7 @@ def _read(
     observer: Observer,
     argument: str,
 ) -> list[Toolpath]:
-    """The toolpaths of a CL file, a stream or an archive; errors name the argument."""
+    """Return the toolpaths of a CL file, a stream or an archive; errors name the argument."""
     path = cl if is_stream(cl) else check_path(argument, cl)
     check_observer(observer)
     if units is not None:
@@ -210,7 +210,8 @@ def as_run(
     subprograms: Sequence[FilePath] = (),
     names: tuple[str, str] = ("nc", "subprograms"),
 ) -> Run:
-    """The run of a program; one that has already been read must have been read for this machine, set up as it is.
+    """Return the run of a program; one that has already been read must have been read for this machine, set up as it
+    is.
 
     Raises
     ------
@@ -249,7 +250,7 @@ def _control(machine: Machine) -> dict[str, object]:
 
 
 def as_machine(machine: MachineLike, argument: str = "machine") -> Machine:
-    """The machine itself, loaded if it is named; errors name the argument."""
+    """Return the machine itself, loaded if it is named; errors name the argument."""
     loaded = machine if isinstance(machine, Machine) else load_machine(check_path(argument, machine))
     readers.check_reading(loaded)
     check_statements(loaded)
@@ -264,7 +265,7 @@ def as_toolpaths(
     dialect: str | None = None,
     spline_tolerance: float | None = None,
 ) -> list[Toolpath]:
-    """The toolpaths of one program, as ``read_toolpaths`` has them.
+    """Return the toolpaths of one program, as ``read_toolpaths`` has them.
 
     Raises
     ------

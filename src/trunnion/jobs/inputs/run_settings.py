@@ -65,7 +65,7 @@ def _choice(meaning: str, *choices: str, default: str = "") -> RunSetting:
 
 
 def _declared(option: Option) -> RunSetting:
-    """The setting for which an option of numbers stands, as the option is declared."""
+    """Return the setting for which an option of numbers stands, as the option is declared."""
     assert isinstance(option.kind, Number)
     meaning = f"{option.help[:1].upper()}{option.help[1:]}."
     bounds = option.kind.least, option.kind.most

@@ -38,7 +38,7 @@ _GREATEST_TOLERANCE: Final = 1e6
 
 
 def as_texts(settings: Settings | None) -> dict[str, str]:
-    """Settings as text, in the form that ``--set`` takes; those that are None are not set.
+    """Return settings as text, in the form that ``--set`` takes; those that are None are not set.
 
     Raises
     ------
@@ -66,7 +66,7 @@ def as_texts(settings: Settings | None) -> dict[str, str]:
 
 
 def _as_text(key: str, value: object) -> str | None:
-    """A setting as text; None if it is of a type that settings do not have."""
+    """Return a setting as text; None if it is of a type that settings do not have."""
     if isinstance(value, bool | np.bool_):
         words = RUN_SETTINGS[key].choices if key in RUN_SETTINGS else ()
         return next((word for word in _SWITCHES[bool(value)] if word in words), None)
@@ -118,7 +118,7 @@ def _meaning(key: str, control: Control) -> str:
 
 
 def control_setting_faults(settings: Mapping[str, str], control: Control, machine: Machine) -> list[tuple[str, str]]:
-    """The settings of a control that cannot be as they are, each with its cure."""
+    """Return the settings of a control that cannot be as they are, each with its cure."""
     judged = {key: control.setting_cure(key, value) for key, value in settings.items() if key in control.settings}
     faults = [(key, cure) for key, cure in judged.items() if cure]
     faults += [(key, _no_effect(key, control)) for key in judged if _is_idle(key, settings[key], control)]
@@ -153,7 +153,7 @@ def _unknown_setting(key: str, control: Control) -> Problem:
 def split_by_operation(
     settings: Mapping[str, str], control: Control, machine: Machine
 ) -> tuple[dict[str, str], dict[str, dict[str, str]]]:
-    """Settings of the program, and those of single operations by their names: ``method=ROUGH,TOP:FINISH``.
+    """Return settings of the program, and those of single operations by their names: ``method=ROUGH,TOP:FINISH``.
 
     Raises
     ------
@@ -212,7 +212,7 @@ def check_operation_names(
 
 
 def number_setting(settings: Mapping[str, str], key: str) -> float | None:
-    """A setting as a number; None if it is not set.
+    """Return a setting as a number; None if it is not set.
 
     Raises
     ------
@@ -235,7 +235,7 @@ def number_setting(settings: Mapping[str, str], key: str) -> float | None:
 
 
 def apply_setup(machine: Machine, settings: Mapping[str, str]) -> Machine:
-    """The machine with the workpiece zero and the tool length of the settings."""
+    """Return the machine with the workpiece zero and the tool length of the settings."""
     if "zero" in settings:
         machine = replace(machine, workpiece_zero=_point_setting(settings["zero"]))
     length = number_setting(settings, "tool_length")
@@ -243,7 +243,7 @@ def apply_setup(machine: Machine, settings: Mapping[str, str]) -> Machine:
 
 
 def with_limit_margin(machine: Machine, settings: Mapping[str, str]) -> Machine:
-    """The machine for planning: every limit is nearer by the setting ``limit_margin``.
+    """Return the machine for planning: every limit is nearer by the setting ``limit_margin``.
 
     Raises
     ------
@@ -264,7 +264,7 @@ def with_limit_margin(machine: Machine, settings: Mapping[str, str]) -> Machine:
 
 
 def set_up_machine(machine: Machine, zero: str | Iterable[float] | None, tool_length: str | float | None) -> Machine:
-    """The machine with its workpiece zero and its tool length, mm, where they are given.
+    """Return the machine with its workpiece zero and its tool length, mm, where they are given.
 
     Raises
     ------
@@ -280,7 +280,7 @@ def set_up_machine(machine: Machine, zero: str | Iterable[float] | None, tool_le
 
 
 def _of_argument(problem: Problem, name: str) -> Problem:
-    """A problem with a setting as one with the argument of its name."""
+    """Return a problem with a setting as one with the argument of its name."""
     what, cure = problem.what.removeprefix(f"{name} "), problem.cure.replace(f"write {name}=", "write ", 1)
     return argument_problem(name, what, cure, problem.severity, code=problem.code)
 
@@ -305,7 +305,7 @@ def m_code(text: str) -> int | None:
 
 
 def work_offset_setting(text: str, machine: Machine) -> int | None:
-    """The value in the column ``Run.work_offset`` of a work offset as programs for a machine write it.
+    """Return the value in the column ``Run.work_offset`` of a work offset as programs for a machine write it.
 
     None if nothing reads programs for the machine.
 
@@ -324,7 +324,7 @@ def work_offset_setting(text: str, machine: Machine) -> int | None:
 
 
 def _point_setting(text: str) -> tuple[float, float, float]:
-    """The setting ``zero``: X, Y and Z in mm."""
+    """Return the setting ``zero``: X, Y and Z in mm."""
     try:
         x, y, z = (float(part) for part in text.split(","))
     except ValueError:

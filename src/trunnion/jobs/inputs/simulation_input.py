@@ -78,7 +78,7 @@ def told_with_places(places: Places, setup: str = "") -> Iterator[None]:
 
 
 def with_place(problem: Problem, places: Places, setup: str = "") -> Problem:
-    """A problem with an argument where a project states it; any other as it is."""
+    """Return a problem with an argument where a project states it; any other as it is."""
     if problem.argument not in places:
         return problem
     file, line, key = places[problem.file]

@@ -89,7 +89,7 @@ def read_bodies(given: BodiesInput, placed: PlacedInput, machine: Machine, *, is
 
 
 def _none_could_meet(machine: Machine, *, is_needed: bool) -> Problem:
-    """What is missing where there are no two bodies to be kept apart."""
+    """Return what is missing where there are no two bodies to be kept apart."""
     name, severity = ("goal", Severity.ERROR) if is_needed else ("tools", Severity.WARNING)
     if machine.bodies and not machine.spindle_point_is_stated:
         what = (
@@ -104,7 +104,7 @@ def _none_could_meet(machine: Machine, *, is_needed: bool) -> Problem:
 
 
 def _carried(given: BodiesInput, problems: list[Problem]) -> Iterable[Guarded]:
-    """What is clamped with the part."""
+    """Yield what is clamped with the part."""
     for fixture in fixture_meshes(given.fixtures, problems):
         yield guarded_on_part(fixture, BodyKind.FIXTURE)
     if given.part is not None:
@@ -115,7 +115,7 @@ def _carried(given: BodiesInput, problems: list[Problem]) -> Iterable[Guarded]:
 
 
 def stock_mesh(stock: MeshLike, problems: list[Problem]) -> TriangleMesh:
-    """A stock as a mesh, mm; warnings are added to the problems.
+    """Return a stock as a mesh, mm; warnings are added to the problems.
 
     Raises
     ------
@@ -126,7 +126,9 @@ def stock_mesh(stock: MeshLike, problems: list[Problem]) -> TriangleMesh:
 
 
 def _tools(given: BodiesInput, placed: PlacedInput, problems: list[Problem]) -> dict[int, ToolShape]:
-    """The bodies of the tools that are called, by their number in ``placed.tools``; one without a form is told."""
+    """Return the bodies of the tools that are called, by their number in ``placed.tools``; one without a form
+    is told.
+    """
     known = known_tools(given.tools, given.libraries, given.unit, placed.toolpaths)
     found: dict[int, ToolShape] = {}
     for number in placed.used_tools:
@@ -174,7 +176,9 @@ def stated_lengths(placed: PlacedInput) -> dict[int, float]:
 
 
 def _other_lengths(placed: PlacedInput, lengths: Mapping[int, float], machine: Machine) -> Iterable[Problem]:
-    """A warning where tools have other lengths than the one that is stated for all, which programs are checked with."""
+    """Yield a warning where tools have other lengths than the one that is stated for all, which programs are checked
+    with.
+    """
     stated = machine.tool_length
     other = {} if stated is None else {k: own for k, own in lengths.items() if abs(own - stated) > _LIKE_LENGTH}
     if other:

@@ -137,7 +137,7 @@ def toolpaths_to_post(
 
 
 def nc_program_stays(file: str) -> Problem:
-    """The error of an NC program that is to be posted where it was placed."""
+    """Return the error of an NC program that is to be posted where it was placed."""
     what, cure = "an NC program stays as it is", "set its work offset to the place, or give the CL files"
     return Problem(file, 0, what, cure, code="PLC140")
 
@@ -145,7 +145,7 @@ def nc_program_stays(file: str) -> Problem:
 def _toolpaths_of(
     file: ToolpathLike, settings: Mapping[str, str], machine: Machine, observer: Observer
 ) -> list[Toolpath] | None:
-    """The toolpaths of a CL file; None if it is a program that the machine's control understands."""
+    """Return the toolpaths of a CL file; None if it is a program that the machine's control understands."""
     tolerance = number_setting(settings, "spline_tolerance")
     try:
         return read_toolpaths(file, settings.get("cl_units"), False, observer, settings.get("dialect"), tolerance)
@@ -178,7 +178,7 @@ def _planned_tilted(
     observer: Observer,
     tilts: Sequence[float],
 ) -> PlacedInput:
-    """The rows of CL files as they are, planned at the first tilt at which that is possible."""
+    """Return the rows of CL files as they are, planned at the first tilt at which that is possible."""
     try:
         return _planned(toolpaths, machine, settings, observer)
     except RefusedError:
@@ -203,7 +203,7 @@ def _beyond_travel(run: Run) -> Iterator[Problem]:
 def _planned(
     toolpaths: Sequence[Toolpath], machine: Machine, settings: Mapping[str, str], observer: Observer
 ) -> PlacedInput:
-    """The rows of CL files, planned on the machine without limits of its slides."""
+    """Return the rows of CL files, planned on the machine without limits of its slides."""
     free = replace(
         machine,
         workpiece_zero=(0.0, 0.0, 0.0),

@@ -23,7 +23,7 @@ _GREATEST_TILT: Final = 90.0
 
 
 def orientations(turns: float | Sequence[float] | None, tilts: float | Sequence[float]) -> Grid:
-    """The orientations that are tried.
+    """Return the orientations that are tried.
 
     Raises
     ------

@@ -153,7 +153,7 @@ def place(
 
 
 def unknown_length(machine: Machine) -> list[Problem]:
-    """A warning where places depend on a tool length that nobody has stated."""
+    """Return a warning where places depend on a tool length that nobody has stated."""
     if machine.tool_length is not None or not any(machine.depends_on_length(k) for k in machine.linear):
         return []
     names = ", ".join(machine.axes[k].name for k in machine.linear if machine.depends_on_length(k))

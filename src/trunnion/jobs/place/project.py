@@ -36,7 +36,8 @@ class PlacedSetup:
 
 
 def placed_setup(project: Path, name: str | None = None) -> PlacedSetup:
-    """The CL files, the machine, the settings of a set-up, the zero among them, and what is clamped and cuts there.
+    """Return the CL files, the machine, the settings of a set-up, the zero among them, and what is clamped and cuts
+    there.
 
     Raises
     ------
@@ -59,7 +60,7 @@ def placed_setup(project: Path, name: str | None = None) -> PlacedSetup:
 
 
 def _bodies(given: SimulationInput, number: int, problems: list[Problem]) -> BodiesInput:
-    """What stands on the table in a set-up of a project: as poses have brought it there, not yet turned."""
+    """Return what stands on the table in a set-up of a project: as poses have brought it there, not yet turned."""
     own = given.setups[number]
     stock: MeshLike | None = given.stock or None
     part: MeshLike | None = None
@@ -74,7 +75,7 @@ def _bodies(given: SimulationInput, number: int, problems: list[Problem]) -> Bod
 
 
 def _setup(loaded: Project, project: Path, name: str | None) -> PostedSetup:
-    """The set-up of a name, or the only one."""
+    """Return the set-up of a name, or the only one."""
     found = [each for each in loaded.setups if name is None or each.name == name]
     if len(found) == 1:
         return found[0]

@@ -21,7 +21,7 @@ def standing_on(
     part: str | Path | TriangleMesh | None,
     remarks: list[Problem],
 ) -> Standing | None:
-    """The outermost points of stock and part, with the table that the machine's definition states.
+    """Return the outermost points of stock and part, with the table that the machine's definition states.
 
     ``remarks`` gets warnings about meshes, and one where no table is stated. None: there is nothing to judge.
 

@@ -35,12 +35,12 @@ _TOOL_DELTAS: Final = {"delta_length": "DL", "delta_radius": "DR"}
 
 
 def expectation(program: Program, options: PlanOptions | None = None) -> Expectation:
-    """What the proof holds against a program that was planned with these options."""
+    """Return what the proof holds against a program that was planned with these options."""
     return Expectation(program_tolerances(program), _expected_settings(program, options or PlanOptions()))
 
 
 def _expected_settings(program: Program, options: PlanOptions) -> ExpectedValues:
-    """What the settings of the post say and the CL files do not, with what only a post knows of its program."""
+    """Return what the settings of the post say and the CL files do not, with what only a post knows of its program."""
     control, settings = program.control, program.effective_settings()
     operations = {motion.operation.name: motion.operation for motion in program.motions}
     by_operation = {name: program.effective_settings(operation) for name, operation in operations.items()}
@@ -67,7 +67,7 @@ def _expected_settings(program: Program, options: PlanOptions) -> ExpectedValues
 
 
 def _as_printed(control: Control, name: str, value: float) -> float:
-    """A setting as the digits of its templates print it."""
+    """Return a setting as the digits of its templates print it."""
     fields = {field for template in control.templates.values() for field in template.fields()}
     formats = [
         control.formats[number_format] for field, number_format in sorted(fields) if field == name and number_format

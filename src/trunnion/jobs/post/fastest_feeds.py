@@ -38,7 +38,7 @@ _DIGITS: Final = 3
 def with_reached_feeds(
     program: Program, run: Run | None, toolpaths: Sequence[Toolpath], options: PlanOptions
 ) -> Program:
-    """The program with the feeds that the axes reach.
+    """Return the program with the feeds that the axes reach.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def with_reached_feeds(
 
 
 def _with_feeds(program: Program, motion: Motion, reached: Floats, cl_feeds: Floats) -> Motion:
-    """A motion with what is ``reached`` at the rows of its CL file, (n,), where that is less than its feeds.
+    """Return a motion with what is ``reached`` at the rows of its CL file, (n,), where that is less than its feeds.
 
     Where it is not known, or to be kept, and where the tip rests, the feed is no higher than that of the CL file.
     """
@@ -119,7 +119,7 @@ def _lower_rewinds(motion: Motion, feed: Floats, number_format: NumberFormat) ->
 
 
 def _rows_at_feed(motion: Motion) -> tuple[Ints, Ints]:
-    """The CL rows of the rows that have a feed per minute, and these rows."""
+    """Return the CL rows of the rows that have a feed per minute, and these rows."""
     assert motion.cl_rows is not None
     moves = motion.operation.moves
     at = np.flatnonzero((motion.cl_rows >= 0) & (moves.kind != Kind.RAPID) & ~moves.per_rev)
@@ -127,7 +127,7 @@ def _rows_at_feed(motion: Motion) -> tuple[Ints, Ints]:
 
 
 def _declared(motions: Sequence[Motion], cl_feeds: Floats, kept: Flags) -> Motion:
-    """The first motion of an operation, with a declaration of the feeds in all of them.
+    """Return the first motion of an operation, with a declaration of the feeds in all of them.
 
     Declared are those that are not the CL file's, and those that are kept although axes do not reach them.
     """
@@ -144,7 +144,7 @@ def _declared(motions: Sequence[Motion], cl_feeds: Floats, kept: Flags) -> Motio
 
 
 def rounded_down(feed: Floats, number_format: NumberFormat) -> Floats:
-    """Feeds (k,) rounded down to three digits, or to the last that is printed; no lower than the least feed."""
+    """Return feeds (k,) rounded down to three digits, or to the last that is printed; no lower than the least feed."""
     scale = 10.0**number_format.decimals / number_format.unit
     count = np.floor(feed * scale * (1.0 + 1e-12)).astype(np.int64)
     left_out = np.maximum(np.floor(np.log10(np.maximum(count, 1))).astype(np.int64) + 1 - _DIGITS, 0)
@@ -154,7 +154,7 @@ def rounded_down(feed: Floats, number_format: NumberFormat) -> Floats:
 
 
 def raised_feeds(program: Program, toolpaths: Sequence[Toolpath]) -> list[Problem]:
-    """A warning of blocks that are faster than the CL file says, as a feed limit may make them."""
+    """Return a warning of blocks that are faster than the CL file says, as a feed limit may make them."""
     own = [operation.moves.feed for path in toolpaths for operation in path.operations if len(operation.moves)]
     number, count, greatest = -1, 0, 1.0
     for motion in program.motions:
@@ -171,7 +171,7 @@ def raised_feeds(program: Program, toolpaths: Sequence[Toolpath]) -> list[Proble
 
 
 def unlimited_axes(machine: Machine) -> list[Problem]:
-    """A warning for a machine of which not all is known that limits feeds."""
+    """Return a warning for a machine of which not all is known that limits feeds."""
     names = [axis.name for axis in machine.axes if axis.acceleration is None]
     if not names:
         return []

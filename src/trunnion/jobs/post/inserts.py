@@ -86,7 +86,7 @@ _CALLS: Final = re.compile(r"missing subprogram ([^;:]+)")
 
 
 def insert_problems(program: Program) -> list[Problem]:
-    """What is wrong with the raw texts of a program; empty where its control has no reader."""
+    """Return what is wrong with the raw texts of a program; empty where its control has no reader."""
     if not readers.can_read(program.machine):
         return []
     problems = [problem for name in _BEHIND_MODES for problem in _modes_at(name, program)]
@@ -135,7 +135,7 @@ def _modes_at(name: str, program: Program) -> list[Problem]:
 
 
 def _mode_in(words: str, reader: FamilyReader) -> str:
-    """The first word of a block that changes a mode which the path does not show; empty if there is none."""
+    """Return the first word of a block that changes a mode which the path does not show; empty if there is none."""
     for match in _WORD.finditer(words):
         word = match[1] + match[2].lstrip("0")
         if word in reader.words_without_path:
@@ -155,7 +155,7 @@ def _is_remark(event: Insert, program: Program) -> bool:
 
 
 def _problem(program: Program, motion: Motion, event: Insert, effect: str) -> Problem:
-    """What is wrong with a text, at its line of the CL file or at its template."""
+    """Return what is wrong with a text, at its line of the CL file or at its template."""
     file, text = program.file_of(motion.operation), event.text.strip().replace("\n", " | ")
     if not event.template:
         cure = _CALL_CURE if effect.endswith(_NOT_RUN) else _CURE
@@ -181,7 +181,7 @@ class _Trial:
         self._quiet = program.control.family.comment("text")[0]
 
     def conditions(self, texts: tuple[str, ...]) -> object:
-        """What the effect of texts depends on: in another motion with the same they have the same."""
+        """Return what the effect of texts depends on: in another motion with the same they have the same."""
         motion, operation = self._motion, self._motion.operation
         switched = [event for event in operation.events if event.row == 0 and isinstance(event, _SWITCHES)]
         settings = self._program.effective_settings(operation)
@@ -191,7 +191,7 @@ class _Trial:
         )  # fmt: skip
 
     def effects(self, texts: Sequence[str]) -> list[tuple[str, str]]:
-        """The texts that change something, each with what it does: alone, or with those around it."""
+        """Return the texts that change something, each with what it does: alone, or with those around it."""
         if not texts:
             return []
         effect = self._effect(texts)
@@ -202,7 +202,7 @@ class _Trial:
         return found or [(texts[0], effect)]
 
     def _effect(self, texts: Sequence[str]) -> str:
-        """What texts do, in words; empty if nothing."""
+        """Return what texts do, in words; empty if nothing."""
         without = self._run([self._quiet] * len(texts))
         try:
             with_text = self._run(texts)
@@ -220,7 +220,7 @@ class _Trial:
 
 
 def _with_texts(motion: Motion, texts: Sequence[str]) -> Motion:
-    """A motion to and fro between its first point and the one farthest from it, with each text at both."""
+    """Return a motion to and fro between its first point and the one farthest from it, with each text at both."""
     operation = motion.operation
     distance = np.linalg.norm(operation.moves.tip - operation.moves.tip[0], axis=1)
     rows: Ints = np.zeros(2 * len(texts) + 2, np.int64)
@@ -253,7 +253,7 @@ def _first_feed(feed: Floats) -> float:
 
 
 def _difference(without: Run, with_text: Run, declared: Sequence[readers.KnownWord]) -> str:
-    """What a run does that another one does not, in words; words ``declared`` to do nothing do nothing."""
+    """Return what a run does that another one does not, in words; words ``declared`` to do nothing do nothing."""
     known = {diagnostic.text for diagnostic in without.errors}
     # What stands behind an end that the text has brought about is a consequence of it.
     end = min((event.line for event in with_text.events if event.kind == "end"), default=math.inf)
@@ -281,7 +281,7 @@ def _difference(without: Run, with_text: Run, declared: Sequence[readers.KnownWo
 
 
 def _first_change(without: Run, with_text: Run) -> str:
-    """What is different in the first row that is, in words; empty if the rows that both have are the same."""
+    """Return what is different in the first row that is, in words; empty if the rows that both have are the same."""
     rows, found = min(len(without), len(with_text)), ""
     first = rows
     for name, what in _COLUMNS.items():
@@ -294,7 +294,7 @@ def _first_change(without: Run, with_text: Run) -> str:
 
 
 def _events(run: Run, without: Run) -> set[tuple[str, str, int]]:
-    """What happens in a run besides motion: kind, value, and for the spindle the row.
+    """Return what happens in a run besides motion: kind, value, and for the spindle the row.
 
     A text may stop and start the spindle within its lines, which no row shows. A spindle that is told to turn as it
     does ``without`` the text, or stands behind the last row, is none of these.

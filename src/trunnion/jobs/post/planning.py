@@ -94,7 +94,7 @@ def load_toolpaths(
     observer: Observer,
     changed: Callable[[list[Toolpath]], list[Toolpath]] = list,
 ) -> list[Toolpath]:
-    """The toolpaths of a post, with surface normals if the program has them; their remarks are reported.
+    """Return the toolpaths of a post, with surface normals if the program has them; their remarks are reported.
 
     ``changed`` returns what becomes of them once they are read.
 
@@ -136,7 +136,7 @@ def _check_units_of(toolpaths: Iterable[Toolpath]) -> None:
 
 
 def _planned(toolpaths: Sequence[Toolpath], job: PostJob) -> Plan:
-    """The plan, with the margin to limits and the retracts that the job asks for."""
+    """Return the plan, with the margin to limits and the retracts that the job asks for."""
     machine, chord_tolerance = job.planned_machine, job.control.arcs.chord_tolerance
     found = planning.plan(toolpaths, machine, chord_tolerance, job.options, job.capabilities)
     distance = number_setting(job.settings, "tool_retract")
@@ -203,7 +203,9 @@ def plan_program(toolpaths: Sequence[Toolpath], job: PostJob, observer: Observer
 
 
 def _leaning_operations(planned: Plan, most: float | None) -> list[Problem]:
-    """An error for each operation whose tool axis leans more from Z of the program than the setting allows, degrees."""
+    """Return an error for each operation whose tool axis leans more from Z of the program than the setting allows,
+    degrees.
+    """
     if most is None:
         return []
     found: dict[tuple[str, int], Problem] = {}

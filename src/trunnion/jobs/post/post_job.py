@@ -176,7 +176,7 @@ def prepare(
 
 
 def _with_numbers(control: Control, asked: str | None) -> Control:
-    """The control with the setting ``numbers``; None: as its definition says.
+    """Return the control with the setting ``numbers``; None: as its definition says.
 
     Raises
     ------
@@ -197,7 +197,7 @@ def _with_numbers(control: Control, asked: str | None) -> Control:
 
 
 def _with_first_number(control: Control, settings: Mapping[str, str]) -> Control:
-    """The control with the setting ``first_number``.
+    """Return the control with the setting ``first_number``.
 
     Raises
     ------
@@ -226,7 +226,7 @@ def _with_first_number(control: Control, settings: Mapping[str, str]) -> Control
 
 
 def parse_plan_options(settings: Mapping[str, str], control: Control, explain: bool = False) -> PlanOptions:
-    """The options of the planner, of settings that ``check_settings`` has checked.
+    """Return the options of the planner, of settings that ``check_settings`` has checked.
 
     Raises
     ------
@@ -272,7 +272,9 @@ def parse_plan_options(settings: Mapping[str, str], control: Control, explain: b
 
 
 def _mode_setting(text: str, tcp: bool) -> tuple[MachiningMode | None, dict[str, MachiningMode | None]]:
-    """The setting ``mode``: that of all operations, and those of some by their names, such as ``auto,SIDES:tcp``."""
+    """Return the setting ``mode``: that of all operations, and those of some by their names, such as
+    ``auto,SIDES:tcp``.
+    """
     known = {word: mode for word, mode in _MODES.items() if tcp or mode is not MachiningMode.TCP}
     every, own = "auto", dict[str, MachiningMode | None]()
     for entry in text.split(","):
@@ -289,7 +291,7 @@ def _mode_setting(text: str, tcp: bool) -> tuple[MachiningMode | None, dict[str,
 
 
 def _parse_clearance(text: str) -> Clearance:
-    """The setting ``clearance``."""
+    """Return the setting ``clearance``."""
     kind, _, length = text.rpartition(":")
     try:
         surface, value = ClearanceSurface(kind or ClearanceSurface.DISTANCE), float(length)

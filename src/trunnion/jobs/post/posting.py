@@ -232,7 +232,7 @@ def post_toolpaths(
 
 
 def _planned(posting: Posting) -> PlannedProgram:
-    """The program as it is planned, with a token in the place of each machining time in its text."""
+    """Return the program as it is planned, with a token in the place of each machining time in its text."""
     planned = plan_program(posting.toolpaths, posting.job, posting.observer)
     if not prints_times(planned.program):
         return planned
@@ -240,7 +240,7 @@ def _planned(posting: Posting) -> PlannedProgram:
 
 
 def _with_reached_feeds(posting: Posting, written: WrittenProgram) -> PlannedProgram:
-    """The program with the feeds that its axes reach in the run with the greatest feeds."""
+    """Return the program with the feeds that its axes reach in the run with the greatest feeds."""
     from trunnion.jobs.post.fastest_feeds import raised_feeds, unlimited_axes, with_reached_feeds  # for few posts
 
     planned, toolpaths, job = written.planned, posting.toolpaths, posting.job
@@ -253,7 +253,9 @@ def _with_reached_feeds(posting: Posting, written: WrittenProgram) -> PlannedPro
 
 
 def _with_papers(posting: Posting, program: Program, result: PostResult, later: list[PostPapers] | None) -> PostResult:
-    """The result of a program that is complete, with its papers: they are written, or go into the list ``later``."""
+    """Return the result of a program that is complete, with its papers: they are written, or go into the list
+    ``later``.
+    """
     target = posting.target
     if target.papers:
         papers = post_papers(target, program, posting.job, result)

@@ -49,7 +49,7 @@ class ProgramPlaces:
         return replace(problem, wording=problem.wording.within("with_note", note=written)) if written else problem
 
     def explained(self, verification: Verification, control: Control) -> Verification:
-        """Findings of checks that failed, with the template that has written their blocks."""
+        """Return findings of checks that failed, with the template that has written their blocks."""
         if not self.passages:
             return verification
         checks = tuple(check if check.passed else self._checked(check, control) for check in verification.checks)

@@ -22,7 +22,7 @@ from trunnion.verification import Verification, rows_from_starts, verify, withou
 
 
 def prove(posting: Posting, written: WrittenProgram, expected: Expectation) -> Proof:
-    """The proof of a program; one that fails and is forced is written again, with what failed in its head."""
+    """Return the proof of a program; one that fails and is forced is written again, with what failed in its head."""
     job, program = posting.job, written.planned.program
     prove_run = partial(_prove_run, posting, expected, job.columns or bool(program.time_token))
     proof = prove_run(written.run, written.starts)
@@ -38,7 +38,7 @@ def prove(posting: Posting, written: WrittenProgram, expected: Expectation) -> P
 def _prove_run(
     posting: Posting, expected: Expectation, columns: bool, run: Run | None, starts: Sequence[OperationStart]
 ) -> Proof:
-    """What verification and simulation find of a run."""
+    """Return what verification and simulation find of a run."""
     found = None
     if run is not None:
         job, tolerances = posting.job, expected.tolerances
@@ -49,7 +49,7 @@ def _prove_run(
 
 
 def _simulate(posting: Posting, run: Run | None, found: Verification | None) -> Proof:
-    """A proof with what the program cuts and hits, if that is asked for."""
+    """Return a proof with what the program cuts and hits, if that is asked for."""
     job = posting.job
     if job.simulation is None:
         return Proof(found)
@@ -86,7 +86,7 @@ def report_proof(posting: Posting, planned: PlannedProgram, proof: Proof) -> Pos
 
 
 def _nothing_checked(posting: Posting) -> Problem:
-    """The warning of a forced program that no reader can read."""
+    """Return the warning of a forced program that no reader can read."""
     what, papers = "it is written by force, and nothing has been checked", posting.job.papers.by_name()
     without = ["setup sheet" if name == "sheet" else name for name in papers if name != "manifest"]
     lost = f": there is no {' and no '.join(without)}" if without else ""

@@ -24,7 +24,7 @@ def reported_refusals(posting: Posting) -> Iterator[None]:
 
 
 def refused(posting: Posting, proof: Proof, result: PostResult) -> ProofFailedError:
-    """The error for a program that fails its proof, once its report is written."""
+    """Return the error for a program that fails its proof, once its report is written."""
     job, places = posting.job, posting.places
     assert proof.verification is not None
     result = replace(result, verification=places.explained(proof.verification, job.control))

@@ -145,7 +145,7 @@ def write(
 
 
 def named_verification(found: Verification, name: str, kept: Iterable[Path]) -> Verification:
-    """The verification of a program with its files, and the places in them, called as they will be.
+    """Return the verification of a program with its files, and the places in them, called as they will be.
 
     Files that are ``kept`` exist already, and stay what they are called.
     """
@@ -158,12 +158,14 @@ def named_verification(found: Verification, name: str, kept: Iterable[Path]) -> 
 
 
 def named_run(run: Run, name: str) -> Run:
-    """A run whose files are called as they will be: the program by its name, subprograms as they lie beside it."""
+    """Return a run whose files are called as they will be: the program by its name, subprograms as they lie
+    beside it.
+    """
     names = _names(run, name)
     told = tuple(replace(each, file=names.get(each.file, each.file)) for each in run.diagnostics)
     return replace(run, files=tuple(names[file] for file in run.files), diagnostics=told)
 
 
 def _names(run: Run, name: str) -> dict[str, str]:
-    """What the files of a run will be called."""
+    """Return what the files of a run will be called."""
     return {file: Path(file).name for file in run.files[1:]} | {run.files[0]: name}

@@ -52,6 +52,6 @@ def _of_manifest(there: Path, now: Path, report: Path | None) -> Iterator[StaleP
 
 
 def _content(manifest: Path) -> object:
-    """What a manifest says, but for the report."""
+    """Return what a manifest says, but for the report."""
     data = json.loads(manifest.read_bytes())
     return data | {"files": [each for each in data["files"] if each.get("what") != "report"]}

@@ -148,7 +148,7 @@ class Accepted:
 
 
 def find_cases(place: Path) -> list[Path]:
-    """The projects of a folder and of all below it, in order; or the one project that is named.
+    """Return the projects of a folder and of all below it, in order; or the one project that is named.
 
     Raises
     ------

@@ -99,7 +99,7 @@ def _name(project: Project, result: PostResult) -> str:
 
 
 def _run(project: Project, result: PostResult) -> Run:
-    """The run of a program under the name that it will have."""
+    """Return the run of a program under the name that it will have."""
     assert result.run is not None, "nothing is posted here that nobody reads"
     return named_run(result.run, _name(project, result))
 
@@ -161,7 +161,7 @@ def _simulate(
 
 
 def _found(simulated: "SimulationResult", cure: str) -> Iterator[Problem]:
-    """What a set-up must not do, each at its program and line; the ``cure`` says how to see more of it."""
+    """Yield what a set-up must not do, each at its program and line; the ``cure`` says how to see more of it."""
     for finding in simulated.findings[:_MOST_TOLD]:
         yield Problem(finding.file, finding.line, f"the simulation finds: {finding}", code="PRJ210")
     if len(simulated.findings) > _MOST_TOLD:
@@ -175,7 +175,7 @@ def _found(simulated: "SimulationResult", cure: str) -> Iterator[Problem]:
 
 
 def _with_runs(project: Project, setup: SetupInput, results: Sequence[PostResult]) -> SetupInput:
-    """A set-up with the programs that have been posted for it, on their machine as it was set up."""
+    """Return a set-up with the programs that have been posted for it, on their machine as it was set up."""
     toolpaths = [toolpath for result in results for toolpath in result.toolpaths]
     runs = [_run(project, result) for result in results]
     return replace(

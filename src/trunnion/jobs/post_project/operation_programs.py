@@ -48,7 +48,7 @@ class OperationProgram:
 
 
 def operation_programs(toolpaths: Sequence[Toolpath], job: PostJob, output: Path) -> list[OperationProgram]:
-    """The programs of the operations that move, in their order, numbered from 1.
+    """Return the programs of the operations that move, in their order, numbered from 1.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def check_tools(motions: Sequence[Motion], job: PostJob, file: str) -> list[Prob
 
 
 def programs_of_operations(output: Path) -> list[Path]:
-    """The files that are called as programs of operations would be, whatever they hold, sorted."""
+    """Return the files that are called as programs of operations would be, whatever they hold, sorted."""
     beginning, end = re.escape(output.stem), re.escape(output.suffix)
     form = re.compile(rf"{beginning}_[0-9]{{1,5}}(_[A-Za-z0-9_]*)?{end}")
     return sorted(file for file in output.parent.glob("*") if form.fullmatch(file.name))
@@ -122,7 +122,9 @@ def _plain(name: str) -> str:
 
 
 def _settings_of(name: str, number: int, job: PostJob) -> dict[str, str]:
-    """The settings of an operation as those of a program; programs count on from the number or name that is set."""
+    """Return the settings of an operation as those of a program; programs count on from the number or name
+    that is set.
+    """
     settings = {**job.settings, **job.own_settings.get(name, {})}
     if "mode" in settings:
         entries = [entry.rpartition(":") for entry in settings["mode"].split(",")]
@@ -168,7 +170,7 @@ def _check_apart(moving: Sequence[tuple[Toolpath, Operation]], *, is_absolute: b
 
 
 def _left_on(operation: Operation) -> Event | None:
-    """What goes on when an operation ends."""
+    """Return what goes on when an operation ends."""
     on = dict[str, Event]()
     for event in operation.events:
         match event:
@@ -188,7 +190,7 @@ def _left_on(operation: Operation) -> Event | None:
 
 
 def _with_what_is_on(moving: Sequence[tuple[Toolpath, Operation]]) -> Iterator[tuple[Toolpath, Operation]]:
-    """The operations with tool and spindle as the one before has left them, where they do not say them first."""
+    """Yield the operations with tool and spindle as the one before has left them, where they do not say them first."""
     tool: LoadTool | None = None
     spindle: SpindleOn | None = None
     for toolpath, operation in moving:

@@ -30,7 +30,9 @@ def write_setup_papers(papers: PostPapers, project: Project, number: int, found:
 
 
 def _as_simulated(given: SimulationInput, number: int, found: SimulationResult) -> SimulationInput:
-    """A set-up alone, in its own coordinates: its part, fixtures, and the bounds of what the one before has left."""
+    """Return a set-up alone, in its own coordinates: its part, fixtures, and the bounds of what the one before has
+    left.
+    """
     from trunnion.simulation.meshes.primitives import box_mesh
 
     setup = found.simulation.model

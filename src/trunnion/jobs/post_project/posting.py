@@ -57,7 +57,7 @@ class ProjectResult:
 
 
 def files_of(program: PostResult) -> list[Path]:
-    """The file of a program, and those of its subprograms."""
+    """Return the file of a program, and those of its subprograms."""
     return [*([] if program.output is None else [program.output]), *program.subprograms]
 
 
@@ -120,7 +120,7 @@ def post_into(
 
 
 def _prepared(group: OutputGroup, project: Project, options: ProjectOptions, observer: Observer) -> ProjectPosting:
-    """What is posted, once it is known that nothing is written over that must stay."""
+    """Return what is posted, once it is known that nothing is written over that must stay."""
     posting = ProjectPosting(group, project, options, observer, project_inputs(project))
     check_outputs([*(each.output for each in project.setups), *posting.papers], posting.inputs)
     if not options.replaces:

@@ -29,7 +29,7 @@ def check_replaced(project: Project) -> None:
 
 
 def replaced_file(file: Path, first: Path, *, paper: bool = False) -> list[Problem]:
-    """The problem of a file that is there, is not empty, and is not as posts of the ``first`` have written it.
+    """Return the problem of a file that is there, is not empty, and is not as posts of the ``first`` have written it.
 
     A paper may be of a program that had another name: it is not yours if any post has written it as it is.
     """

@@ -143,7 +143,7 @@ def _post(posting: ProjectPosting, setup: PostedSetup, machine: Machine, program
 
 
 def _of_setup(problem: Problem, setup: PostedSetup) -> Problem:
-    """A problem that says in which set-up it is."""
+    """Return a problem that says in which set-up it is."""
     return replace(problem, wording=problem.wording.within("in_setup", setup=setup.name))
 
 

@@ -70,7 +70,9 @@ def _lines(stream: BinaryIO) -> Iterator[bytes]:
 
 
 def _first_difference(before: BinaryIO, after: BinaryIO) -> tuple[int | None, list[bytes]]:
-    """The line of the first difference, from 1, and the lines before it; both streams stand at that line then."""
+    """Return the line of the first difference, from 1, and the lines before it; both streams stand at that
+    line then.
+    """
     context: list[bytes] = []
     number = 1
     while True:
@@ -87,7 +89,7 @@ def _first_difference(before: BinaryIO, after: BinaryIO) -> tuple[int | None, li
 
 
 def _of_all(context: list[bytes], was: list[bytes], now: list[bytes], first: int) -> TextDifference:
-    """The difference of short rests of two texts."""
+    """Return the difference of short rests of two texts."""
     if [line.rstrip(b"\r\n") for line in was] == [line.rstrip(b"\r\n") for line in now]:
         return _of_line_ends(first)
     with_numbers = _diff(context, was, now, first)
@@ -118,7 +120,9 @@ def _of_line_ends(first: int) -> TextDifference:
 def _by_numbers(
     old: Path, new: Path, first: int, context: list[bytes], was: list[bytes], now: list[bytes]
 ) -> TextDifference:
-    """The difference of long texts: of lines with the same numbers, if there are as many, or else its beginning."""
+    """Return the difference of long texts: of lines with the same numbers, if there are as many, or else its
+    beginning.
+    """
     shown: list[str] = []
     changed, lines_before, lines_after, only_ends = 0, 0, 0, True
     with old.open("rb") as before, new.open("rb") as after:
@@ -142,7 +146,7 @@ def _by_numbers(
 
 
 def _diff(context: list[bytes], was: list[bytes], now: list[bytes], first: int) -> list[str]:
-    """A unified diff of the lines from the first difference on; the lines before it are its ``context``."""
+    """Return a unified diff of the lines from the first difference on; the lines before it are its ``context``."""
     before, after = ([_shown(line) for line in (*context, *lines)] for lines in (was, now))
     found = list(difflib.unified_diff(before, after, lineterm="", n=_CONTEXT))[2:]
     skipped = first - len(context) - 1

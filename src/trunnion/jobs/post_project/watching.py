@@ -44,7 +44,7 @@ class Watched(Protocol):
     """Work that is done again."""
 
     def files(self) -> set[str]:
-        """The files that it reads, as far as that is known: they need not be there."""
+        """Return the files that it reads, as far as that is known: they need not be there."""
 
     def work(self, is_unchanged: Callable[[], bool]) -> None:
         """Do it once. Results that appear only if ``is_unchanged`` says so are those of files that have not changed."""
@@ -67,7 +67,9 @@ def watch(watched: Watched, waiting: Waiting) -> None:
 
 
 def mentioned_files(definition: Path) -> set[str]:
-    """What the texts of a definition may name; of one that cannot be used, files whose coming may put it right."""
+    """Return what the texts of a definition may name; of one that cannot be used, files whose coming may put
+    it right.
+    """
     try:
         if not definition.is_file():  # a pipe would be waited for
             return set()
@@ -89,7 +91,7 @@ def _texts(value: object) -> Iterator[str]:
 
 
 def state_of(files: Collection[str]) -> State:
-    """What files are like now."""
+    """Return what files are like now."""
     return {file: _state(file) for file in sorted(files)}
 
 

@@ -114,7 +114,7 @@ def project_inputs(project: Project) -> list[FilePath]:
 
 
 def library_files(libraries: Iterable[FilePath]) -> list[FilePath]:
-    """The files of tool libraries, with all that those in TOML extend.
+    """Return the files of tool libraries, with all that those in TOML extend.
 
     Raises
     ------
@@ -127,7 +127,7 @@ def library_files(libraries: Iterable[FilePath]) -> list[FilePath]:
 
 
 def simulated_files(project: Project, number: int) -> list[FilePath]:
-    """The files that the simulation of a set-up reads, with those of all before it, whose stock it takes."""
+    """Return the files that the simulation of a set-up reads, with those of all before it, whose stock it takes."""
     several = zip(project.simulation.setups[: number + 1], project.posted, strict=False)
     setups = [replace(each, programs=() if posted else each.programs) for each, posted in several]
     return [str(project.simulation.stock), *(name for each in setups for name in _named_files(each))]
@@ -242,7 +242,7 @@ class _Reader:
         return Project(self._path, simulation, posted, checks, hooks, strict, files=tuple(root.files()))
 
     def _checks(self, table: Table) -> ProjectChecks:
-        """What is judged after the posts."""
+        """Return what is judged after the posts."""
         words = tuple(Judgement)
         found = ProjectChecks(
             Judgement(table.text("simulate", Judgement.OFF, one_of=words)),
@@ -264,7 +264,9 @@ class _Reader:
         return stock
 
     def _setup(self, table: Table, shared: dict[str, Any] | None, *, is_alone: bool = False) -> dict[str, Any]:
-        """What a set-up states; ``shared`` is what stands for all of them, None where this is it, maybe alone."""
+        """Return what a set-up states; ``shared`` is what stands for all of them, None where this is it, maybe
+        alone.
+        """
         found: dict[str, Any] = {} if shared is None else dict(shared)
         stated = set(table.keys())
         found["name"] = "" if shared is None else table.text("name", f"set-up {_number(table)}")
@@ -321,7 +323,9 @@ class _Reader:
         found["setting_places"] = {**found.get("setting_places", {}), **places}
 
     def _programs(self, table: Table, found: Mapping[str, Any]) -> tuple[tuple[str, ...], PostedSetup | None]:
-        """The programs of a set-up, and how they are posted if they are; given elsewhere they need not be there."""
+        """Return the programs of a set-up, and how they are posted if they are; given elsewhere they need not
+        be there.
+        """
         output = self._paths.output(table, "output")
         released, papers = self._paths.files(table, "released"), self._papers(table, output)
         if output is None:
@@ -353,7 +357,7 @@ class _Reader:
         return (str(output),), posted
 
     def _papers(self, table: Table, output: Path | None) -> PaperFiles:
-        """What is written about a program beside it."""
+        """Return what is written about a program beside it."""
         told = len(table.problems)
         named = {name: self._paths.output(table, name) for name in PAPERS}
         if output is None or len(table.problems) > told:
@@ -415,7 +419,7 @@ def _try(table: Table, check: Callable[..., object], *values: object) -> None:
 
 
 def _number(table: Table) -> int:
-    """The number of a set-up, from 1."""
+    """Return the number of a set-up, from 1."""
     return int(table.path.rpartition("[")[2].rstrip("]")) + 1
 
 

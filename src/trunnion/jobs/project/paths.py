@@ -35,7 +35,10 @@ class ProjectPaths:
         return tuple(self.file(table, key, name) for name in names)
 
     def output(self, table: Table, key: str) -> Path | None:
-        """The path of a file that a project writes; it lies beside the project or below. None: it is not stated."""
+        """Return the path of a file that a project writes; it lies beside the project or below.
+
+        None: it is not stated.
+        """
         name = table.text(key, "")
         if not name:
             if key in table and table.text(key, None) is not None:
@@ -60,7 +63,7 @@ class ProjectPaths:
         return PurePosixPath(location.resolve().relative_to(self._folder.resolve()).as_posix())
 
     def file(self, table: Table, key: str, name: str) -> str:
-        """The path of a file that is read; it lies beside the project or below."""
+        """Return the path of a file that is read; it lies beside the project or below."""
         if not name:
             if key in table:
                 table.add_problem(key, 'names ""', _WITHIN)
@@ -72,7 +75,7 @@ class ProjectPaths:
         return str(location)
 
     def _located(self, table: Table, key: str, name: str) -> Path:
-        """The path that a name in a project leads to; one that leads out of its folder is a mistake."""
+        """Return the path that a name in a project leads to; one that leads out of its folder is a mistake."""
         self._count += 1
         if self._count > _MOST_NAMES:  # asking the system about each takes a while
             what = f"{table.key_path(key)} is beyond the {_MOST_NAMES} files that a project may name"

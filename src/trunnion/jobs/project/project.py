@@ -114,7 +114,7 @@ class Project:
         return output if self.into is None else self.folder / output.relative_to(self.into)
 
     def writing_to(self, folder: Path) -> "Project":
-        """The same project with all that it writes in another folder, where it lies as in its own."""
+        """Return the same project with all that it writes in another folder, where it lies as in its own."""
 
         def moved(file: Path) -> Path:
             return folder / file.relative_to(self.folder)

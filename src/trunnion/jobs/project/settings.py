@@ -18,7 +18,7 @@ _OWN_KEYS: Final = {"zero": "zero_mm", "tool_length": "tool_length_mm", "program
 
 
 def read_settings(table: Table) -> tuple[dict[str, SettingValue], dict[str, tuple[str, int, str]]]:
-    """Settings that a table states, in its own keys and in its table ``settings``; and where."""
+    """Return settings that a table states, in its own keys and in its table ``settings``; and where."""
     own = table.table("settings")
     found: dict[str, Any] = {}
     places = {"settings": (*table.location("settings" if "settings" in table else ""), own.path)}

@@ -44,7 +44,7 @@ _MOST_PLACES: Final = 50
 
 
 def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput:
-    """What is to be simulated; programs, and how the part is clamped, are not known yet.
+    """Return what is to be simulated; programs, and how the part is clamped, are not known yet.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def simulation_input(given: SimulationLike, machine: Machine) -> SimulationInput
 
 
 def simulated_as_clamped(given: SimulationInput, clamping: Clamping) -> SimulationInput:
-    """What is simulated with a part that is clamped so.
+    """Return what is simulated with a part that is clamped so.
 
     Raises
     ------
@@ -112,7 +112,7 @@ def _drawn_bodies(given: SimulationInput) -> Iterator[tuple[str, TriangleMesh]]:
 
 
 def _of_project(path: Path, machine: Machine, stated: Mapping[str, Any]) -> SimulationInput:
-    """A project, whose programs are not looked at: the one that is posted is simulated."""
+    """Return a project, whose programs are not looked at: the one that is posted is simulated."""
     if not is_project(path):
         cure = "give the path of a project (.toml)"
         raise InputError(Problem(str(path), 0, "is no project of a simulation", cure, code="SIM112"))
@@ -140,7 +140,7 @@ def _of_project(path: Path, machine: Machine, stated: Mapping[str, Any]) -> Simu
 
 
 def simulation_files(given: SimulationLike) -> list[FilePath]:
-    """The files that a simulation reads, none of which may be written over."""
+    """Return the files that a simulation reads, none of which may be written over."""
     project = given.get("project") if isinstance(given, Mapping) else given
     named = [] if project is None else [project, *project_files([project], ("nc",))]
     if isinstance(given, Mapping):
@@ -170,7 +170,7 @@ def simulate_posted(
 
 
 def simulation_checks(found: SimulationResult) -> tuple[Check, ...]:
-    """The questions that a simulation answers, as checks of a proof."""
+    """Return the questions that a simulation answers, as checks of a proof."""
     of_removal = [each for each in found.findings if each.kind not in (What.BODY, What.GOUGE)]
     hits = [each for each in found.findings if each.kind == What.BODY]
     broken = [remark for remark in found.remarks if remark.severity is Severity.ERROR]

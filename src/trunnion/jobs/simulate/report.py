@@ -67,7 +67,7 @@ def write_simulation_report(found: SimulationResult, file: FilePath, inputs: Ite
 
 
 def simulation_content(found: SimulationResult) -> SimulationContent:
-    """What the report of a simulation shows."""
+    """Return what the report of a simulation shows."""
     cell = " × ".join(f"{width:.4g}" for width in found.cell)
     facts = (
         ("Machine", found.machine),
@@ -119,14 +119,14 @@ def _near(each: NearMiss) -> FindingRow:
 
 
 def _where(setup: str, file: str, line: int, block: int = -1, last_line: int = 0) -> str:
-    """A place in a program."""
+    """Return a place in a program."""
     number = f" N{block}" if block >= 0 else ""
     last = f" to {last_line}" if last_line > line else ""
     return f"{setup + ': ' if setup else ''}{Path(file).name}:{line}{number}{last}"
 
 
 def _state(found: SimulationResult) -> StockState:
-    """The stock that a set-up has left, in pictures and numbers."""
+    """Return the stock that a set-up has left, in pictures and numbers."""
     simulated = found.simulation
     stock, part = simulated.stock, simulated.model.part
     lattice = stock.lattice
@@ -161,7 +161,7 @@ def _pictures(found: SimulationResult, points: SurfacePoints) -> Iterable[tuple[
 
 
 def _colours(off: Floats, limit: float) -> Floats:
-    """The colour of each deviation, (n, 3); full for the greatest."""
+    """Return the colour of each deviation, (n, 3); full for the greatest."""
     colours = np.tile(_SOUND, (len(off), 1))
     for sign, (little, most) in ((1.0, _LEFT), (-1.0, _MISSING)):
         own = np.flatnonzero(sign * off > limit)
@@ -172,7 +172,7 @@ def _colours(off: Floats, limit: float) -> Floats:
 
 
 def _bins(points: SurfacePoints, limit: float) -> Iterable[DeviationBin]:
-    """The surface by its deviation, from what is missing to what is left."""
+    """Yield the surface by its deviation, from what is missing to what is left."""
     if points.deviation is None:
         return
     off, area = points.deviation, points.area
@@ -190,7 +190,7 @@ def _bins(points: SurfacePoints, limit: float) -> Iterable[DeviationBin]:
 
 
 def _cleaned(value: Any) -> Any:
-    """Data without characters that no file can hold."""
+    """Return data without characters that no file can hold."""
     if isinstance(value, dict):
         return {key: _cleaned(each) for key, each in value.items()}
     if isinstance(value, list):

@@ -105,7 +105,7 @@ class SimulationResult:
 
 
 def make_result(cut: CutSetup) -> SimulationResult:
-    """The result of a set-up."""
+    """Return the result of a set-up."""
     found, own, programs = cut.simulation, setup_findings(cut), cut.programs
     x, y, z = found.stock.lattice.cell.tolist()
     return SimulationResult(
@@ -132,7 +132,7 @@ def make_result(cut: CutSetup) -> SimulationResult:
 
 
 def join_results(results: Sequence[SimulationResult]) -> SimulationResult:
-    """The results of set-ups in their order as one; a single one stays as it is."""
+    """Return the results of set-ups in their order as one; a single one stays as it is."""
     last = results[-1]
     if len(results) == 1:
         return last

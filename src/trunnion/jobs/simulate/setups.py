@@ -77,7 +77,7 @@ def prepare_setup(
 
 
 def _tools(runs: Sequence[Run], known: KnownTools) -> dict[str, ToolShape]:
-    """The bodies of the tools with which the programs move at feed or at rapid."""
+    """Return the bodies of the tools with which the programs move at feed or at rapid."""
     called = [run.tools[int(index)] for run in runs for index in run.state.tool.distinct()]
     in_spindle = any(tool.number == int(NO_CALL) for tool in known.stated)
     if in_spindle or any(_cuts_without_call(run) for run in runs):

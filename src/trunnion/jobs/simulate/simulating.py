@@ -132,7 +132,7 @@ def as_simulation_input(
     own: Mapping[str, Any],
     until: str | int | None = None,
 ) -> SimulationInput:
-    """What is simulated: arguments of ``simulate`` by their names, those of the whole and those of each set-up.
+    """Return what is simulated: arguments of ``simulate`` by their names, those of the whole and those of each set-up.
 
     Raises
     ------
@@ -159,7 +159,7 @@ def as_simulation_input(
 def _overruled(
     project: SimulationInput, whole: Mapping[str, Any], own: Mapping[str, Any], until: str | int | None
 ) -> SimulationInput:
-    """A project with what was given in its place."""
+    """Return a project with what was given in its place."""
     stated = {name: value for name, value in own.items() if not _is_left_out(value)}
     several = [name for name in _OF_ONE_SETUP if name in stated and len(project.setups) > 1]
     if several:
@@ -179,5 +179,5 @@ def _is_left_out(value: object) -> bool:
 
 
 def _without(places: Places, names: Iterable[str]) -> Places:
-    """The places of arguments that were not given otherwise."""
+    """Return the places of arguments that were not given otherwise."""
     return {name: place for name, place in places.items() if name not in names}

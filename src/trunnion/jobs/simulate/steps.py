@@ -83,7 +83,7 @@ _Prepared: TypeAlias = tuple["SetupSteps", StockShape, Sequence[PreparedSetup], 
 
 
 def _prepared(given: SimulationInput, observer: Observer, shares: JoinedShares | None = None) -> _Prepared:
-    """What cuts, the stock, the set-ups as they were read, and what is remarked of each."""
+    """Return what cuts, the stock, the set-ups as they were read, and what is remarked of each."""
     design = simulation.DESIGN_KERNELS if any(each.part is not None for each in given.setups) else ()
     # The second process begins with the largest, the last one; what is saved at the end is left to it.
     called = (*readers.KERNELS, tool_axis_rows, axis_motion_rows, *design, *simulation.KERNELS)

@@ -99,7 +99,7 @@ def machine_feed(
     password: str = "",
     observer: Observer = SILENT,
 ) -> "MachineFeed":
-    """A machine that can be listened to; arguments as for ``record``.
+    """Return a machine that can be listened to; arguments as for ``record``.
 
     Raises
     ------
@@ -158,7 +158,7 @@ def read_recording(file: FilePath) -> Recording:
 
 
 def as_recording(recorded: object) -> Recording:
-    """A recording, or that of a file.
+    """Return a recording, or that of a file.
 
     Raises
     ------

@@ -193,7 +193,7 @@ def is_loopback(host: str) -> bool:
 
 
 def users_file(users: FilePath | None = None) -> Path:
-    """The file of users: the given one, or that in the user's folder.
+    """Return the file of users: the given one, or that in the user's folder.
 
     Raises
     ------

@@ -56,7 +56,7 @@ class VerifyArguments:
 
 
 def checked(given: VerifyArguments) -> VerifyArguments:
-    """The arguments as the stages take them.
+    """Return the arguments as the stages take them.
 
     Raises
     ------
@@ -89,7 +89,7 @@ def _without_cl(argument: str, what: str) -> InputError:
 
 
 def _feed_limit(given: VerifyArguments) -> float | None:
-    """A feed limit, checked."""
+    """Return a feed limit, checked."""
     limit = given.feed_limit
     if limit is None:
         return None
@@ -105,7 +105,7 @@ def _feed_limit(given: VerifyArguments) -> float | None:
 
 
 def _tool(tool: object) -> str:
-    """The tool that is called in place of the CL file's, as a run names it; empty for none."""
+    """Return the tool that is called in place of the CL file's, as a run names it; empty for none."""
     text = str(tool).strip('"') if isinstance(tool, str | int) and not isinstance(tool, bool) else None
     if text is None or tool_number(text) == 0 or text.startswith("-"):
         raise wrong_argument("tool", tool, "give the number of a tool, such as 5, or its name")

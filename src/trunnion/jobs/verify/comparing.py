@@ -79,5 +79,5 @@ def diff(
 
 
 def _run(program: FilePath | Run, machine: Machine, subprograms: Sequence[FilePath], names: tuple[str, str]) -> Run:
-    """The run of a program, with lines at the feed of rapids as rapids."""
+    """Return the run of a program, with lines at the feed of rapids as rapids."""
     return restore_rapids(as_run(program, machine, subprograms, names), rapid_feed_of(machine))

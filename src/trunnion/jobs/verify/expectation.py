@@ -25,7 +25,7 @@ _READ_CHORD: Final = 0.001
 
 
 def expected(on: VerifiedMachine, read: ReadProgram, given: VerifyArguments) -> ExpectedValues:
-    """What the program is expected to be; without CL files it may have any work offset and edge.
+    """Return what the program is expected to be; without CL files it may have any work offset and edge.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def expected(on: VerifiedMachine, read: ReadProgram, given: VerifyArguments) -> 
 def _work_offsets(
     text: str | None, control: Control | None, toolpaths: Sequence[Toolpath]
 ) -> tuple[str | None, dict[str, str]]:
-    """The work offset that is given for all operations, and those of single operations by their names."""
+    """Return the work offset that is given for all operations, and those of single operations by their names."""
     if control is None or text is None:
         return text, {}
     values = list(control.values_by_operation("work_offset", str(text)))

@@ -18,7 +18,7 @@ def expected_values(
     settings: Mapping[str, str],
     own_settings: Mapping[str, Mapping[str, str]],
 ) -> ExpectedValues:
-    """What a program is expected to be.
+    """Return what a program is expected to be.
 
     Parameters
     ----------

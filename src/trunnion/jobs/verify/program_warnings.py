@@ -47,7 +47,7 @@ _KINDS: Final = {
 
 
 def stated_words(control: Control, settings: Mapping[str, str]) -> frozenset[str]:
-    """The words that a definition states for coolant, and in settings such as that of rigid tapping."""
+    """Return the words that a definition states for coolant, and in settings such as that of rigid tapping."""
     return frozenset((*(f"M{number}" for number in control.coolant.values()), *settings.values()))
 
 
@@ -66,7 +66,7 @@ def _is_told(noted: Diagnostic, code: str, stated: frozenset[str]) -> bool:
 
 
 def _of_kind(run: Run, code: str, noted: Sequence[Diagnostic]) -> list[Problem]:
-    """The first warnings of a kind one by one, and the others together."""
+    """Return the first warnings of a kind one by one, and the others together."""
     many, cure, cure_of_many = _KINDS[code]
     told = [
         Problem(each.file or run.files[0], each.line, each.text, cure, Severity.WARNING, code=code)

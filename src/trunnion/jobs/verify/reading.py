@@ -81,7 +81,7 @@ def read_program(
 
 
 def _changed_by_hooks(toolpaths: list[Toolpath], on: VerifiedMachine, given: VerifyArguments) -> list[Toolpath]:
-    """What hooks make of toolpaths; they see the settings that are given."""
+    """Return what hooks make of toolpaths; they see the settings that are given."""
     from trunnion.hooks.calling import Hooks
     from trunnion.hooks.files import load_hooks  # few verifications have hooks
 

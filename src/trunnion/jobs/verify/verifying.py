@@ -148,7 +148,7 @@ def verify(
 
 
 def _set_up(machine: Machine, zero: str | Iterable[float] | None, tool_length: str | float | None) -> VerifiedMachine:
-    """The machine with its zero and tool; the kernels of its reader are compiled meanwhile."""
+    """Return the machine with its zero and tool; the kernels of its reader are compiled meanwhile."""
     readers.reader_of(machine)
     compile_ahead(kernels.VERIFYING)
     machine = set_up_machine(machine, zero, tool_length)
@@ -156,7 +156,7 @@ def _set_up(machine: Machine, zero: str | Iterable[float] | None, tool_length: s
 
 
 def _without_motion(run: Run) -> list[Problem]:
-    """A warning of a program that moves nothing."""
+    """Return a warning of a program that moves nothing."""
     if len(run) or run.errors:
         return []
     what, cure = "there is no motion in it: nothing of a path was checked", "give the program that moves the tool"

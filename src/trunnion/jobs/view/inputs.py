@@ -106,7 +106,7 @@ def view_program(
 
 
 def bodies_not_clamped_so(file: Path, toolpaths: Sequence[Toolpath]) -> list[Problem]:
-    """A warning where a program is for a part that is clamped turned: a view shows bodies as they are given."""
+    """Return a warning where a program is for a part that is clamped turned: a view shows bodies as they are given."""
     stated = stated_clamping(toolpaths) if is_cl_file(file) else stated_place(file).clamping
     if stated is None or stated.is_as_drawn:
         return []
@@ -130,7 +130,7 @@ def _posted(
 
 
 def _cl_texts(cl: ToolpathLike | Iterable[ToolpathLike]) -> dict[str, str]:
-    """The texts of CL files that are named, also of those in archives; a stream has been read and has none."""
+    """Return the texts of CL files that are named, also of those in archives; a stream has been read and has none."""
     named = [cl] if isinstance(cl, str | os.PathLike | Toolpath) or is_stream(cl) else cl
     paths = [Path(each) for each in named if isinstance(each, str | os.PathLike)]
     return {source.name: decode(source.open().read()) for path in paths for source in cl_sources(path)}

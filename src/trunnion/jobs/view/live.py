@@ -79,7 +79,7 @@ class LiveMachine:
                 await feed.close()
 
     def _pose(self, shown: dict[str, Any]) -> LivePose | None:
-        """What is shown as a pose; None where an axis is not known."""
+        """Return what is shown as a pose; None where an axis is not known."""
         found = [shown.get(name) for name in self._machine.names]
         values = [value for value in found if isinstance(value, float) and math.isfinite(value)]
         if len(values) < len(found):
@@ -90,7 +90,7 @@ class LiveMachine:
 
 
 def machine_content(machine: MachineLike, title: str, **given: Any) -> ViewContent:
-    """What a page shows of a machine without a program; arguments as ``prepare_view`` has them.
+    """Return what a page shows of a machine without a program; arguments as ``prepare_view`` has them.
 
     Raises
     ------

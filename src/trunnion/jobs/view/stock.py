@@ -36,7 +36,7 @@ _MOST: Final = 200
 
 
 def view_simulation(machine: Machine, **given: Any) -> SimulationInput | None:
-    """What is to be simulated, before any work; None without stock.
+    """Return what is to be simulated, before any work; None without stock.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def with_stock(
 
 
 def _cutting(run: Run) -> set[str]:
-    """The tools of a run by their names."""
+    """Return the tools of a run by their names."""
     return {run.tools[int(index)] for index in run.state.tool.distinct()}
 
 
@@ -93,7 +93,7 @@ def _counts(found: SimulationResult) -> Iterator[tuple[str, int]]:
 
 
 def _findings(found: SimulationResult, run: Run) -> Iterator[dict[str, Any]]:
-    """What the simulation found, with its rows and places; errors that have no row stand at the first one."""
+    """Yield what the simulation found, with its rows and places; errors that have no row stand at the first one."""
     files = {Path(file).name: number for number, file in enumerate(run.files)}
     for each in found.remarks:
         if each.severity is Severity.ERROR:
@@ -109,7 +109,7 @@ def _findings(found: SimulationResult, run: Run) -> Iterator[dict[str, Any]]:
 
 
 def _short(problem: Problem) -> str:
-    """A problem without the folder of its file."""
+    """Return a problem without the folder of its file."""
     return str(replace(problem, file=Path(problem.file).name))
 
 

@@ -200,7 +200,7 @@ def _shown_files(content: ViewContent) -> list[Path]:
 
 
 def _shown_tools(run: Run, known: KnownTools) -> dict[str, ToolShape]:
-    """The bodies of the tools whose form something states."""
+    """Return the bodies of the tools whose form something states."""
     found: dict[str, ToolShape] = {}
     for name in run.tools:
         try:

@@ -20,7 +20,7 @@ POLE_TOLERANCE: Final = 1e-7
 
 @inner
 def solve_tilt(kinematics: KinematicParameters, i: float, j: float, k: float) -> tuple[int, float, float, float, float]:
-    """What both branches of a tool axis share.
+    """Return what both branches of a tool axis share.
 
     i, j, k  the tool axis in workpiece coordinates, of any length
     returns  status bits, components of the tool axis along the first two rows of ``basis_1``, cosine and sine of phi,
@@ -59,7 +59,7 @@ def solve_tilt(kinematics: KinematicParameters, i: float, j: float, k: float) ->
 def branch_angles(
     kinematics: KinematicParameters, u0: float, u1: float, cos: float, sin: float, status: int
 ) -> tuple[float, float, float, float, float, float]:
-    """The rotary angles of one branch.
+    """Return the rotary angles of one branch.
 
     u0, u1, cos, sin, status  as ``solve_tilt`` gives them; ``sin`` negated for branch 1
     returns                   first and second angle, deg, in (-180, 180], and cosine and sine of each about the third

@@ -148,7 +148,7 @@ def _slide_direction(
 
 @inner
 def rotate_about(basis: FlatArray, cos: float, sin: float, x: float, y: float, z: float) -> tuple[float, float, float]:
-    """A vector turned about the third row of ``basis``, an orthonormal 3x3 flattened by rows."""
+    """Return a vector turned about the third row of ``basis``, an orthonormal 3x3 flattened by rows."""
     a = basis[0] * x + basis[1] * y + basis[2] * z
     b = basis[3] * x + basis[4] * y + basis[5] * z
     c = basis[6] * x + basis[7] * y + basis[8] * z

@@ -40,7 +40,7 @@ class PoseBodies:
         return np.asarray(self.volume > 0.0)
 
     def select(self, which: Flags) -> "PoseBodies":
-        """Some of them."""
+        """Return some of them."""
         return PoseBodies(
             self.normal[which], self.low[which], self.high[which], self.corners[which], self.volume[which]
         )

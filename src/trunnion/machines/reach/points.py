@@ -68,7 +68,9 @@ def _reached(machine: Machine, points: Floats, axes: Floats, step: float) -> tup
 
 
 def _least_excess(machine: Machine, points: Floats, rotary: Floats, step: float) -> Floats:
-    """The excess at the best angle of the first rotary axis, which is free, (k,): tried over its travel, then finer."""
+    """Return the excess at the best angle of the first rotary axis, which is free, (k,): tried over its travel, then
+    finer.
+    """
     axis = machine.axes[machine.rotary[0]]
     low, high = (-np.inf, np.inf) if axis.endless else (axis.low, axis.high)
     trial = rotary.copy()

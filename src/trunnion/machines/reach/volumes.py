@@ -90,7 +90,7 @@ def reached_volumes(
 def _volume(
     bodies: PoseBodies, starts: Ints, slack: Floats, box: tuple[Floats, Floats], levels: int, *, every: bool
 ) -> ReachedVolume:
-    """The volume within a box, lowest and highest corner."""
+    """Return the volume within a box, lowest and highest corner."""
     size = (box[1] - box[0]) / _FIRST
     if not (size > 0.0).all():
         return ReachedVolume(0.0, 0.0, 0.0)

@@ -95,7 +95,7 @@ class BlockWriter:
         return len(self._skip) > 0
 
     def begin_operation(self) -> None:
-        """Number the next block, where operations have the numbers."""
+        """Give the next block a number, where operations have the numbers."""
         self.operation_starts.append((*self.place, -1))
         self._begins = True
         if self._numbers.numbered and self._numbers.at_operations:

@@ -209,7 +209,9 @@ class MotionBlockWriter:
         self.writer.write_lines(blocks)
 
     def _ended(self, line: str) -> str:
-        """A line, with a point behind a character whose last byte the control would take for the continuation sign."""
+        """Return a line, with a point behind a character whose last byte the control would take for the continuation
+        sign.
+        """
         sign = self.control.continued
         if not sign or line.isascii() or line.endswith(sign):
             return line
@@ -236,7 +238,7 @@ class MotionBlockWriter:
         return [self.family.COMMENTS.sub(self._in_capitals, line) for line in lines] if self._capitals else list(lines)
 
     def _in_capitals(self, comment: re.Match[str]) -> str:
-        """A comment without small letters, but those whose capital is lacking in the encoding; of ß it is SS."""
+        """Return a comment without small letters, but those whose capital is lacking in the encoding; of ß it is SS."""
         if comment[1] is None:
             return comment[0]
         capitals = ((each, each if each in "µμ" else each.upper()) for each in comment[0])  # M is another unit
@@ -349,7 +351,7 @@ class MotionBlockWriter:
         return int(phases[-1])
 
     def _table_of_rows(self, motion: Motion, rows: slice, rapid: Flags) -> BlockTable:
-        """The words of rows as if none were an arc."""
+        """Return the words of rows as if none were an arc."""
         moves, table = motion.operation.moves, BlockTable(len(rapid))
         for c, word in enumerate("XYZ"):
             table.columns[word] = self.writer.word(word).format.counts(moves.tip[rows, c])

@@ -111,7 +111,7 @@ class OrientationWords:
         return nearest_pose_is_planned(self._machine, printed, rotary, before, half_digit)
 
     def _vector_counts(self, rotary: Floats) -> dict[str, Ints]:
-        """The tool axes at rotary positions (n, 2), as counts of the vector words."""
+        """Return the tool axes at rotary positions (n, 2), as counts of the vector words."""
         decimals = self._decimals(TOOL_VECTOR_WORDS[0])
         vectors = tool_vectors_at(self._machine, rotary)
         columns = [round_to_counts(np.ascontiguousarray(vectors[:, k]), decimals) for k in range(3)]

@@ -74,7 +74,7 @@ def to_axis_coordinates(machine: Machine, motion: Motion, decimals: int) -> Axis
 
 
 def _arcs_of_linear_axes(machine: Machine, arcs: Arcs, rotary: Floats, columns: list[int], offset: Floats) -> Arcs:
-    """The arcs in coordinates of the linear axes, about Z; the rotary axes rest along each of them."""
+    """Return the arcs in coordinates of the linear axes, about Z; the rotary axes rest along each of them."""
     if not len(arcs.row):
         return arcs
     sense = np.sign(np.einsum("ij,ij->i", _z_axis_direction(machine, rotary[arcs.row]), arcs.normal))

@@ -86,11 +86,11 @@ class _Holes:
         return {word: counts(tip[first:last, c]) for c, word in enumerate("XY")}
 
     def _rapid_columns(self, rows: int) -> dict[str, Ints]:
-        """The motion words of rapids: word -> (n,) int64 counts."""
+        """Return the motion words of rapids: word -> (n,) int64 counts."""
         return self._family.row_words(np.ones(rows, np.bool_), np.zeros(rows, np.bool_), self._control.codes)
 
     def _call_lines(self, top: float, spindle: SpindleState | None, feed: float, per_rev: bool) -> list[str]:
-        """The family's lines of the cycle; a cycle that is called hole by hole is defined with its own feed."""
+        """Return the family's lines of the cycle; a cycle that is called hole by hole is defined with its own feed."""
         called = CYCLE_CALL_WORD in self._family.WORDS
         cycle = replace(self._cycle, feed=feed, per_rev=per_rev) if called else self._cycle
         settings = self._blocks.program.effective_settings() | {HOLES_SETTING: HOLES_IN_PLANES}

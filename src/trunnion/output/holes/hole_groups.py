@@ -58,7 +58,9 @@ def write_hole_groups(
 
 
 def _changes(heights: Floats, number_format: NumberFormat, noise: float) -> list[int]:
-    """Indices of the holes whose height prints otherwise than that of the first of their group, by more than noise."""
+    """Return indices of the holes whose height prints otherwise than that of the first of their group, by more than
+    noise.
+    """
     printed = number_format.counts(heights)
     changes, first = list[int](), 0
     for k in (1 + np.flatnonzero(np.diff(printed))).tolist():

@@ -134,7 +134,7 @@ def check_holes_under_tcp(operation: Operation) -> Iterator[HoleCycleError]:
 
 
 def _cycle_by_row(operation: Operation) -> dict[int, Cycle]:
-    """The cycle of every row that is a hole."""
+    """Return the cycle of every row that is a hole."""
     events = [event for event in operation.events if isinstance(event, CycleOn | CycleOff)]
     ends = [event.row for event in events[1:]] + [len(operation.moves)]
     found: dict[int, Cycle] = {}
@@ -159,7 +159,7 @@ def _clearance(path: tuple[Floats, Floats], point: Floats, axis: Floats, rapid_h
 
 
 def _lowest_clearance(one: tuple[float, float], other: tuple[float, float]) -> float:
-    """The least, along a straight path, of the greater of two clearances, each given at both ends."""
+    """Return the least, along a straight path, of the greater of two clearances, each given at both ends."""
     difference = one[0] - other[0], one[1] - other[1]
     ends = min(max(one[0], other[0]), max(one[1], other[1]))
     if difference[0] * difference[1] >= 0.0:

@@ -39,7 +39,7 @@ def spline_lines(spline: Spline, formats: Formats) -> list[str]:
 
 
 def finer_format(number: NumberFormat, digits: int) -> NumberFormat:
-    """A number format with more decimals."""
+    """Return a number format with more decimals."""
     return NumberFormat(
         number.decimals + digits, number.point, number.leading_zero, number.trailing_zeros, number.plus, number.zero,
         number.least, number.greatest, number.unit,
@@ -47,7 +47,7 @@ def finer_format(number: NumberFormat, digits: int) -> NumberFormat:
 
 
 def printed(number: NumberFormat, value: float, name: str) -> str:
-    """A number of a line; ``name`` is what it is. Raises ``WordRangeError`` beyond the limits of its format."""
+    """Return a number of a line; ``name`` is what it is. Raises ``WordRangeError`` beyond the limits of its format."""
     shown = number.rounded(value) / number.unit
     if not number.least / number.unit <= shown <= number.greatest / number.unit:
         limit = number.greatest if shown > 0.0 else number.least

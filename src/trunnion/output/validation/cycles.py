@@ -114,7 +114,7 @@ def _check_cycle(
 
 
 def _no_tilted_cycle(program: Program, motion: Motion, cycle: Cycle) -> HoleCycleError:
-    """The error for a cycle along a tilted tool axis without a tilted plane."""
+    """Return the error for a cycle along a tilted tool axis without a tilted plane."""
     settings, under_tcp = program.effective_settings(), motion.mode is MachiningMode.TCP
     has_planes = MachiningMode.TILTED in program.control.modes(settings)
     turns = HOLES_SETTING in settings

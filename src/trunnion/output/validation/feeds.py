@@ -80,7 +80,7 @@ def rounded_feed_problems(program: Program, motion: Motion) -> list[Problem]:
 
 
 def _first_of_each_feed(moves: Moves, rows: Ints) -> list[int]:
-    """The first of ``rows`` (k,) with each feed, ascending."""
+    """Return the first of ``rows`` (k,) with each feed, ascending."""
     first = []
     for per_rev in (False, True):
         here = rows[moves.per_rev[rows] == per_rev]

@@ -70,7 +70,7 @@ def check_program(program: Program) -> list[Problem]:
 
 
 def _motion_problems(program: Program, motion: Motion) -> list[Problem]:
-    """What a motion lacks, whatever its events are."""
+    """Return what a motion lacks, whatever its events are."""
     problems = []
     if motion.mode is MachiningMode.TCP and program.control.vectors_exclude_angles:
         problems += tool_vector_problems(program, motion)

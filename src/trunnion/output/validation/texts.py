@@ -38,7 +38,7 @@ def _cure(program: Program, text: str) -> str:
 
 
 def _texts(program: Program) -> Iterator[tuple[str, str, str, int]]:
-    """What is printed of operations: what it is, the text, CL file and line."""
+    """Yield what is printed of operations: what it is, the text, CL file and line."""
     fields = _printed(program)
     lists_tools = program.effective_setting("tool_list") == "on"
     lists_operations = program.effective_setting("operation_list") == "on"
@@ -57,7 +57,7 @@ def _texts(program: Program) -> Iterator[tuple[str, str, str, int]]:
 
 
 def _settings(program: Program) -> Iterator[tuple[str, str, str, int]]:
-    """Settings that templates print."""
+    """Yield settings that templates print."""
     fields = _printed(program)
     for values in (program.settings, *program.own_settings.values()):
         for key, text in values.items():

@@ -72,7 +72,7 @@ def tool_conflicts(program: Program, *, uses_length_numbers: bool) -> list[Probl
 
 
 def _conflict(call: str, before: Sequence[Operation], operation: Operation, file: str) -> Iterator[Problem]:
-    """What an operation states of a tool otherwise than those before it that call it."""
+    """Yield what an operation states of a tool otherwise than those before it that call it."""
     for other in before:
         differing = list(_differences(other.tool, operation.tool))
         if differing:
@@ -109,7 +109,7 @@ def _conflict(call: str, before: Sequence[Operation], operation: Operation, file
 
 
 def _differences(one: Tool, two: Tool) -> Iterator[str]:
-    """What both tools state and where they differ, in words."""
+    """Yield what both tools state and where they differ, in words."""
     if "UNKNOWN" in (one.kind, two.kind):
         return
     if one.kind != two.kind:

@@ -47,7 +47,7 @@ def problems_without_tcp(program: Program, motion: Motion) -> list[Problem]:
 
 
 def _feed_problems(program: Program, motion: Motion, coordinates: AxisCoordinates, cuts: Ints) -> list[Problem]:
-    """What is wrong with the feeds of cuts in which rotary axes turn: rows of the motion."""
+    """Return what is wrong with the feeds of cuts in which rotary axes turn: rows of the motion."""
     operation, problems = motion.operation, list[Problem]()
     moves, settings = operation.moves, program.effective_settings()
     per_rev = cuts[moves.per_rev[cuts]]
@@ -102,7 +102,7 @@ def _feed_problems(program: Program, motion: Motion, coordinates: AxisCoordinate
 def _rounding_problems(
     program: Program, motion: Motion, cuts: Ints, value: Floats, rule: str, number_format: NumberFormat
 ) -> list[Problem]:
-    """What the digits of F make of the feed of blocks; with inverse time a block may be off by a thousandth."""
+    """Return what the digits of F make of the feed of blocks; with inverse time a block may be off by a thousandth."""
     printed = number_format.values(number_format.counts(value))
     error = np.abs(printed - value) / np.maximum(value, number_format.least)
     inverse_time = rule == "inverse_time"

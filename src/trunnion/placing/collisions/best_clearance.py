@@ -46,7 +46,7 @@ class Guard:
     left_out: tuple[tuple[str, str], ...] = ()
 
     def without(self, pairs: Sequence[GuardedPair]) -> "Guard":
-        """The same without some pairs."""
+        """Return the same without some pairs."""
         return replace(self, pairs=tuple(pair for pair in self.pairs if pair not in pairs)) if pairs else self
 
     @property
@@ -55,7 +55,7 @@ class Guard:
         return bool(self.that(Changes.PLACE, Changes.TURN))
 
     def that(self, *changes: Changes) -> list[GuardedPair]:
-        """The pairs that something changes."""
+        """Return the pairs that something changes."""
         return [pair for pair in self.pairs if pair.changes in changes]
 
 
@@ -106,7 +106,9 @@ class ClearanceSearch:
         self._rows: dict[int, None] = {}
 
     def judge(self, turn: float, tilt: float) -> TurnResult:
-        """The result at an orientation, degrees: its cost is the distance, where that is larger than all before."""
+        """Return the result at an orientation, degrees: its cost is the distance, where that is larger than
+        all before.
+        """
         key = (round(turn, _DECIMALS), round(tilt, _DECIMALS))
         if key not in self.results:
             found = [self._judge(path, *key) for path in self._paths_at(key[1])]
@@ -146,7 +148,7 @@ class ClearanceSearch:
     def _kept(
         self, result: TurnResult, oriented: Oriented, nearest: Nearest | None, search: FarthestSearch | None = None
     ) -> TurnResult:
-        """The result with its distance, if that is the largest so far."""
+        """Return the result with its distance, if that is the largest so far."""
         if nearest is None or nearest.distance <= self.known:
             return result
         self.known, self.weight = nearest.distance, nearest.pair.weight
@@ -156,7 +158,7 @@ class ClearanceSearch:
         return result
 
     def _of_turn(self, oriented: Oriented, zero: Floats) -> Nearest | None:
-        """The nearest of pairs that the turn alone changes; what is found first suffices if it is no better."""
+        """Return the nearest of pairs that the turn alone changes; what is found first suffices if it is no better."""
         if not self._guard.that(Changes.TURN):
             return None
         some = oriented.asked(oriented.coarse, Changes.TURN).nearest(zero)
@@ -179,7 +181,8 @@ class ClearanceSearch:
 def farthest_orientations(
     paths_at: Callable[[float], Sequence[TurnedPath]], grid: Grid, guard: Guard, advance: Callable[[int], None]
 ) -> tuple[list[TurnResult], TurnResult, float | None]:
-    """What each orientation allows, by tilt and turn, refined about the best; the best; and the distance that no place
+    """Return what each orientation allows, by tilt and turn, refined about the best; the best; and the distance that no
+    place
     at any of these is above, mm; None where bodies of one side of the machine are what holds it.
 
     Where bodies touch everywhere, or nothing changes how far they are apart, the best is that with the largest margin.
@@ -208,12 +211,12 @@ def farthest_orientations(
 
 
 def min_of(one: Nearest, other: Nearest | None) -> Nearest:
-    """The nearer of two."""
+    """Return the nearer of two."""
     return one if other is None or one.distance <= other.distance else other
 
 
 def _with_largest_margin(paths_at: Callable[[float], Sequence[TurnedPath]], result: TurnResult) -> TurnResult:
-    """A result with its path and half-spaces again, at the place with the largest margin."""
+    """Return a result with its path and half-spaces again, at the place with the largest margin."""
     for path in paths_at(result.tilt):
         cuts = path.at(result.turn)
         if path.choice is result.choice and isinstance(cuts, CutSet):
@@ -236,7 +239,7 @@ def nearest_at(
 
 
 def _holding(cuts: CutSet, zero: Floats, margin: float) -> tuple[Cut, ...]:
-    """The half-spaces that hold a place (3,), the nearest first, one for each end of a slide."""
+    """Return the half-spaces that hold a place (3,), the nearest first, one for each end of a slide."""
     lefts = sorted(((cut.bound - float(np.dot(cut.normal, zero)), k) for k, cut in enumerate(cuts.cuts)))
     held: dict[tuple[int, int], Cut] = {}
     for left, k in lefts:

@@ -97,7 +97,7 @@ class Clearance:
         return found
 
     def pose(self, pair: GuardedPair, zero: Floats, moment: int, share: float) -> Floats:
-        """The map (4, 4) from the frame of the first body of a pair to that of the second."""
+        """Return the map (4, 4) from the frame of the first body of a pair to that of the second."""
         pose = np.eye(4)
         course_pose(self._chain, self._course(pair), zero, moment, share, pose)
         return pose
@@ -175,7 +175,8 @@ class Clearance:
         )
 
     def inside(self, zero: Floats) -> Nearest | None:
-        """A body that is inside of another one, whose surfaces never meet, at the zero (3,); None: there is none.
+        """Return a body that is inside of another one, whose surfaces never meet, at the zero (3,); None: there is
+        none.
 
         Since bodies move without jumps, the first moment of each stretch shows it.
         """

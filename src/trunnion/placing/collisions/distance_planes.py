@@ -26,7 +26,7 @@ class Plane:
     slope: Floats
 
     def row(self) -> tuple[Floats, float]:
-        """The plane as slope (3,) and height at the origin."""
+        """Return the plane as slope (3,) and height at the origin."""
         return self.slope, self.height - float(self.slope @ self.at)
 
 
@@ -46,7 +46,7 @@ class Witness:
 
     @staticmethod
     def of(clearance: Clearance, nearest: Nearest) -> "Witness":
-        """The witness of what was found."""
+        """Return the witness of what was found."""
         poses = [
             clearance.pose(nearest.pair, zero, nearest.moment, nearest.share) for zero in (np.zeros(3), *np.eye(3))
         ]
@@ -61,7 +61,7 @@ class Witness:
         return np.asarray(self.nearest.pair.weight * np.maximum(gaps - self.nearest.inside, 0.0))
 
     def floor(self, zero: Floats) -> Plane:
-        """A plane below their distance at any zero, which it touches at this one, (3,)."""
+        """Return a plane below their distance at any zero, which it touches at this one, (3,)."""
         pose = self.pose.copy()
         pose[:3, 3] += self.shift @ zero
         direction = np.array([0.0, 0.0, 1.0])
@@ -72,7 +72,9 @@ class Witness:
         return Plane(zero, weight * (low - self.nearest.inside), weight * (self.shift.T @ direction))
 
     def ceiling(self, zero: Floats, low: Floats, high: Floats) -> tuple[Plane, Floats]:
-        """A plane above their distance in a cell, and how far the distance bends up along each side of it, (3,)."""
+        """Return a plane above their distance in a cell, and how far the distance bends up along each side of
+        it, (3,).
+        """
         floor = self.floor(zero)
         ends = np.concatenate((low + _CORNERS * (high - low), np.tile(zero, (6, 1))))
         for k in range(3):

@@ -151,7 +151,7 @@ def _solid(guarded: Guarded) -> Solid:
 
 
 def piece_pairs(pair: GuardedPair) -> Iterator[tuple[HullPiece, HullPiece]]:
-    """The pieces of a pair that are held against each other."""
+    """Return the pieces of a pair that are held against each other."""
     return product(pair.one.pieces, pair.other.pieces)
 
 

@@ -51,7 +51,9 @@ class PathSamples:
         return len(self.row)
 
     def some(self, count: int, rows: Ints) -> "PathSamples":
-        """Some of them, and those of certain rows, without ways between: what is found there holds, but is not all."""
+        """Return some of them, and those of certain rows, without ways between: what is found there holds, but is not
+        all.
+        """
         keep = np.isin(self.row, rows)
         keep[:: max(1, len(self) // count)] = True
         which = np.flatnonzero(keep)
@@ -82,7 +84,7 @@ class PathSamples:
 def path_samples(
     machine: Machine, rows: PathRows, positions: Floats, tool: Ints, lengths: Mapping[int, float]
 ) -> PathSamples:
-    """The moments of a path.
+    """Return the moments of a path.
 
     Parameters
     ----------

@@ -91,7 +91,7 @@ class FarthestSearch:
         self.bound = ENOUGH
 
     def search(self, known: float) -> FarthestPlace | None:
-        """The best place, if it is better than a distance that is ``known``, mm, by more than the tolerance."""
+        """Return the best place, if it is better than a distance that is ``known``, mm, by more than the tolerance."""
         order = count()
         heap = [(-ENOUGH, next(order), _Cell(*self._extent()))]
         while heap and self._programs < _MOST_PROGRAMS and -heap[0][0] > self._enough(known):
@@ -136,7 +136,7 @@ class FarthestSearch:
         return best
 
     def _with_margin(self, floors: list[Plane], wanted: float) -> Floats:
-        """The place with the largest margin at which all floors are at a height, (3,)."""
+        """Return the place with the largest margin at which all floors are at a height, (3,)."""
         ranges = [(-1e5, 1e5)] * 3 + [(None, ENOUGH)]
         while True:
             normals, bounds, slides = self._cuts.table()
@@ -149,12 +149,12 @@ class FarthestSearch:
                 return np.asarray(solved.x[:3])
 
     def _enough(self, known: float) -> float:
-        """A cell with no greater bound holds nothing better."""
+        """Return a cell with no greater bound holds nothing better."""
         least = known if self._best is None else self._best[1].distance
         return least + tolerance(least)
 
     def _bounded(self, cell: _Cell, bound: float, known: float) -> Iterator[tuple[_Cell, float]]:
-        """The halves of a cell with their bound, unless nothing better is in it."""
+        """Yield the halves of a cell with their bound, unless nothing better is in it."""
         planes, bends = [], np.zeros(3)
         for witness, at in cell.witnesses:
             plane, _ = witness.ceiling(np.clip(at, cell.low, cell.high), cell.low, cell.high)
@@ -204,7 +204,7 @@ class FarthestSearch:
         return asked, whole
 
     def _highest(self, cell: _Cell, planes: list[Plane]) -> tuple[Floats, float]:
-        """The place of a cell (3,) that is highest under all planes, and its height."""
+        """Return the place of a cell (3,) that is highest under all planes, and its height."""
         ranges = [*zip(cell.low.tolist(), cell.high.tolist(), strict=True), (None, self._cap)]
         while True:
             normals, bounds, slides = self._cuts.table()
@@ -218,7 +218,7 @@ class FarthestSearch:
                 return zero, float(solved.x[3])
 
     def _extent(self) -> tuple[Floats, Floats]:
-        """The least box around all places, (3,) each."""
+        """Return the least box around all places, (3,) each."""
         whole = _Cell(self._start - FARTHEST, self._start + FARTHEST)
         low, high = whole.low.copy(), whole.high.copy()
         for k in range(3):

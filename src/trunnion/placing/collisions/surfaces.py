@@ -51,7 +51,9 @@ class SurfacePair:
 
     @staticmethod
     def depth_inside(one: TriangleMesh, other: TriangleMesh, pose: Floats) -> tuple[Floats, Floats, float] | None:
-        """A point of one body that is inside of another, in the frame of either, (1, 3), and how deep, mm; or None."""
+        """Return a point of one body that is inside of another, in the frame of either, (1, 3), and how deep, mm; or
+        None.
+        """
         point = one.vertices[:1] @ pose[:3, :3].T + pose[:3, 3]
         if (depth := _depth(point, other)) > 0.0:
             return one.vertices[:1], point, depth

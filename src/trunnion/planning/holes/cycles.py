@@ -128,7 +128,7 @@ class SpindleStates:
                 self._states.append(SpindleState(event.rpm, event.sense) if isinstance(event, SpindleOn) else None)
 
     def at(self, row: int) -> SpindleState | None:
-        """The spindle at a row; None: it stands still."""
+        """Return the spindle at a row; None: it stands still."""
         return self._states[bisect_right(self._rows, row)]
 
     def changes_between(self, first: int, end: int) -> list[int]:
@@ -174,7 +174,7 @@ def cycle_from_event(event: CycleOn) -> Cycle:
 
 
 def cycle_feed(cycle: Cycle, spindle: SpindleState | None, modal: float, modal_per_rev: bool) -> tuple[float, bool]:
-    """The feed in force in a cycle, and whether it is per revolution: the cycle's own, or else the modal one.
+    """Return the feed in force in a cycle, and whether it is per revolution: the cycle's own, or else the modal one.
 
     A tap's feed per revolution is returned per minute if the speed of the spindle is known.
     """
@@ -199,7 +199,7 @@ def _method(mode: tuple[str, ...], words: Mapping[str, str]) -> HoleMethod:
 
 
 def _first(values: Mapping[str, tuple[float, ...]], word: str, default: float) -> float:
-    """The first number after a word."""
+    """Return the first number after a word."""
     given = values.get(word)
     return given[0] if given else default
 

@@ -16,7 +16,8 @@ from trunnion.planning.holes.operations import cycle_row_ranges
 
 
 def hole_ends(operation: Operation) -> tuple[Ints, Floats]:
-    """The rows of m holes, and their ends, (2, m, 3) mm: the bottoms, and the points from which the tool goes on.
+    """Return the rows of m holes, and their ends, (2, m, 3) mm: the bottoms, and the points from which the tool goes
+    on.
 
     Cycles that cannot be read are left to the writer's checks.
     """

@@ -156,7 +156,7 @@ def convert_holes_to_motion(operation: Operation, conditions: HoleConditions) ->
 
 
 def _holes(operation: Operation, conditions: HoleConditions) -> Iterator[_Holes]:
-    """The holes of an operation, cycle by cycle. Cycles that cannot be read are left to the writer's checks."""
+    """Yield the holes of an operation, cycle by cycle. Cycles that cannot be read are left to the writer's checks."""
     spindles = SpindleStates(operation.events, conditions.spindle)
     for event, end in cycle_row_ranges(operation):
         try:
@@ -203,7 +203,7 @@ class _Rows:
 
 
 def _rows_of(operation: Operation, holes: _Holes, before: Floats, from_home: Flags) -> _Rows:
-    """The rows of holes; ``before`` (n, 3): where the tip is before each row of the operation."""
+    """Return the rows of holes; ``before`` (n, 3): where the tip is before each row of the operation."""
     cycle, moves, rows = holes.cycle, operation.moves, holes.rows
     feed, per_rev = cycle_feed(cycle, holes.spindle, float(moves.feed[holes.first]), bool(moves.per_rev[holes.first]))
     motions = _checked_motions(holes, feed)
@@ -228,7 +228,7 @@ def _rows_of(operation: Operation, holes: _Holes, before: Floats, from_home: Fla
 
 
 def _checked_motions(holes: _Holes, feed: float) -> HoleMotions:
-    """The motions in a hole. Raises ``HoleCycleError``, with the line, if the cycle leaves out something."""
+    """Return the motions in a hole. Raises ``HoleCycleError``, with the line, if the cycle leaves out something."""
     try:
         motions = hole_motions(holes.cycle)
         if not feed > 0.0:
@@ -245,7 +245,7 @@ def _checked_motions(holes: _Holes, feed: float) -> HoleMotions:
 def _with_rows(
     operation: Operation, converted: Sequence[_Holes], rows: Sequence[_Rows], copies: Ints, first_rows: Ints
 ) -> Operation:
-    """The operation with all new rows; each old row becomes ``copies`` (n,) new ones from ``first_rows`` on."""
+    """Return the operation with all new rows; each old row becomes ``copies`` (n,) new ones from ``first_rows`` on."""
     moves = operation.moves
     tip, kind = np.repeat(moves.tip, copies, axis=0), np.repeat(moves.kind, copies)
     feed, per_rev = np.repeat(moves.feed, copies), np.repeat(moves.per_rev, copies)
@@ -279,7 +279,7 @@ def _events_at_bottom(holes: _Holes, after: Ints, end: Ints) -> Iterator[Event]:
 
 
 def _without_cycles(operation: Operation, converted: Sequence[_Holes]) -> Operation:
-    """The operation without the events that begin and end the converted cycles."""
+    """Return the operation without the events that begin and end the converted cycles."""
     removed = {id(holes.event) for holes in converted}
     events: list[Event] = []
     in_removed = False

@@ -92,7 +92,7 @@ def _with_retract_distance(operation: Operation, event: CycleOn) -> CycleOn:
 
 
 def cycle_row_ranges(operation: Operation) -> Iterator[tuple[CycleOn, int]]:
-    """The cycles of a normalized operation, each with the row after its last hole."""
+    """Yield the cycles of a normalized operation, each with the row after its last hole."""
     cycle: CycleOn | None = None
     for event in operation.events:
         if isinstance(event, CycleOn | CycleOff) and cycle is not None:

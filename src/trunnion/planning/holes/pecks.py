@@ -31,7 +31,7 @@ class HoleMotions:
 
 
 def hole_motions(cycle: Cycle) -> HoleMotions:
-    """The motions of a cycle whose retract height is known.
+    """Return the motions of a cycle whose retract height is known.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def hole_motions(cycle: Cycle) -> HoleMotions:
 
 
 def peck_depths(cycle: Cycle) -> list[float]:
-    """The depths below the point of the hole, mm, at which the pecks end.
+    """Return the depths below the point of the hole, mm, at which the pecks end.
 
     Raises
     ------

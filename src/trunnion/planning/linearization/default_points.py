@@ -175,7 +175,7 @@ def _through_pole(machine: Machine, moves: Moves, positions: Floats, row: int, t
 def _divided(
     machine: Machine, moves: Moves, positions: Floats, divisible: Flags, added: list[_Added], tolerance: float
 ) -> DividedPath:
-    """The path with added rows, and with the points that it then needs."""
+    """Return the path with added rows, and with the points that it then needs."""
     before = np.array([each.row for each in added], np.int64)
     source = np.insert(np.arange(len(moves)), before, before)
     tip, axis, rotary = moves.tip, moves.axis, positions

@@ -99,7 +99,7 @@ def divide_rows(
 
 @inner
 def _leg_branch(kinematics: KinematicParameters, second_before: float, second: float) -> int:
-    """The branch of a leg between these second angles, degrees; -1 if it has none of its own.
+    """Return the branch of a leg between these second angles, degrees; -1 if it has none of its own.
 
     From a pole on it is the branch of the end.
     """
@@ -195,7 +195,7 @@ def _longest_step(
     here: Floats,
     work: Floats2,
 ) -> float:
-    """The longest step from ``done`` on that keeps the tolerances, as a part of the leg; 0.0 if none does.
+    """Return the longest step from ``done`` on that keeps the tolerances, as a part of the leg; 0.0 if none does.
 
     ``here`` becomes its end. The error of a span grows nearly with the square of its length, which gives the next try,
     between the longest step that keeps the tolerances and the shortest one that does not.
@@ -235,7 +235,7 @@ def _pieces_in_place(
     part: float,
     work: Floats2,
 ) -> int:
-    """The number of pieces into which a turn in place is cut."""
+    """Return the number of pieces into which a turn in place is cut."""
     joints, tip, rotary = np.empty(5), np.empty(3), np.empty(2)
     for k in range(3):
         tip[k] = leg.tips[0, k] + part * (leg.tips[1, k] - leg.tips[0, k])

@@ -48,7 +48,7 @@ class Leg(NamedTuple):
 
 @inner
 def branch_of(kinematics: KinematicParameters, second: float) -> int:
-    """The branch with this second angle, degrees; -1 where both branches are one."""
+    """Return the branch with this second angle, degrees; -1 where both branches are one."""
     angle = math.radians(second)
     sine = math.sin(angle) * kinematics.phase[0] + math.cos(angle) * kinematics.phase[1]
     return -1 if abs(sine) < _SAME_BRANCH_SINE else 0 if sine > 0.0 else 1
@@ -102,7 +102,7 @@ def axis_values_on_leg(
 
 @inner
 def nearest_turn(angle: float, near: float) -> float:
-    """An angle with the whole turns that bring it nearest to another one, degrees."""
+    """Return an angle with the whole turns that bring it nearest to another one, degrees."""
     turned: float = angle + 360.0 * math.floor((near - angle) / 360.0 + 0.5)
     return turned
 

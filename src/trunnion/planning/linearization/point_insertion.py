@@ -100,14 +100,14 @@ def linearize(file: str, motion: Motion, request: PlanRequest) -> LinearizedMoti
 
 
 def _with_cl_rows(motion: Motion, source: Ints) -> Motion:
-    """The motion with the CL rows of its rows ``source`` (n,)."""
+    """Return the motion with the CL rows of its rows ``source`` (n,)."""
     return motion if motion.cl_rows is None else replace(motion, cl_rows=motion.cl_rows[source])
 
 
 def _with_points(
     file: str, motion: Motion, operation: Operation, machine: Machine, path: DividedPath, problems: list[Problem]
 ) -> LinearizedMotion:
-    """The motion along a path with points between the rows of its ``operation``."""
+    """Return the motion along a path with points between the rows of its ``operation``."""
     copies = np.bincount(path.source, minlength=len(operation.moves))
     problems += _limit_problems(file, operation, machine, path)
     linearized = replace(
@@ -173,7 +173,7 @@ def _decisions(file: str, operation: Operation, copies: Ints) -> Iterable[Decisi
 
 
 def _bend_problems(file: str, operation: Operation, rows: Ints, options: PlanOptions) -> Iterable[Problem]:
-    """Steps of a cut through the pole in which no point keeps the tool axis within its tolerance."""
+    """Yield steps of a cut through the pole in which no point keeps the tool axis within its tolerance."""
     for row in rows[:_NAMED].tolist():
         yield Problem(
             file,
@@ -185,7 +185,7 @@ def _bend_problems(file: str, operation: Operation, rows: Ints, options: PlanOpt
 
 
 def _limit_problems(file: str, operation: Operation, machine: Machine, path: DividedPath) -> Iterable[Problem]:
-    """Inserted points at which an axis is beyond its limits, if it is not so at the rows around them."""
+    """Yield inserted points at which an axis is beyond its limits, if it is not so at the rows around them."""
     source = path.source
     added = np.flatnonzero(np.append(source[1:] == source[:-1], False))
     limits = limits_of(machine, machine.workpiece_zero is not None)

@@ -39,7 +39,7 @@ class RotaryMotion:
 
 
 def rotary_motion(machine: Machine, moves: Moves, rotary: Floats) -> RotaryMotion:
-    """The motion between displayed positions (n, 2), degrees."""
+    """Return the motion between displayed positions (n, 2), degrees."""
     positions = continuous_positions(machine, rotary)
     branch = branches_of_rows(machine, positions)
     positions, off_path = _follow_great_circle(machine, moves.axis, positions, branch)

@@ -9,7 +9,7 @@ from trunnion.model.toolpath import Moves, Operation
 
 
 def insert_rows(operation: Operation, copies: Ints, tip: Floats, axis: Floats, kind: Codes) -> Operation:
-    """The operation with ``copies`` (n,) rows in place of each row, of which the last is the row itself.
+    """Return the operation with ``copies`` (n,) rows in place of each row, of which the last is the row itself.
 
     ``tip`` (m, 3) mm, ``axis`` (m, 3) unit vectors, both in the operation's system, and ``kind`` (m,) are the columns
     of all rows of the result. New rows copy everything else from the row that they lead to, except the surface normal,

@@ -19,7 +19,9 @@ _NO_MOTION: Final = 1e-9
 def keep_slide_arcs(
     machine: Machine, operation: Operation, rotary: Floats, chord_tolerance: float
 ) -> tuple[Operation, Ints]:
-    """The operation with lines for arcs that X and Y alone do not make, and the row from which each row comes, (n,)."""
+    """Return the operation with lines for arcs that X and Y alone do not make, and the row from which each row comes,
+    (n,).
+    """
     arcs = operation.arcs
     if not len(arcs.row):
         return operation, np.arange(len(operation.moves))

@@ -19,7 +19,7 @@ _SAME_POINT: Final = 1e-6
 
 
 def with_splines_kept(operation: Operation, mode: MachiningMode, capabilities: ControlCapabilities) -> Operation:
-    """The operation with the splines that can be written as such.
+    """Return the operation with the splines that can be written as such.
 
     Only the tip of a tool that stands along +Z follows a spline for certain: with TCP, without it and in a tilted plane
     they become lines, and so they do beside holes and under radius compensation.

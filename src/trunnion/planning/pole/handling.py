@@ -66,7 +66,7 @@ def handle_pole(prepared: PreparedOperation, poses: PlannedPoses) -> PoleResult:
 
 
 def sufficient_setting(prepared: PreparedOperation, poses: PlannedPoses, angle: float) -> Wording | str:
-    """What to set if a lean of ``angle`` degrees is not enough, as the cure of a message.
+    """Return what to set if a lean of ``angle`` degrees is not enough, as the cure of a message.
 
     Without the lower feeds of ``lower_feed`` where all feeds are lowered anyway; then empty if nothing else helps.
     """

@@ -35,7 +35,7 @@ class LeanTask:
 
     @staticmethod
     def of(machine: Machine, operation: Operation, fixed: Flags, angle: float, keep_slide_limits: bool) -> "LeanTask":
-        """The task for an operation in the program's coordinate system; fields as in the class."""
+        """Return the task for an operation in the program's coordinate system; fields as in the class."""
         max_step, unbound = max_rotary_steps(machine, operation)
         kinematics = kinematic_parameters(machine)
         return LeanTask(machine, kinematics, operation.moves, max_step, unbound, fixed, angle, keep_slide_limits)

@@ -40,7 +40,7 @@ def find_passages(task: LeanTask, too_fast: Flags, angle: float) -> list[PolePas
 
 
 def remaining_passages(passages: Sequence[PolePassage], too_fast: Flags, solved: Flags) -> Iterator[PolePassage]:
-    """The rows that are not ``solved`` (n,) of passages in which a step is still ``too_fast`` (n,)."""
+    """Yield the rows that are not ``solved`` (n,) of passages in which a step is still ``too_fast`` (n,)."""
     for passage in passages:
         if too_fast[passage.first : passage.end + 1].any():
             edges = np.flatnonzero(np.diff(~solved[passage.rows], prepend=False, append=False))

@@ -64,7 +64,7 @@ def limit_speed(
 
 
 def _unsolved_region(too_fast: Flags, passages: Sequence[PolePassage], first: int, end: int) -> PoleRegion:
-    """The rows from ``first`` to ``end`` that are too fast, with the passages around them."""
+    """Return the rows from ``first`` to ``end`` that are too fast, with the passages around them."""
     rows = first + np.flatnonzero(too_fast[first:end])
     around = [p for p in passages if first <= p.first < end and too_fast[p.first : p.end + 1].any()]
     start = min([int(rows[0]), *(passage.first for passage in around)])

@@ -86,7 +86,9 @@ def lean_tool_axis(task: LeanTask, poses: PlannedPoses, strategy: PoleStrategy) 
 
 
 def _lean_to_other_branch(task: LeanTask, poses: PlannedPoses, too_fast: Flags) -> _LeanedPath | None:
-    """A path that changes to the other branch at the pole or, in wider cones, farther from it; None if none solves."""
+    """Return a path that changes to the other branch at the pole or, in wider cones, farther from it; None if none
+    solves.
+    """
     for factor in _CONE_FACTORS:
         passages = find_passages(task, too_fast, factor * task.angle)
         if not passages:

@@ -34,19 +34,19 @@ class ChosenPoses:
     keep_slide_limits: bool
 
     def branch(self, rows: int | Ints) -> Ints:
-        """The branch of a row, or of several."""
+        """Return the branch of a row, or of several."""
         return np.asarray(states_of(self.machine).table[self.state[rows] & STATE_BITS, 0])
 
     def limit_ahead(self, row: int, branch: int, pose: Floats) -> LimitHit | None:
-        """The first limit left from ``row`` on if the axes go on from ``pose`` (2,), degrees, in ``branch``."""
+        """Return the first limit left from ``row`` on if the axes go on from ``pose`` (2,), degrees, in ``branch``."""
         return first_limit_hit(self.machine, self.operation.moves, row, branch, pose, self.keep_slide_limits)
 
     def describe(self, pose: Floats) -> str:
-        """A pose (2,) as text, such as ``C 10.000 B 40.000``."""
+        """Return a pose (2,) as text, such as ``C 10.000 B 40.000``."""
         return describe_pose(self.machine, pose)
 
     def decision(self, row: int, topic: DecisionTopic, text: str) -> Decision:
-        """A decision about a row; -1: about the whole operation."""
+        """Return a decision about a row; -1: about the whole operation."""
         line = int(self.operation.moves.line[max(row, 0)])
         return Decision(self.file, self.operation.name, line, row, topic, text)
 
@@ -98,7 +98,7 @@ def _at_pole(chosen: ChosenPoses, rows: Ints) -> Flags:
 
 
 def pose_decisions(chosen: ChosenPoses, changes: Ints, rewinds: dict[int, str]) -> list[Decision]:
-    """The log: start, changes, and a comparison with the nearest neighbour.
+    """Return the log: start, changes, and a comparison with the nearest neighbour.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def pose_decisions(chosen: ChosenPoses, changes: Ints, rewinds: dict[int, str]) 
 
 
 def _start(chosen: ChosenPoses) -> Decision:
-    """The first pose, and why it is not the one nearest to home."""
+    """Return the first pose, and why it is not the one nearest to home."""
     machine, moves = chosen.machine, chosen.operation.moves
     text = f"starts at {chosen.describe(chosen.rotary[0])}"
     nearest = _nearest_neighbour(_rows(chosen, slice(0, 1)))
@@ -135,13 +135,13 @@ def _start(chosen: ChosenPoses) -> Decision:
 
 
 def _rows(chosen: ChosenPoses, rows: slice) -> ChosenPoses:
-    """Some rows of an operation by themselves."""
+    """Return some rows of an operation by themselves."""
     operation = replace(chosen.operation, moves=chosen.operation.moves.select(rows))
     return replace(chosen, operation=operation, rotary=chosen.rotary[rows], state=chosen.state[rows])
 
 
 def _nearest_neighbour(chosen: ChosenPoses) -> ChosenPoses:
-    """The same operation with the nearest pose from row to row."""
+    """Return the same operation with the nearest pose from row to row."""
     machine, moves, keep = chosen.machine, chosen.operation.moves, chosen.keep_slide_limits
     state = choose_nearest_states(machine, moves, keep)
     return replace(chosen, rotary=poses_of_states(machine, moves, state, keep).rotary, state=state)
@@ -170,7 +170,7 @@ def _change(chosen: ChosenPoses, row: int, rewinds: dict[int, str]) -> Decision:
 
 
 def _comparison(chosen: ChosenPoses) -> Decision:
-    """What the nearest neighbour would have done."""
+    """Return what the nearest neighbour would have done."""
     nearest = _nearest_neighbour(chosen)
     count = int((chosen.state & REWIND_STEP != 0).sum())
     text = (

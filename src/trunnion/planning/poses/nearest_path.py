@@ -194,7 +194,7 @@ def _turns_half_way(space: SearchSpace, solution: RotarySolution, last_1: float,
 
 @inner
 def _state_index(space: SearchSpace, branch: int, solution: RotarySolution, value_1: float, value_2: float) -> int:
-    """The state with these rotary values; -1 if there is none with as many turns."""
+    """Return the state with these rotary values; -1 if there is none with as many turns."""
     index = branch
     low_1, count_1, low_2, count_2 = space.turn_ranges
     if count_1:

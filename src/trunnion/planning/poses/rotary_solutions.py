@@ -23,14 +23,14 @@ RotarySolution: TypeAlias = tuple[float, float, float, float, float, float]
 
 @inner
 def branch_solution(kinematics: KinematicParameters, tilt: Tilt, branch: int) -> RotarySolution:
-    """The solution of a tilt in a branch."""
+    """Return the solution of a tilt in a branch."""
     status, u0, u1, cos, sin = tilt
     return branch_angles(kinematics, u0, u1, cos, sin if branch == 0 else -sin, status)
 
 
 @inner
 def with_first_angle(kinematics: KinematicParameters, solution: RotarySolution, first: float) -> RotarySolution:
-    """A solution in the pole, where the first angle is free, with that angle."""
+    """Return a solution in the pole, where the first angle is free, with that angle."""
     _, second, _, _, cos_2, sin_2 = solution
     angle = math.radians(first)
     return first, second, math.cos(angle), kinematics.sense_1 * math.sin(angle), cos_2, sin_2
@@ -38,7 +38,7 @@ def with_first_angle(kinematics: KinematicParameters, solution: RotarySolution, 
 
 @inner
 def first_angle(kinematics: KinematicParameters, i: float, j: float, k: float, branch: int) -> float:
-    """The first angle under a tool axis off the pole, in a branch."""
+    """Return the first angle under a tool axis off the pole, in a branch."""
     return branch_solution(kinematics, solve_tilt(kinematics, i, j, k), branch)[0]
 
 
@@ -50,13 +50,15 @@ def is_beyond(value: float, low: float, high: float) -> bool:
 
 @inner
 def principal_angle(value: float) -> float:
-    """A value without its whole turns, in [-180, 180]."""
+    """Return a value without its whole turns, in [-180, 180]."""
     turns: float = np.rint(value / 360.0)
     return value - 360.0 * turns
 
 
 @inner
 def with_turns(angle: float, turn: int, endless: bool, last: float) -> float:
-    """An angle with the whole turns of its state, or for an endless axis with those nearest to the last value."""
+    """Return an angle with the whole turns of its state, or for an endless axis with those nearest to the last
+    value.
+    """
     turns: float = np.rint((last - angle) / 360.0) if endless else turn
     return angle + 360.0 * turns

@@ -65,7 +65,7 @@ class Workspace(NamedTuple):
 
 
 def workspace(states: int) -> Workspace:
-    """An empty workspace for a number of states."""
+    """Return an empty workspace for a number of states."""
     return Workspace(
         cost=np.full((2, states), np.inf),
         counts=np.zeros((2, 2, states), np.int64),
@@ -172,7 +172,7 @@ def open_states(
 
 @inlined
 def branch_steps(angle: Floats3, step: Floats3, turn_jump: Ints3, branch_status: Ints2) -> None:
-    """The steps from branch to branch, the shorter way, where both have open states."""
+    """Fill in the steps from branch to branch, the shorter way, where both have open states."""
     for a in range(2):
         for b in range(2):
             if not (branch_status[a, WAS_OPEN] and branch_status[b, IS_OPEN]):
@@ -200,7 +200,7 @@ def travel_from_start(space: SearchSpace, states: Ints2, angle: Floats3, t: int)
 def rotary_step(
     space: SearchSpace, states: Ints2, step: Floats3, turn_jump: Ints3, s: int, t: int
 ) -> tuple[float, float, bool]:
-    """The step of both rotary axes from state ``s`` to ``t``, degrees, and whether both take the shorter way."""
+    """Return the step of both rotary axes from state ``s`` to ``t``, degrees, and whether both take the shorter way."""
     a, b = states[s, 0], states[t, 0]
     one, two, turns = step[a, b, 0], step[a, b, 1], 0
     if space.turn_ranges[1]:

@@ -37,7 +37,7 @@ class SearchSpace(NamedTuple):
 
 
 def search_space_of(machine: Machine, keep_slide_limits: bool) -> SearchSpace:
-    """The search space of a machine; limits of slides count only with ``keep_slide_limits``."""
+    """Return the search space of a machine; limits of slides count only with ``keep_slide_limits``."""
     low, high = limits_of(machine, keep_slide_limits)
     slides = list(machine.linear)
     states, phase = states_of(machine), kinematic_parameters(machine).phase

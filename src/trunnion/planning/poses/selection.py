@@ -172,7 +172,7 @@ def branches_travel_alike(machine: Machine) -> bool:
 
 
 def poses_of_states(machine: Machine, moves: Moves, state: Codes, keep_slide_limits: bool) -> PlannedPoses:
-    """The poses for states (n,) uint8 of ``choose_states``."""
+    """Return the poses for states (n,) uint8 of ``choose_states``."""
     kinematics, space = kinematic_parameters(machine), search_space_of(machine, keep_slide_limits)
     poses = PlannedPoses.empty(state)
     place_rows(kinematics, space, moves.tip, moves.axis, state, poses.columns)

@@ -102,6 +102,6 @@ def _count(spans: list[tuple[int, int]]) -> int:
 
 
 def _narrower(low: int, count: int, home: float) -> tuple[int, int]:
-    """The same range without the turn at the end farther from home."""
+    """Return the same range without the turn at the end farther from home."""
     above = low + count - 1 - home / 360.0
     return (low, count - 1) if above >= home / 360.0 - low else (low + 1, count - 1)

@@ -78,7 +78,7 @@ class Rewind:
         return np.asarray(moves.tip[self.row - 1] + self.distance * moves.axis[self.row - 1])
 
     def rows(self, reengage_feed_share: float) -> list[_Row]:
-        """The rows that are added."""
+        """Return the rows that are added."""
         far, near = self.distance, _NEAR_CUT
         turn = _Row(far, Kind.RAPID, Phase.TRAVERSE, 1.0, turned=True)
         back = _Row(0.0, Kind.LINEAR, Phase.ENGAGE, reengage_feed_share, turned=True)
@@ -113,7 +113,7 @@ class Rewind:
 def find_rewinds(
     chosen: ChosenPoses, poses: PlannedPoses, clearance: Clearance, *, at_rapid: bool
 ) -> tuple[Rewind, ...]:
-    """The rewinds that the chosen poses need, each with the limit that makes it necessary.
+    """Return the rewinds that the chosen poses need, each with the limit that makes it necessary.
 
     ``at_rapid``: rapids are straight, so that the tool may move at rapid away from the cut.
     """
@@ -130,7 +130,7 @@ def find_rewinds(
 
 
 def _rewind_at(machine: Machine, moves: Moves, row: int, branch: int, rotary: Floats, clearance: Clearance) -> Rewind:
-    """The rewind before a row whose pose is in ``branch``; ``rotary`` (n, 2) displayed, degrees."""
+    """Return the rewind before a row whose pose is in ``branch``; ``rotary`` (n, 2) displayed, degrees."""
     after = displayed_positions(machine, continue_in_branch(machine, moves, slice(row - 1, row), branch, rotary[row]))
     low, high = machine.limits[list(machine.rotary)].T
     distance = clearance.retract_distance(moves.tip[row - 1], moves.axis[row - 1])
@@ -173,7 +173,7 @@ def is_radius_compensated(operation: Operation, row: int) -> bool:
 def insert_rewinds(
     operation: Operation, rotary: Floats, rewinds: Sequence[Rewind], reengage_feed_share: float
 ) -> tuple[Operation, Floats]:
-    """The operation and its rotary positions (n, 2), degrees, with the rows of all rewinds."""
+    """Return the operation and its rotary positions (n, 2), degrees, with the rows of all rewinds."""
     if not rewinds:
         return operation, rotary
     added = [rewind.rows(reengage_feed_share) for rewind in rewinds]
@@ -197,12 +197,12 @@ def insert_rewinds(
 
 
 def row_after_rewinds(row: int, rewinds: Sequence[Rewind]) -> int:
-    """The index of a row of the operation once the rows of all rewinds are in."""
+    """Return the index of a row of the operation once the rows of all rewinds are in."""
     return int(_new_row(rewinds, row))
 
 
 def rows_with_rewinds(rows: Ints, rewinds: Sequence[Rewind]) -> Ints:
-    """A column of row numbers, (n,), with -1 at the rows of all rewinds."""
+    """Return a column of row numbers, (n,), with -1 at the rows of all rewinds."""
     return np.asarray(np.insert(rows, np.repeat(_rows(rewinds), [len(one.rows(1.0)) for one in rewinds]), -1))
 
 

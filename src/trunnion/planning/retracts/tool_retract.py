@@ -46,7 +46,7 @@ def with_tool_retract(motion: Motion, distance: float) -> Motion:
 
 
 def _joined(first: Moves, second: Moves) -> Moves:
-    """The rows of both."""
+    """Return the rows of both."""
     normal = None if first.normal is None or second.normal is None else np.concatenate((first.normal, second.normal))
     return Moves(
         np.concatenate((first.tip, second.tip)),

@@ -21,12 +21,12 @@ class Preconditions:
             self._unmet[key] = fault, code
 
     def meet(self, key: str) -> None:
-        """The program has said what was required."""
+        """Note that the program has said what was required."""
         self._unmet.pop(key, None)
         self._reported.discard(key)
 
     def report_motion(self) -> None:
-        """The tool moves at the part: report everything that is not met."""
+        """Report everything that is not met when the tool moves at the part."""
         for fault, code in self._unmet.values():
             self._note(fault, Severity.ERROR, code)
         self._reported.update(self._unmet)

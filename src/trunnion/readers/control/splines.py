@@ -30,7 +30,9 @@ class SplineError(Exception):
 
 
 def polynomial_spline(coefficients: Floats, interval: float) -> Spline:
-    """The spline of polynomials: ``coefficients`` (d + 1, 3) of the powers of a parameter from 0 to ``interval``."""
+    """Return the spline of polynomials: ``coefficients`` (d + 1, 3) of the powers of a parameter from 0 to
+    ``interval``.
+    """
     degree = len(coefficients) - 1
     powers = coefficients * interval ** np.arange(degree + 1)[:, None]
     poles = [

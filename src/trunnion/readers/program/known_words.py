@@ -119,7 +119,7 @@ def _read(table: Table, is_own_word: Callable[[str], bool] | None) -> tuple[Know
 
 
 def _first_path(table: dict[str, object]) -> list[str]:
-    """The keys to the first value in a table of tables."""
+    """Return the keys to the first value in a table of tables."""
     path: list[str] = []
     inner: object = table
     while isinstance(inner, dict) and inner:

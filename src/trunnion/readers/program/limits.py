@@ -122,11 +122,11 @@ class StepCounter:
             raise self._fail(f"makes more than {most} turns in helices", _DOES_LESS)
 
     def _lines(self) -> int:
-        """The lines of all files, as far as they are known."""
+        """Return the lines of all files, as far as they are known."""
         return sum(source.known_lines for source in self._sources())
 
     def _blocks_of_files(self) -> int:
-        """The blocks of going once through each file."""
+        """Return the blocks of going once through each file."""
         return self._lines() + sum(source.size // CHARACTERS_PER_STEP for source in self._sources())
 
     def _check_circles(self) -> None:

@@ -96,7 +96,7 @@ def read_word_meanings(
 
 
 def _code(text: str) -> tuple[str, int] | None:
-    """The letter and number of a word, of G in tenths."""
+    """Return the letter and number of a word, of G in tenths."""
     match = _WORD.fullmatch(text)
     if match is None:
         return None

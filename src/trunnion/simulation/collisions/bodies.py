@@ -175,7 +175,7 @@ def _mesh(body: MachineBody, warn: Callable[[Problem], None] | None) -> Triangle
 
 
 def _file_beside(shape: BodyFile) -> Path:
-    """The file of a mesh; a link must not lead out of the folder of the definition."""
+    """Return the file of a mesh; a link must not lead out of the folder of the definition."""
     definition = Path(shape.of)
     path = definition.parent / shape.file
     if not definition.is_file():
@@ -188,7 +188,7 @@ def _file_beside(shape: BodyFile) -> Path:
 
 
 def _turn(degrees: tuple[float, float, float]) -> Floats:
-    """The rotation about X, then Y, then Z, (3, 3)."""
+    """Return the rotation about X, then Y, then Z, (3, 3)."""
     a, b, c = (math.radians(angle) for angle in degrees)
     x = np.array([[1.0, 0.0, 0.0], [0.0, math.cos(a), -math.sin(a)], [0.0, math.sin(a), math.cos(a)]])
     y = np.array([[math.cos(b), 0.0, math.sin(b)], [0.0, 1.0, 0.0], [-math.sin(b), 0.0, math.cos(b)]])
@@ -197,7 +197,7 @@ def _turn(degrees: tuple[float, float, float]) -> Floats:
 
 
 def _turned_to(direction: Floats) -> Floats:
-    """A rotation that takes Z to a unit vector, (3, 3)."""
+    """Return a rotation that takes Z to a unit vector, (3, 3)."""
     other = np.eye(3)[int(np.argmin(np.abs(direction)))]
     x = np.cross(other, direction)
     x /= np.linalg.norm(x)
@@ -217,7 +217,7 @@ def section_outline(section: Section) -> Floats:
 
 
 def _chords(element: Element) -> list[tuple[float, float]]:
-    """The ends of the straight pieces of an element, after its start; those of an arc stand outside of it."""
+    """Return the ends of the straight pieces of an element, after its start; those of an arc stand outside of it."""
     if not isinstance(element, ProfileArc):
         return [element.end]
     (x0, z0), (x1, z1), (x, z) = element.start, element.end, element.centre

@@ -83,7 +83,7 @@ def _pieces_of_part(part: TriangleMesh) -> Iterator[HullPiece]:
 
 
 def _parts(mesh: TriangleMesh) -> Iterator[TriangleMesh]:
-    """The parts of a mesh that hang together; corners at one place are one."""
+    """Yield the parts of a mesh that hang together; corners at one place are one."""
     sparse = import_extra("scipy.sparse", "place")
     places, own = np.unique(np.round(mesh.vertices, 6), axis=0, return_inverse=True)
     faces = own.reshape(-1)[mesh.faces]
@@ -101,7 +101,7 @@ def _some_faces(mesh: TriangleMesh, faces: Ints) -> TriangleMesh:
 
 
 def _face_groups(part: TriangleMesh) -> Iterator[Ints]:
-    """The flat faces of a part if they are few, each with all its triangles; else triangles that lie together."""
+    """Yield the flat faces of a part if they are few, each with all its triangles; else triangles that lie together."""
     corners = part.vertices[part.faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     size = np.linalg.norm(normals, axis=1)
@@ -129,7 +129,7 @@ def _halved(middles: Floats, faces: Ints, count: int) -> Iterator[Ints]:
 
 
 def _hull_corners(points: Floats) -> Floats:
-    """The corners of the hull of points (n, 3); of flat ones all of them."""
+    """Return the corners of the hull of points (n, 3); of flat ones all of them."""
     scipy_spatial = import_extra("scipy.spatial", "place")
     try:
         return np.ascontiguousarray(points[scipy_spatial.ConvexHull(points).vertices])

@@ -39,7 +39,9 @@ def hull_points(points: Floats) -> HullPoints:
 
 
 def _near_each_other(points: Floats) -> Ints:
-    """An order of points in which those of a block lie together: halved across the longest side again and again."""
+    """Return an order of points in which those of a block lie together: halved across the longest side again
+    and again.
+    """
     parts, found = [np.arange(len(points))], list[Ints]()
     while parts:
         part = parts.pop()

@@ -72,7 +72,7 @@ class PairQuery:
         return bool(self._fcl.collide(self._moving, self._still, self._fcl.CollisionRequest()))
 
     def contact(self, pose: Floats) -> Floats:
-        """The middle of where the surfaces meet, (3,) mm in the frame of the second."""
+        """Return the middle of where the surfaces meet, (3,) mm in the frame of the second."""
         self._place(pose)
         request = self._fcl.CollisionRequest(num_max_contacts=_CONTACTS, enable_contact=True)
         result = self._fcl.CollisionResult()
@@ -112,7 +112,9 @@ class PairQuery:
         return best, place
 
     def nearest(self, pose: Floats) -> Floats:
-        """The middle between the nearest points of two solids that do not touch, (3,) mm in the frame of the second."""
+        """Return the middle between the nearest points of two solids that do not touch, (3,) mm in the frame of the
+        second.
+        """
         self._place(pose)
         result = self._fcl.DistanceResult()
         distance = self._fcl.distance(

@@ -62,7 +62,7 @@ class _Path:
         self.begin, self.end = begin, float(self._moved[-1])
 
     def sample(self, way: float) -> tuple[_Sample, float]:
-        """The pose after a way, and how long the piece is."""
+        """Return the pose after a way, and how long the piece is."""
         k = max(int(np.searchsorted(self._moved, way)) - 1, 0)
         span = float(self._moved[k + 1] - self._moved[k])
         share = (way - float(self._moved[k])) / span if span > 0.0 else 0.0
@@ -73,7 +73,7 @@ class _Path:
         return _Sample(int(self._pieces.row[piece]), done, way, axes), span
 
     def next_look(self, least: float, most: float) -> float:
-        """The end of the first row that ends between two ways; ``most`` where none does."""
+        """Return the end of the first row that ends between two ways; ``most`` where none does."""
         k = int(np.searchsorted(self._row_ends, least, side="right"))
         return min(float(self._row_ends[k]), most) if k < len(self._row_ends) else most
 
@@ -186,7 +186,7 @@ class PairWatch:
             self._leave()
 
     def _leave(self) -> None:
-        """The tool of the pair is taken out."""
+        """Take out the tool of the pair."""
         self._close()
         self._is_new, self._was_touching, self._inside = True, False, False
 
@@ -306,14 +306,16 @@ class PairWatch:
 
 
 def _moving_joints(machine: Machine, body: Body, other: Body) -> tuple[Ints, Floats]:
-    """The joints that move a body against another, and their senses; without one that turns it about its own axis."""
+    """Return the joints that move a body against another, and their senses; without one that turns it about its own
+    axis.
+    """
     columns, senses = joint_senses(machine, body.link, other.link)
     first = 1 if turns_about_itself(machine, int(columns[0]), body.line) else 0
     return columns[first:], senses[first:]
 
 
 def _in_workpiece(machine: Machine, link: str, joints: Floats, point: Floats) -> tuple[float, float, float]:
-    """A point in the frame of a link, in workpiece coordinates."""
+    """Return a point in the frame of a link, in workpiece coordinates."""
     links = link_transforms(machine, joints[None])
     seen = np.linalg.inv(links[WORKPIECE][0]) @ links[link][0] @ np.append(point, 1.0)
     x, y, z = (seen[:3] - np.array(machine.workpiece_zero or (0.0, 0.0, 0.0))).tolist()

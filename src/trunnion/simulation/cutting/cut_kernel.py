@@ -250,7 +250,9 @@ def _list_rays(
 
 @inner
 def _ahead(motion: Motion) -> tuple[float, float, float]:
-    """A line across the rays that divides those ahead of a motion from those behind: n_u u + n_v v < d is behind."""
+    """Return a line across the rays that divides those ahead of a motion from those behind: n_u u + n_v v < d is
+    behind.
+    """
     u_axis, v_axis = 0.5 * (motion.au + motion.bu), 0.5 * (motion.av + motion.bv)
     along = motion.du * v_axis - motion.dv * u_axis
     shown = u_axis * u_axis + v_axis * v_axis
@@ -292,7 +294,7 @@ def _reached(
 
 @inner
 def _material(u: Floats, v: Floats, count: Lines, ends: Floats2) -> Box:
-    """A box around the material of a tile: lowest and highest u, v and w."""
+    """Return a box around the material of a tile: lowest and highest u, v and w."""
     low, high = math.inf, -math.inf
     for ray in range(len(count)):
         if count[ray] > 0:

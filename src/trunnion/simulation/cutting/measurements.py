@@ -134,7 +134,7 @@ class RowTotals:
             self._places[own] = _from_bundle(measured.bundle, place[better])
 
     def result(self) -> RowsCut:
-        """What the rows did."""
+        """Return what the rows did."""
         sections = sorted(set(self._pieces.section[~self._pieces.cuts].tolist()))
         return RowsCut(
             self._first,
@@ -146,7 +146,7 @@ class RowTotals:
         )
 
     def _depths(self, column: int) -> Depths:
-        """The smallest of what the bundles have seen."""
+        """Return the smallest of what the bundles have seen."""
         lengths = np.where(self._greatest[:, :, column] > 0.0, self._greatest[:, :, column], np.inf)
         bundle = lengths.argmin(axis=0)
         rows = np.arange(lengths.shape[1])

@@ -37,7 +37,9 @@ Box: TypeAlias = tuple[float, float, float, float, float, float]
 
 @inner
 def near_part(motion: Motion, piece: Piece, box: Box) -> tuple[float, float]:
-    """The part of a piece, from z to z, that may reach a box in any pose; none if the first is above the second."""
+    """Return the part of a piece, from z to z, that may reach a box in any pose; none if the first is above
+    the second.
+    """
     low, high = piece.low, piece.high
     low, high = _near_in(motion.tu, motion.au, motion.du, motion.bu, box[0], box[1], piece, low, high)
     low, high = _near_in(motion.tv, motion.av, motion.dv, motion.bv, box[2], box[3], piece, low, high)
@@ -56,7 +58,7 @@ def _near_in(
     low: float,
     high: float,
 ) -> tuple[float, float]:
-    """The part between ``low`` and ``high`` whose discs may lie between two values of one coordinate.
+    """Return the part between ``low`` and ``high`` whose discs may lie between two values of one coordinate.
 
     The bounds move evenly from those of the start to those of the end: in between they are not wider.
     """
@@ -72,7 +74,7 @@ def _near_in(
 
 @inner
 def swept_box(motion: Motion, piece: Piece, low: float, high: float) -> Box:
-    """A box around a piece in motion, from z ``low`` to ``high``: lowest and highest u, v and w."""
+    """Return a box around a piece in motion, from z ``low`` to ``high``: lowest and highest u, v and w."""
     widest = piece.widest
     u0, u1 = _extent(motion.tu, motion.au, motion.du, motion.bu, low, high, widest)
     v0, v1 = _extent(motion.tv, motion.av, motion.dv, motion.bv, low, high, widest)
@@ -122,7 +124,9 @@ def outline(edges: Floats, motion: Motion, piece: Piece, table: Floats2, low: fl
 
 @inner
 def within(edges: Floats, u: float, lowest: float, highest: float) -> tuple[float, float]:
-    """The values of v at which ``u`` is within an outline, between two others; none: the first is above the second."""
+    """Return the values of v at which ``u`` is within an outline, between two others; none: the first is above the
+    second.
+    """
     for k in range(EDGES):
         across, along, d = edges[3 * k], edges[3 * k + 1], edges[3 * k + 2]
         if along > 1e-9:

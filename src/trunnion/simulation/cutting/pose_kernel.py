@@ -80,7 +80,7 @@ def new_work() -> Work:
 
 @inner
 def found_at(work: Work, k: int) -> AtPose:
-    """What ``at_pose`` has found of ray ``k``; of what was kept: ``k + KEPT``."""
+    """Return what ``at_pose`` has found of ray ``k``; of what was kept: ``k + KEPT``."""
     return AtPose(
         work[FIRST + k] < work[LAST + k],
         work[FIRST + k],

@@ -51,7 +51,7 @@ class Ends(NamedTuple):
 def normal_at(
     u: float, v: float, w: float, motion: Motion, s: float, on: int, table: Floats2
 ) -> tuple[float, float, float]:
-    """The tool's normal at a point of it."""
+    """Return the tool's normal at a point of it."""
     au, av, aw = axis_between(motion, s)
     pu, pv, pw = u - motion.tu - s * motion.du, v - motion.tv - s * motion.dv, w - motion.tw - s * motion.dw
     z = pu * au + pv * av + pw * aw
@@ -62,14 +62,14 @@ def normal_at(
 
 @inner
 def within_tangents(before: AtPose, after: AtPose) -> tuple[float, float]:
-    """The interval that a piece covers during a motion, at both ends of which it hits the ray, or more."""
+    """Return the interval that a piece covers during a motion, at both ends of which it hits the ray, or more."""
     low = _least(before.first, before.down, after.first, after.down)
     return low, -_least(-before.last, -before.up, -after.last, -after.up)
 
 
 @inner
 def _least(start: float, start_slope: float, end: float, end_slope: float) -> float:
-    """What a convex function is not below between 0 and 1, by its tangents there."""
+    """Return what a convex function is not below between 0 and 1, by its tangents there."""
     if start_slope >= 0.0 or end_slope <= 0.0:
         return min(start, end)
     return start + start_slope * (end - end_slope - start) / (start_slope - end_slope)
@@ -90,7 +90,7 @@ def swept_ends(
     before: AtPose,
     after: AtPose,
 ) -> Ends:
-    """The interval of ray (u, v) that a piece passes through during a motion, within ``tolerance``, mm.
+    """Return the interval of ray (u, v) that a piece passes through during a motion, within ``tolerance``, mm.
 
     ``before`` and ``after`` are what is known of its start and its end; ``bottom`` and ``top`` the ends of the ray's
     material. What the interval covers beyond them may be wrong, and one that cannot reach the material is none.
@@ -152,7 +152,8 @@ def lowest(
     sign: float,
     wanted: float,
 ) -> tuple[float, float, int]:
-    """The lowest start of the interval during a motion (sign 1), or the lowest of what its end is below zero (sign -1).
+    """Return the lowest start of the interval during a motion (sign 1), or the lowest of what its end is below zero
+    (sign -1).
 
     ``begin`` is where the search begins if nothing is known of both ends; the ray is hit there. What is not below
     ``wanted`` need not be found. Returns the value, the part of the motion, and the row of the table;
@@ -210,7 +211,9 @@ def lowest(
 
 @inner
 def passing(u: float, v: float, work: Work, motion: Motion, way: Passage, piece: Piece, table: Floats2) -> float:
-    """A part of a motion in which a piece hits a ray that it hits neither at the start nor at the end; -1 for none."""
+    """Return a part of a motion in which a piece hits a ray that it hits neither at the start nor at the end; -1 for
+    none.
+    """
     qu, qv = u - motion.tu, v - motion.tv
     aside = qu * way.across_u + qv * way.across_v
     if not way.low < aside < way.high:

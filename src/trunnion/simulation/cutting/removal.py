@@ -91,7 +91,7 @@ def measure(
 def _part_of(
     progress: Callable[[int, int], None] | None, first: int, last: int, end: int
 ) -> Callable[[float], None] | None:
-    """What tells of a part of the rows ``first`` to ``last`` (exclusive) of ``end``."""
+    """Return what tells of a part of the rows ``first`` to ``last`` (exclusive) of ``end``."""
     return None if progress is None else lambda part: progress(first + int(part * (last - first)), end)
 
 
@@ -113,7 +113,7 @@ class Cutter:
         self._boxes = [tile.box for tile in stock.tiles]
 
     def sizes(self, pieces: RevolvedPieces) -> SweepSizes:
-        """What motions of a tool are divided for."""
+        """Return what motions of a tool are divided for."""
         lattice = self._stock.lattice
         cuts = pieces.cuts if pieces.cuts.any() else np.ones_like(pieces.cuts)
         reach, radius = float(pieces.bounds[cuts, 1].max()), float(pieces.bounds[cuts, 2].max())
@@ -207,7 +207,7 @@ def _boxes(sweeps: RowSweeps, low: float, high: float, widest: float) -> Floats:
 
 
 def _lists(boxes: Floats, tiles: Floats) -> list[Ints]:
-    """The sweeps that may reach each tile, in order."""
+    """Return the sweeps that may reach each tile, in order."""
     counts = np.zeros(len(tiles), np.int64)
     bin_sweeps(boxes, tiles, np.full(1, -1), counts)
     first = np.concatenate(([0], np.cumsum(counts)))

@@ -60,7 +60,7 @@ class DamagedShareError(ValueError):
 
 
 def tiles_of(share: Share, lattice: Lattice) -> list[int]:
-    """The numbers of the tiles of a share, ascending.
+    """Return the numbers of the tiles of a share, ascending.
 
     Neighbours, which the same rows reach, go to different shares, and so do the tiles of a line along u or v: a program
     cuts here or there, and mostly near one side of the rays.
@@ -169,7 +169,7 @@ def _tile_name(number: int) -> str:
 
 
 def _read(archive: zipfile.ZipFile, name: str, kinds: Sequence[_Kind], most: Sequence[int]) -> list[NDArray[Any]]:
-    """The arrays of a member, of ``kinds`` and with at most so many rows each."""
+    """Return the arrays of a member, of ``kinds`` and with at most so many rows each."""
     try:
         info = archive.getinfo(name)
         if info.compress_type not in (zipfile.ZIP_DEFLATED, zipfile.ZIP_STORED):
@@ -189,7 +189,7 @@ def _read(archive: zipfile.ZipFile, name: str, kinds: Sequence[_Kind], most: Seq
 
 
 def _array(content: IO[bytes], kind: np.dtype[Any], shape: tuple[int, ...], most: int) -> NDArray[Any]:
-    """The next array of a member, with at most so many rows; what it says of its size must be there."""
+    """Return the next array of a member, with at most so many rows; what it says of its size must be there."""
     if np.lib.format.read_magic(content) != (1, 0):
         raise ValueError("it was written otherwise")
     said, is_fortran, found_kind = np.lib.format.read_array_header_1_0(content)

@@ -117,7 +117,7 @@ def row_sweeps(run: Run, first: int, end: int, sizes: SweepSizes) -> RowSweeps:
 
 
 def _pieces(run: Run, first: int, joints: Floats, tip: Floats, axis: Floats, sizes: SweepSizes) -> Ints:
-    """Number of sweeps of each row."""
+    """Return number of sweeps of each row."""
     end = first + len(joints) - 1
     kind = run.kind[first:end]
     tcp = run.state.tcp.part(first, end) & ~run.state.machine_frame.part(first, end)
@@ -183,7 +183,7 @@ def _is_placed(run: Run) -> bool:
 
 
 def _where_stated(run: Run, sweeps: RowSweeps, sizes: SweepSizes) -> RowSweeps:
-    """The sweeps between known places, and those that leave for unknown ones, or come from them."""
+    """Return the sweeps between known places, and those that leave for unknown ones, or come from them."""
     tips, row = StatedTips.of(run), sweeps.row
     before, after = tips.before[row], tips.after[row]
     turns = np.zeros(len(row), np.bool_) if _is_placed(run) else turns_without_tcp(run, row)

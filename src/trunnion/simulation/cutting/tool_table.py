@@ -102,7 +102,7 @@ def _radii(table: Floats2, z: Floats) -> Floats:
 
 @inner
 def axis_between(motion: Motion, s: float) -> tuple[float, float, float]:
-    """The tool axis at a part of a motion."""
+    """Return the tool axis at a part of a motion."""
     if s == 0.0:
         return motion.au, motion.av, motion.aw
     if s == 1.0:

@@ -90,7 +90,7 @@ def picture(
 
 
 def _view(azimuth: float, elevation: float) -> Floats:
-    """The directions right, up and towards the eye, (3, 3)."""
+    """Return the directions right, up and towards the eye, (3, 3)."""
     a, e = math.radians(azimuth), math.radians(elevation)
     right = (-math.sin(a), math.cos(a), 0.0)
     up = (-math.sin(e) * math.cos(a), -math.sin(e) * math.sin(a), math.cos(e))
@@ -108,7 +108,9 @@ def _open(depth: Floats, hit: NDArray[np.bool_], reach: int) -> Floats:
 
 
 def _png(pixels: NDArray[np.uint8]) -> bytes:
-    """A picture of (h, w, 3) as PNG: the most frequent colours are its palette, the others become the nearest ones."""
+    """Return a picture of (h, w, 3) as PNG: the most frequent colours are its palette, the others become the nearest
+    ones.
+    """
     coarse = (np.minimum(np.round(pixels / _STEP) * _STEP, 255.0)).astype(np.int64)
     keys, index, count = np.unique(coarse @ np.array((65536, 256, 1)), return_inverse=True, return_counts=True)
     colours = np.column_stack((keys >> 16, keys >> 8 & 255, keys & 255))

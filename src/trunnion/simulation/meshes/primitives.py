@@ -67,7 +67,7 @@ def revolved_mesh(outline: Floats, name: str = "", excess: float = ROUND_EXCESS)
 
 
 def _sides(radius: float, excess: float) -> int:
-    """Number of sides, a multiple of four, that keeps the excess."""
+    """Return number of sides, a multiple of four, that keeps the excess."""
     if radius <= excess:
         return _FEWEST_SIDES
     wanted = math.pi / math.acos(radius / (radius + excess))

@@ -197,7 +197,7 @@ _READERS: Final[dict[str, Callable[[bytes, str], tuple[Floats, Ints, float]]]] =
 
 
 def _shared_vertices(vertices: Floats, faces: Ints, name: str, label: str) -> TriangleMesh:
-    """The mesh with equal vertices made one, without facets that have no area."""
+    """Return the mesh with equal vertices made one, without facets that have no area."""
     if not np.isfinite(vertices).all():
         where = int(np.flatnonzero(~np.isfinite(vertices).all(axis=1))[0])
         facet = np.flatnonzero((faces == where).any(axis=1))

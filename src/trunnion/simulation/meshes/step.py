@@ -78,6 +78,6 @@ def read_step(data: bytes, label: str, deviation: float) -> tuple[Floats, Ints]:
 
 
 def _reason(said: str) -> str:
-    """What the library says of a file, in a line."""
+    """Return what the library says of a file, in a line."""
     errors = [line.strip(" *") for line in said.splitlines() if "ERR" in line] or said.strip().splitlines()[-1:]
     return errors[0].removeprefix("ERR StepFile :").strip()[:120] if errors else "it cannot be read"

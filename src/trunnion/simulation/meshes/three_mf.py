@@ -127,7 +127,7 @@ def _parsed(model: bytes, label: str) -> tuple[dict[str, _Object], list[tuple[st
 
 
 def _place(text: str | None) -> Floats:
-    """The map (4, 3) that rows of points with a fourth 1 are multiplied by."""
+    """Return the map (4, 3) that rows of points with a fourth 1 are multiplied by."""
     if text is None:
         return np.eye(4, 3)
     return np.array([float(word) for word in text.split()]).reshape(4, 3)

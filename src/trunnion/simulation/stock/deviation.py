@@ -64,13 +64,15 @@ class Gouges:
 
 
 def left_on(stock: Stock, design: tuple[Spans, Spans, Spans], limit: float) -> Excess:
-    """What the stock has beyond the design; places thinner than ``limit`` are not told."""
+    """Return what the stock has beyond the design; places thinner than ``limit`` are not told."""
     found = compare_solids(stock, [stock.spans(bundle) for bundle in range(3)], list(design))
     return _excess(stock, found, limit)
 
 
 def lacking_at_start(stock: Stock, design: tuple[Spans, Spans, Spans], limit: float) -> Excess:
-    """What of the design is not in stock that nothing has cut yet; places thinner than ``limit`` are not told."""
+    """Return what of the design is not in stock that nothing has cut yet; places thinner than ``limit`` are
+    not told.
+    """
     found = compare_solids(stock, list(design), [stock.spans(bundle) for bundle in range(3)])
     return _excess(stock, replace(found, thickness=_from_surface(stock, found, limit)), limit)
 
@@ -78,7 +80,7 @@ def lacking_at_start(stock: Stock, design: tuple[Spans, Spans, Spans], limit: fl
 def missing_from(
     stock: Stock, start: tuple[Spans, Spans, Spans], design: tuple[Spans, Spans, Spans], limit: float
 ) -> tuple[Excess, Gouges]:
-    """What of the design was in the stock at the start, and is there no more; and the rows that took it away.
+    """Return what of the design was in the stock at the start, and is there no more; and the rows that took it away.
 
     A row is found by the surface that it has left there: what was cut deeper later, the later row did.
     """
@@ -96,7 +98,8 @@ def missing_from(
 
 
 def _from_surface(stock: Stock, found: Stretches, limit: float) -> Floats:
-    """The thickness of what is missing, and twice the way from its middle to the surface that is gone, if that is less.
+    """Return the thickness of what is missing, and twice the way from its middle to the surface that is gone, if that
+    is less.
 
     Where a block gouges floor and wall, rays along both see neither: what is missing is long there in all bundles.
     """
@@ -130,7 +133,9 @@ def _from_surface(stock: Stock, found: Stretches, limit: float) -> Floats:
 
 
 def _whole(stock: Stock, found: Stretches, deep: Ints) -> tuple[Spans, Spans, Spans] | None:
-    """The deep stretches of which no ray knows what took them, for nothing is left around them; None without any."""
+    """Return the deep stretches of which no ray knows what took them, for nothing is left around them; None without
+    any.
+    """
     gone = deep[~found.is_cut[deep]]
     if not len(gone):
         return None
@@ -151,7 +156,7 @@ def _excess(stock: Stock, found: Stretches, limit: float) -> Excess:
 
 
 def _thickest(place: Floats, thickness: Floats, limit: float, apart: float) -> tuple[ExcessPlace, ...]:
-    """The thickest places, apart from each other."""
+    """Return the thickest places, apart from each other."""
     kept: list[ExcessPlace] = []
     chosen = np.zeros((0, 3))
     open_ = np.flatnonzero(thickness > limit)

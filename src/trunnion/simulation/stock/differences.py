@@ -45,7 +45,7 @@ class Stretches:
 
 
 def compare_solids(stock: Stock, solid: list[Spans], other: list[Spans]) -> Stretches:
-    """What only the first solid has."""
+    """Return what only the first solid has."""
     lattice, volume = stock.lattice, 0.0
     firsts, tables = [], []
     for bundle in range(3):
@@ -83,7 +83,7 @@ def compare_solids(stock: Stock, solid: list[Spans], other: list[Spans]) -> Stre
 
 
 def common(one: Spans, two: Spans) -> Spans:
-    """What both have."""
+    """Return what both have."""
     counts = np.zeros(len(one.first) - 1, np.int64)
     arrays = one.first, one.ends, _slopes(one), two.first, two.ends, _slopes(two)
     common_stretches(*arrays, counts, np.zeros((0, 2)), np.zeros((0, 2)), True)

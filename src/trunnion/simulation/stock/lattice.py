@@ -44,7 +44,7 @@ class Lattice:
         return np.asarray((self.high - self.low) / np.array(self.counts))
 
     def rays(self, bundle: int) -> tuple[int, int]:
-        """Number of rays of a bundle along its u and v."""
+        """Return number of rays of a bundle along its u and v."""
         u, v, _ = BUNDLE_AXES[bundle]
         return self.counts[u], self.counts[v]
 

@@ -77,7 +77,7 @@ class Tile:
         return np.array([self.u[0], self.u[-1], self.v[0], self.v[-1], low, high])
 
     def volume_per_area(self) -> float:
-        """The length of all stretches together, mm."""
+        """Return the length of all stretches together, mm."""
         used = np.arange(self.ends.shape[1] // 2) < self.count[:, None]
         return float((self.ends[:, 1::2] - self.ends[:, 0::2])[used].sum())
 
@@ -102,11 +102,13 @@ class Stock:
         return Stock(lattice, tuple(_tile(lattice, *corners[number], spans) for number in wanted))
 
     def bundle(self, bundle: int) -> Iterator[Tile]:
-        """The tiles of one bundle."""
+        """Return the tiles of one bundle."""
         return (tile for tile in self.tiles if tile.bundle == bundle)
 
     def part(self, first: Ints, end: Ints) -> "Stock":
-        """The stock along the rays through some cells only: from ``first`` to ``end`` (exclusive) along X, Y and Z."""
+        """Return the stock along the rays through some cells only: from ``first`` to ``end`` (exclusive) along X, Y and
+        Z.
+        """
         lattice, cell = self.lattice, self.lattice.cell
         x, y, z = (end - first).tolist()
         own = Lattice(lattice.low + first * cell, lattice.low + end * cell, (x, y, z))
@@ -124,7 +126,7 @@ class Stock:
         return float(cell[u] * cell[v])
 
     def spans(self, bundle: int) -> Spans:
-        """The stretches of all rays of a bundle."""
+        """Return the stretches of all rays of a bundle."""
         width = self.lattice.rays(bundle)[1]
         rays, counts, ends, normals, rows = [], [], [], [], []
         for tile in self.bundle(bundle):
@@ -157,14 +159,14 @@ def tile_corners(lattice: Lattice) -> list[tuple[int, int, int]]:
 
 
 def rays_of_tiles(lattice: Lattice, bundle: int, numbers: Iterable[int]) -> Ints:
-    """The rays of a bundle that some tiles have, ascending."""
+    """Return the rays of a bundle that some tiles have, ascending."""
     corners = tile_corners(lattice)
     rays = [_rays(lattice, *corners[number]) for number in numbers if corners[number][0] == bundle]
     return np.sort(np.concatenate([*rays, np.zeros(0, np.int64)]))
 
 
 def _rays(lattice: Lattice, bundle: int, first_u: int, first_v: int) -> Ints:
-    """The rays of a tile."""
+    """Return the rays of a tile."""
     rows, columns = lattice.rays(bundle)
     u, v = (np.arange(first, min(first + TILE_RAYS, end)) for first, end in ((first_u, rows), (first_v, columns)))
     return np.asarray((u[:, None] * columns + v).ravel(), np.int64)

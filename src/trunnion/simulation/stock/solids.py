@@ -53,7 +53,7 @@ class StockShape:
 
     @staticmethod
     def of_kept(lattice: Lattice, spans: tuple[Spans, Spans, Spans]) -> "StockShape":
-        """What an earlier set-up has left."""
+        """Return what an earlier set-up has left."""
         return StockShape(lattice.low, lattice.high, kept=(lattice, spans))
 
     def bundles(self, lattice: Lattice, tiles: Collection[int] | None = None) -> tuple[Spans, Spans, Spans]:
@@ -128,7 +128,9 @@ def _wrong(text: object, wording: Wording) -> InputError:
 
 
 def default_cell(shape: StockShape, narrowest: float) -> float:
-    """A cell for a solid, mm: the 200th part of its longest side, and no more than half of the narrowest tool."""
+    """Return a cell for a solid, mm: the 200th part of its longest side, and no more than half of the
+    narrowest tool.
+    """
     cell = min(float((shape.high - shape.low).max()) / _CELLS, 0.5 * narrowest)
     digit = 10.0 ** (math.floor(math.log10(cell)) - 1)
     return math.floor(cell / digit + 1e-9) * digit

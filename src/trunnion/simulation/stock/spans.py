@@ -42,7 +42,7 @@ class Spans:
             object.__setattr__(self, "rows", np.full(len(self.ends), -1, np.int32))
 
     def at(self, rays: Ints) -> "Spans":
-        """The spans of some rays."""
+        """Return the spans of some rays."""
         sizes = np.diff(self.first)[rays]
         first = np.concatenate(([0], np.cumsum(sizes)))
         source = np.repeat(self.first[rays] - first[:-1], sizes) + np.arange(first[-1])
@@ -50,7 +50,7 @@ class Spans:
         return Spans(first, self.ends[both], self.normals[both], self.rows[both])
 
     def only(self, rays: Ints) -> "Spans":
-        """The same rays, all of them empty but some, which ascend."""
+        """Return the same rays, all of them empty but some, which ascend."""
         sizes = np.zeros(len(self.first) - 1, np.int64)
         sizes[rays] = np.diff(self.first)[rays]
         kept = self.at(rays)
@@ -63,7 +63,7 @@ def no_spans(rays: int) -> Spans:
 
 
 def box_spans(lattice: Lattice, bundle: int) -> Spans:
-    """The box of the lattice itself."""
+    """Return the box of the lattice itself."""
     w = BUNDLE_AXES[bundle][2]
     rays = math.prod(lattice.rays(bundle))
     ends = np.tile((lattice.low[w], lattice.high[w]), rays)
@@ -72,7 +72,7 @@ def box_spans(lattice: Lattice, bundle: int) -> Spans:
 
 
 def cylinder_spans(lattice: Lattice, bundle: int) -> Spans:
-    """The upright cylinder with elliptic section that fills the box of the lattice."""
+    """Return the upright cylinder with elliptic section that fills the box of the lattice."""
     middle, half = 0.5 * (lattice.low + lattice.high), 0.5 * (lattice.high - lattice.low)
     along_u, along_v = lattice.ray_positions(bundle)
     u, v = np.repeat(along_u, len(along_v)), np.tile(along_v, len(along_u))
@@ -99,7 +99,7 @@ def cylinder_spans(lattice: Lattice, bundle: int) -> Spans:
 
 
 def mesh_spans(vertices: Floats, faces: Ints, lattice: Lattice, bundle: int) -> Spans:
-    """The inside of a closed mesh whose faces turn left seen from outside.
+    """Return the inside of a closed mesh whose faces turn left seen from outside.
 
     Parameters
     ----------

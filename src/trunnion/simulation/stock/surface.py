@@ -164,14 +164,16 @@ def _ends(stock: Stock, spans: Spans, inside: NDArray[np.bool_], bundle: int) ->
 
 
 def _cubes(stock: Stock, shape: tuple[int, ...], used: Ints) -> Floats:
-    """The lowest corners of cubes, (n, 3), mm."""
+    """Return the lowest corners of cubes, (n, 3), mm."""
     sizes = np.array(shape) - 1
     grid = np.column_stack((used // (sizes[1] * sizes[2]), used // sizes[2] % sizes[1], used % sizes[2]))
     return np.asarray(stock.lattice.low + (grid - 0.5) * stock.lattice.cell)
 
 
 def _vertices(stock: Stock, lows: Floats, vertex: Ints, point: Floats, normal: Floats) -> Floats:
-    """The point of each cube that is nearest to the planes of its ends, and to their mean; within the stock's box."""
+    """Return the point of each cube that is nearest to the planes of its ends, and to their mean; within the stock's
+    box.
+    """
     count = len(lows)
     flat, four = vertex.ravel(), np.repeat(np.arange(len(point)), 4)
     ends = np.bincount(flat, minlength=count).astype(np.float64)
@@ -199,7 +201,7 @@ def _vertices(stock: Stock, lows: Floats, vertex: Ints, point: Floats, normal: F
 
 
 def _apart(vertices: Floats, middles: Floats) -> Floats:
-    """The vertices, with those that would be one in a file moved towards the middles of their cubes.
+    """Return the vertices, with those that would be one in a file moved towards the middles of their cubes.
 
     Files have single precision, and their readers make equal corners one: where two cubes have the same vertex, edges
     of four facets would come of it.

@@ -61,7 +61,7 @@ def surface_points(stock: Stock, design: tuple[Spans, Spans, Spans] | None) -> S
 
 
 def _at_ends(found: Stretches, bundle: int, ray: Ints, ends: Floats) -> Floats:
-    """The thickness of the stretch that begins or ends at each end of a ray; 0 where none does."""
+    """Return the thickness of the stretch that begins or ends at each end of a ray; 0 where none does."""
     own = np.flatnonzero(found.bundle == bundle)
     if not len(own) or not len(ends):
         return np.zeros(len(ends))

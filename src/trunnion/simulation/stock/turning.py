@@ -95,7 +95,7 @@ def turned_stock(stock: Stock, pose: Pose, cell: float) -> tuple[Lattice, tuple[
 
 
 def _turned_rays(stock: Stock, pose: Pose) -> tuple[Lattice, tuple[Spans, Spans, Spans]]:
-    """The rays themselves, turned by quarters."""
+    """Return the rays themselves, turned by quarters."""
     old, rotation = stock.lattice, np.round(pose.rotation)
     source = np.abs(rotation).argmax(axis=1)
     sign = rotation[np.arange(3), source]

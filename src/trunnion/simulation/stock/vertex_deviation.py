@@ -39,7 +39,7 @@ def vertex_deviation(points: SurfacePoints, vertices: Floats, lattice: Lattice) 
 
 
 def _keys(lattice: Lattice, places: Floats) -> Ints:
-    """A number for the cell of each place, also for those around the lattice."""
+    """Return a number for the cell of each place, also for those around the lattice."""
     cell = np.floor((places - lattice.low) / lattice.cell + 1e-6).astype(np.int64) + 2
     _, y, z = lattice.counts
     return np.asarray((cell[:, 0] * (y + 5) + cell[:, 1]) * (z + 5) + cell[:, 2])

@@ -116,7 +116,7 @@ def _stated(stated: Sequence[ToolShape], number: int | None, name: str) -> ToolS
 
 
 def _of_cl_files(cl_tools: Sequence[ClTool], number: int | None, name: str) -> ToolShape | None:
-    """The tool of CL files; several of one number or name must be one form."""
+    """Return the tool of CL files; several of one number or name must be one form."""
     same = [each for each in cl_tools if (each.number == number if number is not None else each.tool.name == name)]
     shapes = [cl_tool_shape(each.tool, number, file=each.file, line=each.line, dialect=each.dialect) for each in same]
     for each, shape in zip(same, shapes, strict=True):

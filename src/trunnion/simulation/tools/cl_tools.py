@@ -95,13 +95,13 @@ def _touches_both(diameter: float, radius: float, centre: Point, bottom: float, 
 
 
 def _meeting(e: float, radius: float, side: float) -> float:
-    """The diameter where bottom and side would meet that touch a corner with a centre ``e`` from the axis."""
+    """Return the diameter where bottom and side would meet that touch a corner with a centre ``e`` from the axis."""
     b = math.radians(side)
     return 2.0 * (e + radius * (1.0 - math.sin(b)) / math.cos(b))
 
 
 def _sizes(tool: Tool) -> ToolSizes:
-    """The sizes of a cutter whose form is settled."""
+    """Return the sizes of a cutter whose form is settled."""
     diameter, corner, side_angle, tip_angle = tool.diameter, tool.corner_radius, tool.taper_angle, 0.0
     half = 0.5 * diameter
     kind = ToolKind.FLAT

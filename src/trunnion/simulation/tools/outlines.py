@@ -51,12 +51,12 @@ def rounded_corner(half: float, radius: float, bottom: float, side: float) -> tu
 
 
 def _lines(*corners: Point) -> tuple[Element, ...]:
-    """The lines from corner to corner."""
+    """Return the lines from corner to corner."""
     return tuple(ProfileLine(start, end) for start, end in pairwise(corners) if start != end)
 
 
 def _ball(radius: float, top: Point) -> tuple[Element, ...]:
-    """The outline of a ball that stands on its tip, up to a point on it."""
+    """Return the outline of a ball that stands on its tip, up to a point on it."""
     return (ProfileArc((0.0, 0.0), top, (0.0, radius)),)
 
 

@@ -91,7 +91,7 @@ def _as_arrays(shape: ToolShape, pieces: list[list[_Row]], owners: list[int]) ->
 
 
 def _elements(section: Section, tolerance: float) -> tuple[list[_Row | None], float]:
-    """The elements of a section, None for a step, and how far they are off its outline."""
+    """Return the elements of a section, None for a step, and how far they are off its outline."""
     rows: list[_Row | None] = []
     error = 0.0
     for element in section.outline:
@@ -130,7 +130,7 @@ def _is_reflex(below: _Row, above: _Row) -> bool:
 
 
 def _direction(row: _Row, z: float) -> tuple[float, float]:
-    """The unit vector along an element at a height, upward."""
+    """Return the unit vector along an element at a height, upward."""
     z0, z1, third, fourth, is_sphere = row
     if is_sphere == 0.0:
         along = (third - z) / fourth
@@ -147,7 +147,7 @@ def _widest(row: _Row) -> float:
 
 
 def _chords(element: ProfileLine | ProfileArc, tolerance: float) -> tuple[list[Point], float]:
-    """The corners of the lines that replace an element, and how far those are off it at most.
+    """Return the corners of the lines that replace an element, and how far those are off it at most.
 
     The ends stay where they are, so that no plane moves. The corners between lie outside the arc as far as the chords
     between them lie within.
@@ -167,7 +167,7 @@ def _chords(element: ProfileLine | ProfileArc, tolerance: float) -> tuple[list[P
 
 
 def _step(angle: float, count: int) -> float:
-    """The angle between two corners outside an arc that a number of chords replaces."""
+    """Return the angle between two corners outside an arc that a number of chords replaces."""
     return angle / (count - 2.0 + 2.0 * _END_CHORD)
 
 

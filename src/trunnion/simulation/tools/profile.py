@@ -36,7 +36,7 @@ class ProfileLine:
             raise ValueError("a line of an outline goes down")
 
     def radius_at(self, z: float) -> float:
-        """The radius at a height between start and end."""
+        """Return the radius at a height between start and end."""
         share = (z - self.start[1]) / (self.end[1] - self.start[1])
         return self.start[0] + share * (self.end[0] - self.start[0])
 
@@ -64,7 +64,7 @@ class ProfileArc:
         return math.dist(self.start, self.centre)
 
     def radius_at(self, z: float) -> float:
-        """The distance from the tool axis at a height between start and end."""
+        """Return the distance from the tool axis at a height between start and end."""
         return self.centre[0] + math.sqrt(max(self.radius**2 - (z - self.centre[1]) ** 2, 0.0))
 
 
@@ -126,7 +126,7 @@ class ToolShape:
 
 
 def divide(outline: tuple[Element, ...], z: float) -> tuple[tuple[Element, ...], tuple[Element, ...]]:
-    """The parts of an outline below and above a height; ends that are nearly there are."""
+    """Return the parts of an outline below and above a height; ends that are nearly there are."""
     below: list[Element] = []
     above: list[Element] = []
     slack = _SAME * (1.0 + abs(z))
@@ -152,7 +152,7 @@ def _check_points(*points: Point) -> None:
 
 
 def cutting_width(tool: ToolShape) -> float:
-    """The greatest diameter of what cuts of a tool, mm; infinite where nothing does."""
+    """Return the greatest diameter of what cuts of a tool, mm; infinite where nothing does."""
     points = [
         point for section in tool.sections if section.role is Role.CUTTER
         for element in section.outline for point in (element.start, element.end)

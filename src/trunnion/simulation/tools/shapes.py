@@ -105,7 +105,7 @@ def _lengths(sizes: ToolSizes, top: float) -> tuple[float, float, tuple[str, ...
 
 
 def _side(sizes: ToolSizes, corner: Point, top: float) -> tuple[Element, ...]:
-    """The side of a cutter from its corner to a height."""
+    """Return the side of a cutter from its corner to a height."""
     slope = side_slope(sizes)
     if slope is None or top <= corner[1]:
         return ()

@@ -154,7 +154,7 @@ ANGLE_LIMITS: Final = {"side_angle": 90.0, "tip_angle": 180.0, "thread_angle": 1
 
 
 def corner_room(half: float, bottom: float, side: float) -> float:
-    """The greatest radius of a corner between a bottom from the tool axis and a side, mm.
+    """Return the greatest radius of a corner between a bottom from the tool axis and a side, mm.
 
     half    radius where bottom and side would meet, mm
     bottom  angle of the bottom from the horizontal, radians
@@ -164,7 +164,7 @@ def corner_room(half: float, bottom: float, side: float) -> float:
 
 
 def ball_height(sizes: ToolSizes) -> float:
-    """The height of the ball of a lollipop up to its neck, mm."""
+    """Return the height of the ball of a lollipop up to its neck, mm."""
     radius, neck = 0.5 * sizes.diameter, 0.5 * sizes.neck_diameter
     return radius + math.sqrt(radius**2 - neck**2)
 
@@ -175,7 +175,7 @@ def groove_depth(sizes: ToolSizes) -> float:
 
 
 def tooth_count(sizes: ToolSizes) -> int:
-    """The whole teeth of a thread mill, one above the other."""
+    """Return the whole teeth of a thread mill, one above the other."""
     return math.floor(sizes.flute_length / sizes.pitch + 1e-6)
 
 

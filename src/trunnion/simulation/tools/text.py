@@ -103,7 +103,7 @@ def _problem(shown: str, what: str, cure: str, code: str) -> Problem:
 
 
 def _read(text: str, diameters: Mapping[int, float]) -> tuple[str, ToolSizes]:
-    """The number or name of a tool, and its sizes."""
+    """Return the number or name of a tool, and its sizes."""
     if len(text) > _LONGEST:
         raise _TextError(f"is {len(text)} letters long", _FORM)
     called, equals, described = (part.strip() for part in text.partition("="))
@@ -127,7 +127,7 @@ def _kind(word: str) -> ToolKind:
 
 
 def _sizes(kind: ToolKind, text: str) -> Iterator[tuple[str, Any]]:
-    """The sizes of a tool: first those without a name, then those with one."""
+    """Yield the sizes of a tool: first those without a name, then those with one."""
     order = _IN_ORDER[kind]
     seen: set[str] = set()
     names = False

@@ -198,7 +198,7 @@ class MTConnectAdapter:
         return changed
 
     def _condition_of(self, identifier: str) -> str:
-        """The condition of the axis that an alarm names, else that of the system."""
+        """Return the condition of the axis that an alarm names, else that of the system."""
         kind, _, axis = identifier.partition(" ")
         return f"{axis}_{kind}" if f"{axis}_{kind}" in self._conditions else "system"
 
@@ -240,11 +240,11 @@ def _stamp(moment: datetime) -> str:
 
 
 def _number(value: float) -> str:
-    """A number from which the same one is read; what is not known is unavailable."""
+    """Return a number from which the same one is read; what is not known is unavailable."""
     return repr(value + 0.0) if math.isfinite(value) else UNAVAILABLE
 
 
 def _clean(text: str) -> str:
-    """A text that ends neither its field nor its line: agents read a text in quotes with its bars escaped."""
+    """Return a text that ends neither its field nor its line: agents read a text in quotes with its bars escaped."""
     line = " ".join(text.split())
     return '"' + line.replace("|", "\\|") + '"' if "|" in line else line

@@ -47,7 +47,7 @@ def device_name(machine: Machine) -> str:
 
 
 def device_xml(program: TwinProgram) -> str:
-    """The device model of the machine of a program, as an agent reads it from its file of devices."""
+    """Return the device model of the machine of a program, as an agent reads it from its file of devices."""
     machine = program.machine
     root = ET.Element(
         "MTConnectDevices",

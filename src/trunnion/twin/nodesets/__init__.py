@@ -20,5 +20,5 @@ DEVICES: Final = "http://opcfoundation.org/UA/DI/"
 
 
 def nodeset(name: str) -> str:
-    """The text of a NodeSet."""
+    """Return the text of a NodeSet."""
     return files(__name__).joinpath(name).read_text(encoding="utf-8")

@@ -30,7 +30,8 @@ class ServerCertificate:
 
 
 def server_certificate(folder: Path, application: str, host: str) -> ServerCertificate:
-    """The certificate of a folder; it is made if there is none, or none for this host and application, or it is over.
+    """Return the certificate of a folder; it is made if there is none, or none for this host and application, or it is
+    over.
 
     Parameters
     ----------
@@ -70,7 +71,7 @@ class ClientCertificate:
 
 
 def client_certificate(folder: Path) -> ClientCertificate:
-    """The certificate of a client that connects to machines; it is made if need be.
+    """Return the certificate of a client that connects to machines; it is made if need be.
 
     Raises
     ------

@@ -50,7 +50,7 @@ async def build_cnc(space: Space, program: TwinProgram) -> None:
 
 
 async def _drive(space: Space, path: str) -> None:
-    """What axes and spindles have in common."""
+    """Add what axes and spindles have in common."""
     for name in _UNKNOWN_OF_DRIVES:
         await space.absent(f"{path}.{name}")
     await space.put(f"{path}.ActChannel", space.id_of(CHANNEL), ua.VariantType.NodeId)

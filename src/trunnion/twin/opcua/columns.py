@@ -40,7 +40,7 @@ def machine_axes(machine: Machine) -> tuple[tuple[str, int], ...]:
 
 
 def columns_of(program: TwinProgram, snapshots: Snapshots) -> Columns:
-    """The values of all names at the times of snapshots."""
+    """Return the values of all names at the times of snapshots."""
     found: Columns = {}
     machine = program.machine
     for name, column in machine_axes(machine):

@@ -31,7 +31,7 @@ class NumberHistory:
         self._count += 1
 
     def between(self, first: int, last: int) -> tuple[Ints, Floats]:
-        """Times and values from ``first`` to ``last``, both of them included, in order."""
+        """Return times and values from ``first`` to ``last``, both of them included, in order."""
         if self._count <= self._kept:
             times, values = self._times[: self._count], self._values[: self._count]
         else:

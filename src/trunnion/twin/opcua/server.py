@@ -68,7 +68,7 @@ class _UserManager:
     def get_user(
         self, iserver: Any, username: str | None = None, password: str | None = None, certificate: Any = None
     ) -> User | None:
-        """The user, whose role is Anonymous if he only looks; None: nobody who may."""
+        """Return the user, whose role is Anonymous if he only looks; None: nobody who may."""
         if self._users is None:
             return User(UserRole.User)
         role = self._users.role_of(username, password) if username and password else None

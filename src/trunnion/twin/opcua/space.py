@@ -82,11 +82,11 @@ class Space:
         return self._index[uri]
 
     def id_of(self, path: str) -> ua.NodeId:
-        """The NodeId of a node of the twin."""
+        """Return the NodeId of a node of the twin."""
         return ua.NodeId(path, self.own)
 
     def node(self, path: str) -> Node:
-        """A node of the twin by its path; of others by their NodeId as text."""
+        """Return a node of the twin by its path; of others by their NodeId as text."""
         return self.server.get_node(self.id_of(path))
 
     async def add(self, parent: Node, path: str, name: str, uri: str, of: ua.NodeId | tuple[str, int]) -> Node:

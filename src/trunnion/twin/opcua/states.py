@@ -26,7 +26,7 @@ _FAR: Final = 365 * 86400.0
 
 
 def states_of(playback: Playback, space: Space, wall: float, begun: float) -> dict[str, Any]:
-    """The values of the names ``state.*``; the wall time now, and when the twin was switched on."""
+    """Return the values of the names ``state.*``; the wall time now, and when the twin was switched on."""
     program, channel, sinumerik_channel, sinumerik_program, name, item = _WORDS[playback.state]
     found: dict[str, Any] = {
         "state.mode": _AUTOMATIC,

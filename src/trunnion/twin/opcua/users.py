@@ -65,7 +65,9 @@ class Users:
         return len(self._users)
 
     def role_of(self, name: str, password: str) -> Role | None:
-        """The role of a user who knows the password; None: there is none, or too many tried wrong ones just now."""
+        """Return the role of a user who knows the password; None: there is none, or too many tried wrong ones
+        just now.
+        """
         now = self._clock()
         if len(self._wrong) == _MOST_WRONG and now - self._wrong[0] < _WRONG_SECONDS:
             return None

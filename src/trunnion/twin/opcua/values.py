@@ -31,7 +31,7 @@ class PublishedValue(ua.DataValue):
     _encoded: bytes
 
     def encoded(self) -> bytes:
-        """The bytes of the value as a DataValue."""
+        """Return the bytes of the value as a DataValue."""
         try:
             known: bytes = self._encoded
         except AttributeError:
@@ -40,7 +40,7 @@ class PublishedValue(ua.DataValue):
 
 
 def published(value: Any, kind: ua.VariantType, stamp: datetime, status: ua.StatusCode | None = None) -> PublishedValue:
-    """A value of a time; ``status``: Good, if it is left out."""
+    """Return a value of a time; ``status``: Good, if it is left out."""
     variant = ua.Variant(value, kind) if value is not None else ua.Variant()
     return PublishedValue(variant, status or ua.StatusCode(), stamp, stamp)
 
@@ -62,11 +62,11 @@ def _ticks(stamp: datetime) -> int:
 
 
 def encoded(value: ua.DataValue) -> bytes:
-    """The bytes of any DataValue."""
+    """Return the bytes of any DataValue."""
     return value.encoded() if isinstance(value, PublishedValue) else bytes(struct_to_binary(value))
 
 
 def overflowed(value: ua.DataValue) -> bytes:
-    """The bytes of a value before which others were lost."""
+    """Return the bytes of a value before which others were lost."""
     status = ua.StatusCode((value.StatusCode.value if value.StatusCode else 0) | OVERFLOW)
     return bytes(struct_to_binary(ua.DataValue(value.Value, status, value.SourceTimestamp, value.ServerTimestamp)))

@@ -128,7 +128,7 @@ class Connection:
             raise InputError(refused)
 
     async def message(self, patience: float) -> Message | None:
-        """The next message; None if none comes within some seconds.
+        """Return the next message; None if none comes within some seconds.
 
         Raises
         ------
@@ -161,7 +161,7 @@ class Connection:
     # Variables
 
     async def _found(self, column: Column) -> Any:
-        """The node of a column; None if it may be absent; a ``Problem`` if it may not."""
+        """Return the node of a column; None if it may be absent; a ``Problem`` if it may not."""
         found = await self._node(column.place)
         if isinstance(found, str):
             missing = Problem(str(column.place), 0, Wording("TWN230", "not_there", found=found))
@@ -169,7 +169,7 @@ class Connection:
         return found
 
     async def _node(self, place: VariableAddress) -> Any:
-        """A node; a text says what is there instead."""
+        """Return a node; a text says what is there instead."""
         if not place.path:
             return await self._node_by_id(place)
         node, way = self._client.nodes.objects, list[str]()
@@ -294,7 +294,7 @@ def _item(handle: int, node: Any, sampling: float) -> Any:
 
 
 def _shown(value: Any, column: Column) -> Value:
-    """What a column shows of a value; None if it cannot."""
+    """Return what a column shows of a value; None if it cannot."""
     if isinstance(value, list):
         value = value[column.element - 1] if 0 < column.element <= len(value) else None
     plain = _plain(value)
@@ -304,7 +304,7 @@ def _shown(value: Any, column: Column) -> Value:
 
 
 def _plain(value: Any) -> Value:
-    """A value as a number or a text; None if it is neither."""
+    """Return a value as a number or a text; None if it is neither."""
     if isinstance(value, bool | int | float):
         try:
             return float(value)

@@ -29,7 +29,7 @@ class ArrivalClock:
         self._offset = time.time_ns() - time.monotonic_ns()
 
     def now(self) -> int:
-        """The time."""
+        """Return the time."""
         return (self._offset + time.monotonic_ns()) // 1000
 
 
@@ -110,7 +110,7 @@ class MachineFeed:
                 yield self._only_kept(maker.add(message.readings, self._clock.now(), more=message.more))
 
     def rest(self) -> list[Row]:
-        """The rows of all that has arrived when nobody asks for more."""
+        """Return the rows of all that has arrived when nobody asks for more."""
         rows = []
         for message in () if self._connection is None else self._connection.waiting():
             rows += self._maker.add(message.readings, self._clock.now(), more=message.more)

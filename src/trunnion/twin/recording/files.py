@@ -35,7 +35,7 @@ _GROUP: Final = 65_536
 
 
 def journal_of(path: Path) -> Path:
-    """The file that a recording is written to while it goes on."""
+    """Return the file that a recording is written to while it goes on."""
     return path if path.suffix.lower() == ".csv" else path.with_name(path.name + ".csv")
 
 
@@ -167,7 +167,7 @@ def _groups(lines: Iterator[list[str]]) -> Iterator[list[list[str]]]:
 
 
 def parse_stamp(text: str) -> int:
-    """The time of a text, microseconds since 1970.
+    """Return the time of a text, microseconds since 1970.
 
     Raises
     ------
@@ -184,19 +184,19 @@ def _all(names: Sequence[str]) -> list[str]:
 
 
 def _stamp(microseconds: int | None) -> str:
-    """A time as text; empty for none."""
+    """Return a time as text; empty for none."""
     if microseconds is None:
         return ""
     return (_EPOCH + timedelta(microseconds=microseconds)).replace(tzinfo=None).isoformat(timespec="microseconds") + "Z"
 
 
 def unguarded(text: str) -> str:
-    """A text as the machine told it: without the apostrophe that keeps a spreadsheet from running it."""
+    """Return a text as the machine told it: without the apostrophe that keeps a spreadsheet from running it."""
     return text[1:] if text.startswith("'") and text[1:].startswith(_FORMULAS) else text
 
 
 def _cell(value: Value) -> str:
-    """A cell; a text as it is but for its length, and for what a spreadsheet would take for a formula."""
+    """Return a cell; a text as it is but for its length, and for what a spreadsheet would take for a formula."""
     if value is None:
         return ""
     if isinstance(value, str):

@@ -125,7 +125,7 @@ def _column(name: str, table: Table, namespace: str) -> Column:
 def _place(
     table: Table, identifier: str, path: str, namespace: str, *, required: bool = True
 ) -> VariableAddress | None:
-    """The place that one of two keys states."""
+    """Return the place that one of two keys states."""
     by_id, by_path = table.text(identifier, ""), table.text(path, "")
     if by_id and by_path:
         table.add_problem(path, Wording("TWN232", "given_beside", identifier=identifier))

@@ -141,7 +141,7 @@ class _Reader:
 
 
 def _number(cell: object) -> float:
-    """A number that a machine can show.
+    """Return a number that a machine can show.
 
     Raises
     ------
@@ -271,7 +271,7 @@ def _batch_rows(path: Path, file: Any) -> int:
 
 
 def _cells(column: Any, arrow: Any, path: Path, name: str) -> list[Any]:
-    """The values of a column of a batch; times as microseconds since 1970."""
+    """Return the values of a column of a batch; times as microseconds since 1970."""
     if arrow.types.is_timestamp(column.type):
         unit = {"s": 1_000_000.0, "ms": 1000.0, "us": 1.0, "ns": 1e-3}[column.type.unit]
         found = column.cast(arrow.int64()).to_pylist()

@@ -97,7 +97,10 @@ class RowMaker:
         return self._made(self._highest, flushed=True) if self._highest is not None else []
 
     def broken(self, received: int) -> list[Row]:
-        """The connection is broken: return what has arrived, and the row of the gap. Nothing is known any more."""
+        """Return the connection is broken: return what has arrived, and the row of the gap.
+
+        Nothing is known any more.
+        """
         rows = self.flush()
         self._begin()
         return [*rows, Row([None] * self._columns, None, None, received, [Mark.GAP])]

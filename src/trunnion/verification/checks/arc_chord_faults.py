@@ -62,7 +62,7 @@ def _faults(context: ComparedContext, segments: ArcSegments) -> Iterator[Place]:
 
 
 def _row(context: ComparedContext, segments: ArcSegments, k: int) -> int:
-    """The row of the k-th line; the last one is paired with the end of the arc."""
+    """Return the row of the k-th line; the last one is paired with the end of the arc."""
     matching = context.matching
     if k < len(segments.nc):
         return int(segments.nc[k])

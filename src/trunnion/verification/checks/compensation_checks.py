@@ -17,7 +17,7 @@ _SIDES: Final = {1: "left of the path", -1: "right of the path", 0: "off"}
 
 
 def check_compensation(context: ComparedContext) -> Check:
-    """The side and the register at every CL point, and no compensation on the way home."""
+    """Return the side and the register at every CL point, and no compensation on the way home."""
     run, matching = context.run, context.matching
     side = run.state.compensation
     states = compensation_states(context.expected)

@@ -16,7 +16,7 @@ _STILL: Final = 1e-6
 
 
 def compensated_blind(context: Context) -> Iterator[Place]:
-    """The first stop, and the first too many blocks without motion, between two compensated motions.
+    """Yield the first stop, and the first too many blocks without motion, between two compensated motions.
 
     The control offsets a corner when it has read the motion after it. It reads a number of blocks ahead at most, and
     some none at a stop: there it takes the tool square to the end of the motion before, into the wall of an inside

@@ -14,7 +14,7 @@ _ASKEW: Final = 0.05
 
 
 def compensated_askew(context: Context) -> Iterator[Place]:
-    """The first motion under compensation whose tool axis is not perpendicular to the plane of compensation."""
+    """Yield the first motion under compensation whose tool axis is not perpendicular to the plane of compensation."""
     run = context.run
     if not len(run.compensation_planes):
         return

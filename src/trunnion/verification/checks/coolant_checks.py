@@ -50,7 +50,7 @@ class _CoolantWords:
         return bool(((self.rows > after) & (self.rows <= row)).any())
 
     def at(self, row: int) -> str:
-        """The state at a row."""
+        """Return the state at a row."""
         k = int(np.searchsorted(self.rows, row, "right"))
         return self.changes[k - 1][1] if k else "off"
 
@@ -116,7 +116,7 @@ class _Fault:
 
 
 def _fault(words: _CoolantWords, wanted: str, row: int, last: int, *, readable: bool) -> _Fault | None:
-    """What is wrong from row ``row`` to row ``last``, where coolant should be ``wanted``.
+    """Return what is wrong from row ``row`` to row ``last``, where coolant should be ``wanted``.
 
     ``readable``: all coolant words so far were the control's own; else any of them counts as on.
     """

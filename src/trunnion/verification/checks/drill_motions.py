@@ -40,5 +40,5 @@ class DrillMotions:
         return int(np.argmin(self.height))
 
     def fault(self, k: int, value: float, text: str) -> HoleFault:
-        """A fault at the k-th row."""
+        """Return a fault at the k-th row."""
         return HoleFault(int(self.row[k]), value, text)

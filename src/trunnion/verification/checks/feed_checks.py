@@ -30,7 +30,7 @@ _LARGEST = 1e-6
 
 
 def check_feed(context: ComparedContext, accepted: AcceptedDeviations, original: ExpectedPath) -> Check:
-    """Feeds of all rows that are not rapids, as far as they were not declared to be lowered.
+    """Return feeds of all rows that are not rapids, as far as they were not declared to be lowered.
 
     ``original`` has the feeds of the CL files.
     """
@@ -72,7 +72,7 @@ class _ComparedFeeds:
 
 
 def _compare_points(context: ComparedContext, original: ExpectedPath) -> _ComparedFeeds:
-    """Feeds of all motions that go or lead to a CL point."""
+    """Return feeds of all motions that go or lead to a CL point."""
     run, expected = context.run, context.expected
     found = _ComparedFeeds([], 0, {})
     feed_tolerance = max(section.tolerances.feed for section in expected.sections)
@@ -106,7 +106,8 @@ def _compare_points(context: ComparedContext, original: ExpectedPath) -> _Compar
 
 
 def _asked_at_rest(context: ComparedContext, nc: Ints, asked: Floats, own: Floats) -> tuple[Floats, Ints]:
-    """The feeds asked for where those that the axes reach are declared, (k,), and where that of the CL file may stand.
+    """Return the feeds asked for where those that the axes reach are declared, (k,), and where that of the CL file may
+    stand.
 
     Rows that turn rotary axes while the tip hardly moves keep ``own``, the feed of the CL file, (k,).
     """

@@ -103,7 +103,7 @@ def _has_pair_between(matching: Matching, first: int, last: int) -> bool:
 
 
 def _faults_around(context: ComparedContext, drilled: _Drilled) -> Iterator[HoleFault]:
-    """A wrong tool or tool length, and a hole that is drilled out of its turn."""
+    """Yield a wrong tool or tool length, and a hole that is drilled out of its turn."""
     run, matching = context.run, context.matching
     hole, row = drilled.hole, drilled.match.first
     names = hole.tool_names

@@ -55,7 +55,7 @@ def hole_faults(
     spindle_work: Mapping[int, SpindleWork],
     clearance: float | None = None,
 ) -> Iterator[HoleFault]:
-    """What is wrong with one hole.
+    """Yield what is wrong with one hole.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def hole_faults(
 def _approach_faults(
     hole: Hole, motions: DrillMotions, start_height: float, from_aside: bool, clearance: float | None
 ) -> Iterator[HoleFault]:
-    """The tool comes too low, or at feed.
+    """Yield a tool that comes too low, or at feed.
 
     from_aside  the approach starts at a known place that is not on the axis of the hole
     """
@@ -117,7 +117,7 @@ def _approach_faults(
 
 
 def _height_faults(hole: Hole, motions: DrillMotions) -> Iterator[HoleFault]:
-    """The heights at which the feed begins and the tool leaves, and the depth."""
+    """Yield the heights at which the feed begins and the tool leaves, and the depth."""
     h = motions.height
     start = int(np.argmax(motions.kind != Kind.RAPID)) - 1  # a control may come down to it in two steps
     if abs(h[start] - hole.cycle.clearance) > hole.tolerance:
@@ -131,7 +131,7 @@ def _height_faults(hole: Hole, motions: DrillMotions) -> Iterator[HoleFault]:
 
 
 def _exit_faults(hole: Hole, motions: DrillMotions) -> Iterator[HoleFault]:
-    """The way out of the hole: at rapid or at feed, and in motions of the program up to the clearance height."""
+    """Yield the way out of the hole: at rapid or at feed, and in motions of the program up to the clearance height."""
     after = motions.bottom + 1
     if after >= len(motions.row) or hole.cycle.depth <= 0.0:
         return
@@ -145,7 +145,7 @@ def _exit_faults(hole: Hole, motions: DrillMotions) -> Iterator[HoleFault]:
 
 
 def _feed_faults(run: Run, hole: Hole, lines: Ints, rpm: float) -> Iterator[HoleFault]:
-    """The feed of the cycle, in all lines."""
+    """Yield the feed of the cycle, in all lines."""
     mode, programmed = run.state.feed_mode.at(lines), run.state.feed.at(lines)
     feed = np.where(mode == 95, programmed * rpm, programmed)
     wanted = hole.cycle.feed * rpm if hole.cycle.per_rev else hole.cycle.feed
@@ -163,7 +163,7 @@ def _feed_faults(run: Run, hole: Hole, lines: Ints, rpm: float) -> Iterator[Hole
 def _dwell_faults(
     hole: Hole, match: MatchedHole, bottom: int, dwells: Mapping[int, list[float]], rpm: float
 ) -> Iterator[HoleFault]:
-    """The dwell at the bottom, and dwells elsewhere in the hole; ``bottom`` is the deepest row."""
+    """Yield the dwell at the bottom, and dwells elsewhere in the hole; ``bottom`` is the deepest row."""
     wanted = 60.0 * hole.cycle.dwell / rpm if hole.cycle.dwell_turns and rpm else hole.cycle.dwell
     has = _seconds(dwells.get(bottom + 1, ()), rpm)
     if abs(has - wanted) > _DWELL:
@@ -183,7 +183,9 @@ def _seconds(dwells: Iterable[float], rpm: float) -> float:
 
 
 def _work_faults(hole: Hole, match: MatchedHole, spindle_work: Mapping[int, SpindleWork]) -> Iterator[HoleFault]:
-    """A cycle of another kind than that of the CL file, a thread of the other hand, and a spindle left otherwise."""
+    """Yield a cycle of another kind than that of the CL file, a thread of the other hand, and a spindle left
+    otherwise.
+    """
     row = next((row for row in range(match.first, match.end) if row in spindle_work), None)
     work = None if row is None else spindle_work[row]
     at = match.end - 1 if row is None else min(row, match.end - 1)
@@ -204,7 +206,7 @@ def _work_faults(hole: Hole, match: MatchedHole, spindle_work: Mapping[int, Spin
 
 
 def _task(mode: tuple[str, ...]) -> SpindleTask | None:
-    """What the cycle of a hole does with the spindle besides turning it, by the words of CYCLE."""
+    """Return what the cycle of a hole does with the spindle besides turning it, by the words of CYCLE."""
     if mode[:1] == ("TAP",):
         return SpindleTask.TAP
     return next((_BORES[word] for word in mode[1:] if word in _BORES), None) if mode[:1] == ("BORE",) else None

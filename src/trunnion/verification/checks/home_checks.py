@@ -54,7 +54,7 @@ class _HomeMotions:
 
 
 def _axis_words(machine: Machine) -> list[int]:
-    """The bit of ``Run.programmed`` of each axis."""
+    """Return the bit of ``Run.programmed`` of each axis."""
     slides = {"X": ProgrammedWord.X, "Y": ProgrammedWord.Y, "Z": ProgrammedWord.Z}
     words = [int(slides.get(axis.name, 0)) for axis in machine.axes]
     first, second = machine.rotary
@@ -96,7 +96,7 @@ def _wrong_motions(context: Context, motions: _HomeMotions) -> Iterator[Place]:
 
 
 def _changes_away_from_home(context: Context, motions: _HomeMotions) -> Iterator[Place]:
-    """The last motion before each tool change and end of program for which the slides are not at home."""
+    """Yield the last motion before each tool change and end of program for which the slides are not at home."""
     run, slides = context.run, list(context.run.machine.linear)
     for event in run.events:
         if event.kind not in ("tool_change", "end") or not 0 < event.before_row <= len(run):
@@ -121,7 +121,7 @@ def _slides_stay_home(run: Run, first: int, end: int) -> bool:
 
 
 def _check_other_positions(context: Context) -> Check:
-    """A program that retracts to machine positions other than home before a tool change does so before all."""
+    """Return a program that retracts to machine positions other than home before a tool change does so before all."""
     run, away = context.run, stands_away(context)
     changes = [(place, event) for place, event in enumerate(run.events) if event.kind == "tool_change"]
     changes = [(place, event) for place, event in changes if event.before_row > 0]
@@ -135,7 +135,8 @@ def _check_other_positions(context: Context) -> Check:
 
 
 def _check_retracts_by_word(context: Context) -> Check:
-    """A program without machine positions that retracts by a word (M242) before a tool change does so before all.
+    """Return a program without machine positions that retracts by a word (M242) before a tool change does so before
+    all.
 
     And at its end.
     """

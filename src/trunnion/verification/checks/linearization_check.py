@@ -68,7 +68,7 @@ def _allowed_tip(settings: ExpectedValues) -> Iterator[str]:
 
 
 def _allowed_axis(settings: ExpectedValues, errors: LinearizationErrors, row: int) -> Iterator[str]:
-    """The tolerance of the tool axis that counts in a row, in words; -1: no row turns it, and none counts."""
+    """Yield the tolerance of the tool axis that counts in a row, in words; -1: no row turns it, and none counts."""
     if settings.span is not None:
         yield f"{settings.span:g} deg"
     elif row >= 0:

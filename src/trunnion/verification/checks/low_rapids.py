@@ -55,7 +55,7 @@ def low_rapids(context: Context) -> list[Place]:
 
 
 def _height_left_at(run: Run, row: int, axis: Floats, entry: float) -> float | None:
-    """The height to which a cycle, or a motion at feed, has retracted the tool straight up right before a rapid.
+    """Return the height to which a cycle, or a motion at feed, has retracted the tool straight up right before a rapid.
 
     A motion at feed is a retract if it ends no lower than the last rapid before it did (``entry``).
     """

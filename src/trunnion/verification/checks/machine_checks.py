@@ -71,7 +71,7 @@ def _words(left: float, too_far: bool) -> str:
 
 
 def _margins(context: Context, motion: AxisMotion) -> Iterator[_Margin]:
-    """The margin of each axis with limits.
+    """Yield the margin of each axis with limits.
 
     Slides that nobody knows the place of, as the workpiece zero or the tool length is missing, are compared with their
     whole travel; with a zero also with their limits for a tool without length, which they must not leave either.

@@ -52,7 +52,7 @@ def check_modal_state(context: Context) -> Check:
 
 
 def _without_units(context: Context) -> Iterator[Place]:
-    """The first motion, if the program never said before whether its lengths are millimetres or inches."""
+    """Yield the first motion, if the program never said before whether its lengths are millimetres or inches."""
     run = context.run
     if not len(run) or (run.units_from is not None and run.units_from == 0):
         return
@@ -74,7 +74,7 @@ def _changed_while_turning(context: Context) -> Iterator[Place]:
 
 
 def _without_feed_or_spindle(context: Context) -> list[Place]:
-    """The first row of each fault."""
+    """Return the first row of each fault."""
     run = context.run
     places: list[Place] = []
     found = dict.fromkeys(_FAULTS, False)

@@ -53,7 +53,7 @@ def check_order(context: ComparedContext) -> Check:
 
 
 def _in_order(context: ComparedContext, retracts: list[RewindRetract], still: list[int]) -> Check:
-    """The check of a program with all points in their order, and its rows that are explained without a point."""
+    """Return the check of a program with all points in their order, and its rows that are explained without a point."""
     matching = context.matching
     notes = [
         context.place(
@@ -166,7 +166,7 @@ def _wrong_circles(context: ComparedContext) -> Iterator[Place]:
 
 
 def _circle_faults(context: ComparedContext, k: int, motion: int) -> Iterator[Place]:
-    """A wrong direction, plane or centre of the circle in a row of the run, which belongs to arc ``k``."""
+    """Yield a wrong direction, plane or centre of the circle in a row of the run, which belongs to arc ``k``."""
     run, expected = context.run, context.expected
     m, row = int(np.searchsorted(run.arcs.row, motion)), int(expected.arcs.row[k])
     normal, centre = expected.arcs.normal[k], expected.arcs.centre[k]

@@ -96,7 +96,7 @@ def _pairs(context: ComparedContext, section: Section, returns: tuple[Ints, Ints
 
 
 def _programmed_normals(run: Run, nc: Ints) -> Floats:
-    """Normals of rows of the run, (k, 3), NaN where there are none."""
+    """Return normals of rows of the run, (k, 3), NaN where there are none."""
     found = np.full((len(nc), 3), np.nan)
     if len(run.normals):
         k = np.minimum(np.searchsorted(run.normals.row, nc), len(run.normals) - 1)

@@ -29,7 +29,7 @@ _UNITS: Final = {"tip": "mm", "axis": "deg"}
 
 
 def check_tip(context: ComparedContext, deviations: DeviationSummary) -> Check:
-    """The tip at every CL point."""
+    """Return the tip at every CL point."""
     run, expected, matching = context.run, context.expected, context.matching
     places = []
     for k, value in deviations.bad:
@@ -53,7 +53,7 @@ def check_tip(context: ComparedContext, deviations: DeviationSummary) -> Check:
 
 
 def _tips_off_arc(context: ComparedContext, segments: ArcSegments) -> Iterator[Place]:
-    """Ends of lines that are off the arc that they replace."""
+    """Yield ends of lines that are off the arc that they replace."""
     arc, tolerances = segments.arc, context.expected.section_at(segments.cl).tolerances
     tips = context.run.positions(segments.nc).tip
     off = arc.deviation(tips) if segments.pieces is None else tips - arc.at(segments.pieces)
@@ -66,7 +66,7 @@ def _tips_off_arc(context: ComparedContext, segments: ArcSegments) -> Iterator[P
 
 
 def check_axis(context: ComparedContext, deviations: DeviationSummary, accepted: AcceptedDeviations) -> Check:
-    """The tool axis at every CL point, as far as it was not declared to lean."""
+    """Return the tool axis at every CL point, as far as it was not declared to lean."""
     matching = context.matching
     places = []
     for k, value in deviations.bad:
@@ -88,7 +88,7 @@ def check_axis(context: ComparedContext, deviations: DeviationSummary, accepted:
 
 
 def _axes_off_arc(context: ComparedContext, segments: ArcSegments) -> Iterator[Place]:
-    """Ends of lines that replace an arc under a wrong tool axis."""
+    """Yield ends of lines that replace an arc under a wrong tool axis."""
     arc, tolerances = segments.arc, context.expected.section_at(segments.cl).tolerances
     begin, end = context.expected.point(segments.cl - 1).axis, context.expected.point(segments.cl).axis
     actual = context.run.positions(segments.nc)

@@ -58,7 +58,7 @@ def check_reach(context: ComparedContext, original: ExpectedPath) -> list[Check]
 
 
 def _declared(expected: ExpectedPath) -> tuple[Floats, Floats, Flags]:
-    """The feeds of all rows, (m,), the last printed digit of each, and which of them are declared."""
+    """Return the feeds of all rows, (m,), the last printed digit of each, and which of them are declared."""
     feeds = [section.operation.moves.feed for section in expected.sections]
     digits = [np.full(len(feed), 2.0 * s.tolerances.feed) for feed, s in zip(feeds, expected.sections, strict=True)]
     declared = np.zeros(len(expected), np.bool_)

@@ -37,7 +37,7 @@ class _Words:
         return k > 0 and self.on[k - 1]
 
     def last_before(self, row: int) -> int:
-        """The place of the word that makes the thing run at a row; -1 if it stands there."""
+        """Return the place of the word that makes the thing run at a row; -1 if it stands there."""
         k = bisect_right(self.rows, row)
         return self.places[k - 1] if k and self.on[k - 1] else -1
 
@@ -57,7 +57,7 @@ class RestatedModes:
         return self._words["spindle"].runs_at(place)
 
     def unsaid(self, place: int, row: int, wanted_coolant: str) -> str:
-        """What runs in the first cut after a stop, and was switched on before it; empty if all was said again.
+        """Return what runs in the first cut after a stop, and was switched on before it; empty if all was said again.
 
         Parameters
         ----------

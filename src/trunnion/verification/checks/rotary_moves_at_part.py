@@ -148,7 +148,9 @@ class _Judge:
         )
 
     def _height_of_retract(self) -> float | None:
-        """The height of home, along the spindle; the highest machine position of a program that never goes there."""
+        """Return the height of home, along the spindle; the highest machine position of a program that never goes
+        there.
+        """
         rows = self._with_known_height(self._frame)
         if not len(rows):
             return None
@@ -201,7 +203,7 @@ class _Judge:
         return not len(self._frame) and turns_part_alone(machine, before, after, STILL)
 
     def _cure(self, distance: float | None) -> str:
-        """What to do about a turn at the part."""
+        """Return what to do about a turn at the part."""
         cure = f"go home in {self._machine.axes[self._along].name} first"
         if len(self._retracts) and not len(self._frame):
             cure = "retract first"

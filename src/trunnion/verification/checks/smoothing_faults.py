@@ -30,7 +30,7 @@ def wide_tolerances(context: Context) -> Iterator[Place]:
 
 
 def _limit(context: Context, row: int) -> float:
-    """The widest tolerance for the motions from a row on, mm."""
+    """Return the widest tolerance for the motions from a row on, mm."""
     if not isinstance(context, ComparedContext):
         return WIDEST
     asked = context.settings.smoothing or 0.0

@@ -49,7 +49,7 @@ def spline_faults(context: ComparedContext) -> SplineFaults:
 
 
 def _too_far(context: ComparedContext, written: WrittenSpline, off: Floats) -> Iterator[Place]:
-    """The end of the spline of the program that is farthest from that of the CL file, if that is too far."""
+    """Yield the end of the spline of the program that is farthest from that of the CL file, if that is too far."""
     limit = context.expected.sections[written.section].tolerances.tip + _COEFFICIENTS
     worst = float(off.max())
     if not worst <= limit:
@@ -68,7 +68,10 @@ def _deviations(context: ComparedContext, written: WrittenSpline) -> Floats:
 
 
 def _change_inside(run: Run, written: WrittenSpline, events: Ints) -> str:
-    """What changes between the rows of a spline, in words; empty for nothing. ``events`` are their rows, sorted."""
+    """Return what changes between the rows of a spline, in words; empty for nothing.
+
+    ``events`` are their rows, sorted.
+    """
     first, last = written.first, written.last
     if (run.kind[first : last + 1] != Kind.LINEAR).any():
         return "the motion changes"

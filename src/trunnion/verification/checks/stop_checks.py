@@ -76,7 +76,9 @@ def check_stops(context: ComparedContext) -> Check:
 
 
 def _own_stops(run: Run, stops: list[_FoundStop]) -> str:
-    """What is known of the stops and dwells of the program's own, between operations; empty if there are none."""
+    """Return what is known of the stops and dwells of the program's own, between operations; empty if there
+    are none.
+    """
     parts = []
     for kind, name in _NAMES.items():
         of_kind = [stop.event for stop in stops if stop.event.kind == kind]
@@ -123,7 +125,7 @@ def _stops_outside_holes(context: ComparedContext) -> list[_FoundStop]:
 def _compare(
     context: ComparedContext, restarts: RestatedModes, pair: int, expected: list[_ExpectedStop], stops: list[_FoundStop]
 ) -> Iterator[Place]:
-    """What is wrong before one pair."""
+    """Yield what is wrong before one pair."""
     run = context.run
     if not _is_within_operation(context, pair):
         every, stops = stops, _asked_for(run, stops, expected)
@@ -146,7 +148,7 @@ def _compare(
 
 
 def _at_the_part(context: ComparedContext, stops: list[_FoundStop]) -> Iterator[Place]:
-    """Stops of the program's own while the tool is at the part, where nobody expects it to wait."""
+    """Yield stops of the program's own while the tool is at the part, where nobody expects it to wait."""
     away = None
     for stop in stops:
         if stop.event.kind == "dwell":
@@ -158,7 +160,7 @@ def _at_the_part(context: ComparedContext, stops: list[_FoundStop]) -> Iterator[
 
 
 def _asked_for(run: Run, stops: list[_FoundStop], expected: list[_ExpectedStop]) -> list[_FoundStop]:
-    """The stops that are the same as one that the CL file wants."""
+    """Return the stops that are the same as one that the CL file wants."""
     seconds = {stop.place: _seconds(_amount(stop.event), _rpm(run, stop.event)) for stop in stops}
     wanted: dict[tuple[str, float], list[float]] = {}
     for stop in stops:
@@ -176,7 +178,7 @@ def _is_in(values: list[float], value: float) -> bool:
 
 
 def _fault(run: Run, restarts: RestatedModes, wanted: _ExpectedStop, stop: _FoundStop) -> str:
-    """What is wrong with a stop or dwell in the place of one that the CL file wants; empty if it is right."""
+    """Return what is wrong with a stop or dwell in the place of one that the CL file wants; empty if it is right."""
     event = stop.event
     if event.kind == "stop" and restarts.spindle_turns(stop.place):
         return "stops while the spindle turns: at a STOP of the CL file it stands (M5 before it)"

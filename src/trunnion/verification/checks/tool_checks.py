@@ -20,7 +20,7 @@ _DELTA: Final = 6e-5
 
 
 def check_tool(context: ComparedContext) -> Check:
-    """The tool at every CL point with its edge and length, and no change to another tool."""
+    """Return the tool at every CL point with its edge and length, and no change to another tool."""
     run, matching = context.run, context.matching
     places: list[Place] = []
     asked: list[tuple[str, ...]] = []
@@ -50,7 +50,7 @@ def _holds_other_tool(run: Run, names: tuple[str, ...], nc: Ints) -> Flags:
 
 
 def _wrong_tool(context: ComparedContext, row: int, cl: int, names: tuple[str, ...]) -> Iterator[Place]:
-    """The row with a wrong tool, and the last word that called it."""
+    """Yield the row with a wrong tool, and the last word that called it."""
     run = context.run
     text = tool_fault(run.tools[run.state.tool[row]], names)
     yield context.place_with_cl(row, 0.0, text, cl)
@@ -60,7 +60,9 @@ def _wrong_tool(context: ComparedContext, row: int, cl: int, names: tuple[str, .
 
 
 def _foreign_changes(context: ComparedContext, asked: list[tuple[str, ...]], unnumbered: int) -> Iterator[Place]:
-    """Changes to a tool that the CL file never asks for; it gives its first ``unnumbered`` rows no number of a tool."""
+    """Yield changes to a tool that the CL file never asks for; it gives its first ``unnumbered`` rows no number of a
+    tool.
+    """
     matching = context.matching
     for event in context.run.events:
         pair = matching.nc.count_before(event.before_row)
@@ -74,7 +76,7 @@ def _foreign_changes(context: ComparedContext, asked: list[tuple[str, ...]], unn
 
 
 def _foreign_deltas(context: ComparedContext) -> Iterator[Place]:
-    """What the program adds to the length or the radius of a tool, unless the settings ask for it."""
+    """Yield what the program adds to the length or the radius of a tool, unless the settings ask for it."""
     for event in context.run.events:
         if event.kind != "delta" or not isinstance(event.value, tuple):
             continue
@@ -85,12 +87,14 @@ def _foreign_deltas(context: ComparedContext) -> Iterator[Place]:
 
 
 def tool_fault(has: str, names: tuple[str, ...]) -> str:
-    """What is wrong with the tool in the spindle, empty for none, where one of some names is expected."""
+    """Return what is wrong with the tool in the spindle, empty for none, where one of some names is expected."""
     return f"{f'tool {has}' if has else 'no tool'} is in the spindle; the CL file wants {names[0]}"
 
 
 def _wrong_edges(context: ComparedContext) -> Iterator[Place]:
-    """The first motion under another cutting edge, and the first one home with an edge that is neither none nor it."""
+    """Yield the first motion under another cutting edge, and the first one home with an edge that is neither none nor
+    it.
+    """
     used, matching = context.run.state.edge, context.matching
     known: list[int] = []
     for section in context.expected.sections:
@@ -118,7 +122,7 @@ def _has_other_edge(used: StepColumn, edge: int, nc: Ints) -> Flags:
 
 
 def _wrong_lengths(context: ComparedContext) -> Iterator[Place]:
-    """The first motion of each tool without its length: its own number, or the register of LOAD/TOOL."""
+    """Yield the first motion of each tool without its length: its own number, or the register of LOAD/TOOL."""
     run, matching = context.run, context.matching
     for state in tool_states(context.expected):
         numbers = state.value.lengths
@@ -136,6 +140,6 @@ def _has_other_length(run: Run, numbers: tuple[int, ...], nc: Ints) -> Flags:
 
 
 def length_fault(number: int, allowed: tuple[int, ...]) -> str:
-    """What is wrong with a length number, -1 for none, that is not allowed."""
+    """Return what is wrong with a length number, -1 for none, that is not allowed."""
     has = "without a tool length" if number < 0 else f"with the length of H{number}"
     return f"works {has}; the CL file wants H{allowed[0]}"

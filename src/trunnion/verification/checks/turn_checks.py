@@ -55,7 +55,7 @@ def check_turns(context: Context) -> Check:
 
 
 def _plane_changes(run: Run) -> list[_PlaneChange]:
-    """What CYCLE800, G68.2, PLANE and frame words switch on and off."""
+    """Return what CYCLE800, G68.2, PLANE and frame words switch on and off."""
     found: list[_PlaneChange] = []
     tilt: RunEvent | None = None
     frame: RunEvent | None = None

@@ -37,7 +37,9 @@ def check_words(context: Context) -> Check:
 
 
 def _known(diagnostics: Sequence[Diagnostic]) -> str:
-    """What is known in words: every word, or all but those of the machine's builder that the definition leaves out."""
+    """Return what is known in words: every word, or all but those of the machine's builder that the definition leaves
+    out.
+    """
     own = [each.text for each in diagnostics if each.code == _OF_MACHINE]
     names = list(dict.fromkeys(text.partition(" ")[0] for text in own))
     if not names:

@@ -107,7 +107,7 @@ def _turned_in_others(context: Context, stretches: Sequence[tuple[RowRanges, int
 
 
 def _check_changes(context: Context, rows: RowRanges) -> Check:
-    """The work offsets that a program chooses by itself."""
+    """Return the work offsets that a program chooses by itself."""
     run = context.run
     if not len(rows):
         return Check("offset", _TITLE, True, "nothing moves")
@@ -157,5 +157,5 @@ def _workpiece_frame_rows(run: Run) -> RowRanges:
 
 
 def _name(context: Context, code: int) -> str:
-    """A work offset as programs of this control call it."""
+    """Return a work offset as programs of this control call it."""
     return "no work offset" if code == 0 else context.run.work_offset_name(code)

@@ -217,7 +217,7 @@ class Comparer:
                 break
 
     def _difference_in_way(self, a: int, b: int) -> str:
-        """What differs between row ``a`` and row ``b``, which go to the same point another way."""
+        """Return what differs between row ``a`` and row ``b``, which go to the same point another way."""
         kinds = [Kind(int(run.kind[row])) for run, row in ((self._one.run, a), (self._two.run, b))]
         if kinds[0] != kinds[1]:
             return f"{_KINDS[kinds[0]]} against {_KINDS[kinds[1]]}"
@@ -261,7 +261,7 @@ class _PathDifference:
 
 
 def _row(program: MovingRows, motion: int) -> int:
-    """The row of a motion; the last one if the program has ended."""
+    """Return the row of a motion; the last one if the program has ended."""
     return int(program.rows[motion]) if motion < len(program) else max(len(program.run) - 1, 0)
 
 

@@ -67,7 +67,7 @@ class MovingRows:
         return self.run.tip[row], self.run.axis[row]
 
     def feeds(self, rows: Ints) -> Floats:
-        """Feeds of the tip in rows, mm/min, 0 for rapids."""
+        """Return feeds of the tip in rows, mm/min, 0 for rapids."""
         run = self.run
         feed = np.where(run.feed_mode[rows] == 95, run.feed[rows] * run.rpm[rows], run.feed[rows])
         inverse_time, counted = run.feed_mode[rows] == 93, row_feed_path_lengths(run, rows)
@@ -80,7 +80,9 @@ class MovingRows:
         return np.asarray(np.where(run.kind[rows] == Kind.RAPID, 0.0, np.nan_to_num(feed)))
 
     def programmed_feeds(self, rows: Ints) -> Floats:
-        """The number after F in rows, (k,); 0 where it is a time or counts axes, and another one for each motion."""
+        """Return the number after F in rows, (k,); 0 where it is a time or counts axes, and another one for each
+        motion.
+        """
         run = self.run
         of_path = (run.feed_mode[rows] != 93) & np.isnan(row_feed_path_lengths(run, rows))
         return np.asarray(np.where(of_path, np.nan_to_num(run.feed[rows]), 0.0))
@@ -103,7 +105,7 @@ class MovingRows:
         return f"S{self.run.rpm[row]:g} {_SENSES[int(self.run.spindle[row])]}"
 
     def tool_name(self, row: int) -> str:
-        """The tool in the spindle in a row."""
+        """Return the tool in the spindle in a row."""
         return self.run.tools[self.run.tool[row]] or "none"
 
     def block_name(self, k: int) -> str:
@@ -121,7 +123,7 @@ def _tool_name(name: str) -> str:
 
 
 def _coolant_numbers(run: Run, numbers: dict[str, int]) -> Ints:
-    """A number for the coolant in each row, (n,)."""
+    """Return a number for the coolant in each row, (n,)."""
     state = np.full(len(run), numbers.setdefault("off", len(numbers)), np.int64)
     for event in run.events:
         if event.kind == "coolant":

@@ -38,14 +38,15 @@ class PathEvents:
         self.motions: Ints = np.unique(at).astype(np.int64)
 
     def take(self, first: int, end: int) -> list[str]:
-        """What comes before the motions from ``first`` to ``end`` (exclusive) and has not been taken yet, in words.
+        """Return what comes before the motions from ``first`` to ``end`` (exclusive) and has not been taken yet, in
+        words.
 
         Sorted, as the order of what comes at one place makes no difference.
         """
         return sorted(words for motion in self.motions_in(first, end) for words in self._events.pop(motion, ()))
 
     def motions_in(self, first: int, end: int) -> list[int]:
-        """The motions from ``first`` to ``end`` (exclusive) that something comes before."""
+        """Return the motions from ``first`` to ``end`` (exclusive) that something comes before."""
         low, high = np.searchsorted(self.motions, (first, end)).tolist()
         return [int(motion) for motion in self.motions[low:high]]
 

@@ -51,7 +51,7 @@ class Register:
 
 
 def compared_registers(one: Run, two: Run, *, path: bool) -> list[ComparedState]:
-    """The registers of two runs; ``path``: only those that move the tool."""
+    """Return the registers of two runs; ``path``: only those that move the tool."""
     same_words = one.language == two.language
     return [_state(one, two, each) for each in _registers(one, two, same_words) if each.of_path or not path]
 
@@ -78,7 +78,7 @@ def _state(one: Run, two: Run, register: Register) -> ComparedState:
 
 
 def _registers(one: Run, two: Run, same_words: bool) -> Iterator[Register]:
-    """The registers of two runs; ``same_words``: their programs are of one language."""
+    """Yield the registers of two runs; ``same_words``: their programs are of one language."""
     runs = one, two
     offsets = [run.state.work_offset for run in runs]
     if not same_words:
@@ -145,7 +145,7 @@ def _cutting(run: Run, rows: Ints) -> Flags:
 
 
 def _delta_column(run: Run, by_name: bool, digit: float, numbers: dict[Hashable, int]) -> StepColumn:
-    """What the program adds to the tool in the spindle; ``numbers`` are those of both runs."""
+    """Return what the program adds to the tool in the spindle; ``numbers`` are those of both runs."""
     held: dict[str, int] = {}
 
     def values() -> Iterator[tuple[int, Hashable]]:
@@ -174,13 +174,13 @@ def _tolerance_column(run: Run) -> StepColumn:
 
 
 def _steps(run: Run, found: list[tuple[int, Hashable]], numbers: dict[Hashable, int]) -> StepColumn:
-    """A column of values by numbers, which both runs share; they are filled in."""
+    """Return a column of values by numbers, which both runs share; they are filled in."""
     rows = [row for row, _ in found]
     return _column(run, rows, [numbers.setdefault(value, len(numbers)) for _, value in found])
 
 
 def _column(run: Run, rows: list[int], values: list[Any]) -> StepColumn:
-    """A column by its changes; of several before one row the last holds."""
+    """Return a column by its changes; of several before one row the last holds."""
     last = dict(zip(rows, values, strict=True))
     return StepColumn(len(run), np.array(list(last), np.int64), np.array(list(last.values())))
 

@@ -80,7 +80,7 @@ class Comparison:
         return self.count == 0 and self.points > 0 and not self.unknown_words
 
     def lines(self) -> Iterator[str]:
-        """The result for a terminal."""
+        """Yield the result for a terminal."""
         points = counted(self.points, "point")
         within = f"tips within {self.tip:.6f} mm, tool axes within {self.axis:.6f} degrees"
         if self.same:

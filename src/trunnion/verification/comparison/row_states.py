@@ -16,7 +16,7 @@ _RPM: Final = 0.5
 
 
 def compared_states(one: MovingRows, two: MovingRows, *, path: bool) -> list[ComparedState]:
-    """What is compared in the rows of two programs; ``path``: only what says where the tool is."""
+    """Return what is compared in the rows of two programs; ``path``: only what says where the tool is."""
     states = [_frames(one, two), *compared_registers(one.run, two.run, path=path)]
     if path:
         return states

@@ -60,7 +60,8 @@ class StateComparison:
         self._open: list[DifferentStretch | None] = [None] * len(self._states)
 
     def follow(self, i: int, j: int, a: Ints, b: Ints) -> list[DifferentStretch]:
-        """The stretches that begin in motions from ``i`` and ``j`` on, which are the rows ``a`` and ``b``, (k,) each.
+        """Return the stretches that begin in motions from ``i`` and ``j`` on, which are the rows ``a`` and ``b``, (k,)
+        each.
 
         The last one of a state goes on with the next call, where it still differs in the same way.
         """

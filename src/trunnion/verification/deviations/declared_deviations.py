@@ -107,7 +107,7 @@ def _feeds_not_lowered(section: Section, declared: Deviations) -> Iterator[Devia
 
 
 def _feeds_not_reached(section: Section, declared: Deviations) -> Iterator[DeviationFault]:
-    """Declared feeds at rows that have none to be reached: rapids, and feeds per revolution."""
+    """Yield declared feeds at rows that have none to be reached: rapids, and feeds per revolution."""
     moves, rows = section.operation.moves, declared.reached_rows
     other = (moves.kind[rows] == Kind.RAPID) | moves.per_rev[rows] | ~(declared.reached_feed > 0.0)
     for k in np.flatnonzero(other).tolist():

@@ -93,7 +93,7 @@ def worthwhile_feeds(
 
 
 def with_feeds_of_program(run: Run, expected: ExpectedPath, matching: Matching, limit: float | None) -> ExpectedPath:
-    """The path with the program's own feeds as its declaration, where no post has left one.
+    """Return the path with the program's own feeds as its declaration, where no post has left one.
 
     Declared are feeds that are not those of the CL files, and those of rows that keep theirs.
     """
@@ -147,7 +147,7 @@ class _TimedRows:
         return ReachedRows(most, feed, self._own, float(seconds.sum()))
 
     def asked(self) -> Floats:
-        """The feeds that the program asks for on the way to CL rows, (m,) mm/min; NaN: it is not known."""
+        """Return the feeds that the program asks for on the way to CL rows, (m,) mm/min; NaN: it is not known."""
         asked = reached_feeds(self._run, np.full(len(self._run), np.nan)).asked
         known = np.flatnonzero(self._guided & np.isfinite(asked))
         feed = np.full(len(self._most), -np.inf)
@@ -192,14 +192,14 @@ class _TimedRows:
 
 
 def _three_digits(feed: Floats) -> Floats:
-    """Feeds, (k,), rounded down to three digits."""
+    """Return feeds, (k,), rounded down to three digits."""
     with np.errstate(divide="ignore", invalid="ignore"):
         digit = 10.0 ** (np.floor(np.log10(feed)) - 2.0)
         return np.asarray(np.floor(feed / digit) * digit)
 
 
 def greatest_feeds(expected: ExpectedPath, limit: float | None) -> Floats:
-    """The greatest feed of each row, (m,) mm/min; NaN in rapids, per revolution, and where there is none.
+    """Return the greatest feed of each row, (m,) mm/min; NaN in rapids, per revolution, and where there is none.
 
     A cut that plunges has at most that of the CL file.
     """
@@ -215,7 +215,7 @@ def greatest_feeds(expected: ExpectedPath, limit: float | None) -> Floats:
 
 
 def _goes_deeper(operation: Operation) -> Flags:
-    """Moves that lead the tool farther down along its axis than across, (n,); the first always counts as one.
+    """Return moves that lead the tool farther down along its axis than across, (n,); the first always counts as one.
 
     The slope of an arc is that of its helix, the slope of a spline that of the line between its ends.
     """
@@ -239,7 +239,7 @@ def _goes_deeper(operation: Operation) -> Flags:
 
 
 def _rows_led_to(run: Run, expected: ExpectedPath, matching: Matching) -> Ints:
-    """The CL row that each row at feed leads to, (n,); -1: none."""
+    """Return the CL row that each row at feed leads to, (n,); -1: none."""
     leads_to = np.full(len(run), -1, np.int64)
     for nc, cl in matching.all_pair_chunks():
         leads_to[nc] = cl

@@ -80,13 +80,13 @@ class Arc:
 
 
 def arc_of(expected: ExpectedPath, row: int) -> Arc:
-    """The arc that ends at a row."""
+    """Return the arc that ends at a row."""
     arcs = expected.arcs
     return _arc(arcs, int(np.searchsorted(arcs.row, row)), expected.point(row - 1).tip, expected.point(row).tip)
 
 
 def circle_of(run: Run, row: int) -> Arc:
-    """The circle or helix that a block of the program goes along; ``row`` is not the first."""
+    """Return the circle or helix that a block of the program goes along; ``row`` is not the first."""
     start, end = run.positions(np.array([row - 1, row])).tip
     return _arc(run.arcs, int(np.searchsorted(run.arcs.row, row)), start, end)
 
@@ -101,7 +101,7 @@ def _arc(arcs: Arcs, k: int, start: Floats, end: Floats) -> Arc:
 
 
 def great_circle_points(begin: Floats, end: Floats, fraction: Floats) -> Floats:
-    """Unit vectors at fractions of the great circle from ``begin`` to ``end``, (k, 3)."""
+    """Return unit vectors at fractions of the great circle from ``begin`` to ``end``, (k, 3)."""
     angle = float(np.arctan2(np.linalg.norm(np.cross(begin, end)), begin @ end))
     if angle < 1e-9:
         return np.asarray(begin + fraction[:, None] * (end - begin))

@@ -13,7 +13,9 @@ from trunnion.model.toolpath import Frame, Operation
 
 
 def transform_to_frame(frame: Frame, operation: Operation) -> Operation:
-    """The operation as seen from another coordinate system, by homogeneous matrices; its events stay as they are."""
+    """Return the operation as seen from another coordinate system, by homogeneous matrices; its events stay as they
+    are.
+    """
     if operation.frame == frame:
         return operation
     change = np.linalg.inv(_homogeneous_matrix(frame)) @ _homogeneous_matrix(operation.frame)

@@ -89,7 +89,7 @@ class Hole:
 
 
 def without_holes(operation: Operation) -> tuple[Operation, Flags]:
-    """The operation without the rows that are holes, and which rows these are, (n,) bool."""
+    """Return the operation without the rows that are holes, and which rows these are, (n,) bool."""
     moves = operation.moves
     holes = np.zeros(len(moves), bool)
     switches = [event for event in operation.events if isinstance(event, CycleOn | CycleOff)]
@@ -101,7 +101,7 @@ def without_holes(operation: Operation) -> tuple[Operation, Flags]:
 
 
 def without_rows(operation: Operation, gone: Flags) -> Operation:
-    """The operation without some rows (n,); arcs that end there go too, and splines that have no other row."""
+    """Return the operation without some rows (n,); arcs that end there go too, and splines that have no other row."""
     if not gone.any():
         return operation
     moves, kept = operation.moves, ~gone
@@ -125,7 +125,7 @@ def holes_of_operation(
     tool: ExpectedTool,
     spindle: ExpectedSpindle | None,
 ) -> list[Hole]:
-    """The holes of an operation as the CL file has it.
+    """Return the holes of an operation as the CL file has it.
 
     Parameters
     ----------
@@ -194,6 +194,6 @@ def _hole_cycle(operation: Operation, cycle: CycleOn, cycle_first: int, row: int
 
 
 def _value(cycle: CycleOn, word: str, default: float) -> float:
-    """The first number of a couplet."""
+    """Return the first number of a couplet."""
     values = dict(cycle.values).get(word)
     return values[0] if values else default

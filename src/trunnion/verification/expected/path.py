@@ -159,7 +159,7 @@ class ExpectedPath:
         return self.sections[-1].end
 
     def with_sections(self, sections: Sequence[Section]) -> "ExpectedPath":
-        """The same path with other tool axes and feeds in its sections."""
+        """Return the same path with other tool axes and feeds in its sections."""
         changed = copy(self)
         changed.sections = tuple(sections)
         return changed
@@ -179,7 +179,7 @@ class ExpectedPath:
         return self._gather("kind", rows)
 
     def feed(self, rows: Ints) -> Floats:
-        """Feeds, (k,), mm/min or mm/rev."""
+        """Return feeds, (k,), mm/min or mm/rev."""
         return self._gather("feed", rows)
 
     def per_rev(self, rows: Ints) -> Flags:
@@ -210,7 +210,7 @@ class ExpectedPath:
         return Point(moves.tip[k], moves.axis[k], Kind(int(moves.kind[k])), float(moves.feed[k]), int(moves.line[k]))
 
     def section_at(self, row: int) -> Section:
-        """The section that a row belongs to."""
+        """Return the section that a row belongs to."""
         return self.sections[int(np.searchsorted(self.first_rows, row, "right")) - 1]
 
     @cached_property
@@ -273,7 +273,7 @@ class ExpectedPath:
 
 
 def _inside_splines(operation: Operation, written: Sequence[WrittenSpline], section: int) -> Flags | None:
-    """The rows between start and end of the splines that are written, (n,); None: there are none."""
+    """Return the rows between start and end of the splines that are written, (n,); None: there are none."""
     numbers = [spline.number for spline in written if spline.section == section]
     if not numbers:
         return None

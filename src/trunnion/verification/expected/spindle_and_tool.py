@@ -55,7 +55,7 @@ def names_tool(text: str, names: tuple[str, ...]) -> bool:
 
 
 def spindle_on(event: SpindleOn) -> ExpectedSpindle:
-    """The spindle after a SPINDL that starts it."""
+    """Return the spindle after a SPINDL that starts it."""
     return ExpectedSpindle(event.rpm, 1 if event.sense is Sense.CLW else -1)
 
 
@@ -75,5 +75,5 @@ class ExpectedSpindles:
                 self._states.append(ExpectedSpindle(last.rpm if last else 0.0, 0))
 
     def at(self, row: int) -> ExpectedSpindle | None:
-        """The spindle at a row."""
+        """Return the spindle at a row."""
         return self._states[bisect_right(self._rows, row)]

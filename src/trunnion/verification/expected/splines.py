@@ -32,7 +32,7 @@ def dense_points(splines: Splines, begin: int, end: int) -> Floats:
 
 
 def _spans(splines: Splines, begin: int = 0, end: int | None = None) -> tuple[Ints, Ints]:
-    """The spline, counted from ``begin``, and the knot at which it begins, of each span that has a length."""
+    """Return the spline, counted from ``begin``, and the knot at which it begins, of each span that has a length."""
     end = len(splines) if end is None else end
     first, last = int(splines.knot_begin[begin]), int(splines.knot_begin[end])
     counts = np.diff(splines.knot_begin[begin : end + 1])

@@ -56,7 +56,9 @@ class ArcSpeeds:
 
     @staticmethod
     def of(run: Run, first: int, end: int, positions: PositionChunk) -> "ArcSpeeds":
-        """The arcs in rows from ``first`` to the one before ``end``; ``positions`` is the ``Run.chunk`` of them."""
+        """Return the arcs in rows from ``first`` to the one before ``end``; ``positions`` is the ``Run.chunk``
+        of them.
+        """
         part = slice(*np.searchsorted(run.arcs.row, [first, end]).tolist())
         rows = run.arcs.row[part]
         found = ArcSpeeds(rows, *np.zeros((4, len(rows), 5)))

@@ -44,7 +44,7 @@ class MachinePositions:
 
     @staticmethod
     def of(run: Run) -> "MachinePositions":
-        """What is known of the slides of a run, found once for all checks."""
+        """Return what is known of the slides of a run, found once for all checks."""
         found = _of_runs.get(run)
         if found is None:
             found = _of_runs[run] = MachinePositions(run)
@@ -70,7 +70,9 @@ _of_runs: WeakKeyDictionary[Run, MachinePositions] = WeakKeyDictionary()
 
 
 def _next_in_workpiece(run: Run, word: ProgrammedWord, first: int) -> int:
-    """The first row from ``first`` on that puts a slide where workpiece coordinates want it; n if there is none."""
+    """Return the first row from ``first`` on that puts a slide where workpiece coordinates want it; n if there
+    is none.
+    """
     size = _FEW
     while first < len(run):
         end = min(first + size, len(run))

@@ -60,7 +60,7 @@ def positions_beyond_travel(run: Run) -> Iterator[MachinePosition]:
 
 
 def _beyond(run: Run, rows: Ints) -> Iterator[MachinePosition]:
-    """The farthest of some rows at each end of each slide."""
+    """Yield the farthest of some rows at each end of each slide."""
     machine = run.machine
     joints, near_home = run.positions(rows).joints, home_tolerance(run, rows)
     known, steps = MachinePositions.of(run).known, run.state.machine_steps.at(rows)

@@ -119,7 +119,7 @@ def approach_rows(run: Run) -> Ints:
 
 
 def _rows_that_follow(run: Run, starts: Iterable[int]) -> Iterator[int]:
-    """The first row from each start on that goes to a position in workpiece coordinates: each once, ascending."""
+    """Yield the first row from each start on that goes to a position in workpiece coordinates: each once, ascending."""
     row = -1
     for start in sorted(starts):
         if row >= start:
@@ -132,7 +132,9 @@ def _rows_that_follow(run: Run, starts: Iterable[int]) -> Iterator[int]:
 
 
 def first_workpiece_position(run: Run, first: int, end: int) -> int | None:
-    """The first of the rows ``first`` to ``end`` (exclusive) that goes to a position in workpiece coordinates."""
+    """Return the first of the rows ``first`` to ``end`` (exclusive) that goes to a position in workpiece
+    coordinates.
+    """
     count = _FEW
     while first < end:
         stop = min(first + count, end)

@@ -11,7 +11,7 @@ from trunnion.verification.row_ranges import chunk_bounds
 
 
 def restore_rapids(run: Run, feed: float | None) -> Run:
-    """The run with lines at the feed that replaces rapid motion as rapids.
+    """Return the run with lines at the feed that replaces rapid motion as rapids.
 
     Parameters
     ----------

@@ -58,7 +58,7 @@ _matched: WeakKeyDictionary[Run, WeakKeyDictionary[ExpectedPath, tuple[MatchedHo
 
 
 def match_holes(run: Run, expected: ExpectedPath | None = None) -> Sequence[MatchedHole]:
-    """The motions of a run that drill holes, hole by hole, in the order of the run.
+    """Return the motions of a run that drill holes, hole by hole, in the order of the run.
 
     A thread that has a block of its own includes the rapid to it and, where the CL file asks for that, the rapid
     straight up after it.
@@ -175,7 +175,7 @@ def _count_cl_plunges(expected: ExpectedPath, before: Hole | None, hole: Hole) -
 
 
 def _find_plunge(run: Run, hole: Hole, at: int, limit: int, skipped: int) -> int | None:
-    """The first row from ``at`` to ``limit`` that drills a hole, after ``skipped`` other plunges there."""
+    """Return the first row from ``at`` to ``limit`` that drills a hole, after ``skipped`` other plunges there."""
     start, size = max(at, 1), _FEW
     while start < limit:
         end = min(start + size, limit)
@@ -189,7 +189,7 @@ def _find_plunge(run: Run, hole: Hole, at: int, limit: int, skipped: int) -> int
 
 
 def _motion_hole(run: Run, expected: ExpectedPath, index: int, plunge: int, at: int) -> MatchedHole:
-    """The hole that row ``plunge`` begins to drill; rows before ``at`` belong to holes before it."""
+    """Return the hole that row ``plunge`` begins to drill; rows before ``at`` belong to holes before it."""
     hole = expected.holes[index]
     end = _end_of_hole(run, hole, plunge)
     first, after = plunge - 1, expected.holes[index + 1 : index + 2]
@@ -213,7 +213,7 @@ def _goes_to_cl_point(run: Run, expected: ExpectedPath, cl: int, row: int, neigh
 
 
 def _end_of_hole(run: Run, hole: Hole, plunge: int) -> int:
-    """The row after the last one of a hole: after its depth the tool retracts, and then goes elsewhere."""
+    """Return the row after the last one of a hole: after its depth the tool retracts, and then goes elsewhere."""
     start, size, at_depth = plunge, _FEW, False
     while True:
         rows = np.arange(start, min(start + size + 1, len(run)))

@@ -137,7 +137,7 @@ def _last_at_point(
     motions: _Motions, i: int, points: PathPoints, j: int, limits: FollowLimits, sense: float, first: Floats,
     second: Floats,
 ) -> int:  # fmt: skip
-    """The last motion from ``i`` on that goes to point ``j``.
+    """Return the last motion from ``i`` on that goes to point ``j``.
 
     Further motions of the same kind about the same place lead there too: near a pole the rotary axes turn far while
     the tool hardly moves. The last one within the tolerances counts.

@@ -8,7 +8,7 @@ from trunnion.arrays import Flags, Floats
 
 
 def find_resync(fits: Flags, ends: Sequence[bool]) -> tuple[int, int] | None:
-    """The nearest (a, b) at which two motions in a row fit.
+    """Return the nearest (a, b) at which two motions in a row fit.
 
     One fit suffices right before the end of either side; where both sides end and nothing fits, it is both ends.
 

@@ -34,7 +34,7 @@ class _Wanted:
 
 
 def written_splines(run: Run, expected: ExpectedPath) -> tuple[WrittenSpline, ...]:
-    """The splines of the CL files that a program writes, in order.
+    """Return the splines of the CL files that a program writes, in order.
 
     A spline is found where those of the run start at its start, have its spans together, and end at its end.
     """
@@ -69,7 +69,9 @@ def _count(spans: Ints, follows: Flags, wanted: int) -> int:
 
 
 def _wanted(expected: ExpectedPath) -> list[_Wanted]:
-    """The splines that a program may have: no radius compensation, no holes beside them, and the tool along Z."""
+    """Return the splines that a program may have: no radius compensation, no holes beside them, and the tool
+    along Z.
+    """
     found = []
     for index, section in enumerate(expected.sections):
         moves, events = section.operation.moves, section.operation.events

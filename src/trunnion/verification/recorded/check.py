@@ -73,13 +73,13 @@ def _fault_place(context: Context, compared: RecordedComparison, fault: Fault) -
 
 
 def _row_near(compared: RecordedComparison, at: int) -> int:
-    """The row of the last position up to a place of the recording."""
+    """Return the row of the last position up to a place of the recording."""
     told = compared.row[: at + 1]
     return int(told[told >= 0][-1]) if (told >= 0).any() else 0
 
 
 def _hole_places(context: Context, found: Coverage) -> list[Place]:
-    """A place for each part of the program that is missing in the midst of the recording."""
+    """Return a place for each part of the program that is missing in the midst of the recording."""
     holes = found.holes
     parts = np.split(holes, np.flatnonzero(np.diff(holes) > 1) + 1) if len(holes) else []
     return [context.place(int(part[0]), math.nan, _missing(context, part)) for part in parts]
@@ -125,7 +125,7 @@ def _worst_rows(compared: RecordedComparison) -> list[int]:
 
 
 def _place(context: Context, compared: RecordedComparison, row: int) -> Place:
-    """The place of a row, with its worst position."""
+    """Return the place of a row, with its worst position."""
     of_row = np.flatnonzero(compared.row == row)
     tip_off = compared.tip_off
     k = int(of_row[np.argmax(np.maximum(tip_off[of_row], compared.axis_off[of_row]))])
@@ -164,7 +164,7 @@ def _not_compared(compared: RecordedComparison) -> str:
 
 
 def _travel(context: Context, compared: RecordedComparison) -> str:
-    """The axis that came nearest to its limit."""
+    """Return the axis that came nearest to its limit."""
     texts: dict[float, str] = {}
     for k, low, high in _used(compared, context.run.machine):
         axis = context.run.machine.axes[k]
@@ -207,6 +207,6 @@ def _beyond_travel(context: Context, compared: RecordedComparison) -> Iterator[P
 def _place_of_value(
     context: Context, compared: RecordedComparison, column: Floats, value: float, over: float, text: str
 ) -> Place:
-    """The place of the first row of the recording with a value."""
+    """Return the place of the first row of the recording with a value."""
     at = int(np.flatnonzero(column == value)[0])
     return context.place(_row_near(compared, at), over, f"{text} (line {at + 2} of {compared.recording.name})")

@@ -217,7 +217,7 @@ def _told_around(told: Ints) -> tuple[Ints, Ints]:
 def _by_line(
     path: ProgramPath, around: tuple[Ints, Ints], tip: Floats, axis: Floats, at: Ints, anew: Flags, tolerance: float
 ) -> Nearest:
-    """The nearest places to some positions, by the rows that were told before and after them."""
+    """Return the nearest places to some positions, by the rows that were told before and after them."""
     rows, following = around[0][at], around[1][at]
     before, after = np.r_[rows[:1], rows[:-1]], np.r_[following[1:], following[-1:]]
     before = np.where(anew | (before > rows), rows, before)
@@ -248,7 +248,7 @@ class _Walk:
         self._step = 0.0  # how far the machine went last on the path
 
     def follow(self, tip: Floats, axis: Floats, anew: Flags) -> Nearest:
-        """The nearest places to positions, (k,); none before the first and after the last of the program."""
+        """Return the nearest places to positions, (k,); none before the first and after the last of the program."""
         piece = np.full(len(tip), -1, np.int64)
         moved = np.linalg.norm(np.diff(tip, axis=0, prepend=tip[:1]), axis=1)
         moved += np.degrees(np.linalg.norm(np.diff(axis, axis=0, prepend=axis[:1]), axis=1))
@@ -263,7 +263,7 @@ class _Walk:
         return found
 
     def _next(self, tip: Floats, axis: Floats, moved: float, *, anew: bool) -> int:
-        """The piece of the next position; -1: it is none of the path."""
+        """Return the piece of the next position; -1: it is none of the path."""
         if self._now < 0 or anew:
             begun = self._near(tip, axis, max(self._now, 0), len(self._path))
             if begun < 0 <= self._now:  # it may run once more
@@ -293,12 +293,14 @@ class _Walk:
         return narrow
 
     def _reach(self, way: float) -> int:
-        """The first piece that is further along the path than some way."""
+        """Return the first piece that is further along the path than some way."""
         high = int(np.searchsorted(self._length, self._length[self._now] + way, "right"))
         return min(max(high, self._now + 2), self._now + _MOST_PIECES, len(self._path))
 
     def _nearest_around(self, tip: Floats, axis: Floats, piece: Ints) -> Nearest:
-        """The nearest place in these pieces and in those beside them: they are curved, and were taken for straight."""
+        """Return the nearest place in these pieces and in those beside them: they are curved, and were taken for
+        straight.
+        """
         best = None
         for beside in (0, -1, 1, -2, 2):
             low = np.clip(piece + beside, 0, max(len(self._path) - 1, 0))
@@ -313,12 +315,12 @@ class _Walk:
         return best
 
     def _near(self, tip: Floats, axis: Floats, low: int, high: int) -> int:
-        """The nearest of some pieces if it is within the tolerance, else -1."""
+        """Return the nearest of some pieces if it is within the tolerance, else -1."""
         found, away = self._look(tip, axis, low, high)
         return found if away <= self._near_enough else -1
 
     def _look(self, tip: Floats, axis: Floats, low: int, high: int) -> tuple[int, float]:
-        """The nearest of some pieces, and how far away it is."""
+        """Return the nearest of some pieces, and how far away it is."""
         found, away = nearest_pieces(self._path, tip, axis, np.array([low]), np.array([high - low]))
         return int(found[0]), float(away[0])
 
@@ -342,7 +344,7 @@ def _by_row(n: int, row: Ints, off: Floats, axis_off: Floats) -> tuple[Ints, Flo
 
 
 def _row_lengths(n: int, path: ProgramPath) -> Floats:
-    """The way of the tip in n rows, (n,)."""
+    """Return the way of the tip in n rows, (n,)."""
     lengths = np.zeros(n)
     np.add.at(lengths, path.row, path.lengths())
     return lengths

@@ -147,7 +147,7 @@ def _usual_rate(gone: Floats, step: Floats, part: Flags) -> float:
 
 
 def longest_stand(compared: RecordedComparison) -> tuple[float, int]:
-    """The longest time that several rows in a row show the same place, seconds, and where it begins."""
+    """Return the longest time that several rows in a row show the same place, seconds, and where it begins."""
     at = compared.compared
     if len(at) < 2:
         return 0.0, 0

@@ -65,7 +65,7 @@ def nearest_places(path: ProgramPath, tip: Floats, axis: Floats, low: Ints, high
 
 
 def nearest_pieces(path: ProgramPath, tip: Floats, axis: Floats, low: Ints, count: Ints) -> tuple[Ints, Floats]:
-    """The nearest piece to each position, with pieces taken for straight, and how far away it is.
+    """Return the nearest piece to each position, with pieces taken for straight, and how far away it is.
 
     They are ``count`` pieces from ``low`` on, (k,) each; where none of them is known the piece is -1, infinitely far
     away.

@@ -108,13 +108,13 @@ class _Rows:
         self._known: dict[tuple[int, int], Ints] = {}
 
     def last_line(self, file: int) -> int:
-        """The last line of a file in which anything is."""
+        """Return the last line of a file in which anything is."""
         at = int(np.searchsorted(self._keys, (file + 1) << 32))
         moves = int(self._keys[at - 1]) - (file << 32) if at and self._keys[at - 1] >> 32 == file else 0
         return max(moves, self._last.get(file, 0))
 
     def row_of(self, file: int, line: int, *, anew: bool) -> int:
-        """The row of a line; of one without motion the row before it."""
+        """Return the row of a line; of one without motion the row before it."""
         if line <= 0:
             self._now = 0
             return BEFORE
@@ -136,7 +136,9 @@ class _Rows:
 
 
 def _stem(name: str) -> str:
-    """What files of a program have in common on computer and control: ``/_N_MPF_DIR/_N_HUB_MPF`` and ``hub.mpf``."""
+    """Return what files of a program have in common on computer and control: ``/_N_MPF_DIR/_N_HUB_MPF`` and
+    ``hub.mpf``.
+    """
     text = PurePath(name.replace("\\", "/")).name.casefold()
     for prefix, suffixes in _DECORATIONS.items():
         if text.startswith(prefix):

@@ -43,7 +43,7 @@ class ProgramPath:
 
     @staticmethod
     def of(run: Run) -> "ProgramPath":
-        """The path of a run."""
+        """Return the path of a run."""
         parts = []
         for pieces in axis_pieces(run, {}, most=MOST_PIECES):
             before, after = pieces.joints[:-1], pieces.joints[1:]

@@ -99,7 +99,7 @@ def checksum(path: FilePath) -> str:
 
 
 def post_inputs(job: PostJob, result: PostResult) -> dict[str, list[dict[str, object]]]:
-    """What a post has read, by what it is, each file as it is now."""
+    """Return what a post has read, by what it is, each file as it is now."""
     return {
         "cl": inputs_of(file_on_disk(toolpath.file) for toolpath in result.toolpaths),
         "definitions": inputs_of(definition_files(job.machine, job.machine)),
@@ -160,7 +160,7 @@ def inputs_of(files: Iterable[FilePath]) -> list[dict[str, object]]:
 
 
 def _proof(verification: Verification | None) -> dict[str, object]:
-    """The result of the proof, and the times that it found."""
+    """Return the result of the proof, and the times that it found."""
     if verification is None:
         return {"checks": [], "seconds": None, "operations": []}
     seconds, _ = durations(verification)

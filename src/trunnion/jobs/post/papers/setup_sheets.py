@@ -48,7 +48,7 @@ def setup_sheet(
     files: Sequence[SheetFile],
     bodies: Sequence[DrawnBody] = (),
 ) -> SetupSheet:
-    """The sheet of a program that was posted and proven; ``bodies`` are drawn with its path."""
+    """Return the sheet of a program that was posted and proven; ``bodies`` are drawn with its path."""
     run, machine = verification.run, program.machine
     content = collect_content(replace(verification, program=Path(verification.program).name), program.control.name)
     shown = tuple(displayed_extent(*each) for each in zip(machine.axes, content.axes, strict=True))
@@ -78,7 +78,7 @@ def setup_sheet(
 
 
 def _untimed(machine: Machine) -> str:
-    """What times leave out because the definition does not state it."""
+    """Return what times leave out because the definition does not state it."""
     left_out = (
         ("rapids", any(axis.rapid is None for axis in machine.axes)),
         ("speeding up and slowing down", any(axis.acceleration is None for axis in machine.axes)),
@@ -123,7 +123,7 @@ def _operations(
 
 
 def _notes(motions: Sequence[Motion], *, names_radius: bool) -> Iterator[str]:
-    """What a setter must know of an operation: compensation with its register, pitches, and where it stops."""
+    """Yield what a setter must know of an operation: compensation with its register, pitches, and where it stops."""
     rpm = 0.0
     for event in (event for motion in motions for event in motion.operation.events):
         match event:
@@ -182,7 +182,7 @@ def _tools(
 
 
 def _kind(tool: Tool) -> str:
-    """What a tool is, in words; empty where the CL file does not say."""
+    """Return what a tool is, in words; empty where the CL file does not say."""
     if tool.kind == "MILL" and tool.diameter > 0.0 and abs(2.0 * tool.corner_radius - tool.diameter) < 1e-6:
         return "ball mill"
     words = {"MILL": "mill", "TCUTTER": "T-cutter", "BARREL": "barrel cutter", "DRILL": "drill"}
@@ -191,7 +191,7 @@ def _kind(tool: Tool) -> str:
 
 
 def _start(program: Program, run: Run, operations: Sequence[SheetOperation], rotary: Sequence[str]) -> Iterator[str]:
-    """What stands at the beginning of the program, and where it can be entered."""
+    """Yield what stands at the beginning of the program, and where it can be entered."""
     first = operations[0] if operations else None
     if first is not None:
         yield f"The first tool is T{first.tool}."
@@ -213,7 +213,7 @@ def _start(program: Program, run: Run, operations: Sequence[SheetOperation], rot
 
 
 def _to_check(program: Program, job: PostJob, result: PostResult, run: Run) -> Iterator[str]:
-    """What the proof cannot see."""
+    """Yield what the proof cannot see."""
     machine = program.machine
     offsets = ", ".join(_offsets(run)) or "the machine's zero"
     is_placed = any(notice.startswith(PLACED_NOTICES) for notice in job.notices)

@@ -47,7 +47,9 @@ class PostPapers:
         simulated: "SimulationInput | None",
         files: Iterable[FilePath],
     ) -> "PostPapers":
-        """The papers with what was found after the post: problems, and a simulation with what it was of and read."""
+        """Return the papers with what was found after the post: problems, and a simulation with what it was of and
+        read.
+        """
         from trunnion.jobs.post.papers.manifests import inputs_of
 
         # A sheet has room for some warnings: these are the first.
@@ -80,7 +82,9 @@ class PostPapers:
             files.add_paper(places["manifest"]).write(data)
 
     def _sheet(self, verification: Verification, suffix: str) -> bytes:
-        """The setup sheet as a page or as data; stock, part and fixtures are drawn where the program is simulated."""
+        """Return the setup sheet as a page or as data; stock, part and fixtures are drawn where the program is
+        simulated.
+        """
         from trunnion.jobs.post.papers.setup_sheets import setup_sheet
         from trunnion.reporting.path_drawing import DrawnBody
         from trunnion.reporting.setup_sheet_page import sheet_json, sheet_page
@@ -97,7 +101,7 @@ class PostPapers:
 
 
 def post_papers(target: Target, program: Program, job: PostJob, result: PostResult) -> PostPapers:
-    """The papers of a post that is proven."""
+    """Return the papers of a post that is proven."""
     inputs: dict[str, list[dict[str, object]]] = {}
     if "manifest" in target.papers:
         from trunnion.jobs.post.papers.manifests import post_inputs
@@ -107,7 +111,7 @@ def post_papers(target: Target, program: Program, job: PostJob, result: PostResu
 
 
 def _written_files(target: Target) -> "list[SheetFile]":
-    """The files of a program with their checksums, the main program first."""
+    """Return the files of a program with their checksums, the main program first."""
     from trunnion.jobs.post.papers.manifests import checksum
     from trunnion.reporting.setup_sheet import SheetFile
 

@@ -57,6 +57,8 @@ def _weight(number: NumberFormat, weight: float, spline: Spline) -> list[str]:
 
 
 def _scaled_knots(spline: Spline) -> np.ndarray:
-    """The knots from 0 to ``_LAST_KNOT``: the curve does not depend on where they begin and how far apart they are."""
+    """Return the knots from 0 to ``_LAST_KNOT``: the curve does not depend on where they begin and how far apart they
+    are.
+    """
     first, last = spline.knots[0], spline.knots[-1]
     return np.asarray((spline.knots - first) / (last - first) * _LAST_KNOT)

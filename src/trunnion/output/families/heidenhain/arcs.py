@@ -62,14 +62,14 @@ def _centre_lines(centres: list[list[int]], use_radius: Flags, formats: Formats)
 
 
 def _centres(start: Floats, centre: Floats, length: NumberFormat) -> Ints:
-    """(a, 2) counts: the centres relative to the printed start points, so that nothing is rounded twice."""
+    """Return (a, 2) counts: the centres relative to the printed start points, so that nothing is rounded twice."""
     offsets = [length.counts((centre - start)[:, c]) for c in range(2)]
     starts = [length.counts(start[:, c]) for c in range(2)]
     return np.column_stack([a + b for a, b in zip(offsets, starts, strict=True)])
 
 
 def _sweep(start: Floats, end: Floats, centre: Floats, sense: Floats, turns: Ints) -> Floats:
-    """(a,) degrees with the sign of DR; an arc that ends where it starts is a full turn."""
+    """Return (a,) degrees with the sign of DR; an arc that ends where it starts is a full turn."""
     a, b = start[:, :2] - centre[:, :2], end[:, :2] - centre[:, :2]
     angle = np.degrees(np.arctan2(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0], np.einsum("ij,ij->i", a, b)))
     within_turn = np.mod(sense * angle, 360.0)
@@ -78,7 +78,7 @@ def _sweep(start: Floats, end: Floats, centre: Floats, sense: Floats, turns: Int
 
 
 def _radius(start: Floats, end: Floats, centre: Floats, sweep: Floats, length: NumberFormat) -> Ints:
-    """(a,) counts, negative for sweeps of more than half a turn."""
+    """Return (a,) counts, negative for sweeps of more than half a turn."""
     radii = [np.linalg.norm((point - centre)[:, :2], axis=1) for point in (start, end)]
     return length.counts(np.where(np.abs(sweep) > 180.0, -0.5, 0.5) * (radii[0] + radii[1]))
 
@@ -86,7 +86,7 @@ def _radius(start: Floats, end: Floats, centre: Floats, sweep: Floats, length: N
 def _radius_finds_centre(
     start: Floats, end: Floats, centre: Floats, sweep: Floats, radius: Ints, number_format: NumberFormat
 ) -> Flags:
-    """(a,) whether the control finds the centre by the printed radius, within ``MAX_CENTRE_ERROR_DIGITS``."""
+    """Return (a,) whether the control finds the centre by the printed radius, within ``MAX_CENTRE_ERROR_DIGITS``."""
     digit = number_format.digit
     first, last = (
         np.column_stack([number_format.counts(point[:, c]) for c in range(2)]) * digit for point in (start, end)

@@ -193,7 +193,7 @@ def _floating_tap(cycle: Cycle, top: float, spindle: SpindleState | None) -> Cyc
 
 
 def _tap_in_pecks(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
-    """A rigid tap in pecks, with full retracts or chip breaks between them."""
+    """Return a rigid tap in pecks, with full retracts or chip breaks between them."""
     if any(cycle.pecks[1:]):
         raise HoleCycleError(Wording("CTL350", "decreasing_peck_depths_thread"))
     _, _, values = _tap(cycle, top, spindle)
@@ -203,7 +203,7 @@ def _tap_in_pecks(cycle: Cycle, top: float, spindle: SpindleState | None) -> Cyc
 
 
 def _bore(cycle: Cycle, top: float, spindle: SpindleState | None) -> CycleDefinition:
-    """The spindle stops at an angle at the bottom, and the tool retracts at rapid."""
+    """Return the spindle stops at an angle at the bottom, and the tool retracts at rapid."""
     low, high = _heights(cycle, top)
     feeds = {206: _feed(cycle, spindle), **_dwell(cycle, spindle), 208: RAPID}
     return 202, "BORING", {**low, **feeds, **high, 214: 0.0, 336: 0.0}

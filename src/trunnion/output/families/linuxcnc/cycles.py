@@ -81,7 +81,7 @@ def _rigid_pitch(cycle: Cycle, spindle: SpindleState | None) -> float:
 
 
 def _floating_tap(cycle: Cycle, spindle: SpindleState | None, formats: Formats) -> GCodeAndWords:
-    """The spindle reverses by itself: G84 expects it clockwise, G74 the other way.
+    """Return the spindle reverses by itself: G84 expects it clockwise, G74 the other way.
 
     Without P the cycle would dwell as long as the one before.
     """
@@ -96,7 +96,7 @@ def _ream(cycle: Cycle, spindle: SpindleState | None, formats: Formats) -> GCode
 
 
 def _bore(cycle: Cycle, spindle: SpindleState | None, formats: Formats) -> GCodeAndWords:
-    """The spindle stops at the bottom; G86 needs a P."""
+    """Return the spindle stops at the bottom; G86 needs a P."""
     running_spindle(spindle, "CYCLE/BORE,DRAG")
     return 86, _dwell(cycle, spindle, formats) or ["P0"]
 

@@ -145,7 +145,7 @@ def _tap_in_pecks(of: _Input) -> CycleArguments:
 
 
 def _floating_tap(of: _Input) -> CycleArguments:
-    """The spindle reverses by itself; sense after the cycle, with encoder, no size, pitch."""
+    """Return the spindle reverses by itself; sense after the cycle, with encoder, no size, pitch."""
     pitch, spindle = _signed_pitch(of)
     unit = [_THIRD_AXIS, _INCHES_PER_TURN] if of.inches else []
     return "CYCLE840", ["", of.dwell, "0", _sense_code(spindle), "0", "", of.pitch(pitch), *unit]

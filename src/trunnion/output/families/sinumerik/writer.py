@@ -131,7 +131,9 @@ def template_values(settings: Mapping[str, Value], plane: Floats | None) -> dict
 
 
 def _cancelled_planes(settings: Mapping[str, Value]) -> dict[str, Value]:
-    """What cancels planes that an aborted run may have left on, by ``SAFE_START_SETTING``; None: nothing does."""
+    """Return what cancels planes that an aborted run may have left on, by ``SAFE_START_SETTING``; None:
+    nothing does.
+    """
     everything = settings[SAFE_START_SETTING] == ALL_LEFT_ON
     plane = settings["plane"] if settings.get(PLANES_USED) else None
     turns_frame = bool(settings.get(TCP_USED)) and settings[HOLES_SETTING] == "torot"
@@ -143,7 +145,7 @@ def _cancelled_planes(settings: Mapping[str, Value]) -> dict[str, Value]:
 
 
 def _offset_before_turn(settings: Mapping[str, Value]) -> Value:
-    """The work offset in which the rotary axes turn before TRAORI; None: the one that is in force.
+    """Return the work offset in which the rotary axes turn before TRAORI; None: the one that is in force.
 
     The rotary axes of a work offset count too. The published programs turn before they select their only offset, G54.
     """

@@ -59,7 +59,7 @@ class FanucControl(Rs274Control):
         self.deciding_axis = 1 if all(machine.axes[k].mount is Mount.PART for k in machine.rotary) else 0
 
     def takes_shortest_path(self, axis: Axis) -> bool:
-        """Always, as on axes that are set to roll over, except for axes whose output has all turns."""
+        """Return True, as on axes that are set to roll over, except for axes whose output has all turns."""
         return axis.output is not AngleOutput.NONE
 
     def _make_table(self, whole_feeds: bool, vectors: bool, turning: bool) -> Codes:

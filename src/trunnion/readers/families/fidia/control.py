@@ -56,7 +56,7 @@ class FidiaControl(Rs274Control):
         self.count_in(self.settings.unit)
 
     def takes_shortest_path(self, axis: Axis) -> bool:
-        """Always (unconfirmed), except for axes whose output has all turns."""
+        """Return True (unconfirmed), except for axes whose output has all turns."""
         return axis.output is not AngleOutput.NONE
 
     def change_tool(self) -> None:

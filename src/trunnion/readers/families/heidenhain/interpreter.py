@@ -165,7 +165,7 @@ class HeidenhainInterpreter(FlowInterpreter):
         super()._leave_program()
 
     def _note_at_last_line(self, source: SourceText) -> Note:
-        """What notes faults at the line that was read last."""
+        """Return what notes faults at the line that was read last."""
 
         def note(text: str, severity: Severity, code: str) -> None:
             self.control.line = source.line - 1

@@ -69,5 +69,5 @@ def check_rest(active: ActiveProgram, source: SourceText, note: Note, end: str) 
 
 
 def _name(words: list[str]) -> str:
-    """The name of a program, in capitals."""
+    """Return the name of a program, in capitals."""
     return " ".join(words[1:-1] if words[-1:] and words[-1] in _UNITS else words[1:]).upper()

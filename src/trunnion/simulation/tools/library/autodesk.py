@@ -86,7 +86,7 @@ def _read_tool(file: str, place: str, tool: JsonObject) -> LibraryTool | Unusabl
 
 
 def _remarks(kind: str, tool: JsonObject) -> Iterator[str]:
-    """What was taken for granted of a tool."""
+    """Yield what was taken for granted of a tool."""
     if kind in _AS_CYLINDERS:
         yield f"it is a {kind}: simulated as a cylinder"
     if not tool.child("geometry").length("LB"):
@@ -96,7 +96,7 @@ def _remarks(kind: str, tool: JsonObject) -> Iterator[str]:
 
 
 def _sizes(tool: JsonObject) -> ToolSizes | None:
-    """The sizes of a tool; None if its kind or its unit is not known, which is a fault of it."""
+    """Return the sizes of a tool; None if its kind or its unit is not known, which is a fault of it."""
     kind, unit = short_text(tool.values.get("type")), short_text(tool.values.get("unit"))
     if kind not in _FORMS:
         tool.faults.append(f"{kind} is a type that is not read" if kind else "it has no type")
@@ -112,7 +112,7 @@ def _sizes(tool: JsonObject) -> ToolSizes | None:
 
 
 def _with_body(form: ToolSizes, tool: JsonObject, geometry: JsonObject) -> ToolSizes:
-    """A cutter with what stands above it."""
+    """Return a cutter with what stands above it."""
     length = geometry.length("LB")
     pieces, gauge = _holder(tool, geometry)
     if not length:
@@ -130,7 +130,7 @@ def _with_body(form: ToolSizes, tool: JsonObject, geometry: JsonObject) -> ToolS
 
 
 def _with_shoulder(found: ToolSizes, geometry: JsonObject) -> ToolSizes:
-    """A tool with its shoulder, which goes from the cutter to the shank."""
+    """Return a tool with its shoulder, which goes from the cutter to the shank."""
     diameter = geometry.length("shoulder-diameter") or (0.0 if found.kind is ToolKind.TAPER else found.diameter)
     top = min(geometry.length("shoulder-length"), found.length)
     if found.kind is ToolKind.THREAD_MILL:
@@ -147,7 +147,7 @@ def _with_shoulder(found: ToolSizes, geometry: JsonObject) -> ToolSizes:
 
 
 def _with_return_flank(found: ToolSizes, neck: float, top: float) -> ToolSizes:
-    """A chamfer mill on a neck: above its cone it narrows as it widened, whatever LCF says."""
+    """Return a chamfer mill on a neck: above its cone it narrows as it widened, whatever LCF says."""
     slope = math.tan(math.radians(found.side_angle))
     peak = 0.5 * max(found.diameter - found.tip_diameter, 0.0) / slope
     back = 0.5 * (found.diameter - neck) / slope
@@ -157,13 +157,15 @@ def _with_return_flank(found: ToolSizes, neck: float, top: float) -> ToolSizes:
 
 
 def _with_pieces(found: ToolSizes, cylinders: list[tuple[float, float]]) -> ToolSizes:
-    """A tool with cylinders below its shank: diameters and heights; those of no height are none."""
+    """Return a tool with cylinders below its shank: diameters and heights; those of no height are none."""
     pieces = tuple(BodyPiece(diameter, diameter, height) for diameter, height in cylinders if height > 0.0)
     return replace(found, shank=pieces + found.shank)
 
 
 def _holder(tool: JsonObject, geometry: JsonObject) -> tuple[tuple[BodyPiece, ...], float]:
-    """The pieces of a holder up to the gauge point, and how far that is above its lower end; 0 if nothing says it."""
+    """Return the pieces of a holder up to the gauge point, and how far that is above its lower end; 0 if nothing says
+    it.
+    """
     unit = short_text(tool.child("holder").values.get("unit"))
     if unit and unit not in _UNITS:
         tool.faults.append(f'its holder has the unit {unit}, not "millimeters" or "inches"')
@@ -173,7 +175,7 @@ def _holder(tool: JsonObject, geometry: JsonObject) -> tuple[tuple[BodyPiece, ..
 
 
 def _pieces(owner: JsonObject) -> tuple[BodyPiece, ...]:
-    """The pieces of a shaft or a holder from below to above; steps have no height."""
+    """Return the pieces of a shaft or a holder from below to above; steps have no height."""
     found = (
         BodyPiece(piece.length("lower-diameter"), piece.length("upper-diameter"), piece.length("height"))
         for piece in owner.children("segments", MOST_PIECES)
@@ -182,7 +184,7 @@ def _pieces(owner: JsonObject) -> tuple[BodyPiece, ...]:
 
 
 def _below(pieces: tuple[BodyPiece, ...], height: float) -> tuple[BodyPiece, ...]:
-    """The pieces of a holder up to the gauge point: above it they are in the spindle."""
+    """Return the pieces of a holder up to the gauge point: above it they are in the spindle."""
     found: list[BodyPiece] = []
     for piece in pieces:
         share = min(height / piece.height, 1.0)
@@ -218,7 +220,7 @@ def _bull(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
 
 
 def _face(tool: JsonObject, geometry: JsonObject) -> ToolSizes:
-    """A straight one is a bull nose; an upper radius means nothing without an angle."""
+    """Return a straight one is a bull nose; an upper radius means nothing without an angle."""
     _refuse(geometry, "TA", "a face mill with an angle is not read")
     return _bull(tool, geometry)
 

@@ -43,7 +43,7 @@ class _Parameters:
     faults: list[str] = field(default_factory=list)
 
     def length(self, key: str) -> float:
-        """A length in mm; 0 if there is none."""
+        """Return a length in mm; 0 if there is none."""
         number, unit = self._value(key)
         if unit not in _LENGTHS:
             self.faults.append(f"{key} has the unit {unit}, which is none of length")
@@ -51,7 +51,7 @@ class _Parameters:
         return number * _LENGTHS[unit]
 
     def angle(self, key: str) -> float:
-        """An angle in degrees; 0 if there is none."""
+        """Return an angle in degrees; 0 if there is none."""
         number, unit = self._value(key)
         if unit not in _ANGLES:
             self.faults.append(f"{key} has the unit {unit}, which is none of angles")
@@ -96,7 +96,7 @@ def read_freecad(file: str, root: Mapping[str, Any]) -> ToolLibrary:
 
 
 def _sizes(shape: str, bit: _Parameters) -> ToolSizes:
-    """The sizes of a tool bit. Its holder is not in it: all of its length stands free."""
+    """Return the sizes of a tool bit. Its holder is not in it: all of its length stands free."""
     form = ToolSizes(
         _KINDS[shape],
         bit.length("Diameter"),
@@ -125,12 +125,12 @@ def _tap(form: ToolSizes, bit: _Parameters) -> ToolSizes:
 
 
 def _cone(radius: float, angle: float) -> float:
-    """The height of a cone of a radius with an angle from its axis; 0 if it has none."""
+    """Return the height of a cone of a radius with an angle from its axis; 0 if it has none."""
     return radius / math.tan(math.radians(angle)) if angle else 0.0
 
 
 def _chamfer(form: ToolSizes, bit: _Parameters) -> ToolSizes:
-    """It is as wide as its cone, which is as high as the cutting edge; Diameter is that of no part of it."""
+    """Return a chamfer mill: as wide as its cone, which is as high as the cutting edge; Diameter is that of no part."""
     tip, side_angle = bit.length("TipDiameter"), 0.5 * bit.angle("CuttingEdgeAngle")
     diameter = tip + 2.0 * form.flute_length * math.tan(math.radians(side_angle))
     return replace(form, diameter=diameter, tip_diameter=tip, side_angle=side_angle)

@@ -84,7 +84,7 @@ class JsonObject:
     faults: list[str] = field(default_factory=list)
 
     def child(self, key: str, scale: float | None = None) -> "JsonObject":
-        """The object under a key; an empty one if there is none."""
+        """Return the object under a key; an empty one if there is none."""
         value = self.values.get(key)
         path = f"{self.path}.{key}" if self.path else key
         if value is not None and not isinstance(value, dict):
@@ -92,7 +92,7 @@ class JsonObject:
         return JsonObject(value if isinstance(value, dict) else {}, path, scale or self.scale, self.faults)
 
     def children(self, key: str, most: int) -> "list[JsonObject]":
-        """The objects in the list under a key, ``most`` of them."""
+        """Return the objects in the list under a key, ``most`` of them."""
         value = self.values.get(key)
         path = f"{self.path}.{key}" if self.path else key
         if value is not None and not isinstance(value, list):
@@ -106,7 +106,7 @@ class JsonObject:
         return [holding.child(name) for name in items]
 
     def number(self, key: str, most: float) -> float:
-        """A number from 0 to ``most``; 0 if there is none."""
+        """Return a number from 0 to ``most``; 0 if there is none."""
         value = self.values.get(key)
         if value is None:
             return 0.0
@@ -118,9 +118,9 @@ class JsonObject:
         return found
 
     def length(self, key: str) -> float:
-        """A length in mm; 0 if there is none."""
+        """Return a length in mm; 0 if there is none."""
         return self.number(key, GREATEST / self.scale) * self.scale
 
     def angle(self, key: str) -> float:
-        """An angle in degrees; 0 if there is none."""
+        """Return an angle in degrees; 0 if there is none."""
         return self.number(key, 180.0)

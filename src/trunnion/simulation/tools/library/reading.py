@@ -102,7 +102,7 @@ def _from_json(name: str, data: bytes) -> ToolLibrary:
 
 
 def _unpack(name: str, data: bytes) -> bytes:
-    """The one JSON text of an archive."""
+    """Return the one JSON text of an archive."""
     if data.count(_ENTRY) > _MAX_FILES:
         raise InputError(Problem(name, 0, Wording("SIM172", "archive_more_files", max_files=_MAX_FILES)))
     try:

@@ -38,7 +38,7 @@ def read_toml_library(path: Path) -> ToolLibrary:
 
 
 def library_table(path: Path) -> Table:
-    """The table of a library and of all that it extends, unread.
+    """Return the table of a library and of all that it extends, unread.
 
     Raises
     ------
@@ -74,7 +74,7 @@ def read_tool_tables(root: Table) -> tuple[LibraryTool, ...]:
 
 
 def _read_tool(table: Table, number: int | None, name: str) -> list[LibraryTool]:
-    """The tool of a table; none if there is a mistake in it, which the table then has."""
+    """Return the tool of a table; none if there is a mistake in it, which the table then has."""
     before = len(table.problems)
     description = table.text("description", "")
     word = table.text("kind", one_of=list(ToolKind), other_names=OTHER_KINDS)
@@ -102,12 +102,12 @@ def _read_tool(table: Table, number: int | None, name: str) -> list[LibraryTool]
 
 
 def _key(size: str) -> str:
-    """The key of a size, which ends in its unit."""
+    """Return the key of a size, which ends in its unit."""
     return size + ("_deg" if size.endswith("angle") else "_mm")
 
 
 def _read_piece(table: Table) -> BodyPiece:
-    """A cylinder of one diameter, or a cone of two."""
+    """Return a cylinder of one diameter, or a cone of two."""
     height = table.number("height_mm", above=0.0, at_most=GREATEST)
     if "diameter_mm" in table:
         low = high = table.number("diameter_mm", above=0.0, at_most=GREATEST)

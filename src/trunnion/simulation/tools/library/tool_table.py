@@ -59,7 +59,7 @@ def read_tool_table(file: str, text: str, unit: float) -> ToolLibrary:
 
 
 def _words(line: str) -> tuple[dict[str, float], str]:
-    """The words of a line, and what is wrong with it; none of both for an empty one."""
+    """Return the words of a line, and what is wrong with it; none of both for an empty one."""
     words: dict[str, float] = {}
     for part in line.split():
         match = _WORD.fullmatch(part)
