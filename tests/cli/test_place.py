@@ -42,7 +42,7 @@ def test_data_has_the_place_the_region_and_the_turns(tmp_path: Path, capsys: pyt
     file = tmp_path / "placed.json"
     assert main(["place", BLADE, "--machine", "yl569", "--turns", "90", "--tool-length", "0", "--json", str(file)]) == 0
     data = json.loads(file.read_text("utf-8"))
-    assert data["schema"] == 1
+    assert data["schema"] == 2
     assert data["fits"] is True
     assert data["present"] is None
     assert len(data["best"]["zero_mm"]) == 3
