@@ -29,6 +29,7 @@ from trunnion.cl.text_format import TextFormat
 from trunnion.cl.word_events import can_be_unknown
 from trunnion.cli import main
 from trunnion.errors import InputError, Problem
+from trunnion.messages import foreign
 from trunnion.model.toolpath import Event, Toolpath
 
 
@@ -58,12 +59,12 @@ def parse_pair(raw: bytes, encoding: str) -> Statement:
     major, given = code.strip(), rest.split()
     if not major.isdigit():
         what = f"{major[:20]!r} stands where the code of a record belongs"
-        raise StatementError(what, "write pairs of lines: a code, and its numbers", code="CL160")
+        raise StatementError(foreign(what, "write pairs of lines: a code, and its numbers", "CL160"))
     try:
         values = tuple(map(float, given))
     except ValueError:
         what = f"record {major} has {rest.strip()[:20]!r} where numbers belong"
-        raise StatementError(what, "write decimal numbers between blanks", code="CL310") from None
+        raise StatementError(foreign(what, "write decimal numbers between blanks", "CL310")) from None
     return Statement(major, values, "", f"{major}/{','.join(given)}")
 
 
