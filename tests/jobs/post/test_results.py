@@ -9,7 +9,7 @@ import pytest
 
 import trunnion
 from tests.support.locations import YL569
-from trunnion.jobs.post import posting, writing
+from trunnion.jobs.post import writing
 
 CL = YL569 / "2_hub_rough.cls"
 PROGRAM = YL569 / "2_hub_rough.expected.mpf"
@@ -88,6 +88,6 @@ def test_the_error_of_a_failed_proof_says_what_was_found(monkeypatch: pytest.Mon
     def spoiled(program: Any, sink: Any, *more: Any, **named: Any) -> Any:
         return written(replace(program, settings={**program.settings, "work_offset": "G55"}), sink, *more, **named)
 
-    monkeypatch.setattr(posting, "write", spoiled)
+    monkeypatch.setattr(writing, "write", spoiled)
     with pytest.raises(trunnion.RefusedError, match=r"fails its proof: .*in G55, not in G54.*\(offset\)"):
         trunnion.post(CL, machine="yl569")

@@ -289,9 +289,9 @@ def test_remarks_name_their_set_up_and_those_of_a_machine_are_told_once(
     told = capsys.readouterr().err
     remarks = json.loads((folder / "out.json").read_text())["remarks"]
     assert told.count("has no spindle.gauge_point_mm") == 1
-    assert sum("has no spindle.gauge_point_mm" in one["what"] for one in remarks) == 1
-    of_programs = [one for one in remarks if "spindle.gauge_point_mm" not in one["what"]]
+    assert sum("has no spindle.gauge_point_mm" in one["text"] for one in remarks) == 1
+    of_programs = [one for one in remarks if "spindle.gauge_point_mm" not in one["text"]]
     assert {one["setup"] for one in of_programs} == {"top", "bottom"}
-    assert all(one["what"].startswith(one["setup"] + ": ") for one in of_programs)
+    assert all(one["text"].startswith(one["setup"] + ": ") for one in of_programs)
     assert "top: machine positions are taken as retracts" in told
     assert "bottom: machine positions are taken as retracts" in told
