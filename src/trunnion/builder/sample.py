@@ -15,6 +15,7 @@ from trunnion.errors import Problem, Severity, TrunnionError
 from trunnion.jobs.post.posting import post
 from trunnion.jobs.post.result import ProofFailedError
 from trunnion.machines import Machine
+from trunnion.results import to_data
 from trunnion.verification import Check
 
 #: So many lines are shown; the proof is always that of the whole program.
@@ -79,6 +80,7 @@ def sample_data(machine: Machine, cl: bytes | None, name: str, before: Sequence[
         "checks": list(map(_check, result.checks)),
         "problems": [_problem(each) for each in result.problems],
         "passed": result.passed,
+        "standing": result.standing and to_data(result.standing),
     }
 
 
@@ -86,11 +88,12 @@ def _without_program(problems: Sequence[Problem], checks: Sequence[Check]) -> di
     """Return the answer for a CL file that cannot be posted, or whose program fails its proof."""
     told = [_problem(each) for each in problems if each.what != _NOTHING_WRITTEN]
     shown = list(map(_check, checks))
-    return {"lines": [], "changed": [], "removed": 0, "checks": shown, "problems": told, "passed": False, "all": 0}
+    none = {"lines": [], "changed": [], "removed": 0, "all": 0, "standing": None}
+    return {**none, "checks": shown, "problems": told, "passed": False}
 
 
 def _check(check: Check) -> dict[str, Any]:
-    return {"key": check.key, "passed": check.passed, "summary": check.summary}
+    return {"key": check.key, "state": check.state, "summary": check.told}
 
 
 def _changes(before: Sequence[str], now: Sequence[str]) -> tuple[list[int], int]:

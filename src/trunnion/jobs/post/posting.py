@@ -34,6 +34,7 @@ from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.post.stages import PlannedProgram, Posting, WrittenProgram
 from trunnion.jobs.post.writing import write_and_read_back
 from trunnion.jobs.result_output import OutputLike, PaperFiles, Target, open_target, paper_files
+from trunnion.machines.loading import DEMANDS
 from trunnion.model.toolpath import Toolpath
 from trunnion.output.program import Program
 
@@ -82,7 +83,8 @@ def post(
         As ``--set`` takes them, by the same keys: ``{"title": "BLADE", "zero": (0, 0, 80), "tcp": "off"}``; see
         docs/commands.md.
     strict
-        Raise an error for unknown CL statements even if the definition says what becomes of them.
+        Raise an error for unknown CL statements even if the definition says what becomes of them, and for what the
+        proof would stand on and nobody has stated or measured (check ``basis``).
     force
         Write a program that must not run; its head says why. ``passed`` is then False.
     explain
@@ -184,7 +186,7 @@ def post_beside(
     loaded = as_machine(machine)
     job = prepare(loaded, settings, force=force, explain=explain, papers=papers, columns=columns)
     existing = check_paths("subprograms", subprograms)
-    job = replace(job, beside=tuple(existing), forcing=forcing)
+    job = replace(job, beside=tuple(existing), forcing=forcing, strict=strict)
     hook_files = check_paths("hooks", hooks)
     inputs = [*cl_files(cl), *machine_files(machine, loaded), *existing, *hook_files, *others]
     if simulation is not None:
@@ -220,7 +222,7 @@ def post_toolpaths(
             del written  # two runs would take twice the memory
             target.files.restart()
             written = write_and_read_back(posting, lambda: planned)
-        expected = expectation(written.planned.program, job.options)
+        expected = expectation(written.planned.program, job.options, demands=DEMANDS if job.strict else ())
     proof = prove(posting, written, expected)
     result = report_proof(posting, written.planned, proof)
     if proof.failed and not job.force:

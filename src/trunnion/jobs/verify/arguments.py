@@ -38,6 +38,7 @@ class VerifyArguments:
     hooks: Sequence[FilePath] = ()
     turn: float = 0.0
     tilt: float = 0.0
+    strict: bool = False
 
     @property
     def is_fastest(self) -> bool:

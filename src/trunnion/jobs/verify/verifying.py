@@ -12,7 +12,7 @@ from trunnion.jobs.inputs.arguments import check_observer
 from trunnion.jobs.inputs.control_settings import written_control
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, ToolpathLike, as_machine
 from trunnion.jobs.inputs.settings import set_up_machine
-from trunnion.jobs.observer import SILENT, Observer
+from trunnion.jobs.observer import SILENT, Observer, Remembering
 from trunnion.jobs.twin.recording import as_recording
 from trunnion.jobs.verify.arguments import DEFAULT_RECORDED_TOLERANCE, DEFAULT_TOLERANCE, VerifyArguments, checked
 from trunnion.jobs.verify.expectation import expected, tolerances
@@ -37,6 +37,7 @@ def verify(
     edge: int | str | None = None,
     units: str | None = None,
     dialect: str | None = None,
+    strict: bool = False,
     frame: Literal["first", "absolute"] = "first",
     zero: str | Iterable[float] | None = None,
     tool_length: str | float | None = None,
@@ -82,6 +83,8 @@ def verify(
         Length unit of the CL files, ``"mm"`` or ``"inch"``; one that states another is warned of.
     dialect
         What the CL files are written in, as ``read_cl`` has it; by default their content decides.
+    strict
+        What the proof stands on and nobody has stated or measured is an error (check ``basis``).
     frame
         Coordinate system of the program: that of the ``first`` operation, or the CAM's ``absolute`` one.
     zero : (3,) float, mm
@@ -132,9 +135,10 @@ def verify(
     True
     """
     check_observer(observer)
+    observer = Remembering(observer)
     given = checked(VerifyArguments(
         cl, tolerance, span, span_tip, tool, work_offset, edge, units, dialect, frame, feed, feed_limit,
-        recorded_tolerance, hooks, turn, tilt,
+        recorded_tolerance, hooks, turn, tilt, strict,
     ))  # fmt: skip
     recording = None if recorded is None else as_recording(recorded)
     on = _set_up(as_machine(machine), zero, tool_length)
@@ -144,6 +148,7 @@ def verify(
     found = verification.verify(read.run, read.toolpaths, tolerances=allowed, settings=settings, columns=columns)
     found = replace(found, clamping=read.clamping)
     observer.problems(_without_motion(read.run))
+    found = replace(found, remarks=tuple(observer.found))
     return found if recording is None else verification.with_recording(found, recording, recorded_tolerance)
 
 
