@@ -1,6 +1,6 @@
 """The results of a verification, as values; text, HTML and JSON are made from them elsewhere."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from pathlib import Path
@@ -11,7 +11,7 @@ import numpy as np
 from trunnion.arrays import Flags, Floats, Lines
 from trunnion.errors import Problem, Severity
 from trunnion.machines import Machine
-from trunnion.messages import Wording
+from trunnion.messages import Wording, phrase
 from trunnion.model.clamping import Clamping
 from trunnion.model.operation_start import OperationStart
 from trunnion.model.run import Run
@@ -60,6 +60,26 @@ class Place:
         return f"N{self.number}" if self.number >= 0 else f"line {self.nc_line}"
 
 
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """Which motions of a program a check has looked at.
+
+    checked   how many of the ``motions`` that there are
+    left_out  the first of the others, each with why
+    """
+
+    checked: int
+    motions: int
+    left_out: tuple[Place, ...] = ()
+
+    def wordings(self) -> Iterator[Wording]:
+        """Yield what is said of it."""
+        yield phrase("motions_checked", checked=self.checked, motions=self.motions)
+        if self.left_out:
+            first = self.left_out[0]
+            yield phrase("motions_left_out", block=first.block_name, why=first.told)
+
+
 class State(StrEnum):
     """What a check says of a program."""
 
@@ -84,6 +104,7 @@ class Check:
     limit     what is allowed, None where there is no limit
     places    the worst places, worst first
     missing   what nobody has stated, so that the question was not answered, or only in part
+    coverage  which motions it has looked at; None: it is no question of single motions
     """
 
     key: str
@@ -95,6 +116,7 @@ class Check:
     unit: str = ""
     places: tuple[Place, ...] = ()
     missing: Annotated[tuple[Wording, ...], Figure(take=_texts, after="state")] = ()
+    coverage: Coverage | None = None
 
     @property
     @Figure(after="title")
@@ -107,7 +129,8 @@ class Check:
     @property
     def told(self) -> str:
         """``summary`` as it is printed: behind what is missing."""
-        return "; ".join((*_texts(self.missing), *([self.summary] if self.summary else [])))
+        covered = () if self.coverage is None else tuple(self.coverage.wordings())
+        return "; ".join(filter(None, (*_texts(self.missing), self.summary, *_texts(covered))))
 
     def __str__(self) -> str:
         """Return the line that the command prints: key, state, summary."""

@@ -59,7 +59,9 @@ _VERIFY: Final = job(
         "cutting edge under which the tool works; with --cl that of the control's definition, if it has one",
     ),
     READING.but(
-        strict={"help": "what the proof stands on and nobody has stated or measured is an error; so are unknown statements"}
+        strict={
+            "help": "what the proof stands on and nobody has stated or measured is an error; so are unknown statements"
+        }
     ),
     Option(
         "frame", "--frame", Choice(("first", "absolute")),

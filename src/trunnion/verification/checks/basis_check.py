@@ -1,13 +1,11 @@
 """What is demanded that the proof stands on, and is not stated or not measured."""
 
-from typing import Final
-
 from trunnion.verification.basis import missing_demands
 from trunnion.verification.context import Context
 from trunnion.verification.results import Check
 
-_KEY: Final = "basis"
-_TITLE: Final = "what the proof must stand on"
+_KEY = "basis"
+_TITLE = "what the proof must stand on"
 
 
 def check_basis(context: Context) -> list[Check]:
