@@ -4,7 +4,7 @@ python3 make.py sample     set up, and post a real five-axis toolpath
 python3 make.py simulate   set up, cut a part with its three programs, and draw what comes out
 python3 make.py impeller   set up, and make an impeller from measured points: paths, programs, proof, and the part
 python3 make.py test       set up, and run what judges a change: tests, style, types, the site
-python3 make.py nightly    the rest: the whole matrix, long cases, all draws, fuzzing, the archives; a number is the seed
+python3 make.py nightly    the rest: the whole matrix, long cases, all draws, fuzzing, archives; a number is the seed
 python3 make.py quick      style, types, import contracts, and the fast tests that the change reaches
 python3 make.py docs       build the documentation site in build/site
 python3 make.py package    build the wheel and the sdist in dist, and try both in environments of their own
