@@ -19,13 +19,9 @@ from trunnion.options.kinds import Setting
 from trunnion.wording import nearest_word
 
 if TYPE_CHECKING:  # modules that few of the functions need
-    from trunnion.batch.cluster import Tls
-    from trunnion.jobs.impeller.curves import EndLike
-    from trunnion.jobs.simulate.posted import SimulationLike
     from trunnion.model.recording import Recording
     from trunnion.simulation.meshes import TriangleMesh
     from trunnion.simulation.tools.profile import ToolShape
-    from trunnion.twin.serving import TwinAddresses
 
 _Given = TypeVar("_Given")
 
@@ -87,7 +83,7 @@ class PostArguments(ReadingArguments, SetUpArguments, ClampingArguments, total=F
     listing: FilePath | None
     manifest: FilePath | None
     columns: bool
-    simulation: "SimulationLike | None"
+    simulation: Mapping[str, Any] | FilePath | None
 
 
 class ConvertArguments(ReadingArguments, SetUpArguments, total=False):
@@ -199,21 +195,6 @@ class ViewArguments(BodyArguments, CuttingArguments, SetUpArguments, total=False
     subprograms: Sequence[FilePath]
 
 
-class TwinArguments(SetUpArguments, total=False):
-    """Arguments of ``serve_twin``."""
-
-    subprograms: Sequence[FilePath]
-    speed: float | None
-    loop: bool
-    rate: float
-    hold: bool
-    host: str
-    port: int
-    adapter_port: int | None
-    users: FilePath | None
-    ready: "Callable[[TwinAddresses], None] | None"
-
-
 class LiveArguments(TypedDict, total=False):
     """How a machine is connected to."""
 
@@ -238,40 +219,6 @@ class ImpellerArguments(TypedDict, total=False):
     operations: Sequence[str]
     settings: Settings | None
     cell: float | None
-
-
-class CurveArguments(TypedDict, total=False):
-    """Arguments of ``trunnion.fit_curve``."""
-
-    start: "EndLike"
-    end: "EndLike"
-    parameterization: str
-    tolerance: float | None
-    fair: float | None
-    weights: Sequence[float] | None
-
-
-class BatchArguments(TypedDict, total=False):
-    """Arguments of ``trunnion.batch.run_batch``."""
-
-    results: FilePath | None
-    action: Literal["post", "convert", "verify", "simulate"] | None
-    machine: FilePath | None
-    files: Sequence[str]
-    settings: Settings | None
-    to_machine: FilePath | None
-    to_cl: bool
-    cl: Sequence[str]
-    stock: FilePath | None
-    tools: Sequence[str]
-    report: Literal["html", "json"] | None
-    tiles: int | None
-    workers: int | None
-    timeout: float | None
-    scheduler: str | None
-    wait: float | None
-    tls: "Tls | None"
-    summary: FilePath | None
 
 
 #: What only the library has, and what it is where it is not given.
