@@ -26,6 +26,7 @@ import tempfile
 import venv
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -145,7 +146,7 @@ def nightly(seed: str = "") -> None:
     print(f"seed {seed}; python3 make.py nightly {seed} draws the same again", flush=True)
     campaign = ("python", "-m", "tests.fuzz.campaign", "every", "--seconds", FUZZING, "--patience", "300")
     with ThreadPoolExecutor(1) as beside:  # both keep one processor busy at most
-        others = beside.submit(lambda: (build(), run(*campaign, "--seed", seed)))
+        others = beside.submit(in_turn, build, partial(run, *campaign, "--seed", seed))
         run(*TESTS, "--nightly", f"--hypothesis-seed={seed}")
         others.result()
 
@@ -154,9 +155,15 @@ def test() -> None:
     """Everything that judges a change; CI runs ``nightly`` besides."""
     set_up(".[test,docs]")
     with ThreadPoolExecutor(1) as beside:  # each of its programs keeps one processor busy at most
-        others = beside.submit(lambda: (check(), site()))
+        others = beside.submit(in_turn, check, site)
         run(*TESTS)
         others.result()
+
+
+def in_turn(*steps: Callable[[], object]) -> None:
+    """Do steps one after the other."""
+    for step in steps:
+        step()
 
 
 def docs() -> None:

@@ -252,7 +252,7 @@ def _simulate(
         found = simulate(file, **given, observer=observer)
     figures |= simulation_figures(found)
     if task.report:
-        replace(found, seconds=0.0).write_report(result / task.report)
+        write_report(replace(found, seconds=0.0), result / task.report)
     if found.passed:
         return Status.PASSED, found.remarks
     return Status.FAILED, [*_findings(task.file, found), *found.remarks]
