@@ -67,9 +67,9 @@ def sample_data(machine: Machine, cl: bytes | None, name: str, before: Sequence[
     try:
         result = post(_NamedBytes(shipped_sample() if cl is None else cl, name or "sample.cls"), machine=machine)
     except ProofFailedError as error:
-        return _without_program(error.result.problems, error.result.checks)
+        return without_program(error.result.problems, error.result.checks)
     except TrunnionError as error:
-        return _without_program(error.problems, ())
+        return without_program(error.problems, ())
     lines = (result.text or "").splitlines()
     changed, removed = _changes(before, lines)
     return {
@@ -84,8 +84,8 @@ def sample_data(machine: Machine, cl: bytes | None, name: str, before: Sequence[
     }
 
 
-def _without_program(problems: Sequence[Problem], checks: Sequence[Check]) -> dict[str, Any]:
-    """Return the answer for a CL file that cannot be posted, or whose program fails its proof."""
+def without_program(problems: Sequence[Problem] = (), checks: Sequence[Check] = ()) -> dict[str, Any]:
+    """Return the answer where there is no program: the CL file cannot be posted, or it fails its proof."""
     told = [_problem(each) for each in problems if each.what != _NOTHING_WRITTEN]
     shown = list(map(_check, checks))
     none = {"lines": [], "changed": [], "removed": 0, "all": 0, "standing": None}
