@@ -205,7 +205,7 @@ class Verification:
     def __repr__(self) -> str:
         """Return what matters in a notebook: the columns would fill pages."""
         failed = ", ".join(check.key for check in self.checks if not check.passed)
-        result = f"failed: {failed}" if failed else self.standing.told
+        result = f"failed: {failed}" if failed else self.standing.said()
         return f"Verification(passed={self.passed}, {result}, {len(self.run)} motions)"
 
 
