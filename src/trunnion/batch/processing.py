@@ -209,7 +209,8 @@ def _convert(
 ) -> _Done:
     arguments |= {name: _machine(arguments[name]) for name in ("machine", "to_machine") if arguments.get(name)}
     with output_group(remembers=False) as group:
-        found = convert_beside(file, **arguments, output=result / task.result, observer=observer, group=group)
+        given: Any = {**arguments, "output": result / task.result}
+        found = convert_beside(file, given, observer, group)
     if found.posted is not None and found.posted.verification is not None:
         _add_proof(figures, found.posted.verification, found.posted.toolpaths)
     figures["points"] = point_count([found.toolpath])

@@ -24,7 +24,8 @@ from trunnion.jobs.observer import Observer
 from trunnion.jobs.post_project.posting import post_into
 from trunnion.jobs.post_project.setups import ProjectOptions
 from trunnion.jobs.post_project.watching import FolderNotices, Waiting, mentioned_files, watch
-from trunnion.jobs.project.file import load_project, project_inputs
+from trunnion.jobs.project.file import load_project
+from trunnion.jobs.project.named_files import project_inputs
 from trunnion.jobs.project.project import Project
 from trunnion.jobs.simulate.posted import simulation_files
 from trunnion.wording import counted, one_line

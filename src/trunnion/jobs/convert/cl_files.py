@@ -8,6 +8,7 @@ from trunnion.cl import DIALECTS
 from trunnion.cl.read_back import read_back_problems
 from trunnion.cl.writers import WRITERS
 from trunnion.errors import InputError, Problem, RefusedError, argument_problem, merge_repeated
+from trunnion.jobs.arguments import ConvertArguments
 from trunnion.jobs.inputs.reading import read_cl
 from trunnion.jobs.inputs.settings import Settings, as_texts
 from trunnion.jobs.observer import Observer
@@ -46,12 +47,13 @@ def write_and_prove(
 
 
 def convert_cl(
-    path: Path | BinaryIO, target: Target, dialect: str, settings: Settings | None, observer: Observer
+    path: Path | BinaryIO, target: Target, given: ConvertArguments, observer: Observer
 ) -> tuple[Toolpath, tuple[Problem, ...]]:
     """Read a CL file or stream of any dialect, and write it in another one; return the toolpath and all warnings."""
-    texts = _checked(settings)
+    texts = _checked(given["settings"])
+    units, read_in = (given["units"] or texts.get("cl_units"), given["dialect"] or texts.get("dialect"))
     try:
-        toolpath = read_cl(path, units=texts.get("cl_units"), dialect=texts.get("dialect"), observer=observer)
+        toolpath = read_cl(path, units=units, dialect=read_in, strict=given["strict"], observer=observer)
     except InputError as error:
         if "not a CL file" not in error.problems[0].what:
             raise
@@ -62,7 +64,7 @@ def convert_cl(
     observer.problems(toolpath.remarks)
     inch = texts["units"] == "inch" if "units" in texts else toolpath.unit == _INCH
     clamped = () if toolpath.clamping is None else tuple(clamped_notices(toolpath.clamping))
-    remarks = write_and_prove(toolpath, target, dialect, inch=inch, comments=clamped)
+    remarks = write_and_prove(toolpath, target, str(given["to_dialect"]), inch=inch, comments=clamped)
     observer.problems(remarks)
     return toolpath, (*toolpath.remarks, *remarks)
 
