@@ -2,10 +2,9 @@
 
 import io
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from operator import attrgetter
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, ClassVar, Final
+from typing import Final
 
 import numpy as np
 
@@ -15,12 +14,13 @@ from trunnion.controls import load_control
 from trunnion.errors import InputError, Problem, Severity, argument_problem
 from trunnion.impeller.impeller import Impeller
 from trunnion.impeller.machining import StepPaths, step_paths
-from trunnion.impeller.material import Material, material_before, order_problems, side_problems
+from trunnion.impeller.material import material_before, order_problems, side_problems
 from trunnion.impeller.paths.least_clearances import PartClearance
 from trunnion.impeller.paths.toolpaths import CuttingData, operation_of
-from trunnion.impeller.steps import MachiningStep, StepKind, file_stem
+from trunnion.impeller.steps import StepKind, file_stem
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
+from trunnion.jobs.impeller.cut import CutStep, ImpellerCut
 from trunnion.jobs.impeller.files import ImpellerFiles, output_folder
 from trunnion.jobs.impeller.models import load_impeller, model_impeller
 from trunnion.jobs.impeller.settings import operation_settings, program_settings
@@ -43,7 +43,6 @@ from trunnion.machines.inverse import inverse
 from trunnion.machines.spindle_range import spindle_speed_fault
 from trunnion.model.toolpath import Operation, Tool, Toolpath
 from trunnion.reporting.simulation_page import render_simulation_page
-from trunnion.results import NOT_DATA, Figure
 from trunnion.simulation.meshes import picture
 from trunnion.simulation.stock.surface import stock_surface
 from trunnion.simulation.tools.library import LibraryTool
@@ -54,6 +53,7 @@ from trunnion.verification import durations
 _MODEL: Final = 0.1
 
 
+<<<<<<< HEAD
 def _flanks(flanks: Sequence[tuple[float, float]]) -> list[dict[str, float]]:
     return [{"overcut_mm": over, "undercut_mm": under} for over, under in flanks]
 
@@ -131,6 +131,8 @@ class ImpellerCut:
         return self.result.passed and (self.simulation is None or self.simulation.passed)
 
 
+=======
+>>>>>>> main
 def cut_impeller(
     impeller: Impeller | FilePath,
     *,
