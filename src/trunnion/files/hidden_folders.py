@@ -75,17 +75,10 @@ class HiddenFolders:
 def move_all(files: Sequence[tuple[Path, OutputPlace]], withdrawn: Sequence[OutputPlace] = ()) -> None:
     """Move complete files to their places, all or none: if one of them fails, the earlier files are restored.
 
-    Parameters
-    ----------
-    files
-        Each from a hidden folder beside its place.
-    withdrawn
-        Places of files that must not be seen beside the older ones of others: their older files go away first.
+    files      each from a hidden folder beside its place
+    withdrawn  places of files that must not be seen beside the older ones of others: their older files go away first
 
-    Raises
-    ------
-    InputError
-        If a file cannot be written.
+    Raises ``InputError`` if a file cannot be written.
     """
     undone: list[tuple[Path, Path, Path]] = []
     place = files[0][1]
