@@ -222,7 +222,7 @@ class Writer:
         lines = self.draw(
             st.sampled_from(
                 [
-                    ["#1=3 #2=[#1*2+1]", "#3=#1", "G0 X#2 Y[#1/2] Z-#3"],
+                    ["#1=1", "#1=3 #2=[#1*2+1]", "#3=#1", "G0 X#2 Y[#1/2] Z-#3"],
                     ["#<deep>=-4.5", "G0 X#<deep> Y[ABS[#<deep>]**2] Z[7 MOD 4]"],
                     ["G0 X[SIN[30]*10] Y[ATAN[1]/[2]] Z[SQRT[2]+EXP[1]]", "G0 X[FIX[-2.5]] Y[FUP[2.1]] Z[ROUND[2.5]]"],
                     ["G0 X[2+3*4**2-1] Y[10/4-[1-2]] Z[1 GT 2 OR 3 EQ 3]", "G0 X[-3 MOD 5] Y[ACOS[.5]] Z[LN[10]]"],
