@@ -88,7 +88,8 @@ def test_balls_as_large_as_the_fillet_stay_clear_in_a_family(case: tuple[Impelle
     try:
         family = root_blend(impeller, blade, step)
     except InputError as refused:
-        assert "there is room for a ball of radius" in str(refused)
+        if "there is room for a ball of radius" not in str(refused):
+            raise
         reject()  # a large fillet meets itself round the trailing edge of a thin blade
     normal = np.concatenate([one.normal for one in family.passes])
     np.testing.assert_allclose(np.linalg.norm(normal, axis=1), 1.0, atol=1e-12)

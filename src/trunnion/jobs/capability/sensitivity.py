@@ -9,10 +9,10 @@ import numpy as np
 from trunnion.capability.sensitivity import Sensitivity, program_sensitivity
 from trunnion.capability.tip_errors import joints_at_zero
 from trunnion.errors import InputError, Problem, Severity
-from trunnion.jobs.inputs.arguments import wrong_argument
+from trunnion.jobs.inputs.arguments import check_observer, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run, read_toolpaths
 from trunnion.jobs.inputs.settings import set_up_machine
-from trunnion.jobs.observer import SILENT
+from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.wording import counted
@@ -35,6 +35,7 @@ def sensitivity(
     length: float = DEFAULT_LENGTH,
     angle: float = DEFAULT_ANGLE,
     zero_at: str | Mapping[str, float] | None = "home",
+    observer: Observer = SILENT,
 ) -> Sensitivity:
     """Tell how far the tip is off over a program for each geometry number of the machine that is not true.
 
@@ -58,6 +59,8 @@ def sensitivity(
         Where the rotary axes stood when the workpiece zero was set by the tool or a probe: ``home``, or their values in
         degrees, such as ``"C=0,B=30"`` or a mapping. What the error is there is then in the zero, and only the rest of
         it is at the tip. ``none`` or None: nothing was set.
+    observer
+        Receives the progress.
 
     Returns
     -------
@@ -83,10 +86,13 @@ def sensitivity(
     >>> found.numbers[0].number.name
     'gauge point X'
     """
+    check_observer(observer)
     _check_amount("length", length)
     _check_amount("angle", angle)
     run = as_run(nc, set_up_machine(as_machine(machine), zero, tool_length), subprograms)
-    found = program_sensitivity(run, _zero_pose(run.machine, zero_at), length, angle, tuple(_remarks(run)))
+    pose = _zero_pose(run.machine, zero_at)
+    with observer.progress("sensitivity", len(run), "motions") as advance:
+        found = program_sensitivity(run, pose, length, angle, tuple(_remarks(run)), advance)
     if not found.motions:
         raise InputError(_without_cuts(run))
     return found
