@@ -232,7 +232,7 @@ class Writer:
                     ["#7=2", "o5 if [#7 EQ 1]", "G0 X1", "o5 elseif [#7 EQ 2]", "G0 X2", "o5 else", "G0 X3",
                      "o5 endif"],
                     ["o<hop> call [4] [5]", "G0 Z#<_value>"],
-                    ["#9=1", "#9=5 G0 X#9", "G0 Y#9", "G0 X#[8+1] Z##9"],
+                    ["#5=2", "#9=1", "#9=5 G0 X#9", "G0 Y#9", "G0 X#[8+1] Z##9"],
                     ["o6 while [1]", "G0 Z1", "o6 break", "o6 endwhile"],
                     ["G0 X[#5420+1] Y[#5421-#5422] Z#5220", "G0 X[EXISTS[#<nobody>]]"],
                 ]
