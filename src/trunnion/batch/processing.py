@@ -242,7 +242,7 @@ def _failure(file: str, check: Check) -> Problem:
 def _simulate(
     task: Task, file: Path, arguments: dict[str, Any], result: Path, figures: dict[str, Any], observer: _Collector
 ) -> _Done:
-    given = {**arguments, "machine": _machine(arguments["machine"]), "threads": 1}
+    given: Any = {**arguments, "machine": _machine(arguments["machine"]), "threads": 1}
     if task.share is not None:
         (result / SHARE_FILE).write_bytes(simulate_share(file, Share(*task.share), given, observer))
         return Status.PASSED, ()

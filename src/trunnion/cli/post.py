@@ -20,6 +20,7 @@ from trunnion.jobs.post.result import PostResult
 from trunnion.jobs.result_output import PAPERS, paper_files
 from trunnion.machines import Machine
 from trunnion.model.toolpath import Toolpath
+from trunnion.options.groups import BODIES, CUTTING
 from trunnion.wording import counted
 
 
@@ -102,7 +103,7 @@ def simulation_of(given: Given) -> dict[str, object] | None:
     InputError
         If something is said about a simulation, and none is asked for.
     """
-    names = ("project", "stock", "part", "fixtures", "near", "tools", "libraries", "unit", "cell", "accuracy")
+    names = ("project", *(each.name for each in (*BODIES, *CUTTING)))
     stated = {name: getattr(given, name) for name in names if getattr(given, name)}
     if given.simulate:
         return stated

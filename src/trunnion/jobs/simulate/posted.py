@@ -25,6 +25,9 @@ from trunnion.machines import Machine
 from trunnion.model.clamping import Clamping, are_one_angle, number
 from trunnion.model.run import Run
 from trunnion.model.toolpath import Toolpath
+from trunnion.options.groups import BODIES, CUTTING
+from trunnion.options.kinds import FileIn
+from trunnion.options.option import Level
 from trunnion.simulation.findings import What
 from trunnion.simulation.meshes import TriangleMesh, load_mesh
 from trunnion.simulation.setup_findings import SimulationFinding
@@ -36,9 +39,10 @@ from trunnion.wording import counted, position
 #: Arguments of ``simulate`` by their names, or the path of a project file.
 SimulationLike: TypeAlias = Mapping[str, Any] | FilePath
 
-#: Those of the whole simulation, and those of its set-up.
-_WHOLE: Final = ("stock", "cell", "accuracy", "near")
-_OF_SETUP: Final = ("part", "fixtures", "tools", "libraries", "unit")
+#: Those that it takes: of the whole simulation, and of its set-up.
+_STATED: Final = (*BODIES, *CUTTING)
+_WHOLE: Final = tuple(each.name for each in _STATED if each.level is Level.WHOLE)
+_OF_SETUP: Final = tuple(each.name for each in _STATED if each.level is not Level.WHOLE)
 
 #: Places that a check keeps.
 _MOST_PLACES: Final = 50
@@ -145,11 +149,11 @@ def simulation_files(given: SimulationLike) -> list[FilePath]:
     project = given.get("project") if isinstance(given, Mapping) else given
     named = [] if project is None else [project, *project_files([project], ("nc",))]
     if isinstance(given, Mapping):
-        for name in ("stock", "part", "fixtures", "libraries"):
-            value = given.get(name)
+        for option in (each for each in _STATED if isinstance(each.kind, FileIn)):
+            value = given.get(option.name)
             several = [value] if isinstance(value, str | os.PathLike) or not isinstance(value, Iterable) else value
             files = [each for each in several if isinstance(each, str | os.PathLike)]
-            named += library_files(files) if name == "libraries" else files
+            named += library_files(files) if getattr(option.kind, "leads", "") == "library" else files
     return named
 
 
