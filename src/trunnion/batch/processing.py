@@ -33,9 +33,8 @@ from trunnion.errors import Problem, RefusedError, Severity, TrunnionError
 from trunnion.files import output_group
 from trunnion.jobs.convert.converting import convert_beside
 from trunnion.jobs.observer import Observer
-from trunnion.jobs.post.posting import post_beside
+from trunnion.jobs.post.posting import Work, post_beside
 from trunnion.jobs.post.result import ProofFailedError
-from trunnion.jobs.result_output import paper_files
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.shares import join_shares, simulate_share
 from trunnion.jobs.simulate.simulating import simulate
@@ -184,15 +183,12 @@ def _post(
     task: Task, file: Path, arguments: dict[str, Any], result: Path, figures: dict[str, Any], observer: _Collector
 ) -> _Done:
     output = result / task.result
-    report = result / task.report if task.report else None
+    given: Any = {
+        **arguments, "output": output, "report": result / task.report if task.report else None, "columns": True,
+    }  # fmt: skip
+    machine = _machine(given.pop("machine"))
     with output_group(remembers=False) as group:
-        found = post_beside(
-            str(file), (), machine=_machine(arguments["machine"]), output=output,
-            settings=arguments.get("settings"), strict=arguments.get("strict", False), force=False, explain=False,
-            papers=paper_files(report, None, None, None, output), columns=True,
-            subprograms=arguments.get("subprograms", ()), turn=arguments.get("turn"), tilt=arguments.get("tilt"),
-            observer=observer, group=group,
-        )  # fmt: skip
+        found = post_beside(str(file), machine, given, Work(group=group), observer)
     if found.verification is not None:
         _add_proof(figures, found.verification, found.toolpaths)
     return Status.PASSED if found.passed else Status.FAILED, found.problems
