@@ -35,6 +35,7 @@ from trunnion.jobs.convert.converting import convert_beside
 from trunnion.jobs.observer import Observer
 from trunnion.jobs.post.posting import Work, post_beside
 from trunnion.jobs.post.result import ProofFailedError
+from trunnion.jobs.registry import JOBS
 from trunnion.jobs.simulate.result import SimulationResult
 from trunnion.jobs.simulate.shares import join_shares, simulate_share
 from trunnion.jobs.simulate.simulating import simulate
@@ -42,11 +43,14 @@ from trunnion.jobs.verify.reports import write_report
 from trunnion.jobs.verify.verifying import verify
 from trunnion.machines import Machine
 from trunnion.messages import Wording
+from trunnion.options.kinds import FileIn
 from trunnion.simulation.cutting.shares import DamagedShareError, Share
 from trunnion.verification import Check, Verification
 
 #: Arguments that may name files.
-_NAMING: Final = ("machine", "to_machine", "cl", "subprograms", "stock", "part", "fixtures", "libraries")
+_NAMING: Final = frozenset(
+    option.name for action in Action for option in JOBS[action].flags if isinstance(option.kind, FileIn)
+)
 
 
 #: The folder of what comes of a task, within its own.

@@ -1,14 +1,15 @@
 """Where the tool goes over a program when a number of the machine's geometry is not what its definition says."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Final
+from typing import Final, Unpack
 
 import numpy as np
 
 from trunnion.capability.sensitivity import Sensitivity, program_sensitivity
 from trunnion.capability.tip_errors import joints_at_zero
 from trunnion.errors import InputError, Problem, Severity
+from trunnion.jobs.arguments import SensitivityArguments, taken
 from trunnion.jobs.inputs.arguments import wrong_argument
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run, read_toolpaths
 from trunnion.jobs.inputs.settings import set_up_machine
@@ -25,17 +26,7 @@ DEFAULT_ANGLE: Final = 5.0
 _MOST: Final = {"length": 10.0, "angle": 3600.0}
 
 
-def sensitivity(
-    nc: FilePath | Run,
-    *,
-    machine: MachineLike,
-    subprograms: Sequence[FilePath] = (),
-    zero: str | Sequence[float] | None = None,
-    tool_length: str | float | None = None,
-    length: float = DEFAULT_LENGTH,
-    angle: float = DEFAULT_ANGLE,
-    zero_at: str | Mapping[str, float] | None = "home",
-) -> Sensitivity:
+def sensitivity(nc: FilePath | Run, *, machine: MachineLike, **given: Unpack[SensitivityArguments]) -> Sensitivity:
     """Tell how far the tip is off over a program for each geometry number of the machine that is not true.
 
     Parameters
@@ -83,10 +74,12 @@ def sensitivity(
     >>> found.numbers[0].number.name
     'gauge point X'
     """
-    _check_amount("length", length)
-    _check_amount("angle", angle)
-    run = as_run(nc, set_up_machine(as_machine(machine), zero, tool_length), subprograms)
-    found = program_sensitivity(run, _zero_pose(run.machine, zero_at), length, angle, tuple(_remarks(run)))
+    stated = taken(SensitivityArguments, "sensitivity", given)
+    for name in _MOST:
+        _check_amount(name, stated.get(name))
+    run = as_run(nc, set_up_machine(as_machine(machine), stated["zero"], stated["tool_length"]), stated["subprograms"])
+    at = _zero_pose(run.machine, stated["zero_at"])
+    found = program_sensitivity(run, at, stated["length"], stated["angle"], tuple(_remarks(run)))
     if not found.motions:
         raise InputError(_without_cuts(run))
     return found

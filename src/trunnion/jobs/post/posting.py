@@ -110,9 +110,9 @@ def post(
         Files of subprograms that exist already and that templates of the definition call. No others are opened.
     simulation
         Simulate the program too, as ``trunnion.simulate`` does, with its arguments ``stock``, ``part``, ``fixtures``,
-        ``near``, ``tools``, ``libraries``, ``unit``, ``cell`` and ``accuracy``: ``{"stock": "box:100,80,30"}``. Or the
-        path of a project file of one set-up, also as ``{"project": path}`` with others in its place. Tools come from
-        the CL files where nothing else has them. What is found fails the checks ``removal``, ``collision`` and
+        ``near``, ``tools``, ``tool_libraries``, ``unit``, ``cell`` and ``accuracy``: ``{"stock": "box:100,80,30"}``. Or
+        the path of a project file of one set-up, also as ``{"project": path}`` with others in its place. Tools come
+        from the CL files where nothing else has them. What is found fails the checks ``removal``, ``collision`` and
         ``gouge``; the result has it as ``simulation``.
     hooks
         Python files whose functions change what the CL files ask for (``trunnion.hooks``). They are run: name none that

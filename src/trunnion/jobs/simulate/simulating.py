@@ -47,7 +47,7 @@ def simulate(
         Distance in mm from which on bodies are told that do not touch; by default only those that do.
     tools
         Tools as text, such as ``"3=ball:10,length=60,flutes=20"``, or as bodies; they come first.
-    libraries
+    tool_libraries
         Tool libraries, for tools that ``tools`` does not have.
     unit
         Length unit of LinuxCNC's tool tables, which state none.

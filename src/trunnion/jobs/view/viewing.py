@@ -76,7 +76,7 @@ def _prepared(
             argument_problem("machine", "is missing", "say on which machine the program runs", code="PAG110")
         )
     placed = set_up_machine(as_machine(given["machine"]), given["zero"], given["tool_length"])
-    of_stock = ("stock", "part", "fixtures", "tools", "libraries", "unit", "near", "cell", "accuracy")
+    of_stock = ("stock", "part", "fixtures", "tools", "tool_libraries", "unit", "near", "cell", "accuracy")
     simulated = view_simulation(placed, **{name: given[name] for name in of_stock})
     others = check_paths("subprograms", given["subprograms"])
     viewed = view_program(files, placed, cl=given["cl"], subprograms=others, settings=settings, observer=observer)
@@ -86,7 +86,7 @@ def _prepared(
     around = [load_mesh(mesh, name=f"fixture {k}") for k, mesh in enumerate(fixtures, 1)]
     design = None if given["part"] is None else load_mesh(check_path("part", given["part"]), name="part")
     run = viewed.verification.run
-    bodies = _shown_tools(run, known_tools(given["tools"], given["libraries"], given["unit"], viewed.toolpaths))
+    bodies = _shown_tools(run, known_tools(given["tools"], given["tool_libraries"], given["unit"], viewed.toolpaths))
     content = view_content(viewed.verification, viewed.texts, viewed.cl_texts, bodies, design, around, viewed.toolpaths)
     if simulated is not None:
         content = with_stock(content, simulated, run, viewed.toolpaths, observer)
@@ -127,7 +127,7 @@ def write_view(
         what the simulation finds. Without ``stock`` nothing is simulated.
     part, fixtures
         Meshes in the workpiece frame.
-    tools, libraries, unit
+    tools, tool_libraries, unit
         Tools as ``simulate`` has them. Without ``stock``, one whose form nothing states is drawn as a needle.
     zero, tool_length
         As for ``verify``. Without a zero, the part is drawn at the machine's zero.
