@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Floats2
+from trunnion.arrays import Flags, Floats, Floats2, make_read_only
 from trunnion.jit import inner, kernel
 from trunnion.machines.machine import Machine
 
@@ -114,8 +114,7 @@ def kinematic_chain(machine: Machine, tool_length: float | None = None) -> Kinem
         spindle=spindle,
         zero=np.array(machine.workpiece_zero or (0.0, 0.0, 0.0)),
     )
-    for array in chain:
-        array.setflags(write=False)
+    make_read_only(*chain)
     return chain
 
 

@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from trunnion.arrays import Flags, Floats, Floats2
+from trunnion.arrays import Flags, Floats, Floats2, make_read_only
 from trunnion.jit import inner, kernel
 from trunnion.machines.machine import Machine, Mount
 
@@ -124,8 +124,7 @@ def link_chain(machine: Machine) -> LinkChain:
         point=np.array([axis.point for axis in machine.axes]),
         part_axes=sum(axis.mount is Mount.PART for axis in machine.axes),
     )
-    for array in chain[:3]:
-        array.setflags(write=False)
+    make_read_only(*chain[:3])
     return chain
 
 

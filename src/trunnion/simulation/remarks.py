@@ -179,7 +179,7 @@ def _remarks(runs: Sequence[Run], shapes: dict[str, ToolShape]) -> list[Problem]
     ]
     for run in runs:
         found += merge_repeated(
-            Problem(each.file, each.line, each.text, severity=Severity.WARNING, code=each.code)
+            Problem(each.file, each.line, each.wording, severity=Severity.WARNING)
             for each in run.diagnostics
             if each.severity is Severity.WARNING and not is_told_of_length(run, each.line, each.text)
         )

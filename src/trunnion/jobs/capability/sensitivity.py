@@ -10,10 +10,10 @@ from trunnion.capability.sensitivity import Sensitivity, program_sensitivity
 from trunnion.capability.tip_errors import joints_at_zero
 from trunnion.errors import InputError, Problem, Severity
 from trunnion.jobs.arguments import SensitivityArguments, taken
-from trunnion.jobs.inputs.arguments import wrong_argument
+from trunnion.jobs.inputs.arguments import check_observer, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run, read_toolpaths
 from trunnion.jobs.inputs.settings import set_up_machine
-from trunnion.jobs.observer import SILENT
+from trunnion.jobs.observer import SILENT, Observer
 from trunnion.machines import Machine
 from trunnion.model.run import Run
 from trunnion.wording import counted
@@ -26,7 +26,9 @@ DEFAULT_ANGLE: Final = 5.0
 _MOST: Final = {"length": 10.0, "angle": 3600.0}
 
 
-def sensitivity(nc: FilePath | Run, *, machine: MachineLike, **given: Unpack[SensitivityArguments]) -> Sensitivity:
+def sensitivity(
+    nc: FilePath | Run, *, machine: MachineLike, observer: Observer = SILENT, **given: Unpack[SensitivityArguments]
+) -> Sensitivity:
     """Tell how far the tip is off over a program for each geometry number of the machine that is not true.
 
     Parameters
@@ -49,6 +51,8 @@ def sensitivity(nc: FilePath | Run, *, machine: MachineLike, **given: Unpack[Sen
         Where the rotary axes stood when the workpiece zero was set by the tool or a probe: ``home``, or their values in
         degrees, such as ``"C=0,B=30"`` or a mapping. What the error is there is then in the zero, and only the rest of
         it is at the tip. ``none`` or None: nothing was set.
+    observer
+        Receives the progress.
 
     Returns
     -------
@@ -74,12 +78,14 @@ def sensitivity(nc: FilePath | Run, *, machine: MachineLike, **given: Unpack[Sen
     >>> found.numbers[0].number.name
     'gauge point X'
     """
+    check_observer(observer)
     stated = taken(SensitivityArguments, "sensitivity", given)
     for name in _MOST:
         _check_amount(name, stated.get(name))
     run = as_run(nc, set_up_machine(as_machine(machine), stated["zero"], stated["tool_length"]), stated["subprograms"])
-    at = _zero_pose(run.machine, stated["zero_at"])
-    found = program_sensitivity(run, at, stated["length"], stated["angle"], tuple(_remarks(run)))
+    pose, off = _zero_pose(run.machine, stated["zero_at"]), (stated["length"], stated["angle"])
+    with observer.progress("sensitivity", len(run), "motions") as advance:
+        found = program_sensitivity(run, pose, *off, tuple(_remarks(run)), advance)
     if not found.motions:
         raise InputError(_without_cuts(run))
     return found
