@@ -38,7 +38,9 @@ def run(given: Given) -> int:
     )
     if hint := _control_hint(verification):
         tell(hint)
-    lines = (*check_lines(verification), *place_lines(verification), *time_lines(verification))
+    lines = (
+        *check_lines(verification), *place_lines(verification), *time_lines(verification), verification.standing.told,
+    )  # fmt: skip
     show(given, lambda: _report_data(verification), lines)
     if given.report is not None:
         write_report(verification, given.report)

@@ -89,7 +89,7 @@ def _prepared(
     bodies = _shown_tools(run, known_tools(given["tools"], given["tool_libraries"], given["unit"], viewed.toolpaths))
     content = view_content(viewed.verification, viewed.texts, viewed.cl_texts, bodies, design, around, viewed.toolpaths)
     if simulated is not None:
-        content = with_stock(content, simulated, run, viewed.toolpaths, observer)
+        content = with_stock(content, simulated, viewed.verification, viewed.toolpaths, observer)
     return content, run
 
 
