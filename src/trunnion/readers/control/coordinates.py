@@ -189,14 +189,9 @@ class CoordinateControl(RowRecorder):
     def note_stored_offset(self, word: str, system: int, *, clears: bool, what: str = OFFSET) -> None:
         """Remember where the program wrote a work offset, or a position, that the control keeps beyond its end.
 
-        Parameters
-        ----------
-        word
-            Of the block, for messages.
-        system
-            Which offset it wrote; a number of its own for anything else.
-        clears
-            Whether it is zero now: that only tidies up an offset which the program wrote before it moved.
+        word    of the block, for messages
+        system  which offset it wrote; a number of its own for anything else
+        clears  whether it is zero now: that only tidies up an offset which the program wrote before it moved
         """
         first, used = self._stored_systems.setdefault(system, self.row), self._in_use.at_part
         if clears:
