@@ -11,7 +11,12 @@ from trunnion.messages import Wording, phrase
 from trunnion.model.arcs import ARC_POINT_TOLERANCE
 from trunnion.verification.context import MAX_PLACES, ComparedContext, Faults
 from trunnion.verification.deviations.declared_deviations import AcceptedDeviations, misplaced_lean_positions
-from trunnion.verification.deviations.nominal_values import depends_on_length, depends_on_zero, moved_tips
+from trunnion.verification.deviations.nominal_values import (
+    depends_on_length,
+    depends_on_zero,
+    moved_tips,
+    with_linear_positions,
+)
 from trunnion.verification.deviations.point_deviations import DeviationSummary
 from trunnion.verification.expected.arcs import great_circle_points
 from trunnion.verification.kinematics.axis_difference import degrees_apart
@@ -68,16 +73,15 @@ def _depends_on_values(context: ComparedContext, found: Faults) -> tuple[Wording
         return ()
     on_length = on_zero = False
     for nc, cl in context.matching.pair_chunks():
-        on_length, on_zero = on_length or depends_on_length(run, nc), on_zero or depends_on_zero(run, nc)
-        points = dict(zip(nc.tolist(), cl.tolist(), strict=True))
-        moved = list(moved_tips(run, nc))
+        rows = with_linear_positions(run, nc)
+        on_length, on_zero = on_length or depends_on_length(run, rows), on_zero or depends_on_zero(run, rows)
+        moved = moved_tips(run, rows)
+        points = cl[np.searchsorted(nc, [tip.row for tip in moved])].tolist()
         found.add_rows(
             len(moved),
             (
-                context.place_with_cl(
-                    tip.row, tip.share, f"the tip is elsewhere with a longer tool: {tip.why}", points[tip.row]
-                )
-                for tip in moved
+                context.place_with_cl(tip.row, tip.share, f"the tip is elsewhere with a longer tool: {tip.why}", point)
+                for tip, point in zip(moved, points, strict=True)
             ),
         )
     return (*((phrase("no_zero"),) if on_zero else ()), *((phrase("no_tool_length"),) if on_length else ()))

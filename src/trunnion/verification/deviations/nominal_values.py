@@ -9,7 +9,6 @@ length is added along one of them, and the tip is right if that is the axis alon
 is read: the same rows are evaluated with another length.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -43,34 +42,34 @@ def with_linear_positions(run: Run, rows: Ints) -> Ints:
     return np.asarray(rows[~run.state.xyz_is_tip.at(rows) & ~run.state.machine_frame.at(rows)])
 
 
-def moved_tips(run: Run, rows: Ints) -> Iterator[MovedTip]:
-    """Yield the rows whose tip moves with the length because that counts along another axis than the tool."""
-    rows = with_linear_positions(run, rows)
-    if not len(rows):
-        return
+def moved_tips(run: Run, rows: Ints) -> list[MovedTip]:
+    """Return the rows whose tip moves with the length because that counts along another axis than the tool.
+
+    ``rows`` are some of ``with_linear_positions``.
+    """
     axes, along = run.state.length_axis.at(rows), _along(run.machine)
     counts_somewhere = bool((run.state.length_axis.values >= 0).any())
     stated = run.machine.tool_length is not None
     suspects = (axes >= BY_PARAMETER) if stated else (axes != along) & (counts_somewhere | (axes >= 0))
+    if not suspects.any():
+        return []
     rows, axes = rows[suspects], axes[suspects]
-    moved = _moved(run, rows, axes)
-    for row, axis, share in zip(rows.tolist(), axes.tolist(), moved.tolist(), strict=True):
-        if share > _STILL:
-            yield MovedTip(row, share, _why(axis, _NAMES[along]))
+    moved = zip(rows.tolist(), axes.tolist(), _moved(run, rows, axes).tolist(), strict=True)
+    return [MovedTip(row, share, _why(axis, _NAMES[along])) for row, axis, share in moved if share > _STILL]
 
 
 def depends_on_length(run: Run, rows: Ints) -> bool:
-    """Whether a head turns the tool in a row with positions of the linear axes, and its length is not stated."""
+    """Whether a head turns the tool in one of these rows, and its length is not stated."""
     if run.machine.tool_length is not None or not run.machine.has_rotary_head:
         return False
-    return _turned(run, with_linear_positions(run, rows), Mount.TOOL)
+    return _turned(run, rows, Mount.TOOL)
 
 
 def depends_on_zero(run: Run, rows: Ints) -> bool:
-    """Whether a table turns the part in a row with positions of the linear axes, and the zero is not stated."""
+    """Whether a table turns the part in one of these rows, and the zero is not stated."""
     if run.machine.workpiece_zero is not None:
         return False
-    return _turned(run, with_linear_positions(run, rows), Mount.PART)
+    return _turned(run, rows, Mount.PART)
 
 
 def _turned(run: Run, rows: Ints, mount: Mount) -> bool:

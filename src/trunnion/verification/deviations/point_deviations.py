@@ -16,7 +16,7 @@ from trunnion.jit import kernel
 from trunnion.machines import Machine
 from trunnion.model.run import RowPositions
 from trunnion.verification.expected.path import ExpectedPath, Section
-from trunnion.verification.kinematics.axis_difference import RotaryGeometry, axis_difference, degrees_apart
+from trunnion.verification.kinematics.axis_difference import RotaryGeometry, RotaryPair, axis_difference, degrees_apart
 from trunnion.verification.matching.pairs import Matching
 
 
@@ -69,7 +69,7 @@ class PointDeviations:
         off_tip, off_axis = np.empty(count), np.empty(count)
         compare_rows(
             positions.tip, positions.axis, positions.joints, moves.tip, moves.axis, nc, cl, geometry.column,
-            geometry.sense, geometry.first, geometry.second, off_tip, off_axis,
+            geometry.pair, off_tip, off_axis,
         )  # fmt: skip
         by_vector = self._by_vector[row]
         if by_vector.any():  # a programmed vector is off by an angle, not in rotary axes
@@ -136,15 +136,13 @@ def compare_rows(
     nc: Ints,
     cl: Ints,
     column: int,
-    sense: float,
-    first: Floats,
-    second: Floats,
+    pair: RotaryPair,
     off_tip: Floats,
     off_axis: Floats,
 ) -> None:
     """Write the largest deviation of each pair in X, Y or Z (mm) and in either rotary axis (deg).
 
-    ``column``, ``sense``, ``first`` and ``second`` are as in ``RotaryGeometry``.
+    ``column`` is that of ``RotaryGeometry``.
     """
     for k in range(nc.shape[0]):
         i, j = nc[k], cl[k]
@@ -153,4 +151,4 @@ def compare_rows(
         dz = nc_tip[i, 2] - cl_tip[j, 2]
         largest = max(abs(dx), abs(dy), abs(dz))
         off_tip[k] = largest if largest == largest else np.inf
-        _, off_axis[k] = axis_difference(nc_axis, i, cl_axis, j, joints[i, column], sense, first, second)
+        _, off_axis[k] = axis_difference(nc_axis, i, cl_axis, j, joints[i, column], pair)
