@@ -25,7 +25,7 @@ from trunnion.builder.document import (
     without_value,
 )
 from trunnion.builder.draft import Draft, draft_data, inherited_value, judge
-from trunnion.builder.sample import sample_data
+from trunnion.builder.sample import sample_data, without_program
 from trunnion.builder.saved_file import check_place, file_text, is_file_name, page_text, read_raw
 from trunnion.controls.loading import shipped_controls
 from trunnion.definitions.value_marks import without_mark
@@ -163,7 +163,7 @@ class BuilderSession:
         if not isinstance(before, list) or not all(isinstance(line, str) for line in before):
             raise RequestError
         if draft.machine is None or draft.problems:
-            return {"lines": [], "changed": [], "removed": 0, "checks": [], "problems": [], "passed": False, "all": 0}
+            return without_program()
         return sample_data(draft.machine, _cl(given.get("cl")), _text(given, "clName")[:200], before)
 
     def _save(self, given: Mapping[str, Any]) -> dict[str, Any]:

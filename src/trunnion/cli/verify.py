@@ -1,17 +1,17 @@
 """``trunnion verify``: an NC program, read back by an independent reader, run, and compared with its CL files."""
 
-from typing import Final
+import io
+import json
+from typing import Any, Final
 
-from trunnion.cli.cl_reading import as_read
-from trunnion.cli.data import report_data
 from trunnion.cli.results import show, tell
 from trunnion.cli.terminal import Terminal
 from trunnion.controls import load_control
 from trunnion.errors import InputError, Severity, argument_problem
 from trunnion.jobs.inputs.reading import load_machine
-from trunnion.jobs.job import Given, streams
+from trunnion.jobs.job import Given
 from trunnion.jobs.post.papers.manifests import verify_manifest
-from trunnion.jobs.verify.reports import write_report
+from trunnion.jobs.verify.reports import add_report, write_report
 from trunnion.jobs.verify.verifying import verify
 from trunnion.verification import Verification, check_lines, place_lines, time_lines
 from trunnion.wording import counted, one_line
@@ -32,15 +32,16 @@ def run(given: Given) -> int:
             argument_problem("machine", "is missing", "name the machine that runs the program", code="ARG130")
         )
     verification = verify(
-        **{**given.arguments("cl"), "machine": load_machine(given.machine)},
-        cl=as_read(given, given.cl) if given.strict else streams(given.cl),
+        **{**given.arguments(), "machine": load_machine(given.machine)},
         columns=given.report is not None or given.json is not None,
         observer=Terminal(),
     )
     if hint := _control_hint(verification):
         tell(hint)
-    lines = (*check_lines(verification), *place_lines(verification), *time_lines(verification))
-    show(given, lambda: report_data(verification), lines)
+    lines = (
+        *check_lines(verification), *place_lines(verification), *time_lines(verification), verification.standing.told,
+    )  # fmt: skip
+    show(given, lambda: _report_data(verification), lines)
     if given.report is not None:
         write_report(verification, given.report)
     return 0 if verification.passed else 1
@@ -78,3 +79,10 @@ def _control_hint(verification: Verification) -> str:
         f"{verification.program}: is this a {control} program? {counted(errors, 'line')} of it not understood;"
         f" --machine names the machine that runs it, and {machine.key} has this control"
     )
+
+
+def _report_data(verification: Verification) -> Any:
+    """Return what a report of the verification has, as data (docs/report.md)."""
+    sink = io.BytesIO()
+    add_report(verification, sink, "report.json", ())
+    return json.loads(sink.getvalue())

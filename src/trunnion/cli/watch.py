@@ -6,9 +6,9 @@ from datetime import datetime
 from pathlib import Path
 from typing import Protocol
 
+from trunnion.cli.command_line.post_mistakes import names_project
 from trunnion.cli.post import files_by_target, simulation_of
 from trunnion.cli.post_files import post_files
-from trunnion.cli.post_mistakes import names_project
 from trunnion.cli.process import Ended
 from trunnion.cli.progress import progress
 from trunnion.cli.project import outputs_of
@@ -183,7 +183,7 @@ class _FilesWork:
             named |= {str(file) for file in simulation_files(simulation_of(given) or {})}
         except (TrunnionError, OSError):  # a project that is broken; posting will tell
             named |= {given.project, *mentioned_files(Path(given.project))} if given.project else set()
-            named |= {*given.libraries, *given.fixtures, *filter(None, (given.part, given.stock))}
+            named |= {*given.tool_libraries, *given.fixtures, *filter(None, (given.part, given.stock))}
         return named | self._definitions
 
     def post(self, group: OutputGroup) -> tuple[bool, list[str]]:

@@ -143,10 +143,7 @@ class TableAccount:
     def raise_problems(self) -> None:
         """Raise every problem noted so far.
 
-        Raises
-        ------
-        InputError
-            If there is one, with all of them in the order of files and lines.
+        Raises ``InputError`` if there is one, with all of them in the order of files and lines.
         """
         if self.problems:
             raise InputError(in_order(self.problems))

@@ -85,12 +85,8 @@ class EarlierJob:
     def left_over(self, program: Iterable[Path], written: Iterable[Path]) -> list[Path]:
         """Files that earlier jobs wrote with another program, that are as they wrote them, and that now stay.
 
-        Parameters
-        ----------
-        program
-            The files of the program that is written now, wherever they are.
-        written
-            The places of all files that are written now.
+        program  the files of the program that is written now, wherever they are
+        written  the places of all files that are written now
         """
         again = {self._key(file) for file in written}
         stay = [

@@ -73,18 +73,11 @@ class OutputFiles:
     def add_file(self, name: str, other_name: str = "") -> BinaryIO:
         """Begin a further file in the same folder, and return its sink.
 
-        Parameters
-        ----------
-        name
-            Of the file.
-        other_name
-            What gives it another name, for the cure where it has that of somebody else's file.
+        name        of the file
+        other_name  what gives it another name, for the cure where it has that of somebody else's file
 
-        Raises
-        ------
-        InputError
-            If there cannot be a file of this name beside the first, or if it is one that is read or written already, or
-            one that exists and that no earlier job of this first file has written.
+        Raises ``InputError`` if there cannot be a file of this name beside the first, or if it is one that is read or
+        written already, or one that exists and that no earlier job of this first file has written.
         """
         place = self.check_file(name, other_name)
         self._claims.write(place)
@@ -147,10 +140,7 @@ class OutputFiles:
     def protect(self, files: Iterable[str | os.PathLike[str]]) -> None:
         """Never write over these files.
 
-        Raises
-        ------
-        InputError
-            If one of them is going to be written.
+        Raises ``InputError`` if one of them is going to be written.
         """
         self._claims.read(files)
 
@@ -284,26 +274,16 @@ def atomic_output(
 ) -> Iterator[OutputFiles]:
     """Files that reach their places together when the block ends, or not at all if it raises.
 
-    Parameters
-    ----------
-    target
-        Of the first file: a path, whose folder takes the others, or a stream, which takes one file only.
-    papers
-        Files that will be written as well (``add_paper``): none of the others may be one of them.
-    inputs
-        Files that are read: none of them is written over.
-    is_job
-        The further files get names that nobody chose: they replace only what earlier jobs of the first file have
-        written, which is remembered.
-    edited
-        Of a job: ``keep`` or ``replace`` programs that were edited since jobs have written them; they are refused
-        otherwise.
+    target  of the first file: a path, whose folder takes the others, or a stream, which takes one file only
+    papers  files that will be written as well (``add_paper``): none of the others may be one of them
+    inputs  files that are read: none of them is written over
+    is_job  the further files get names that nobody chose: they replace only what earlier jobs of the first file have
+            written, which is remembered
+    edited  of a job: ``keep`` or ``replace`` programs that were edited since jobs have written them; they are refused
+            otherwise
 
-    Raises
-    ------
-    InputError
-        If a file cannot be written. For the first file this is known when the block begins. Earlier files of the same
-        names stay as they were.
+    Raises ``InputError`` if a file cannot be written. For the first file this is known when the block begins. Earlier
+    files of the same names stay as they were.
     """
     place = resolve_output(target) if isinstance(target, str | os.PathLike) else target
     claims = Claims()

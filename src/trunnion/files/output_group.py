@@ -38,11 +38,8 @@ class OutputGroup:
     ) -> Iterator[OutputFiles]:
         """Yield the files of a job, as ``atomic_output`` has them; none appears before the group is published.
 
-        Raises
-        ------
-        InputError
-            As ``atomic_output``, also where another job of the group writes or reads the same file; or if a place is a
-            device, which takes what it gets at once.
+        Raises ``InputError`` as ``atomic_output``, also where another job of the group writes or reads the same file;
+        or if a place is a device, which takes what it gets at once.
         """
         places = [place, *papers]
         for each in places:
@@ -89,15 +86,9 @@ class OutputGroup:
 def output_group(*, remembers: bool = True) -> Iterator[OutputGroup]:
     """Jobs whose files reach their places together when the block ends, or not at all if it raises.
 
-    Parameters
-    ----------
-    remembers
-        Files that nobody has named replace only what earlier jobs have written, and these are remembered.
+    remembers  files that nobody has named replace only what earlier jobs have written, and these are remembered
 
-    Raises
-    ------
-    InputError
-        If a file cannot be written. Earlier files of the same names stay as they were.
+    Raises ``InputError`` if a file cannot be written. Earlier files of the same names stay as they were.
     """
     group = OutputGroup(remembers=remembers)
     # An interruption of the first removal leaves the second one to do it.

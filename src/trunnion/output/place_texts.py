@@ -27,11 +27,8 @@ _MOTION_PLACES: Final = ("first_cut", "rewind", "retract")
 def with_place_texts(program: Program) -> Program:
     """Return a program with the texts of its control's templates for places within the motion of operations.
 
-    Raises
-    ------
-    InputError
-        If a template does what it cannot, or prints a number beyond the limits of its format, or there is nothing to
-        call a tool by.
+    Raises ``InputError`` if a template does what it cannot, or prints a number beyond the limits of its format, or
+    there is nothing to call a tool by.
     """
     names = program.control.templates.keys()
     if not any(name in _MOTION_PLACES or name.startswith(EVENT_PLACE) for name in names):

@@ -57,21 +57,12 @@ class TemplateValues:
     def values(self, motion: Motion, number: int, loaded: LoadedTool, spindle: SpindleOn | None) -> dict[str, Value]:
         """Return the values for an operation, or for the part of it that is one motion.
 
-        Parameters
-        ----------
-        motion
-            In coordinates of the workpiece.
-        number
-            Index of the motion in the program; -1 for the last.
-        loaded
-            The tool before the operation.
-        spindle
-            At the first row; None if it has not been started.
+        motion   in coordinates of the workpiece
+        number   index of the motion in the program; -1 for the last
+        loaded   the tool before the operation
+        spindle  at the first row; None if it has not been started
 
-        Raises
-        ------
-        InputError
-            If there is nothing to call the tool by.
+        Raises ``InputError`` if there is nothing to call the tool by.
         """
         operation, machine = motion.operation, self._program.machine
         position = self._operation_numbers[number]

@@ -79,3 +79,14 @@ def test_an_edited_program_of_a_project_is_refused_and_kept_where_it_says_so(tmp
 def test_a_file_that_no_job_has_written_is_replaced_where_it_is_named(tmp_path: Path) -> None:
     (tmp_path / "hub.mpf").write_text("somebody's", encoding="utf-8")
     assert post(tmp_path).passed
+
+
+def test_an_edited_program_of_a_conversion_is_kept(tmp_path: Path) -> None:
+    source, file = YL569 / "2_hub_rough.expected.mpf", tmp_path / "hub.h"
+    for settings in ({}, {"edited": "keep"}):
+        edited = edit(file) if file.exists() else b""
+        trunnion.convert(source, machine="yl569", to_machine="dmu65", output=file, settings=settings)
+    with pytest.raises(trunnion.InputError, match="was edited since it was written"):
+        edit(file)
+        trunnion.convert(source, machine="yl569", to_machine="dmu65", output=file)
+    assert (tmp_path / "hub.h.edited-2023-11-14").read_bytes() == edited

@@ -1,14 +1,15 @@
 """Where the tool goes over a program when a number of the machine's geometry is not what its definition says."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Final
+from typing import Final, Unpack
 
 import numpy as np
 
 from trunnion.capability.sensitivity import Sensitivity, program_sensitivity
 from trunnion.capability.tip_errors import joints_at_zero
 from trunnion.errors import InputError, Problem, Severity
+from trunnion.jobs.arguments import SensitivityArguments, taken
 from trunnion.jobs.inputs.arguments import check_observer, wrong_argument
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, as_run, read_toolpaths
 from trunnion.jobs.inputs.settings import set_up_machine
@@ -26,16 +27,7 @@ _MOST: Final = {"length": 10.0, "angle": 3600.0}
 
 
 def sensitivity(
-    nc: FilePath | Run,
-    *,
-    machine: MachineLike,
-    subprograms: Sequence[FilePath] = (),
-    zero: str | Sequence[float] | None = None,
-    tool_length: str | float | None = None,
-    length: float = DEFAULT_LENGTH,
-    angle: float = DEFAULT_ANGLE,
-    zero_at: str | Mapping[str, float] | None = "home",
-    observer: Observer = SILENT,
+    nc: FilePath | Run, *, machine: MachineLike, observer: Observer = SILENT, **given: Unpack[SensitivityArguments]
 ) -> Sensitivity:
     """Tell how far the tip is off over a program for each geometry number of the machine that is not true.
 
@@ -87,12 +79,13 @@ def sensitivity(
     'gauge point X'
     """
     check_observer(observer)
-    _check_amount("length", length)
-    _check_amount("angle", angle)
-    run = as_run(nc, set_up_machine(as_machine(machine), zero, tool_length), subprograms)
-    pose = _zero_pose(run.machine, zero_at)
+    stated = taken(SensitivityArguments, "sensitivity", given)
+    for name in _MOST:
+        _check_amount(name, stated.get(name))
+    run = as_run(nc, set_up_machine(as_machine(machine), stated["zero"], stated["tool_length"]), stated["subprograms"])
+    pose, off = _zero_pose(run.machine, stated["zero_at"]), (stated["length"], stated["angle"])
     with observer.progress("sensitivity", len(run), "motions") as advance:
-        found = program_sensitivity(run, pose, length, angle, tuple(_remarks(run)), advance)
+        found = program_sensitivity(run, pose, *off, tuple(_remarks(run)), advance)
     if not found.motions:
         raise InputError(_without_cuts(run))
     return found

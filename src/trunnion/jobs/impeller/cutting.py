@@ -4,7 +4,7 @@ import io
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple, Unpack
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from trunnion.impeller.paths.toolpaths import CuttingData, operation_of
 from trunnion.impeller.steps import StepKind, file_stem
 from trunnion.jit import compile_ahead
 from trunnion.jobs import kernels
+from trunnion.jobs.arguments import ImpellerArguments, taken
 from trunnion.jobs.impeller.cut import CutStep, ImpellerCut
 from trunnion.jobs.impeller.files import ImpellerFiles, output_folder
 from trunnion.jobs.impeller.models import load_impeller, model_impeller
@@ -28,7 +29,7 @@ from trunnion.jobs.impeller.windings import winding_problems
 from trunnion.jobs.inputs.arguments import check_observer, wrong_argument
 from trunnion.jobs.inputs.input_files import machine_files
 from trunnion.jobs.inputs.reading import FilePath, MachineLike, as_machine, read_cl
-from trunnion.jobs.inputs.settings import Settings, check_tolerance
+from trunnion.jobs.inputs.settings import check_tolerance
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.post.post_job import PostJob, prepare
 from trunnion.jobs.post.posting import post_toolpaths
@@ -58,10 +59,8 @@ def cut_impeller(
     *,
     machine: MachineLike,
     output: FilePath,
-    operations: Sequence[str] = (),
-    settings: Settings | None = None,
-    cell: float | None = None,
     observer: Observer = SILENT,
+    **given: Unpack[ImpellerArguments],
 ) -> ImpellerCut:
     """Machine an impeller: tool paths of all its operations, CL files, and one program for all of them, proven.
 
@@ -109,11 +108,13 @@ def cut_impeller(
     ImpellerCut(passed=True, 1 steps)
     """
     check_observer(observer)
+    stated = taken(ImpellerArguments, "impeller", given)
+    cell = stated["cell"]
     check_tolerance("cell", cell, optional=True)
     found = impeller if isinstance(impeller, Impeller) else load_impeller(impeller)
     observer.problems(found.remarks)
     definition = found.definition
-    chosen = _chosen(found, operations)
+    chosen = _chosen(found, stated["operations"])
     loaded = as_machine(machine)
     _check_speeds(found, chosen, loaded)
     remarks = tuple(order_problems(found, chosen))
@@ -121,23 +122,37 @@ def cut_impeller(
     control = load_control(loaded.control)
     stem = file_stem(definition.name)
     own = program_settings(control, definition.name, stem)
-    job = prepare(loaded, {**own, **(settings or {})}, columns=True)
+    job = prepare(loaded, {**own, **(stated["settings"] or {})}, columns=True)
     read = [*definition.files, *machine_files(machine, loaded)]
     with output_folder(output) as folder:
         files = ImpellerFiles(folder, stem, control.extension)
         files.check_own()
         try:
-            cut = _cut(found, chosen, loaded, job, files, read, cell, observer)
+            cut = _cut(_Cutting(found, chosen, loaded, files, read, cell), job, observer)
             return replace(cut, remarks=(*remarks, *cut.remarks))
         finally:
             files.remember_report()
 
 
-def _cut(
-    found: Impeller, chosen: Sequence[str], machine: Machine, job: PostJob, files: ImpellerFiles,
-    inputs: Sequence[FilePath], cell: float | None, observer: Observer,
-) -> ImpellerCut:  # fmt: skip
+class _Cutting(NamedTuple):
+    """What is cut, and where its files go.
+
+    chosen  names of the steps
+    inputs  files that are read
+    cell    of the simulation, mm; None: there is none
+    """
+
+    impeller: Impeller
+    chosen: Sequence[str]
+    machine: Machine
+    files: ImpellerFiles
+    inputs: Sequence[FilePath]
+    cell: float | None
+
+
+def _cut(cutting: _Cutting, job: PostJob, observer: Observer) -> ImpellerCut:
     """As ``cut_impeller``: all files appear when it ends."""
+    found, chosen, machine, files, inputs, cell = cutting
     definition = found.definition
     job = replace(job, papers=PaperFiles(report=files.report), forcing="")
     with open_target(files.program, papers={"report": files.report}, inputs=inputs) as target:

@@ -69,6 +69,7 @@ class PostJob:
     clamping      how the part is clamped
     decisions     what was decided before planning, for reports
     forcing       what a refusal says of ``force``; empty where it cannot be asked for
+    strict        a basis of the proof that is missing is an error
     """
 
     machine: Machine
@@ -87,6 +88,7 @@ class PostJob:
     clamping: Clamping = field(default_factory=Clamping)
     decisions: tuple[Decision, ...] = ()
     forcing: str = FORCING
+    strict: bool = False
 
     @property
     def printed(self) -> dict[str, str]:

@@ -24,10 +24,7 @@ class LineTexts:
     def whole(self, lines: Sequence[str], file: str, *, as_they_are: bool) -> list[str]:
         """Return lines that the control can read; long comments continue in the next one.
 
-        Raises
-        ------
-        InputError
-            If another line is too long, or has a character that the program's encoding lacks.
+        Raises ``InputError`` if another line is too long, or has a character that the program's encoding lacks.
         """
         lines = lines if as_they_are else self.spelled(lines, file)
         room = self._control.longest_line - BLOCK_NUMBER_BYTES

@@ -109,17 +109,11 @@ class MotionBlockWriter:
     def begin_motion(self, motion: Motion, tool: str, *, from_plane: bool, retracted: bool) -> None:
         """Begin a motion, with the word formats of its mode.
 
-        Parameters
-        ----------
-        motion
-            An operation, or the part of it in one plane.
-        tool
-            The tool as the program calls it.
-        from_plane
-            The tool comes from another plane of the operation, and not from home.
-        retracted
-            The tool has been retracted, so that it goes to X and Y before it goes along the tool axis: in planes, and
-            in three-axis operations on controls with ``level_approach``.
+        motion      an operation, or the part of it in one plane
+        tool        the tool as the program calls it
+        from_plane  the tool comes from another plane of the operation, and not from home
+        retracted   the tool has been retracted, so that it goes to X and Y before it goes along the tool axis: in
+                    planes, and in three-axis operations on controls with ``level_approach``
         """
         self._file = self.program.file_of(motion.operation)
         self._tool = tool
@@ -166,10 +160,7 @@ class MotionBlockWriter:
         Comments that are longer than the control can read continue in the next line; they get capitals where these are
         asked for, unless lines are to stay ``as_they_are``.
 
-        Raises
-        ------
-        InputError
-            If another line is, or has a character that the program's encoding lacks.
+        Raises ``InputError`` if another line is, or has a character that the program's encoding lacks.
         """
         sign, blocks, continues = self.control.continued, list[str](), False
         for line in self._texts.whole(lines, self._file, as_they_are=as_they_are):

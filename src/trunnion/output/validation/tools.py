@@ -30,17 +30,10 @@ def tool_conflicts(program: Program, *, uses_length_numbers: bool) -> list[Probl
 
     The operator puts one cutter under a number or a name: the program would run with it in both operations.
 
-    Parameters
-    ----------
-    program
-        Tools of it can be called: it has passed ``check_program``.
-    uses_length_numbers
-        The program selects tool lengths by registers: two tools may not have the same one.
+    program              tools of it can be called: it has passed ``check_program``
+    uses_length_numbers  the program selects tool lengths by registers: two tools may not have the same one
 
-    Raises
-    ------
-    InputError
-        If an operation has nothing to call its tool by.
+    Raises ``InputError`` if an operation has nothing to call its tool by.
     """
     problems: list[Problem] = []
     known: dict[str, list[Operation]] = {}

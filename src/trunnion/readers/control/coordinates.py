@@ -20,7 +20,8 @@ from trunnion.model.axis_positions import joints_from_rows
 from trunnion.model.run import Orientation
 from trunnion.readers.control.affine_map import AffineMap, affine_matrix
 from trunnion.readers.control.arcs import ArcMap
-from trunnion.readers.control.row_recorder import MAX_POSITION, Note, RowRecorder
+from trunnion.readers.control.event_recorder import Note
+from trunnion.readers.control.row_recorder import MAX_POSITION, RowRecorder
 from trunnion.readers.control.rows_in_use import RowsInUse
 from trunnion.readers.control.trailing_modes import TrailingModes, WordPlace
 

@@ -28,10 +28,7 @@ def cl_tool_shape(tool: Tool, number: int | None, *, file: str, line: int, diale
     file, line  where it is described, for messages
     dialect     that of the CL file, ``Toolpath.dialect``
 
-    Raises
-    ------
-    InputError
-        If the CL file does not say all of its form, or says it in a way whose meaning is not settled.
+    Raises ``InputError`` if the CL file does not say all of its form, or says it in a way whose meaning is not settled.
     """
     called = f"tool {number}" if number is not None else f"tool {tool.name}" if tool.name else "its tool"
     if unsettled := _unsettled(tool, dialect):

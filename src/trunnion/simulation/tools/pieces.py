@@ -58,10 +58,7 @@ def revolved_pieces(shape: ToolShape, tolerance: float) -> tuple[RevolvedPieces,
     An arc that is not about the tool axis becomes frusta, half within it and half outside, no farther off than
     ``tolerance`` (mm). Everything else is exact. A section is divided at each reflex corner of its outline.
 
-    Raises
-    ------
-    ValueError
-        If ``tolerance`` is not above 0.
+    Raises ``ValueError`` if ``tolerance`` is not above 0.
     """
     if not tolerance > 0.0:
         raise ValueError("the tolerance of a tool's pieces is not above 0")

@@ -7,9 +7,10 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.messages import Wording
-from trunnion.model.run import SpindleWork
+from trunnion.model.spindle_work import SpindleWork
+from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.control.hole_motion import CycleExecutionError, HoleMotion
-from trunnion.readers.control.row_recorder import MAX_POSITION, Note
+from trunnion.readers.control.row_recorder import MAX_POSITION
 from trunnion.readers.families.heidenhain import plane_datums
 from trunnion.readers.families.heidenhain.control import HeidenhainControl
 from trunnion.readers.families.heidenhain.cycles import (

@@ -7,7 +7,7 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.messages import Wording
-from trunnion.readers.control.row_recorder import Note
+from trunnion.readers.control.event_recorder import Note
 from trunnion.readers.families.heidenhain.parameters import (
     FUNCTIONS,
     KlartextError,

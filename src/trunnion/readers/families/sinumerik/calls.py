@@ -6,7 +6,8 @@ from typing import Final
 
 from trunnion.errors import Severity
 from trunnion.messages import Wording
-from trunnion.readers.families.sinumerik.block import Call, read_call
+from trunnion.readers.families.sinumerik.block import Call
+from trunnion.readers.families.sinumerik.block_reader import read_call
 from trunnion.readers.families.sinumerik.control import SinumerikControl
 from trunnion.readers.families.sinumerik.expressions import ExpressionError, ExpressionReader
 from trunnion.readers.families.sinumerik.flow import ActiveProgram, Flow, Handler
@@ -57,7 +58,8 @@ class CallInterpreter(Interpreter[ActiveProgram]):
         if call.repeats < 1:
             return
         self._check_depth()
-        variables = Variables(self._stack[-1].variables)
+        outer = self._stack[-1].variables
+        variables = Variables(outer.declared, outer)
         # The PROC line reads the arguments when it is executed.
         variables.pass_arguments(call.arguments)
         source, file = self._open_subprogram(path)

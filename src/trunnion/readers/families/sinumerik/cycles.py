@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from trunnion.messages import Wording
-from trunnion.model.run import SpindleTask, SpindleWork
+from trunnion.model.spindle_work import SpindleTask, SpindleWork
 from trunnion.readers.control.hole_motion import (
     MAX_FEED,
     MAX_PECKS,
