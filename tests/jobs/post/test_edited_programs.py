@@ -86,7 +86,7 @@ def test_an_edited_program_of_a_conversion_is_kept(tmp_path: Path) -> None:
     for settings in ({}, {"edited": "keep"}):
         edited = edit(file) if file.exists() else b""
         trunnion.convert(source, machine="yl569", to_machine="dmu65", output=file, settings=settings)
+    edit(file)
     with pytest.raises(trunnion.InputError, match="was edited since it was written"):
-        edit(file)
         trunnion.convert(source, machine="yl569", to_machine="dmu65", output=file)
     assert (tmp_path / "hub.h.edited-2023-11-14").read_bytes() == edited
