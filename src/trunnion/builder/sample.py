@@ -47,22 +47,13 @@ def shipped_sample() -> bytes:
 def sample_data(machine: Machine, cl: bytes | None, name: str, before: Sequence[str]) -> dict[str, Any]:
     """Post and prove a CL file, and mark what differs from an earlier program.
 
-    Parameters
-    ----------
-    machine
-        The machine.
-    cl
-        The CL file; None: the shipped one.
-    name
-        Of the CL file, for messages.
-    before
-        Lines of the earlier program; none: nothing is marked.
+    machine  the machine
+    cl       the CL file; None: the shipped one
+    name     of the CL file, for messages
+    before   lines of the earlier program; none: nothing is marked
 
-    Returns
-    -------
-    dict
-        ``lines``; ``changed``, the numbers of those that are new, from 0; ``removed``, how many are gone; ``checks``
-        and ``problems``; ``passed``.
+    dict  ``lines``; ``changed``, the numbers of those that are new, from 0; ``removed``, how many are gone; ``checks``
+          and ``problems``; ``passed``
     """
     try:
         result = post(_NamedBytes(shipped_sample() if cl is None else cl, name or "sample.cls"), machine=machine)

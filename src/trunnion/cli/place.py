@@ -65,6 +65,7 @@ def run(given: Given) -> int:
         tool_length=length,
         settings=settings,
         subprograms=given.subprograms,
+        hooks=given.hooks,
         fixtures=given.fixtures or stated.fixtures,
         part=given.part or stated.part,
         stock=given.stock or stated.stock,
@@ -83,7 +84,13 @@ def run(given: Given) -> int:
         settings = settings if length is None else {**settings, "tool_length": length}
         output = output_place(given.apply)
         posted = post_placed(
-            found, machine=machine, output=output, settings=settings, sheet=given.sheet, observer=Terminal()
+            found,
+            machine=machine,
+            output=output,
+            settings=settings,
+            sheet=given.sheet,
+            hooks=given.hooks,
+            observer=Terminal(),
         )
         use = None if posted.run is None else other_positions(found, posted.run)
         if use is not None:

@@ -1,14 +1,15 @@
 """A part at the place that was found: its CL files are posted turned, with the workpiece zero there."""
 
+from typing import Any, Unpack
+
 from trunnion.errors import InputError, Problem
-from trunnion.jobs.arguments import PostArguments
-from trunnion.jobs.inputs.reading import FilePath, MachineLike
-from trunnion.jobs.inputs.settings import Settings, as_texts
+from trunnion.jobs.arguments import PlacedArguments
+from trunnion.jobs.inputs.reading import MachineLike
+from trunnion.jobs.inputs.settings import as_texts
 from trunnion.jobs.observer import SILENT, Observer
 from trunnion.jobs.place.inputs import nc_program_stays
 from trunnion.jobs.post.posting import Work, post_beside
 from trunnion.jobs.post.result import PostResult
-from trunnion.jobs.result_output import OutputLike
 from trunnion.placing.placement import Placement
 
 
@@ -16,10 +17,8 @@ def post_placed(
     found: Placement,
     *,
     machine: MachineLike,
-    output: OutputLike = None,
-    settings: Settings | None = None,
-    sheet: FilePath | None = None,
     observer: Observer = SILENT,
+    **given: Unpack[PlacedArguments],
 ) -> PostResult:
     """Post the CL files of a placement with its best place.
 
@@ -30,7 +29,7 @@ def post_placed(
         program's coordinate system. Comments in the head of the program say so, and where the workpiece zero is.
     machine
         As ``trunnion.place`` had it.
-    output, settings, sheet, observer
+    output, settings, sheet, hooks, observer
         As ``trunnion.post`` takes them; the setting ``zero`` is that of the place, and ``tool_length`` by default that
         of the placement.
 
@@ -57,12 +56,11 @@ def post_placed(
         raise InputError(nc_program_stays(found.files[0]))
     if found.best is None or not found.fits:
         raise InputError(Problem(found.files[0], 0, "the part fits nowhere", "see what limits it", code="PLC150"))
-    texts = as_texts(settings)
+    texts = as_texts(given.get("settings"))
     if found.tool_length_mm is not None:
         texts.setdefault("tool_length", str(found.tool_length_mm))
     best = found.best
-    given: PostArguments = {
-        "output": output, "settings": {**texts, "zero": best.zero_mm}, "sheet": sheet, "turn": best.turn_deg,
-        "tilt": best.tilt_deg,
+    stated: Any = {
+        **given, "settings": {**texts, "zero": best.zero_mm}, "turn": best.turn_deg, "tilt": best.tilt_deg
     }  # fmt: skip
-    return post_beside(found.toolpaths, machine, given, Work(is_placed=True), observer)
+    return post_beside(found.toolpaths, machine, stated, Work(is_placed=True), observer)

@@ -7,6 +7,7 @@ from trunnion.controls.setting_rules import tool_number
 from trunnion.errors import InputError, argument_problem
 from trunnion.jobs.arguments import VerifyArguments
 from trunnion.jobs.inputs.arguments import check_choice, check_paths, check_whole, checked_angles, wrong_argument
+from trunnion.jobs.inputs.hooked import no_cl_files
 from trunnion.jobs.inputs.settings import check_tolerance
 
 #: How far the tip may be off its CL point, mm.
@@ -35,7 +36,7 @@ def checked(given: VerifyArguments) -> VerifyArguments:
         check_tolerance(name, given.get(name), optional=name.startswith("span"))
     hooks = check_paths("hooks", given["hooks"])
     if hooks and not has_cl:
-        raise _without_cl("hooks", "change CL files, and there are none")
+        raise no_cl_files()
     turn, tilt = checked_angles(given["turn"], given["tilt"])
     if (turn or tilt) and not has_cl:
         raise _without_cl("turn" if turn else "tilt", "is that of CL files, and there are none")

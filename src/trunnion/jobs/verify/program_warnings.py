@@ -2,8 +2,8 @@
 
 In:     a program that was run, and the words that the definition of its control states as its own.
 Out:    a warning for each word of the machine's builder that the definition does not declare, where it stands first,
-        for each block at which the program waits or stops, for each mode that it leaves to the next program, and for
-        the first work offset that it writes while nobody knows the workpiece zero.
+        for each block at which the program waits or stops, and for each mode and each work offset that it leaves to
+        the next program.
 """
 
 from collections.abc import Mapping, Sequence
@@ -16,7 +16,6 @@ from trunnion.model.run import Diagnostic, Run
 _OF_BUILDER: Final = "NC225"
 _WAITS: Final = "NC226"
 _LEFT_ON: Final = "NC351"
-_UNPLACED: Final = "NC352"
 
 #: Warnings of a kind that are told one by one; a program with more words is hardly one for this machine.
 _MOST_TOLD: Final = 20
@@ -37,11 +36,6 @@ _KINDS: Final = {
         "modes are left to the next program",
         "change the template or CL file that it comes from",
         "set them back before the end",
-    ),
-    _UNPLACED: (
-        "work offsets are written",
-        "give the zero: without it what is written counts as a shift of the part",
-        "give the zero",
     ),
 }
 

@@ -15,13 +15,15 @@ from trunnion.cl.sources import cl_sources
 from trunnion.controls import load_control
 from trunnion.encoding import decode
 from trunnion.errors import InputError, Problem, Severity
-from trunnion.jobs.inputs.arguments import checked_angles, is_stream
+from trunnion.jobs.arguments import PostArguments
+from trunnion.jobs.inputs.arguments import check_paths, checked_angles, is_stream
 from trunnion.jobs.inputs.control_settings import rapid_feed_of
+from trunnion.jobs.inputs.hooked import hooked_toolpaths
 from trunnion.jobs.inputs.reading import ToolpathLike, as_run, as_toolpaths
 from trunnion.jobs.inputs.settings import Settings
 from trunnion.jobs.inputs.simulation_input import SetupInput
 from trunnion.jobs.observer import Observer
-from trunnion.jobs.post.posting import post
+from trunnion.jobs.post.posting import post_beside
 from trunnion.jobs.project.file import read_project
 from trunnion.jobs.project.keys import OF_PROJECT, OF_SETUP
 from trunnion.jobs.registry import JOBS
@@ -59,8 +61,7 @@ def view_program(
     files: Sequence[Path],
     machine: Machine,
     *,
-    cl: ToolpathLike | Iterable[ToolpathLike],
-    subprograms: Sequence[Path],
+    given: Mapping[str, Any],
     settings: Settings | None,
     observer: Observer,
 ) -> ViewedProgram:
@@ -71,6 +72,7 @@ def view_program(
     InputError
         When a file cannot be used, no reader knows the control, or CL files and NC programs stand together.
     """
+    subprograms, hooks = check_paths("subprograms", given["subprograms"]), check_paths("hooks", given["hooks"])
     are_cl = [is_cl_file(file) for file in files]
     if any(are_cl):
         if not all(are_cl):
@@ -78,7 +80,8 @@ def view_program(
             raise InputError(
                 Problem(str(other), 0, "is no CL file, as others here are", "view them one by one", code="PAG112")
             )
-        return _posted(files, machine, settings, subprograms, observer)
+        stated: PostArguments = {"settings": settings, "subprograms": subprograms, "hooks": hooks}
+        return _posted(files, machine, stated, observer)
     if settings:
         what, cure = (
             "is an NC program, to which settings of posting mean nothing",
@@ -91,7 +94,8 @@ def view_program(
     if unused:
         what = f"is not called by {files[0].name}, and one program is shown"
         raise InputError(Problem(str(unused[0]), 0, what, "view it alone", code="PAG113"))
-    toolpaths = as_toolpaths(cl, None, False, observer)
+    cl = given["cl"]
+    toolpaths = hooked_toolpaths(as_toolpaths(cl, None, False, observer), machine, hooks)
     verification = verify(run, machine=machine, cl=toolpaths, observer=observer)
     texts = tuple(decode(Path(file).read_bytes(), run.encoding) for file in run.files)
     return ViewedProgram(verification, texts, toolpaths, _cl_texts(cl))
@@ -106,10 +110,8 @@ def bodies_not_clamped_so(file: Path, toolpaths: Sequence[Toolpath]) -> list[Pro
     return [Problem(str(file), 0, what, "give them as they are clamped", Severity.WARNING, code="PAG116")]
 
 
-def _posted(
-    files: Sequence[Path], machine: Machine, settings: Settings | None, beside: Sequence[Path], observer: Observer
-) -> ViewedProgram:
-    result = post(files, machine=machine, settings=settings, force=True, subprograms=beside, observer=observer)
+def _posted(files: Sequence[Path], machine: Machine, stated: PostArguments, observer: Observer) -> ViewedProgram:
+    result = post_beside(files, machine, {**stated, "force": True}, observer=observer)
     text = result.text
     if result.verification is None or text is None:
         what, cure = "no reader knows the control, so that its motion is not known", "view it on another machine"
@@ -162,7 +164,7 @@ def of_project(path: Path, setup: str | None, given: Mapping[str, Any]) -> dict[
     if number:  # what an earlier set-up leaves is known to the simulation of all of them only
         found |= dict.fromkeys(_OF_PROJECT)
     found["stock"] = found["stock"] or None
-    return {**found, **stated, "nc": programs}
+    return {**given, **found, **stated, "nc": programs}
 
 
 def _setup(path: Path, setups: Sequence[SetupInput], wanted: str | None) -> tuple[SetupInput, int]:
