@@ -212,12 +212,15 @@ def _tip_feeds(verification: Verification) -> NDArray[np.float32]:
 
 
 def _length(shape: ToolShape | None, machine: Machine) -> float:
-    """From tip to gauge point, mm: that of the definition or the command, else that of the tool's body."""
+    """From tip to gauge point, mm: that of the definition or the command, else of the tool; 0 if nothing states it.
+
+    What is only drawn counts for no length: tips and axis values are those of a control without one.
+    """
     if machine.tool_length is not None:
         return machine.tool_length
-    if shape is None:
-        return _NEEDLE[1]
-    return shape.length or max(section.outline[-1].end[1] for section in shape.sections)
+    if shape is None or shape.is_drawn_only:
+        return 0.0
+    return shape.length or shape.top
 
 
 def _needle(machine: Machine, name: str) -> Iterable[Body]:
