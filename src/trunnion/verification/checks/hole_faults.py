@@ -58,14 +58,9 @@ def hole_faults(
 ) -> Iterator[HoleFault]:
     """Yield what is wrong with one hole.
 
-    Parameters
-    ----------
-    dwells
-        The dwells of the run by row, in seconds, or spindle revolutions if negative.
-    spindle_work
-        What cycles do with the spindle, by the row at which they begin.
-    clearance
-        As ``clearance_between_holes`` gives it, from the hole before.
+    dwells        the dwells of the run by row, in seconds, or spindle revolutions if negative
+    spindle_work  what cycles do with the spindle, by the row at which they begin
+    clearance     as ``clearance_between_holes`` gives it, from the hole before
     """
     rows = np.arange(max(match.first - 1, 0), match.end)
     positions = run.positions(rows)
