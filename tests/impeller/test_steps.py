@@ -87,7 +87,7 @@ def test_every_mistake_is_told_at_once_with_its_line(tmp_path: Path) -> None:
 def test_operations_are_told_apart_and_want_tools(tmp_path: Path) -> None:
     step = f'[[operation]]\nkind = "blade finish"\ntool = 4\nstepover_mm = 0.2\n{FEEDS}'
     assert read(tmp_path, TOOLS + step + step) == [
-        (TOOLS.count("\n") + 7, "operation[1].name is that of operation[0] too; tell operations apart")
+        (TOOLS.count("\n") + 7, "operation[1].name is that of operation[0] too; give each operation a name of its own")
     ]
     ((_, what), *_) = read(tmp_path, step)
     assert "tool" in what
@@ -98,7 +98,9 @@ def test_names_are_one_line_and_make_different_files(tmp_path: Path) -> None:
     line = TOOLS.count("\n") + 3
     for first, second in (("A B", "a_b"), ("Ä", "A")):
         found = read(tmp_path, TOOLS + step.replace("NAME", first) + step.replace("NAME", second))
-        what = "operation[1].name makes the same file name as that of operation[0]; tell operations apart"
+        what = (
+            "operation[1].name makes the same file name as that of operation[0]; give each operation a name of its own"
+        )
         assert found == [(line + 7, what)]
     for name in (" ", r"A\nM3 S9999", r"\u202e", "x" * 81):
         ((at, what),) = read(tmp_path, TOOLS + step.replace("NAME", name))

@@ -197,7 +197,7 @@ def test_a_zero_and_a_tool_length_other_than_those_of_the_head_are_told(tmp_path
     assert unlike_zero(program, machine) == unlike_head(program, 0.0, 0.0, None, same) == []
     (other,) = unlike_zero(program, replace(machine, workpiece_zero=(1.0, -2.0, 3.6)))
     assert other.code == "PLC240"
-    assert "the workpiece zero is at 1,-2,3.5, and the slides are judged with zero 1,-2,3.6" in other.what
+    assert "the workpiece zero is at 1,-2,3.5, and the linear axes are judged with zero 1,-2,3.6" in other.what
     (longer,) = unlike_bodies(program, Clamping(), replace(machine, tool_length=150.0))
     assert "holds for a tool length of 120 mm" in longer.what
     # It says that the part is not turned: a turn is another clamping.

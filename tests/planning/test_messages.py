@@ -117,7 +117,7 @@ IMPOSSIBLE: dict[str, tuple[Machine, Operation, PlanOptions | None, str, str]] =
     ),
     "without TCP and a place": (
         replace(roomy("yl569"), workpiece_zero=None), operation_of(two_points((10.0, 0.0), (20.0, 0.0))), OFF,
-        "part.cls:1: error: without TCP the program holds positions of the slides, and the workpiece zero on the",
+        "part.cls:1: error: without TCP the program holds positions of the linear axes, and the workpiece zero on the",
         "write setting zero=X,Y,Z",
     ),
 }  # fmt: skip
